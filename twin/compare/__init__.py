@@ -1,0 +1,1 @@
+"""A recording against the toolpath: figures, verdict, report. Knows nothing of MuJoCo."""

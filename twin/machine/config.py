@@ -1,0 +1,153 @@
+"""The machine file ``machine.toml``: axes, drives, feeds, as data."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import pydantic
+from pydantic import Field
+
+from twin.errors import ConfigError
+from twin.nc.canonical import SPATIAL_AXES, Axes
+from twin.toml_file import Table, read_toml
+from twin.toolpath.part_frame import PartFrame
+from twin.units import AxisKind
+
+Positive = Annotated[float, Field(gt=0)]
+NonNegative = Annotated[float, Field(ge=0)]
+Share = Annotated[float, Field(ge=0, le=1)]
+
+
+class AxisTable(Table):
+    """One axis: its joint, its travel, what it can do, and how its drive is tuned."""
+
+    joint: str
+    """Joint in the MJCF model; the actuator has the axis's name."""
+    kind: AxisKind
+    """``linear`` [mm] or ``rotary`` [deg]."""
+    periodic: bool = False
+    """Rotary only: turns without end and may be declared periodic to the control."""
+    travel: tuple[float, float] | None = None
+    """Lowest and highest machine coordinate [mm or deg]; none: endless."""
+    velocity: Positive
+    """Rapid velocity, never exceeded [mm/s or deg/s]."""
+    acceleration: Positive
+    """[mm/s² or deg/s²]."""
+    jerk: Positive
+    """[mm/s³ or deg/s³]."""
+    kv: Positive
+    """Position-loop gain [(m/min)/mm; rotary (1000 deg/min)/deg]: lag = velocity / gain."""
+    damping_ratio: Positive = 0.7
+    """Of the position loop seen as a second-order system."""
+    velocity_feedforward: Share = 0.0
+    """Share of the setpoint velocity that the drive is told; 1 removes the lag."""
+    acceleration_feedforward: Share = 0.0
+    """Share of the inertial force that the drive adds in advance."""
+    force_limit: NonNegative = 0.0
+    """Largest drive force [N or N m]; 0: no limit."""
+    following_error_limit: NonNegative = 0.0
+    """Alarm above this lag [mm or deg]; 0: none."""
+
+
+class PathTable(Table):
+    """Limits of the path of X Y Z, whatever the axes could do."""
+
+    acceleration: Positive
+    """[mm/s²]."""
+    jerk: Positive
+    """[mm/s³]."""
+    rotary_acceleration: Positive | None = None
+    """The same for a path of rotary axes alone [deg/s²]; none: the axes decide."""
+    rotary_jerk: Positive | None = None
+    """[deg/s³]."""
+
+
+class TableTable(Table):
+    """The rotary table that carries the part."""
+
+    axis: str
+    """Name of the rotary axis that turns the part about +Z."""
+    center: tuple[float, float] = (0.0, 0.0)
+    """Machine X and Y at which the tool stands over the axis of rotation [mm]."""
+
+
+class ControlTable(Table):
+    """What the control assumes where a program is silent."""
+
+    default_feed: Positive = 1000.0
+    """[mm/min]."""
+    default_rotary_feed: Positive = 3600.0
+    """For moves of rotary axes alone [deg/min]."""
+    recalculate_on_rapid: bool = False
+    """``gost``: G102 also relabels the start of G0 blocks."""
+
+
+class MachineFile(Table):
+    """The whole machine file."""
+
+    schema_: Literal[1] = Field(alias="schema")
+    name: str
+    model: str
+    """MJCF file, relative to the machine file."""
+    servo_period_s: Positive = 0.001
+    """Clock of setpoints, drives and recording [s]."""
+    axes: dict[str, AxisTable]
+    """By axis name; must hold X, Y and Z."""
+    path: PathTable
+    table: TableTable | None = None
+    control: ControlTable = ControlTable()
+
+    @pydantic.model_validator(mode="after")
+    def _consistent(self) -> "MachineFile":
+        missing = [name for name in SPATIAL_AXES if name not in self.axes]
+        if missing:
+            raise ValueError(f"axes {', '.join(missing)} are missing")
+        for name, axis in self.axes.items():
+            if axis.travel is not None and axis.travel[0] >= axis.travel[1]:
+                raise ValueError(f"axes.{name}.travel must rise from lowest to highest")
+            if axis.periodic and axis.kind != "rotary":
+                raise ValueError(f"axes.{name} is periodic but not rotary")
+        if self.table is not None and self.table.axis not in self.axes:
+            raise ValueError(f"table.axis '{self.table.axis}' is not an axis")
+        return self
+
+
+class Machine:
+    """A machine file that was read, with what other rooms need of it.
+
+    Attributes:
+        path: Where the machine file lies.
+        file: Its checked content.
+        axes: Names and kinds in the order of every column: X, Y, Z, then the others as written.
+        part_frame: How the part turns under the tool.
+    """
+
+    def __init__(self, path: Path, file: MachineFile) -> None:
+        self.path = path
+        self.file = file
+        names = (*SPATIAL_AXES, *(name for name in file.axes if name not in SPATIAL_AXES))
+        self.axes = Axes(names, tuple(file.axes[name].kind for name in names))
+        self.part_frame = PartFrame(
+            rotary=None if file.table is None else self.axes.index(file.table.axis),
+            center=(0.0, 0.0) if file.table is None else file.table.center,
+        )
+
+    @property
+    def model_path(self) -> Path:
+        """The MJCF file."""
+        return self.path.parent / self.file.model
+
+    def axis(self, name: str) -> AxisTable:
+        """The table of one axis."""
+        return self.file.axes[name]
+
+
+def read_machine(path: Path) -> Machine:
+    """Read a machine file.
+
+    Raises:
+        ConfigError: The file or the model that it names is missing or wrong.
+    """
+    machine = Machine(path, read_toml(path, MachineFile))
+    if not machine.model_path.is_file():
+        raise ConfigError(f"{path}: model '{machine.file.model}' does not exist")
+    return machine

@@ -1,0 +1,1 @@
+"""Canonical moves to setpoints at the servo period. Knows nothing of G-codes or MuJoCo."""

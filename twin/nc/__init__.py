@@ -1,0 +1,1 @@
+"""NC text to canonical moves. Knows nothing of time, machines or MuJoCo."""

@@ -1,0 +1,217 @@
+"""Canonical moves: what every dialect's program comes down to.
+
+The verbs between a dialect and the rest of the twin are few: straight moves and arcs (a helix is
+an arc that also advances along its normal), dwells, and functions such as M3. Every one carries
+the source line that caused it.
+
+Conventions, once for all rooms:
+
+* Positions are the part's (program zero of the job), in mm and degrees, continuous: a table that
+  turned twice stands at 720.
+* The first three axes are always X, Y, Z. Any further axes follow, linear or rotary.
+* An arc's ``sweep`` is signed: positive is counter-clockwise about ``normal``, and it counts every
+  turn. With u from 0 to 1 the tool is at
+  ``center + rotate(normal, u * sweep) (start - center) + u * advance * normal``, where ``advance``
+  is the component of ``end - start`` along the normal; all other axes go linearly with u.
+* ``length`` is what the feed counts: mm along the path of X Y Z, or, where these stand still, the
+  length of the other linear axes, and where those stand still too, the degrees of the rotary axes
+  (Euclidean where several move).
+"""
+
+import dataclasses
+import enum
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.units import AxisKind
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+CodeArray = npt.NDArray[np.uint8]
+
+SPATIAL_AXES = ("X", "Y", "Z")
+"""The axes that arcs and path feeds are about; every machine has them, and first."""
+
+NO_BLOCK_NUMBER = -1
+"""In ``Moves.block``: the block carries no N number."""
+
+
+class Motion(enum.IntEnum):
+    """How fast a move wants to go."""
+
+    RAPID = 0
+    FEED = 1
+
+
+class Shape(enum.IntEnum):
+    """The geometry of a move."""
+
+    LINE = 0
+    ARC = 1
+
+
+class FeedUnit(enum.IntEnum):
+    """What the feed of a move counts."""
+
+    MM_PER_MIN = 0
+    DEG_PER_MIN = 1
+
+
+FEED_UNIT_NAMES = {FeedUnit.MM_PER_MIN: "mm/min", FeedUnit.DEG_PER_MIN: "deg/min"}
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Axes:
+    """The axes of a stream of moves, in the order of the columns.
+
+    Attributes:
+        names: X, Y, Z first.
+        kinds: ``linear`` or ``rotary``, one per name.
+    """
+
+    names: tuple[str, ...]
+    kinds: tuple[AxisKind, ...]
+
+    def __post_init__(self) -> None:
+        if self.names[:3] != SPATIAL_AXES or len(self.names) != len(self.kinds):
+            raise ValueError(f"axes must begin with X, Y, Z and each have a kind: {self}")
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def index(self, name: str) -> int:
+        """Column of the axis called ``name``."""
+        return self.names.index(name)
+
+    def rotary(self) -> npt.NDArray[np.bool_]:
+        """Mask of the rotary axes, shape (k,)."""
+        return np.array([kind == "rotary" for kind in self.kinds])
+
+    def named(self, values: Iterable[float]) -> dict[str, float]:
+        """Pair one row of values with the axis names."""
+        return {name: float(value) for name, value in zip(self.names, values, strict=True)}
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Moves:
+    """A chunk of n canonical moves over k axes, as columns.
+
+    Attributes:
+        axes: Names and kinds of the k axes.
+        motion: ``Motion`` codes, shape (n,).
+        shape: ``Shape`` codes, shape (n,).
+        line: Source line, counted from 1, shape (n,).
+        block: N number of the block or ``NO_BLOCK_NUMBER``, shape (n,).
+        start: Position before the move, shape (n, k) [mm or deg].
+        end: Position after the move, shape (n, k) [mm or deg].
+        display: What the control's screen shows at the end, shape (n, k) [mm or deg].
+        feed: Shape (n,) [mm/min or deg/min by ``feed_unit``]; NaN for rapids.
+        feed_unit: ``FeedUnit`` codes, shape (n,).
+        length: What the feed counts, shape (n,) [mm or deg].
+        center: Centre of arcs at the height of their start, shape (n, 3) [mm]; NaN for lines.
+        normal: Unit normal of arcs, shape (n, 3); NaN for lines.
+        radius: Shape (n,) [mm]; NaN for lines.
+        sweep: Signed angle of arcs, all turns counted, shape (n,) [deg]; 0 for lines.
+    """
+
+    axes: Axes
+    motion: CodeArray
+    shape: CodeArray
+    line: IntArray
+    block: IntArray
+    start: FloatArray
+    end: FloatArray
+    display: FloatArray
+    feed: FloatArray
+    feed_unit: CodeArray
+    length: FloatArray
+    center: FloatArray
+    normal: FloatArray
+    radius: FloatArray
+    sweep: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+    def __getitem__(self, index: slice | npt.NDArray[np.bool_] | IntArray) -> "Moves":
+        """A selection of the moves, as columns again."""
+        return Moves(self.axes, **{name: getattr(self, name)[index] for name in _COLUMNS})
+
+    @staticmethod
+    def empty(axes: Axes) -> "Moves":
+        """No moves over the given axes."""
+        return concatenate([], axes)
+
+
+_COLUMNS = tuple(field.name for field in dataclasses.fields(Moves) if field.name != "axes")
+_CODES = ("motion", "shape", "feed_unit")
+_INTEGERS = ("line", "block")
+_VECTORS = ("center", "normal")
+_AXIS_ROWS = ("start", "end", "display")
+
+
+def concatenate(parts: Iterable[Moves], axes: Axes) -> Moves:
+    """Join chunks of moves into one; no parts give no moves."""
+    parts = list(parts)
+    columns = {}
+    for name in _COLUMNS:
+        arrays = [getattr(part, name) for part in parts]
+        columns[name] = np.concatenate(arrays) if arrays else _empty_column(name, len(axes))
+    return Moves(axes, **columns)
+
+
+def _empty_column(name: str, axis_count: int) -> npt.NDArray[np.generic]:
+    if name in _CODES:
+        return np.zeros(0, np.uint8)
+    if name in _INTEGERS:
+        return np.zeros(0, np.int64)
+    if name in _VECTORS:
+        return np.zeros((0, 3))
+    if name in _AXIS_ROWS:
+        return np.zeros((0, axis_count))
+    return np.zeros(0)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Dwell:
+    """The machine waits.
+
+    Attributes:
+        before: Index of the move of the same chunk that comes next; the chunk's length at its end.
+        line: Source line.
+        seconds: How long [s].
+    """
+
+    before: int
+    line: int
+    seconds: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Function:
+    """A word that does something other than move: M3, M30, T2.
+
+    Attributes:
+        before: As in ``Dwell``.
+        line: Source line.
+        word: The word without leading zeros, such as ``M3``.
+        arguments: Further words that belong to it, such as S.
+    """
+
+    before: int
+    line: int
+    word: str
+    arguments: Mapping[str, float]
+
+
+Event = Dwell | Function
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Chunk:
+    """A few thousand moves with the events between them, in program order."""
+
+    moves: Moves
+    events: tuple[Event, ...] = ()

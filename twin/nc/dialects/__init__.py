@@ -1,0 +1,1 @@
+"""The four controls, one module each."""

@@ -1,0 +1,35 @@
+"""What the interpreter must be told about the machine and the job, without knowing either."""
+
+import dataclasses
+from collections.abc import Mapping
+
+from twin.nc.canonical import Axes
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class ControlSettings:
+    """The control's configuration for one run of a program."""
+
+    axes: Axes
+    """The axes that the machine has."""
+
+    periodic: frozenset[str] = frozenset()
+    """Names of the rotary axes that are declared periodic."""
+
+    default_feed: float = 1000.0
+    """Feed of a program that sets none [mm/min]."""
+
+    default_rotary_feed: float = 3600.0
+    """The same for moves of rotary axes alone [deg/min]."""
+
+    start: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    """Where the axes stand when the program starts, part coordinates [mm or deg]; missing is 0."""
+
+    recalculate_on_rapid: bool = False
+    """``gost``: G102 also relabels the start of G0 blocks (dialects.md: decision, default off)."""
+
+    strict: bool = False
+    """Turn warnings into errors."""
+
+    step_limit: int = 1_000_000
+    """Blocks that may be executed through jumps and loops before a program counts as endless."""

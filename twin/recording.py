@@ -1,0 +1,226 @@
+"""The recording: setpoints and simulated joints at the servo rate, as an HDF5 file.
+
+Sample i of ``joint`` and of ``setpoint`` belong to the same instant ``time[i]``. The file is
+written under a temporary name and renamed when the run has ended, so that a file under its own
+name is whole.
+"""
+
+import contextlib
+import dataclasses
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from twin.errors import RecordingError
+from twin.files import complete_or_absent
+from twin.motion.setpoints import Setpoints
+from twin.nc.canonical import Axes, FloatArray
+from twin.toolpath.part_frame import PartFrame
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Samples:
+    """A chunk of n samples over k axes: what was asked for and what the joints did.
+
+    Attributes:
+        setpoint: The setpoints of the same instants, machine coordinates.
+        joint_position: Shape (n, k) [mm or deg], machine coordinates.
+        joint_velocity: Shape (n, k) [mm/s or deg/s].
+        drive_force: Shape (n, k) [N or N m].
+    """
+
+    setpoint: Setpoints
+    joint_position: FloatArray
+    joint_velocity: FloatArray
+    drive_force: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.setpoint)
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingHeader:
+    """What a recording says about itself; the attributes of the file."""
+
+    axes: Axes
+    period_s: float
+    part_zero: FloatArray
+    """Machine coordinates of program zero, shape (k,) [mm or deg]."""
+    part_frame: PartFrame
+    program: str
+    program_text: str
+    program_sha256: str
+    dialect: str
+    machine: str
+    twin_version: str
+    mujoco_version: str
+
+
+_COLUMNS: Mapping[str, tuple[str, str]] = {
+    "time": ("time", "s"),
+    "line": ("line", ""),
+    "move": ("move", ""),
+    "fraction": ("fraction", ""),
+    "setpoint/position": ("position", "mm or deg"),
+    "setpoint/velocity": ("velocity", "mm/s or deg/s"),
+    "setpoint/acceleration": ("acceleration", "mm/s^2 or deg/s^2"),
+}
+_JOINT_COLUMNS: Mapping[str, tuple[str, str]] = {
+    "joint/position": ("joint_position", "mm or deg"),
+    "joint/velocity": ("joint_velocity", "mm/s or deg/s"),
+    "drive/force": ("drive_force", "N or N m"),
+}
+_ROWS_PER_CHUNK = 4096
+
+
+class RecordingWriter:
+    """Appends chunks of samples to an open recording."""
+
+    def __init__(self, file: h5py.File, header: RecordingHeader) -> None:
+        self._file = file
+        self._count = 0
+        width = len(header.axes)
+        for path, (name, unit) in {**_COLUMNS, **_JOINT_COLUMNS}.items():
+            kind = np.int64 if name in ("line", "move") else np.float64
+            shape = (0, width) if "/" in path else (0,)
+            rows = (_ROWS_PER_CHUNK, *shape[1:])
+            dataset = file.create_dataset(
+                path, shape, maxshape=(None, *shape[1:]), dtype=kind, chunks=rows,
+                compression="gzip", compression_opts=1, shuffle=True,
+            )  # fmt: skip
+            if unit:
+                dataset.attrs["unit"] = unit
+        _write_attributes(file, header)
+
+    def append(self, samples: Samples) -> None:
+        """Add a chunk that follows the last one."""
+        end = self._count + len(samples)
+        for path, (name, _) in _COLUMNS.items():
+            self._put(path, getattr(samples.setpoint, name), end)
+        for path, (name, _) in _JOINT_COLUMNS.items():
+            self._put(path, getattr(samples, name), end)
+        self._count = end
+
+    def _put(self, path: str, values: np.ndarray[Any, Any], end: int) -> None:
+        dataset = self._file[path]
+        assert isinstance(dataset, h5py.Dataset)
+        dataset.resize(end, axis=0)
+        dataset[self._count : end] = values
+
+
+def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
+    attributes = file.attrs
+    attributes["axes"] = list(header.axes.names)
+    attributes["kinds"] = list(header.axes.kinds)
+    attributes["period_s"] = header.period_s
+    attributes["part_zero"] = header.part_zero
+    attributes["table_axis"] = (
+        "" if header.part_frame.rotary is None else header.axes.names[header.part_frame.rotary]
+    )
+    attributes["table_center"] = header.part_frame.center
+    for name in _TEXT_ATTRIBUTES:
+        attributes[name] = getattr(header, name)
+    attributes["complete"] = False
+
+
+_TEXT_ATTRIBUTES = (
+    "program",
+    "program_text",
+    "program_sha256",
+    "dialect",
+    "machine",
+    "twin_version",
+    "mujoco_version",
+)
+
+
+@contextlib.contextmanager
+def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
+    """Open a recording for writing; it appears under ``path`` when the block ends without error.
+
+    Args:
+        path: The file to be.
+        header: What the recording says about itself.
+    """
+    with complete_or_absent(path) as temporary, h5py.File(temporary, "w") as file:
+        yield RecordingWriter(file, header)
+        file.attrs["complete"] = True
+
+
+class Recording:
+    """A complete recording, open for reading in chunks.
+
+    Attributes:
+        path: The file.
+        header: What it says about itself.
+    """
+
+    def __init__(self, path: Path, file: h5py.File) -> None:
+        self.path = path
+        self._file = file
+        self.header = _read_header(file)
+
+    def __len__(self) -> int:
+        return len(self._dataset("time"))
+
+    def _dataset(self, name: str) -> h5py.Dataset:
+        dataset = self._file[name]
+        if not isinstance(dataset, h5py.Dataset):
+            raise TypeError(f"'{name}' is not a dataset")
+        return dataset
+
+    def column(self, name: str) -> np.ndarray[Any, Any]:
+        """One whole dataset, such as ``joint/position``."""
+        return self._dataset(name)[:]
+
+    def chunks(self, rows: int = 65536) -> Iterator[Samples]:
+        """Samples in order, at most ``rows`` at a time."""
+        for first in range(0, len(self), rows):
+            here = slice(first, first + rows)
+            setpoint = Setpoints(
+                **{name: self._dataset(path)[here] for path, (name, _) in _COLUMNS.items()}
+            )
+            yield Samples(
+                setpoint,
+                **{name: self._dataset(path)[here] for path, (name, _) in _JOINT_COLUMNS.items()},
+            )
+
+
+def _read_header(file: h5py.File) -> RecordingHeader:
+    values = {name: np.asarray(value).tolist() for name, value in file.attrs.items()}
+    axes = Axes(tuple(values["axes"]), tuple(values["kinds"]))
+    table_axis = values["table_axis"]
+    return RecordingHeader(
+        axes=axes,
+        period_s=values["period_s"],
+        part_zero=np.array(values["part_zero"], np.float64),
+        part_frame=PartFrame(
+            rotary=axes.index(table_axis) if table_axis else None,
+            center=tuple(values["table_center"]),
+        ),
+        **{name: values[name] for name in _TEXT_ATTRIBUTES},
+    )
+
+
+@contextlib.contextmanager
+def open_recording(path: Path) -> Iterator[Recording]:
+    """Open a complete recording.
+
+    Raises:
+        RecordingError: The file is missing, torn, incomplete or not a recording.
+    """
+    try:
+        file = h5py.File(path, "r")
+    except OSError as error:
+        raise RecordingError(f"{path}: is not a readable recording: {error}") from error
+    with file:
+        if not file.attrs.get("complete", False):
+            raise RecordingError(f"{path}: the recording is not complete")
+        try:
+            recording = Recording(path, file)
+        except (KeyError, ValueError, IndexError) as error:
+            raise RecordingError(f"{path}: is not a recording of this twin: {error}") from error
+        yield recording

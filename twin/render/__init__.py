@@ -1,0 +1,1 @@
+"""Pictures of a recording. The only room that touches OpenGL."""

@@ -1,0 +1,51 @@
+"""Where the machines and programs that ship with the package lie, in a checkout or in a wheel."""
+
+from pathlib import Path
+
+from twin.errors import UsageError
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+def resource_root(kind: str) -> Path:
+    """Return the folder of the shipped ``models`` or ``programs``.
+
+    Raises:
+        UsageError: The installation lacks the folder.
+    """
+    candidates = (_PACKAGE / "_resources" / kind, _PACKAGE.parent / kind)
+    for candidate in candidates:
+        if candidate.is_dir():
+            return candidate
+    raise UsageError(f"this installation has no '{kind}' folder; looked in {candidates}")
+
+
+def machine_names() -> tuple[str, ...]:
+    """Names of the shipped machines, sorted."""
+    return tuple(
+        sorted(path.parent.name for path in resource_root("models").glob("*/machine.toml"))
+    )
+
+
+def machine_file(name: str, *, beside: Path | None = None) -> Path:
+    """Find a machine file by its shipped name or by its path.
+
+    Args:
+        name: A shipped machine's name (``mill4``), a ``machine.toml``, or a folder that holds one.
+        beside: Folder that a relative path is taken from; the working folder by default.
+
+    Raises:
+        UsageError: No such machine; the message lists the shipped ones.
+    """
+    shipped = resource_root("models") / name / "machine.toml"
+    if "/" not in name and shipped.is_file():
+        return shipped
+    path = (beside or Path()) / name
+    if path.is_dir():
+        path = path / "machine.toml"
+    if path.is_file():
+        return path
+    raise UsageError(
+        f"no machine '{name}': shipped machines are {', '.join(machine_names())}; "
+        "or give the path of a machine.toml"
+    )

@@ -1,0 +1,84 @@
+"""TOML files read into checked models, with errors that name file, key and what would have fit."""
+
+import difflib
+import tomllib
+from pathlib import Path
+from typing import Any, TypeVar
+
+import pydantic
+from pydantic_core import ErrorDetails
+
+from twin.errors import ConfigError
+
+
+class Table(pydantic.BaseModel):
+    """A TOML table: unknown keys are errors, values do not change after reading."""
+
+    model_config = pydantic.ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )
+
+
+TableT = TypeVar("TableT", bound=Table)
+
+
+def read_toml(path: Path, table: type[TableT]) -> TableT:
+    """Read a TOML file into a table model.
+
+    Args:
+        path: The file.
+        table: The model that names its keys.
+
+    Raises:
+        ConfigError: The file is missing, is not TOML, or has a wrong key or value.
+    """
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ConfigError(f"{path}: is not UTF-8 text") from error
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{path}: is not TOML: {error}") from error
+    try:
+        return table.model_validate(data)
+    except pydantic.ValidationError as error:
+        lines = "\n".join(f"{path}: {_explain(detail, table)}" for detail in error.errors())
+        raise ConfigError(lines) from error
+
+
+def _explain(detail: ErrorDetails, table: type[pydantic.BaseModel]) -> str:
+    key = ".".join(str(part) for part in detail["loc"]) or "(file)"
+    if detail["type"] == "missing":
+        return f"'{key}' is missing"
+    if detail["type"] != "extra_forbidden":
+        return f"'{key}': {detail['msg'].removeprefix('Value error, ')} (got {detail['input']!r})"
+    known = _known_keys(table, detail["loc"][:-1])
+    nearest = difflib.get_close_matches(str(detail["loc"][-1]), known, n=1)
+    hint = f"did you mean '{nearest[0]}'?" if nearest else f"known keys: {', '.join(sorted(known))}"
+    return f"unknown key '{key}'; {hint}"
+
+
+def _known_keys(model: Any, path: tuple[int | str, ...]) -> list[str]:
+    for part in path:
+        model = _inner_model(model, part)
+        if model is None:
+            return []
+    return list(model.model_fields)
+
+
+def _inner_model(model: type[pydantic.BaseModel], part: int | str) -> Any:
+    """The table that ``part`` leads into; an index or a free key stays with its element's table."""
+    if not isinstance(part, str) or part not in model.model_fields:
+        return model
+    return _first_model(model.model_fields[part].annotation)
+
+
+def _first_model(annotation: Any) -> Any:
+    if isinstance(annotation, type) and issubclass(annotation, pydantic.BaseModel):
+        return annotation
+    for argument in getattr(annotation, "__args__", ()):
+        found = _first_model(argument)
+        if found is not None:
+            return found
+    return None

@@ -1,0 +1,45 @@
+"""From machine coordinates to the part's own frame, which turns with the rotary table.
+
+Sign convention (ISO 841): a positive rotary value moves the tool counter-clockwise *around the
+part*, seen from +Z; the table itself turns clockwise. With the table at 0 the part's frame is
+parallel to the machine's.
+"""
+
+import dataclasses
+
+import numpy as np
+
+from twin.nc.canonical import FloatArray
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class PartFrame:
+    """How the part turns under the tool.
+
+    Attributes:
+        rotary: Column of the axis that turns the part about +Z, or None when nothing turns it.
+        center: Machine X and Y at which the tool stands over the axis of rotation [mm].
+    """
+
+    rotary: int | None
+    center: tuple[float, float]
+
+    def position(self, joints: FloatArray) -> FloatArray:
+        """Where the tool point is, seen from the part.
+
+        Args:
+            joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
+
+        Returns:
+            Shape (n, 3) [mm], origin on the axis of rotation at machine Z 0: X and Y of the tool
+            relative to ``center``, turned by the rotary value; Z as it is.
+        """
+        relative = joints[:, :3] - np.array([*self.center, 0.0])
+        if self.rotary is None:
+            return relative
+        angle = np.deg2rad(joints[:, self.rotary])
+        cosine, sine = np.cos(angle), np.sin(angle)
+        turned = relative.copy()
+        turned[:, 0] = cosine * relative[:, 0] - sine * relative[:, 1]
+        turned[:, 1] = sine * relative[:, 0] + cosine * relative[:, 1]
+        return turned
