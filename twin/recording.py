@@ -121,6 +121,7 @@ def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
         "" if header.part_frame.rotary is None else header.axes.names[header.part_frame.rotary]
     )
     attributes["table_center"] = header.part_frame.center
+    attributes["table_zero"] = header.part_frame.turn_zero
     for name in _TEXT_ATTRIBUTES:
         attributes[name] = getattr(header, name)
     attributes["complete"] = False
@@ -200,6 +201,7 @@ def _read_header(file: h5py.File) -> RecordingHeader:
         part_frame=PartFrame(
             rotary=axes.index(table_axis) if table_axis else None,
             center=tuple(values["table_center"]),
+            turn_zero=values["table_zero"],
         ),
         **{name: values[name] for name in _TEXT_ATTRIBUTES},
     )

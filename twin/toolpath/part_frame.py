@@ -1,8 +1,7 @@
 """From machine coordinates to the part's own frame, which turns with the rotary table.
 
 Sign convention (ISO 841): a positive rotary value moves the tool counter-clockwise *around the
-part*, seen from +Z; the table itself turns clockwise. With the table at 0 the part's frame is
-parallel to the machine's.
+part*, seen from +Z; the table itself turns clockwise.
 """
 
 import dataclasses
@@ -19,10 +18,13 @@ class PartFrame:
     Attributes:
         rotary: Column of the axis that turns the part about +Z, or None when nothing turns it.
         center: Machine X and Y at which the tool stands over the axis of rotation [mm].
+        turn_zero: Rotary machine value at which the part's frame is parallel to the machine's
+            [deg]: the part zero of that axis, so that the part lies as its program describes it.
     """
 
     rotary: int | None
     center: tuple[float, float]
+    turn_zero: float = 0.0
 
     def position(self, joints: FloatArray) -> FloatArray:
         """Where the tool point is, seen from the part.
@@ -32,12 +34,12 @@ class PartFrame:
 
         Returns:
             Shape (n, 3) [mm], origin on the axis of rotation at machine Z 0: X and Y of the tool
-            relative to ``center``, turned by the rotary value; Z as it is.
+            relative to ``center``, turned by the rotary value from ``turn_zero``; Z as it is.
         """
         relative = joints[:, :3] - np.array([*self.center, 0.0])
         if self.rotary is None:
             return relative
-        angle = np.deg2rad(joints[:, self.rotary])
+        angle = np.deg2rad(joints[:, self.rotary] - self.turn_zero)
         cosine, sine = np.cos(angle), np.sin(angle)
         turned = relative.copy()
         turned[:, 0] = cosine * relative[:, 0] - sine * relative[:, 1]
