@@ -26,7 +26,7 @@ def shipped_machine(**axis_changes: Any) -> Machine:
 def setpoints(position: FloatArray, velocity: FloatArray, acceleration: FloatArray) -> Setpoints:
     n = len(position)
     return Setpoints(
-        np.arange(n) * PERIOD,
+        PERIOD * np.arange(n, dtype=np.float64),
         np.arange(n) // 10,
         np.zeros(n, np.int64),
         np.linspace(0.0, 1.0, n),
