@@ -34,10 +34,16 @@ class AxisTable(Table):
     """[mm/s² or deg/s²]."""
     jerk: Positive
     """[mm/s³ or deg/s³]."""
+    motor_inertia: NonNegative = 0.0
+    """Of the motor's rotor, coupling included [kg m²]; counts only where ``lead`` is given."""
+    screw_inertia: NonNegative = 0.0
+    """Of whatever turns with the motor: ball screw, worm, pulley [kg m²]."""
+    lead: Positive | None = None
+    """Axis travel per turn of the motor [mm or deg]; none: a direct drive, nothing is reflected."""
     kv: Positive
     """Position-loop gain [(m/min)/mm; rotary (1000 deg/min)/deg]: lag = velocity / gain."""
-    damping_ratio: Positive = 0.7
-    """Of the position loop seen as a second-order system."""
+    damping_ratio: Positive = 1.0
+    """Of the position loop seen as a second-order system; 1 is the fastest that cannot overshoot."""
     velocity_feedforward: Share = 0.0
     """Share of the setpoint velocity that the drive is told; 1 removes the lag."""
     acceleration_feedforward: Share = 0.0

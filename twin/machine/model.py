@@ -1,0 +1,144 @@
+"""The MuJoCo model of a machine: its MJCF file, its drives, the tool in its spindle."""
+
+import mujoco
+import numpy as np
+
+from twin.errors import ConfigError
+from twin.machine.config import Machine
+from twin.machine.drives import Drive, feedforward_name, reflected_inertia, tune
+from twin.machine.tool_shape import VISUAL_GROUP, DefaultTool, ToolShape, add_tool
+from twin.units import MM
+
+SPINDLE_NOSE = "spindle_nose"
+"""Site on the head at the lower end of the spindle, on its axis."""
+TABLE_TOP = "table_top"
+"""Site in the middle of the work-holding surface."""
+ROTARY_TABLE = "rotary_table"
+"""Body that the part is clamped to."""
+
+_JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
+
+
+def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec:
+    """Build the editable model: machine, lights, cameras, drives, tool.
+
+    Args:
+        machine: The machine file.
+        tool: What the spindle holds; a 10 mm end mill by default.
+
+    Returns:
+        A specification that compiles; other rooms may add to it, to ``rotary_table`` above all.
+
+    Raises:
+        ConfigError: The model cannot be read, or lacks what the machine file or the rooms name.
+    """
+    try:
+        spec = mujoco.MjSpec.from_file(str(machine.model_path))
+    except ValueError as error:
+        raise ConfigError(f"{machine.model_path}: is not an MJCF model: {error}") from error
+    _require(machine, "site", SPINDLE_NOSE, [site.name for site in spec.sites])
+    _require(machine, "site", TABLE_TOP, [site.name for site in spec.sites])
+    _require(machine, "body", ROTARY_TABLE, [body.name for body in spec.bodies])
+    _set_clock(spec, machine)
+    _set_inertia(spec, machine)
+    _set_drives(spec, machine)
+    add_tool(spec, tool or DefaultTool())
+    return spec
+
+
+def _require(machine: Machine, what: str, name: str, known: list[str]) -> None:
+    if name not in known:
+        raise ConfigError(
+            f"{machine.model_path}: has no {what} '{name}'; it has {', '.join(filter(None, known))}"
+        )
+
+
+def _set_clock(spec: mujoco.MjSpec, machine: Machine) -> None:
+    """RK4 at the servo period: ``sampling`` says why, and its tests hold it to 0.1 µm."""
+    spec.option.timestep = machine.file.servo_period_s
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+
+
+def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
+    for name in machine.axes.names:
+        axis = machine.axis(name)
+        _require(machine, "joint", axis.joint, [joint.name for joint in spec.joints])
+        joint = spec.joint(axis.joint)
+        if joint.type != _JOINT_TYPES[axis.kind]:
+            raise ConfigError(
+                f"{machine.model_path}: joint '{axis.joint}' does not move as axis {name}, "
+                f"which is {axis.kind}, must"
+            )
+        joint.armature = reflected_inertia(axis)
+
+
+def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
+    known = [actuator.name for actuator in spec.actuators]
+    for name in machine.axes.names:
+        _require(machine, "actuator", name, known)
+    found = drives(machine, _compile(spec, machine))
+    for name, drive in zip(machine.axes.names, found, strict=True):
+        axis = machine.axis(name)
+        servo = spec.actuator(name)
+        servo.target = axis.joint
+        servo.trntype = mujoco.mjtTrn.mjTRN_JOINT
+        servo.set_to_intvelocity(kp=drive.position_gain, kv=drive.velocity_gain)
+        servo.actlimited = False
+        servo.forcelimited = False
+        feedforward = spec.add_actuator(
+            name=feedforward_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
+        )
+        feedforward.set_to_motor()
+        joint = spec.joint(axis.joint)
+        joint.actfrclimited = axis.force_limit > 0
+        joint.actfrcrange = np.array([-axis.force_limit, axis.force_limit])
+
+
+def _compile(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise ConfigError(f"{machine.model_path}: does not compile: {error}") from error
+
+
+def drives(machine: Machine, model: mujoco.MjModel) -> tuple[Drive, ...]:
+    """Derive every axis's position loop from the masses of the compiled model at home.
+
+    Returns:
+        One drive per axis, in the order of ``machine.axes``.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    inertia = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, inertia)
+    found = []
+    for name in machine.axes.names:
+        axis = machine.axis(name)
+        dof = int(model.joint(axis.joint).dofadr[0])
+        found.append(tune(axis, float(inertia[dof, dof])))
+    return tuple(found)
+
+
+def physics_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Compile the model without what is only looked at: the same motion, in less time.
+
+    Every moving body has its own inertial, so that geoms weigh nothing.
+
+    Raises:
+        ConfigError: The specification does not compile.
+    """
+    lean = spec.copy()
+    for geom in list(lean.geoms):
+        if geom.group == VISUAL_GROUP:
+            lean.delete(geom)
+    return _compile(lean, machine)
+
+
+def spindle_over_table_mm(machine: Machine) -> float:
+    """Height of the spindle nose over the work-holding surface with all axes at zero [mm]."""
+    model = _compile(build_spec(machine), machine)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    nose, table = data.site(SPINDLE_NOSE).xpos, data.site(TABLE_TOP).xpos
+    return float((nose[2] - table[2]) / MM)
