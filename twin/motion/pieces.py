@@ -153,7 +153,7 @@ def _constant_limits(
 
     rapid = moves.motion[of_move] == Motion.RAPID
     velocity = np.where(rapid, np.inf, moves.feed[of_move] / SECONDS_PER_MINUTE)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         velocity = np.minimum(velocity, (limits.velocity / first).min(axis=1))
         centripetal = (CENTRIPETAL_SHARE * limits.acceleration / second).min(axis=1)
         centripetal = np.minimum(centripetal, path_acceleration / bend)

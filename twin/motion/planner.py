@@ -35,12 +35,12 @@ class Phases:
     Attributes:
         pieces: The window.
         rows: Begin [s], duration [s], x within the piece, v, a, j; shape (m, 6).
-        piece: Row of ``pieces`` in which each phase begins, shape (m,).
+        rows_pieces: Rows of ``pieces`` in which each phase begins and ends, shape (m, 2).
     """
 
     pieces: Pieces
     rows: FloatArray
-    piece: IntArray
+    rows_pieces: IntArray
 
     @property
     def end_time(self) -> float:
@@ -70,11 +70,11 @@ def plan_phases(
         reach = find_reach(table, entry, known)
         stop = len(pieces) if whole else BATCH - first
         state[0] = 0.0
-        rows, piece = find_phases(table, entry, reach, pieces.pause, stop, state)
+        rows, rows_pieces = find_phases(table, entry, reach, pieces.pause, stop, state)
         known = reach[int(state[0]) : -1]
         state[0] += first - BATCH
         if len(rows) > 0:
-            yield Phases(pieces, rows, piece)
+            yield Phases(pieces, rows, rows_pieces)
 
 
 def _windows(parts: Iterable[Pieces]) -> Iterator[tuple[Pieces, bool]]:
@@ -156,7 +156,7 @@ def _sample(
         piece = np.zeros(SAMPLES, np.int64)
         path = np.zeros((SAMPLES, 3))
         count = sample_path(
-            phases.rows, phases.piece, pieces.length, tick, period_s, cursor, piece, path
+            phases.rows, phases.rows_pieces, pieces.length, tick, period_s, cursor, piece, path
         )
         if count == 0:
             return

@@ -258,9 +258,10 @@ def _longest(
 @numba.njit(cache=True)
 def _put(
     phases: FloatArray, pieces: IntArray, row: int,
-    i: int, begin: float, duration: float, x: float, v: float, a: float, j: float,
+    first: int, last: int, begin: float, duration: float, x: float, v: float, a: float, j: float,
 ) -> None:  # fmt: skip
-    pieces[row] = i
+    pieces[row, 0] = first
+    pieces[row, 1] = last
     phases[row, 0] = begin
     phases[row, 1] = duration
     phases[row, 2] = x
@@ -285,11 +286,11 @@ def find_phases(
         state: Piece, x, v, a, time; overwritten by the state at the end, shape (5,).
 
     Returns:
-        Rows begin [s], duration [s], x, v, a, j, and the piece of each phase's begin.
+        Rows begin [s], duration [s], x, v, a, j, and the first and last piece of each phase.
     """
     count = limits.shape[1]
     phases = np.zeros((256, 6))
-    pieces = np.zeros(256, np.int64)
+    pieces = np.zeros((256, 2), np.int64)
     used = 0
     i, x, v, a, now = int(state[0]), state[1], state[2], state[3], state[4]
     while i < stop and i < count:
@@ -297,7 +298,7 @@ def find_phases(
             phases = np.concatenate((phases, np.zeros_like(phases)))
             pieces = np.concatenate((pieces, np.zeros_like(pieces)))
         if limits[0, i] == 0.0:
-            _put(phases, pieces, used, i, now, pause[i], 0.0, 0.0, 0.0, 0.0)
+            _put(phases, pieces, used, i, i, now, pause[i], 0.0, 0.0, 0.0, 0.0)
             used += 1
             now += pause[i]
             i += 1
@@ -316,7 +317,7 @@ def find_phases(
             latest = 2.0 * (limits[0, i] - x) / v
             duration, at_border = _longest(limits, entry, reach, i, x, v, a, j, latest)
         if duration >= SHORTEST_PHASE or (at_border and duration >= 0.0):
-            _put(phases, pieces, used, i, now, duration, x, v, a, j)
+            _put(phases, pieces, used, i, i, now, duration, x, v, a, j)
             used += 1
             now += duration
             x += ((j / 6.0 * duration + 0.5 * a) * duration + v) * duration
@@ -343,7 +344,7 @@ def find_phases(
             at_border = length >= rest
             if at_border:
                 duration = time_to(rest, v, a, -jerk, duration)
-            _put(phases, pieces, used, i, now, duration, x, v, a, -jerk)
+            _put(phases, pieces, used, i, i, now, duration, x, v, a, -jerk)
             used += 1
             now += duration
             v += (a - 0.5 * jerk * duration) * duration
@@ -358,7 +359,7 @@ def find_phases(
         if v <= w:
             # Only rounding has kept the state from going on as it is.
             duration = (limits[0, i] - x) / v
-            _put(phases, pieces, used, i, now, duration, x, v, 0.0, 0.0)
+            _put(phases, pieces, used, i, i, now, duration, x, v, 0.0, 0.0)
             used += 1
             now += duration
             i, x, v = i + 1, 0.0, min(v, entry[i + 1])
@@ -377,7 +378,7 @@ def find_phases(
             elif step == 3:
                 j = jerk
             if duration > 0.0:
-                _put(phases, pieces, used, i, now, duration, x, v, a, j)
+                _put(phases, pieces, used, i, k - 1, now, duration, x, v, a, j)
                 used += 1
                 now += duration
                 x += ((j / 6.0 * duration + 0.5 * a) * duration + v) * duration

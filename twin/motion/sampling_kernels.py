@@ -9,7 +9,7 @@ from twin.nc.canonical import FloatArray, IntArray
 
 @numba.njit(cache=True)
 def sample_path(
-    phases: FloatArray, phase_piece: IntArray, lengths: FloatArray,
+    phases: FloatArray, phase_pieces: IntArray, lengths: FloatArray,
     first_tick: int, period: float, cursor: IntArray,
     piece: IntArray, path: FloatArray,
 ) -> int:  # fmt: skip
@@ -17,7 +17,7 @@ def sample_path(
 
     Args:
         phases: Rows begin [s], duration [s], x, v, a, j, shape (m, 6).
-        phase_piece: Piece of each phase's begin, shape (m,).
+        phase_pieces: First and last piece of each phase, shape (m, 2).
         lengths: Of the pieces, in x, shape (n,).
         first_tick: Number of the first tick wanted.
         period: Servo period [s].
@@ -30,7 +30,7 @@ def sample_path(
     """
     row = cursor[0]
     count = 0
-    while row < len(phase_piece) and count < len(piece):
+    while row < len(phase_pieces) and count < len(piece):
         t = (first_tick + count) * period - phases[row, 0]
         if t >= phases[row, 1]:
             row += 1
@@ -38,14 +38,12 @@ def sample_path(
         t = max(t, 0.0)
         v, a, j = phases[row, 3], phases[row, 4], phases[row, 5]
         x = phases[row, 2] + ((j / 6.0 * t + 0.5 * a) * t + v) * t
-        i = phase_piece[row]
-        while (
-            x >= lengths[i] and i + 1 < len(lengths) and lengths[i + 1] > 0.0 and lengths[i] > 0.0
-        ):
+        i = phase_pieces[row, 0]
+        while i < phase_pieces[row, 1] and x >= lengths[i]:
             x -= lengths[i]
             i += 1
         piece[count] = i
-        path[count, 0] = x
+        path[count, 0] = min(x, lengths[i])
         path[count, 1] = max(0.0, v + (0.5 * j * t + a) * t)
         path[count, 2] = a + j * t
         count += 1
