@@ -22,8 +22,8 @@ WHITE = (255, 255, 255, 255)
 BASE_HEIGHT = 720
 """Height of a picture for which the sizes below are written [px]."""
 
-LINES_SHOWN = 7
-COLUMNS_SHOWN = 38
+LINES_SHOWN = 5
+COLUMNS_SHOWN = 34
 
 Font = ImageFont.FreeTypeFont
 

@@ -20,9 +20,9 @@ from twin.render.replay import rapid_mask
 from twin.render.stock_surface import Rectangle, StockSurface
 from twin.render.trail import Trail, trail_points
 
-TRAIL_SHARE = 0.002
+TRAIL_SHARE = 0.003
 """Radius of the trail's tube, as a share of the trail's extent."""
-TRAIL_MM = (0.08, 0.6)
+TRAIL_MM = (0.1, 0.8)
 """Its smallest and largest radius [mm]."""
 
 

@@ -178,10 +178,10 @@ class StockSurface:
         corner = vertices[tile.corners]
         normals = _face_normals(corner)
         smooth = self._vertex_normals(tile)[tile.corners]
-        close = np.einsum("fk,fvk->fv", normals, smooth) > SMOOTH_COSINE
-        solid = (corner[..., 2] > self._map.bottom).any(axis=1)
+        cosine = (normals[:, None] * smooth).sum(axis=2, keepdims=True)
+        solid = np.any(corner[..., 2] > self._map.bottom, axis=1)
         fine.put_faces(np.where(solid[:, None], tile.corners, 0))
-        fine.put(vertices, np.where(close[..., None], smooth, normals[:, None]))
+        fine.put(vertices, np.where(cosine > SMOOTH_COSINE, smooth, normals[:, None]))
         return fine.id
 
     def _vertex_normals(self, tile: _Tile) -> FloatArray:

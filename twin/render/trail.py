@@ -98,9 +98,10 @@ class Trail:
 
         Args:
             points: The whole trail.
-            radius: Of the tube [mm].
+            radius: Of the tube [mm]; it lies on the trail, so that a floor does not hide it.
         """
-        self._points = points
+        self._lift = np.array([0.0, 0.0, radius])
+        self._points = points = dataclasses.replace(points, position=points.position + self._lift)
         self._radius = radius
         self._vertices = _tube_vertices(points.position, radius)
         self._pieces = range(0, len(self._vertices), POINTS_PER_MESH)
@@ -157,7 +158,7 @@ class Trail:
         growing = max(0, shown - first)
         tubes[growing:] = tubes[0, 0]
         if tip is not None and shown >= first and growing < len(tubes):
-            way = np.stack([self._points.position[shown], tip])
+            way = np.stack([self._points.position[shown], tip + self._lift])
             tubes[growing] = _tube_vertices(way, self._radius)[0]
         axis = tubes.mean(axis=2, keepdims=True)
         outwards = tubes - axis
