@@ -5,8 +5,9 @@ import numpy as np
 
 from twin.errors import ConfigError
 from twin.machine.config import Machine
-from twin.machine.drives import Drive, feedforward_name, reflected_inertia, tune
+from twin.machine.drives import Drive, feedforward_name, tune
 from twin.machine.tool_shape import VISUAL_GROUP, DefaultTool, ToolShape, add_tool
+from twin.machine.transmission import add_friction_and_give, add_inertia, has_give
 from twin.units import MM
 
 SPINDLE_NOSE = "spindle_nose"
@@ -64,13 +65,12 @@ def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
     for name in machine.axes.names:
         axis = machine.axis(name)
         _require(machine, "joint", axis.joint, [joint.name for joint in spec.joints])
-        joint = spec.joint(axis.joint)
-        if joint.type != _JOINT_TYPES[axis.kind]:
+        if spec.joint(axis.joint).type != _JOINT_TYPES[axis.kind]:
             raise ConfigError(
                 f"{machine.model_path}: joint '{axis.joint}' does not move as axis {name}, "
                 f"which is {axis.kind}, must"
             )
-        joint.armature = reflected_inertia(axis)
+        add_inertia(spec, axis)
 
 
 def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
@@ -93,6 +93,10 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
         joint = spec.joint(axis.joint)
         joint.actfrclimited = axis.force_limit > 0
         joint.actfrcrange = np.array([-axis.force_limit, axis.force_limit])
+        add_friction_and_give(spec, axis, drive.moved, machine.file.servo_period_s)
+    if any(has_give(machine.axis(name)) for name in machine.axes.names):
+        for key in list(spec.keys):
+            spec.delete(key)
 
 
 def _compile(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:

@@ -11,6 +11,7 @@ from twin.machine.config import Machine
 from twin.machine.drives import feedforward_name
 from twin.machine.model import drives, physics_model
 from twin.machine.sampling import held_commands, polyline_nodes
+from twin.machine.transmission import give_name, has_give
 from twin.machine.watch import Watch
 from twin.motion.setpoints import Setpoints, join
 from twin.nc.canonical import FloatArray
@@ -98,6 +99,10 @@ class _Servo:
         self._velocity_input = model.actuator_ctrladr[servos]
         self._force_input = model.actuator_ctrladr[forces]
         self._setpoint_state = model.actuator_actadr[servos]
+        self._gives = np.flatnonzero([has_give(axis) for axis in axes])
+        give = [model.joint(give_name(axes[index])) for index in self._gives]
+        self._give_qpos = np.array([int(joint.qposadr[0]) for joint in give], np.int64)
+        self._give_dof = np.array([int(joint.dofadr[0]) for joint in give], np.int64)
         self._to_si = np.array([to_si(axis.kind) for axis in axes])
         self._velocity_share = np.array([axis.velocity_feedforward for axis in axes])
         self._limit = np.array([axis.force_limit or np.inf for axis in axes])
@@ -166,9 +171,15 @@ class _Servo:
         )
 
     def _samples(self, setpoint: Setpoints, states: FloatArray) -> Samples:
-        position = states[:, 1 + self._qpos] / self._to_si
-        velocity = states[:, 1 + self._model.nq + self._dof] / self._to_si
-        return Samples(setpoint, position, velocity, self._force(setpoint, position, velocity))
+        motor = states[:, 1 + self._qpos] / self._to_si
+        speed = states[:, 1 + self._model.nq + self._dof] / self._to_si
+        force = self._force(setpoint, motor, speed)
+        position, velocity = motor.copy(), speed.copy()
+        position[:, self._gives] += states[:, 1 + self._give_qpos] / self._to_si[self._gives]
+        velocity[:, self._gives] += (
+            states[:, 1 + self._model.nq + self._give_dof] / self._to_si[self._gives]
+        )
+        return Samples(setpoint, position, velocity, force)
 
     def _force(self, setpoint: Setpoints, position: FloatArray, velocity: FloatArray) -> FloatArray:
         """What the drives push with around the instants of the samples, within their limits.
