@@ -138,7 +138,9 @@ def test_bristles_bend_before_they_slip():
     for step in range(4000):
         data.qfrc_applied[model.joint("X").dofadr[0]] = 50.0 * min(1.0, step / 3000)
         mujoco.mj_step(model, data)
-    assert data.joint("X").qpos[0] == pytest.approx(-150.0 / 2e7 * np.log(1 - 50.0 / 150.0), rel=0.01)
+    assert data.joint("X").qpos[0] == pytest.approx(
+        -150.0 / 2e7 * np.log(1 - 50.0 / 150.0), rel=0.01
+    )
 
 
 def test_bristles_slip_at_the_dry_friction_when_fast():

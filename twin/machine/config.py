@@ -44,6 +44,8 @@ class AxisTable(Table):
     """Rotary only: turns without end and may be declared periodic to the control."""
     travel: tuple[float, float] | None = None
     """Lowest and highest machine coordinate [mm or deg]; none: endless."""
+    overtravel: NonNegative = 2.0
+    """How far beyond its travel the axis meets its limit switch [mm or deg]."""
     velocity: Positive
     """Rapid velocity, never exceeded [mm/s or deg/s]."""
     acceleration: Positive
@@ -119,6 +121,23 @@ class TableTable(Table):
     """Machine X and Y at which the tool stands over the axis of rotation [mm]."""
 
 
+class FixtureTable(Table):
+    """A box clamped to the work-holding surface, such as the jaw of a vise."""
+
+    name: str
+    size: tuple[Positive, Positive, Positive]
+    """Along X, Y, Z [mm]."""
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Centre of its lower face over the middle of the surface [mm], all axes at zero."""
+
+
+class CollisionTable(Table):
+    """What the control watches between the tool's side and the part's."""
+
+    near_miss: NonNegative = 5.0
+    """Clearance below which a run reports a near miss [mm]."""
+
+
 class ControlTable(Table):
     """What the control assumes where a program is silent."""
 
@@ -143,6 +162,8 @@ class MachineFile(Table):
     """By axis name; must hold X, Y and Z."""
     path: PathTable
     table: TableTable | None = None
+    fixtures: tuple[FixtureTable, ...] = ()
+    collision: CollisionTable = CollisionTable()
     control: ControlTable = ControlTable()
 
     @pydantic.model_validator(mode="after")

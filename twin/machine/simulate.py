@@ -6,10 +6,11 @@ import mujoco
 import numpy as np
 from mujoco.rollout import Rollout
 
-from twin.machine.alarms import Alarm, SimulationError
+from twin.machine.alarms import Alarm, NearMiss, SimulationError
+from twin.machine.clearance import Clearance
 from twin.machine.config import Machine
 from twin.machine.drives import feedforward_name
-from twin.machine.model import drives, physics_model
+from twin.machine.model import clearance_model, drives, physics_model
 from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.transmission import give_name, has_give
 from twin.machine.watch import Watch
@@ -28,34 +29,53 @@ class Simulation:
 
     Attributes:
         alarm: What stopped the run, None while it goes on and when it ended well.
+        near_miss: The closest that tool's and part's side came without touching, None when they
+            kept their distance.
     """
 
     def __init__(
-        self, machine: Machine, model: mujoco.MjModel, setpoints: Iterable[Setpoints]
+        self,
+        machine: Machine,
+        model: mujoco.MjModel,
+        clearance: Clearance | None,
+        setpoints: Iterable[Setpoints],
     ) -> None:
         self.alarm: Alarm | None = None
-        self._machine = machine
+        self._clearance = clearance
         self._setpoints = setpoints
         self._servo = _Servo(machine, model)
+        self._watch = Watch(machine)
+
+    @property
+    def near_miss(self) -> NearMiss | None:
+        """The closest approach so far, where it was below the machine file's limit."""
+        return None if self._clearance is None else self._clearance.near_miss
 
     def __iter__(self) -> Iterator[Samples]:
-        """Yield chunks of samples.
+        """Yield chunks of samples; a run can be iterated once.
 
         Raises:
             SimulationError: MuJoCo warned, or a setpoint or a state is not finite.
         """
-        watch = Watch(self._machine)
         for chunk in self._setpoints:
             if not len(chunk):
                 continue
             samples = self._servo.follow(chunk)
-            self.alarm = watch.look(samples)
+            self.alarm = self._look(samples)
             if self.alarm is None:
                 yield samples
                 continue
             end = int(np.searchsorted(samples.setpoint.time, self.alarm.time_s, side="right"))
             yield samples[:end]
             return
+
+    def _look(self, samples: Samples) -> Alarm | None:
+        found = self._watch.look(samples)
+        if self._clearance is None:
+            return found
+        collision = self._clearance.look(samples)
+        both = [alarm for alarm in (collision, found) if alarm is not None]
+        return min(both, key=lambda alarm: alarm.time_s, default=None)
 
 
 def simulate(
@@ -68,15 +88,20 @@ def simulate(
 
     Args:
         machine: The machine file.
-        model: The model of ``build_spec``; a specification is compiled without its visuals.
+        model: What ``build_spec`` made: the run then also watches for collisions. Or a model
+            compiled from it, of which the motion alone is simulated.
         setpoints: Chunks of setpoints at the servo period, machine coordinates [mm or deg].
 
     Returns:
         The run: iterate it for the samples, then ask its ``alarm``.
+
+    Raises:
+        ConfigError: The specification does not compile.
     """
-    if isinstance(model, mujoco.MjSpec):
-        model = physics_model(machine, model)
-    return Simulation(machine, model, setpoints)
+    if isinstance(model, mujoco.MjModel):
+        return Simulation(machine, model, None, setpoints)
+    clearance = Clearance(machine, clearance_model(machine, model))
+    return Simulation(machine, physics_model(machine, model), clearance, setpoints)
 
 
 class _Servo:
