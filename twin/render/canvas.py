@@ -14,8 +14,10 @@ from twin.render.gl import choose_backend, open_context
 
 Pixels = npt.NDArray[np.uint8]
 
+SHOWN_GROUPS = (0, 1, 2)
+"""Geom groups that pictures show; collision shapes and hidden things lie in others."""
 HIDDEN_GROUP = 5
-"""Geom group that pictures never show."""
+"""Geom group of what is hidden for a while."""
 
 _SPARE_GEOMS = 200
 """Scene geoms beside the model's own, for lights' and frames' decoration."""
@@ -59,8 +61,8 @@ class Canvas:
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = quality.shadows
         self._scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = quality.shadows
         self._option = mujoco.MjvOption()
-        self._option.geomgroup[:HIDDEN_GROUP] = True
-        self._option.geomgroup[HIDDEN_GROUP] = False
+        self._option.geomgroup[:] = False
+        self._option.geomgroup[list(SHOWN_GROUPS)] = True
         self._camera = mujoco.MjvCamera()
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
         self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)

@@ -19,6 +19,7 @@ from twin.render.placement import Joints, Placement, place
 from twin.render.replay import rapid_mask
 from twin.render.stock_surface import Rectangle, StockSurface
 from twin.render.trail import Trail, trail_points
+from twin.render.work_holding import add_work_holding
 
 TRAIL_SHARE = 0.003
 """Radius of the trail's tube, as a share of the trail's extent."""
@@ -136,6 +137,8 @@ def stage(scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Sta
         cutter = Cutter(scene.stock, scene.tool, header.part_frame, header.part_zero)
         surface = StockSurface(cutter.map, quality.drawn_cells)
         surface.add_to(spec)
+        corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
+        add_work_holding(spec, scene.stock, placement, corner)
     points = trail_points(scene.recording, scene.rapid_moves)
     trail = Trail(points, _trail_radius(points.position))
     trail.add_to(spec)
