@@ -15,11 +15,13 @@ from twin.nc.expressions import Expression, ExpressionError
 from twin.nc.flow import Flow
 from twin.nc.frame import Frame
 from twin.nc.lexer import Lexer
-from twin.nc.move_columns import NAN, MoveColumns, Segment
-from twin.nc.planes import Vector
+from twin.nc.move_columns import NAN, Segment
+from twin.nc.path import Path
+from twin.nc.planes import Plane, Vector, cross
 from twin.nc.reporter import Reporter
 from twin.nc.settings import ControlSettings
 from twin.nc.source import Source
+from twin.nc.tools import Tools
 
 _LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
@@ -39,8 +41,11 @@ class Control:
         programmed: Where it stands, as its screen shows it, shape (k,) [mm or deg].
         part: Where it stands in part coordinates, shape (k,) [mm or deg].
         feed: F as programmed, or None.
-        columns: The moves and events made so far.
+        spindle: S as programmed, or None [1/min].
+        tools: The tools in use.
+        path: Where moves and events go.
         flow: Which block comes next.
+        cycle_values: What the words of a canned cycle were last, by address.
         block: The block that is being run.
         words: Its words that nothing has taken yet.
         codes: Its G codes.
@@ -65,8 +70,10 @@ class Control:
         self.spindle: float | None = None
         self.acceleration = NAN
         self.deceleration = NAN
-        self.columns = MoveColumns(settings.axes)
+        self.tools = Tools(settings.tools)
+        self.path = Path(settings.axes, self.part, self._refuse_move)
         self.flow = Flow(source, Lexer(dialect, self.report), settings.step_limit, self.report)
+        self.cycle_values: dict[str, float] = {}
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
         self.codes: list[tuple[Word, GCode]] = []
@@ -115,6 +122,12 @@ class Control:
         for name, value in restore:
             setattr(self.modal, name, value)
 
+    def finish(self) -> None:
+        """The program has ended, by an end code or by its last line."""
+        if not self.ended and self.dialect.finish is not None:
+            self.dialect.finish(self)
+        self.path.end_compensation()
+
     def _put_into_force(self) -> list[tuple[str, object]]:
         """Apply the block's codes; what those for this block only have replaced."""
         restore: list[tuple[str, object]] = []
@@ -154,6 +167,8 @@ class Control:
                 word,
                 hint=f"known: {', '.join(f'G{number}' for number in sorted(self.dialect.g))}",
             )
+        if code.refused:
+            self.fail("unsupported-g", f"{word.text} ({code.meaning}): {code.refused}", word)
         return code
 
     def _m_code(self, word: Word) -> MCode:
@@ -230,7 +245,7 @@ class Control:
         words = self.words
         if not words or not any(address in self.dialect.motion_words for address in words):
             return
-        interpolation = self.modal.interpolation
+        interpolation = self.modal.cycle or self.modal.interpolation
         if interpolation is None:
             word = next(iter(words.values()))
             self.fail(
@@ -358,7 +373,7 @@ class Control:
             self.programmed = target
             return
         modal = self.modal
-        self.columns.add(
+        self.path.add(
             Segment(
                 motion=Motion.RAPID if rapid else Motion.FEED,
                 line=self.block.line,
@@ -393,15 +408,37 @@ class Control:
             settings = self.settings
             return settings.default_rotary_feed if turning else settings.default_feed
         feed = self.feed if turning else self.feed * self.modal.unit
-        return feed * 60.0 if self.modal.feed_mode is FeedMode.PER_SECOND else feed
+        mode = self.modal.feed_mode
+        if mode is FeedMode.PER_MINUTE:
+            return feed
+        if mode is FeedMode.PER_SECOND:
+            return feed * 60.0
+        if not self.spindle:
+            self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
+        return feed * self.spindle
 
     def dwell(self, seconds: float) -> None:
         """Wait."""
-        self.columns.dwell(self.block.line, seconds)
+        line = self.block.line
+        self.path.event(lambda columns: columns.dwell(line, seconds))
 
     def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
         """Report a function at this place of the path."""
-        self.columns.function(self.block.line, word, dict(arguments), at)
+        line, given = self.block.line, dict(arguments)
+        self.path.event(lambda columns: columns.function(line, word, given, at))
+
+    def part_plane(self) -> Plane:
+        """The working plane as the part sees it."""
+        plane, frame = self.modal.plane, self.frame
+        if frame.plain:
+            return plane
+        normal, _ = frame.arc(plane.normal, 0.0)
+        abscissa, _ = frame.arc(plane.abscissa, 0.0)
+        return Plane(plane.name, abscissa, cross(normal, abscissa), normal)
+
+    def _refuse_move(self, move: Segment, code: str, message: str) -> NoReturn:
+        self.report.line = move.line
+        self.report.fail(code, message)
 
     # --- labels of the screen
 

@@ -27,7 +27,7 @@ class FeedMode(enum.Enum):
     PER_MINUTE = "per minute"
     PER_SECOND = "per second"
     SECONDS_PER_BLOCK = "seconds per block"
-    PER_REVOLUTION = "per revolution"
+    PER_REVOLUTION = "per revolution of the spindle"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -48,6 +48,10 @@ class Modal:
     """What stays in force from block to block; G codes set it by name."""
 
     interpolation: Interpolation | None = None
+    cycle: Interpolation | None = None
+    """A canned cycle; while it is in force it stands in the place of the interpolation."""
+    return_to_reference: bool = False
+    """Cycles end at their reference plane, not at the height where they were called."""
     plane: Plane = XY
     incremental: bool = False
     center_absolute: bool = False
@@ -72,6 +76,7 @@ class GCode:
         after: Done when the block has moved.
         once: What it sets holds for its block only.
         alone: No other word may stand in its block.
+        refused: Why the twin refuses a code that the control knows; empty: it does not.
         ground: On what the meaning rests.
     """
 
@@ -84,6 +89,7 @@ class GCode:
     after: Action | None = None
     once: bool = False
     alone: bool = False
+    refused: str = ""
     ground: Ground = "decision"
 
 

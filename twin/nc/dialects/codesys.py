@@ -1,6 +1,6 @@
 """CODESYS SoftMotion CNC (DIN 66025 with SoftMotion's own codes)."""
 
-from twin.nc import iso
+from twin.nc import iso, offsets
 from twin.nc.blocks import Word
 from twin.nc.canonical import Corner
 from twin.nc.control import Control
@@ -117,13 +117,13 @@ CODESYS = Dialect(
         2: GCode(
             meaning="arc clockwise",
             group="motion",
-            sets={"interpolation": CLOCKWISE},
+            sets={"interpolation": CLOCKWISE, "cycle": None},
             ground="seed",
         ),
         3: GCode(
             meaning="arc counter-clockwise",
             group="motion",
-            sets={"interpolation": COUNTER_CLOCKWISE},
+            sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None},
             ground="seed",
         ),
         4: GCode(meaning="dwell, seconds in T", perform=dwell, ground="manual"),
@@ -140,7 +140,7 @@ CODESYS = Dialect(
         18: GCode(meaning="3D mode, plane Z X", group="plane", sets={"plane": ZX}, ground="manual"),
         19: GCode(meaning="3D mode, plane Y Z", group="plane", sets={"plane": YZ}, ground="manual"),
         **iso.DISTANCE,
-        92: GCode(meaning="set position", perform=iso.preset, ground="manual"),
+        92: GCode(meaning="set position", perform=offsets.preset, ground="manual"),
         98: GCode(
             meaning="centre I J K absolute",
             group="centre",
