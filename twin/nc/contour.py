@@ -180,5 +180,3 @@ def _angle_from(start: Point, point: Point, center: Point) -> float:
     ax, ay = start[0] - center[0], start[1] - center[1]
     bx, by = point[0] - center[0], point[1] - center[1]
     return math.degrees(math.atan2(ax * by - ay * bx, ax * bx + ay * by))
-
-

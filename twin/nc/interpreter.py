@@ -51,6 +51,7 @@ class Interpretation:
         """
         control = self._control
         try:
+            control.prepare()
             while not control.ended and (block := control.flow.next()) is not None:
                 control.run(block)
                 if len(control.path) >= CHUNK:

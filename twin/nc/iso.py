@@ -59,15 +59,9 @@ def dwell_seconds(control: Control) -> None:
 
 
 PLANES = {
-    17: GCode(
-        meaning="plane X Y", group="plane", sets={"plane": XY}, action=refuse_plane_change
-    ),
-    18: GCode(
-        meaning="plane Z X", group="plane", sets={"plane": ZX}, action=refuse_plane_change
-    ),
-    19: GCode(
-        meaning="plane Y Z", group="plane", sets={"plane": YZ}, action=refuse_plane_change
-    ),
+    17: GCode(meaning="plane X Y", group="plane", sets={"plane": XY}, action=refuse_plane_change),
+    18: GCode(meaning="plane Z X", group="plane", sets={"plane": ZX}, action=refuse_plane_change),
+    19: GCode(meaning="plane Y Z", group="plane", sets={"plane": YZ}, action=refuse_plane_change),
 }
 DISTANCE = {
     90: GCode(meaning="absolute coordinates", group="distance", sets={"incremental": False}),
@@ -78,11 +72,17 @@ UNITS = {
     71: GCode(meaning="millimetres", group="units", sets={"unit": 1.0}),
 }
 MOTION = {
-    0: GCode(meaning="rapid positioning", group="motion", sets={"interpolation": RAPID, "cycle": None}),
+    0: GCode(
+        meaning="rapid positioning", group="motion", sets={"interpolation": RAPID, "cycle": None}
+    ),
     1: GCode(meaning="straight line", group="motion", sets={"interpolation": FEED, "cycle": None}),
-    2: GCode(meaning="arc clockwise", group="motion", sets={"interpolation": CLOCKWISE, "cycle": None}),
+    2: GCode(
+        meaning="arc clockwise", group="motion", sets={"interpolation": CLOCKWISE, "cycle": None}
+    ),
     3: GCode(
-        meaning="arc counter-clockwise", group="motion", sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None}
+        meaning="arc counter-clockwise",
+        group="motion",
+        sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None},
     ),
 }
 DWELL = {4: GCode(meaning="dwell, seconds in P, X or F", perform=dwell_seconds, takes="F")}

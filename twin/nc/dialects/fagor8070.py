@@ -70,7 +70,10 @@ FAGOR8070 = Dialect(
             ground="manual",
         ),
         1: GCode(
-            meaning="straight line", group="motion", sets={"interpolation": FEED, "cycle": None}, ground="manual"
+            meaning="straight line",
+            group="motion",
+            sets={"interpolation": FEED, "cycle": None},
+            ground="manual",
         ),
         2: GCode(
             meaning="arc clockwise",
