@@ -56,7 +56,11 @@ def test_mismatched_loops_give_an_ellipse_at_45_degrees():
 
 
 def test_backlash_gives_steps_of_its_size():
-    """Each reversal loses the gap, less what was there: the steps are the gap and the friction's bend."""
+    """Either axis is behind by half the gap and by what friction bends, whichever way it goes.
+
+    Across the reversal of X at 0°, seen at 4° on either side, that is the whole of both, times
+    cos 4°, less what Y is behind at the same place, times sin 4°.
+    """
     backlash, friction = 0.02, 100.0
     machine = shipped_machine(backlash=backlash, dry_friction=friction, **PERFECT)
     result = circular_test(machine, 50.0, 1000.0)
@@ -68,7 +72,8 @@ def test_backlash_gives_steps_of_its_size():
     before = (around > 3.0) & (around < 5.0) & (result.angle_deg > 180)
     after = (around > 3.0) & (around < 5.0) & (result.angle_deg < 180)
     step = result.counter_clockwise_um[after].mean() - result.counter_clockwise_um[before].mean()
-    assert step == pytest.approx((backlash + bend) * UM_PER_MM, rel=0.02)
+    seen = np.cos(np.deg2rad(4.0)) - np.sin(np.deg2rad(4.0))
+    assert step == pytest.approx((backlash + bend) * seen * UM_PER_MM, rel=0.01)
     assert result.hysteresis_um == pytest.approx(step, rel=0.15)
 
 
