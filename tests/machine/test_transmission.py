@@ -178,6 +178,35 @@ def test_an_axis_without_counterbalance_sags_by_its_weight_over_the_stiffness_of
     assert samples.drive_force[-1, 2] == pytest.approx(weight, rel=1e-3)
 
 
+def test_integral_action_leaves_the_lag_and_takes_the_sag():
+    machine = shipped_machine(counterbalance=0.0, reset_time_s=0.02, dry_friction=300.0)
+    moving = run(machine, line(0, 50.0, 2.0))
+    lag = moving.setpoint.position - moving.joint_position
+    assert lag[-1, 0] == pytest.approx(50.0 / 125.0, abs=1e-5)
+    assert abs(lag[-1, 2]) < 5e-5
+    assert moving.drive_force[-1, 0] == pytest.approx(300.0, rel=1e-3)
+    assert moving.drive_force[-1, 2] == pytest.approx((430 + 12) * 9.81, rel=1e-3)
+
+
+def test_integral_action_on_a_circle_agrees_with_its_closed_form():
+    """|G(jW)| of the third-order loop: (b s + c)/(s³ + a s² + b s + c), a = 4 z² Kv, b = a (Kv + 1/Tn),
+    c = a Kv/Tn, with the numerator that the trail of the setpoint leaves.
+    """
+    reset, radius, feed = 0.02, 20.0, 3000.0
+    machine = shipped_machine(reset_time_s=reset)
+    samples = run(machine, circle(radius, feed, 4.0))
+    settled = samples.joint_position[2500:]
+    measured = np.hypot(settled[:, 0] + radius, settled[:, 1]) - radius
+    gain = 125.0
+    s = 1j * feed / 60 / radius
+    a = 4 * gain
+    proportional = a * (gain + 1 / reset)
+    top = proportional + a * gain / reset * (1 - s / gain) / s
+    bottom = s**2 + a * s + proportional + a * gain / reset / s
+    expected = radius * (abs(top / bottom) - 1)
+    assert measured == pytest.approx(np.full(len(measured), expected), abs=5e-5)
+
+
 def test_half_the_velocity_told_halves_the_lag():
     machine = shipped_machine(velocity_feedforward=0.5)
     samples = run(machine, line(0, 50.0, 1.0))

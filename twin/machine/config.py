@@ -75,6 +75,8 @@ class AxisTable(Table):
     """Position-loop gain [(m/min)/mm; rotary (1000 deg/min)/deg]: lag = velocity / gain."""
     damping_ratio: Positive = 1.0
     """Of the position loop seen as a second-order system; 1 is the fastest that cannot overshoot."""
+    reset_time_s: NonNegative = 0.0
+    """Integral action of the velocity loop: takes what friction and weight leave behind [s]; 0: none."""
     velocity_feedforward: Share = 0.0
     """Share of the setpoint velocity that the drive is told; 1 removes the lag."""
     acceleration_feedforward: Share = 0.0

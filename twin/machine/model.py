@@ -5,7 +5,7 @@ import numpy as np
 
 from twin.errors import ConfigError
 from twin.machine.config import Machine
-from twin.machine.drives import Drive, feedforward_name, tune
+from twin.machine.drives import Drive, feedforward_name, integral_name, tune
 from twin.machine.tool_shape import (
     COLLISION_GROUP,
     FRAME_SIDE,
@@ -27,6 +27,10 @@ ROTARY_TABLE = "rotary_table"
 """Body that the part is clamped to."""
 
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
+
+
+_POSITION_INPUT = 1
+"""What MuJoCo calls ``input="pos"``."""
 
 
 def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec:
@@ -100,6 +104,11 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
             name=feedforward_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
         )
         feedforward.set_to_motor()
+        if drive.integral_gain:
+            integral = spec.add_actuator(
+                name=integral_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
+            )
+            integral.set_to_pid(kp=0.0, kv=0.0, ki=drive.integral_gain, ctrlspec=_POSITION_INPUT)
         joint = spec.joint(axis.joint)
         joint.actfrclimited = axis.force_limit > 0
         joint.actfrcrange = np.array([-axis.force_limit, axis.force_limit])

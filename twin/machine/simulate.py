@@ -9,7 +9,7 @@ from mujoco.rollout import Rollout
 from twin.machine.alarms import Alarm, NearMiss, SimulationError
 from twin.machine.clearance import Clearance
 from twin.machine.config import Machine
-from twin.machine.drives import feedforward_name
+from twin.machine.drives import feedforward_name, integral_name
 from twin.machine.model import clearance_model, drives, physics_model
 from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.transmission import give_name, has_give
@@ -17,7 +17,7 @@ from twin.machine.watch import Watch
 from twin.motion.setpoints import Setpoints, join
 from twin.nc.canonical import FloatArray
 from twin.recording import Samples
-from twin.units import to_si
+from twin.units import kv_per_second, to_si
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 
@@ -124,6 +124,17 @@ class _Servo:
         self._velocity_input = model.actuator_ctrladr[servos]
         self._force_input = model.actuator_ctrladr[forces]
         self._setpoint_state = model.actuator_actadr[servos]
+        self._integrates = np.flatnonzero([loop.integral_gain > 0 for loop in loops])
+        integral = [
+            model.actuator(integral_name(machine.axes.names[index])).id
+            for index in self._integrates
+        ]
+        self._position_input = model.actuator_ctrladr[integral]
+        self._integral_state = model.actuator_actadr[integral]
+        self._integral_gain = np.array([loop.integral_gain for loop in loops])
+        self._trail = np.array(
+            [(1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) for axis in axes]
+        )
         self._gives = np.flatnonzero([has_give(axis) for axis in axes])
         give = [model.joint(give_name(axes[index])) for index in self._gives]
         self._give_qpos = np.array([int(joint.qposadr[0]) for joint in give], np.int64)
@@ -186,6 +197,10 @@ class _Servo:
         controls = np.zeros((len(velocity), self._model.nu))
         controls[:, self._velocity_input] = velocity * self._to_si
         controls[:, self._force_input] = self._told(velocity, acceleration)
+        if len(self._integrates):
+            nodes = polyline_nodes(setpoints, self._period)
+            meant = ((nodes[1:] + nodes[:-1]) / 2 - self._trail * velocity) * self._to_si
+            controls[:, self._position_input] = meant[:, self._integrates]
         return controls
 
     def _told(self, velocity: FloatArray, acceleration: FloatArray) -> FloatArray:
@@ -198,7 +213,7 @@ class _Servo:
     def _samples(self, setpoint: Setpoints, states: FloatArray) -> Samples:
         motor = states[:, 1 + self._qpos] / self._to_si
         speed = states[:, 1 + self._model.nq + self._dof] / self._to_si
-        force = self._force(setpoint, motor, speed)
+        force = self._force(setpoint, motor, speed, states)
         position, velocity = motor.copy(), speed.copy()
         position[:, self._gives] += states[:, 1 + self._give_qpos] / self._to_si[self._gives]
         velocity[:, self._gives] += (
@@ -206,7 +221,9 @@ class _Servo:
         )
         return Samples(setpoint, position, velocity, force)
 
-    def _force(self, setpoint: Setpoints, position: FloatArray, velocity: FloatArray) -> FloatArray:
+    def _force(
+        self, setpoint: Setpoints, position: FloatArray, velocity: FloatArray, states: FloatArray
+    ) -> FloatArray:
         """What the drives push with around the instants of the samples, within their limits.
 
         Taken from the setpoint itself: at a corner of the polyline that is drawn through it the
@@ -218,4 +235,7 @@ class _Servo:
             - self._velocity_gain * velocity * self._to_si
             + self._told(setpoint.velocity, setpoint.acceleration)
         )
+        first = 1 + self._model.nq + self._model.nv
+        left_behind = states[:, first + self._integral_state]
+        force[:, self._integrates] += self._integral_gain[self._integrates] * left_behind
         return np.clip(force, -self._limit, self._limit)
