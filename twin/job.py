@@ -99,8 +99,11 @@ class JobFile(Table):
     """A shipped machine's name, or a path relative to the job file."""
     default_feed: Positive | None = None
     """Feed where the program sets none [mm/min]; none: the machine's."""
-    part_zero: dict[str, float] | None = None
-    """Program zero in machine coordinates, by axis [mm or deg]; missing axes are 0."""
+    default_rotary_feed: Positive | None = None
+    """The same for moves of rotary axes alone [deg/min]."""
+    part_zero: dict[str, float] = Field(default_factory=dict)
+    """Program zero in machine coordinates, by axis [mm or deg]; an axis left out: on the table's
+    centre line, at the height of the stock's top face, other axes at 0."""
     start: dict[str, float] = Field(default_factory=dict)
     """Where the axes stand when the program starts, program coordinates [mm or deg]."""
     stock: StockTable | None = None

@@ -31,6 +31,10 @@ def move(start, end, *, line=1, center=None, normal=None, sweep=0.0) -> Moves:
         normal=np.array([normal or nowhere], float),
         radius=np.array([np.linalg.norm(start[0, :3] - center) if center else np.nan]),
         sweep=np.array([sweep]),
+        corner=np.zeros(1, np.uint8),
+        corner_tolerance=np.array([np.nan]),
+        acceleration=np.array([np.nan]),
+        deceleration=np.array([np.nan]),
     )
 
 

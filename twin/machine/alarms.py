@@ -31,6 +31,23 @@ class Alarm:
         return f"line {self.line}, {self.time_s:.3f} s: {self.code}: {self.message}"
 
 
+@dataclasses.dataclass(frozen=True, slots=True)
+class NearMiss:
+    """The closest that the tool's side and the part's came without touching.
+
+    Attributes:
+        clearance_mm: Between the two [mm].
+        line: Source line of the program.
+        time_s: When, from the start of the program [s].
+        between: Names of the two.
+    """
+
+    clearance_mm: float
+    line: int
+    time_s: float
+    between: tuple[str, str]
+
+
 class SimulationError(TwinError):
     """The simulation itself failed: MuJoCo warned, or a number is not finite."""
 

@@ -5,8 +5,18 @@ import numpy as np
 
 from twin.errors import ConfigError
 from twin.machine.config import Machine
-from twin.machine.drives import Drive, feedforward_name, reflected_inertia, tune
-from twin.machine.tool_shape import VISUAL_GROUP, DefaultTool, ToolShape, add_tool
+from twin.machine.drives import Drive, feedforward_name, integral_name, tune
+from twin.machine.tool_shape import (
+    COLLISION_GROUP,
+    FRAME_SIDE,
+    PART_SIDE,
+    TOOL_SIDE,
+    VISUAL_GROUP,
+    DefaultTool,
+    ToolShape,
+    add_tool,
+)
+from twin.machine.transmission import add_friction_and_give, add_inertia, has_give
 from twin.units import MM
 
 SPINDLE_NOSE = "spindle_nose"
@@ -17,6 +27,10 @@ ROTARY_TABLE = "rotary_table"
 """Body that the part is clamped to."""
 
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
+
+
+_POSITION_INPUT = 1
+"""What MuJoCo calls ``input="pos"``."""
 
 
 def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec:
@@ -42,6 +56,7 @@ def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec
     _set_clock(spec, machine)
     _set_inertia(spec, machine)
     _set_drives(spec, machine)
+    _add_fixtures(spec, machine)
     add_tool(spec, tool or DefaultTool())
     return spec
 
@@ -64,13 +79,12 @@ def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
     for name in machine.axes.names:
         axis = machine.axis(name)
         _require(machine, "joint", axis.joint, [joint.name for joint in spec.joints])
-        joint = spec.joint(axis.joint)
-        if joint.type != _JOINT_TYPES[axis.kind]:
+        if spec.joint(axis.joint).type != _JOINT_TYPES[axis.kind]:
             raise ConfigError(
                 f"{machine.model_path}: joint '{axis.joint}' does not move as axis {name}, "
                 f"which is {axis.kind}, must"
             )
-        joint.armature = reflected_inertia(axis)
+        add_inertia(spec, axis)
 
 
 def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
@@ -90,9 +104,41 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
             name=feedforward_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
         )
         feedforward.set_to_motor()
+        if drive.integral_gain:
+            integral = spec.add_actuator(
+                name=integral_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
+            )
+            integral.set_to_pid(kp=0.0, kv=0.0, ki=drive.integral_gain, ctrlspec=_POSITION_INPUT)
         joint = spec.joint(axis.joint)
         joint.actfrclimited = axis.force_limit > 0
         joint.actfrcrange = np.array([-axis.force_limit, axis.force_limit])
+        add_friction_and_give(spec, axis, drive.moved, machine.file.servo_period_s)
+    if any(has_give(machine.axis(name)) for name in machine.axes.names):
+        for key in list(spec.keys):
+            spec.delete(key)
+
+
+def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
+    top = spec.site(TABLE_TOP)
+    for fixture in machine.file.fixtures:
+        half = np.array(fixture.size) / 2 * MM
+        center = top.pos + np.array(fixture.position) * MM + [0.0, 0.0, half[2]]
+        for name, group, material in (
+            (fixture.name, COLLISION_GROUP, ""),
+            (f"{fixture.name} seen", VISUAL_GROUP, "steel"),
+        ):
+            collides = group == COLLISION_GROUP
+            top.parent.add_geom(
+                name=name,
+                type=mujoco.mjtGeom.mjGEOM_BOX,
+                size=list(half),
+                pos=list(center),
+                material=material,
+                group=group,
+                contype=PART_SIDE if collides else 0,
+                conaffinity=TOOL_SIDE | FRAME_SIDE if collides else 0,
+                mass=0.0,
+            )
 
 
 def _compile(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
@@ -121,17 +167,33 @@ def drives(machine: Machine, model: mujoco.MjModel) -> tuple[Drive, ...]:
 
 
 def physics_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """Compile the model without what is only looked at: the same motion, in less time.
+    """Compile the model without its geoms: the same motion, in less time.
 
-    Every moving body has its own inertial, so that geoms weigh nothing.
+    Every moving body has its own inertial, so that geoms weigh nothing; what may not meet is
+    watched by ``clearance``, and a run ends where it meets.
 
     Raises:
         ConfigError: The specification does not compile.
     """
+    return _without(spec, machine, VISUAL_GROUP, COLLISION_GROUP)
+
+
+def clearance_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Compile the model with only those geoms that may not meet.
+
+    Raises:
+        ConfigError: The specification does not compile.
+    """
+    return _without(spec, machine, VISUAL_GROUP)
+
+
+def _without(spec: mujoco.MjSpec, machine: Machine, *groups: int) -> mujoco.MjModel:
     lean = spec.copy()
     for geom in list(lean.geoms):
-        if geom.group == VISUAL_GROUP:
+        if geom.group in groups:
             lean.delete(geom)
+    for mesh in list(lean.meshes):
+        lean.delete(mesh)
     return _compile(lean, machine)
 
 

@@ -6,16 +6,18 @@ import mujoco
 import numpy as np
 from mujoco.rollout import Rollout
 
-from twin.machine.alarms import Alarm, SimulationError
+from twin.machine.alarms import Alarm, NearMiss, SimulationError
+from twin.machine.clearance import Clearance
 from twin.machine.config import Machine
-from twin.machine.drives import feedforward_name
-from twin.machine.model import drives, physics_model
+from twin.machine.drives import feedforward_name, integral_name
+from twin.machine.model import clearance_model, drives, physics_model
 from twin.machine.sampling import held_commands, polyline_nodes
+from twin.machine.transmission import give_name, has_give
 from twin.machine.watch import Watch
 from twin.motion.setpoints import Setpoints, join
 from twin.nc.canonical import FloatArray
 from twin.recording import Samples
-from twin.units import to_si
+from twin.units import kv_per_second, to_si
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 
@@ -27,34 +29,53 @@ class Simulation:
 
     Attributes:
         alarm: What stopped the run, None while it goes on and when it ended well.
+        near_miss: The closest that tool's and part's side came without touching, None when they
+            kept their distance.
     """
 
     def __init__(
-        self, machine: Machine, model: mujoco.MjModel, setpoints: Iterable[Setpoints]
+        self,
+        machine: Machine,
+        model: mujoco.MjModel,
+        clearance: Clearance | None,
+        setpoints: Iterable[Setpoints],
     ) -> None:
         self.alarm: Alarm | None = None
-        self._machine = machine
+        self._clearance = clearance
         self._setpoints = setpoints
         self._servo = _Servo(machine, model)
+        self._watch = Watch(machine)
+
+    @property
+    def near_miss(self) -> NearMiss | None:
+        """The closest approach so far, where it was below the machine file's limit."""
+        return None if self._clearance is None else self._clearance.near_miss
 
     def __iter__(self) -> Iterator[Samples]:
-        """Yield chunks of samples.
+        """Yield chunks of samples; a run can be iterated once.
 
         Raises:
             SimulationError: MuJoCo warned, or a setpoint or a state is not finite.
         """
-        watch = Watch(self._machine)
         for chunk in self._setpoints:
             if not len(chunk):
                 continue
             samples = self._servo.follow(chunk)
-            self.alarm = watch.look(samples)
+            self.alarm = self._look(samples)
             if self.alarm is None:
                 yield samples
                 continue
             end = int(np.searchsorted(samples.setpoint.time, self.alarm.time_s, side="right"))
             yield samples[:end]
             return
+
+    def _look(self, samples: Samples) -> Alarm | None:
+        found = self._watch.look(samples)
+        if self._clearance is None:
+            return found
+        collision = self._clearance.look(samples)
+        both = [alarm for alarm in (collision, found) if alarm is not None]
+        return min(both, key=lambda alarm: alarm.time_s, default=None)
 
 
 def simulate(
@@ -67,15 +88,20 @@ def simulate(
 
     Args:
         machine: The machine file.
-        model: The model of ``build_spec``; a specification is compiled without its visuals.
+        model: What ``build_spec`` made: the run then also watches for collisions. Or a model
+            compiled from it, of which the motion alone is simulated.
         setpoints: Chunks of setpoints at the servo period, machine coordinates [mm or deg].
 
     Returns:
         The run: iterate it for the samples, then ask its ``alarm``.
+
+    Raises:
+        ConfigError: The specification does not compile.
     """
-    if isinstance(model, mujoco.MjSpec):
-        model = physics_model(machine, model)
-    return Simulation(machine, model, setpoints)
+    if isinstance(model, mujoco.MjModel):
+        return Simulation(machine, model, None, setpoints)
+    clearance = Clearance(machine, clearance_model(machine, model))
+    return Simulation(machine, physics_model(machine, model), clearance, setpoints)
 
 
 class _Servo:
@@ -98,6 +124,21 @@ class _Servo:
         self._velocity_input = model.actuator_ctrladr[servos]
         self._force_input = model.actuator_ctrladr[forces]
         self._setpoint_state = model.actuator_actadr[servos]
+        self._integrates = np.flatnonzero([loop.integral_gain > 0 for loop in loops])
+        integral = [
+            model.actuator(integral_name(machine.axes.names[index])).id
+            for index in self._integrates
+        ]
+        self._position_input = model.actuator_ctrladr[integral]
+        self._integral_state = model.actuator_actadr[integral]
+        self._integral_gain = np.array([loop.integral_gain for loop in loops])
+        self._trail = np.array(
+            [(1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) for axis in axes]
+        )
+        self._gives = np.flatnonzero([has_give(axis) for axis in axes])
+        give = [model.joint(give_name(axes[index])) for index in self._gives]
+        self._give_qpos = np.array([int(joint.qposadr[0]) for joint in give], np.int64)
+        self._give_dof = np.array([int(joint.dofadr[0]) for joint in give], np.int64)
         self._to_si = np.array([to_si(axis.kind) for axis in axes])
         self._velocity_share = np.array([axis.velocity_feedforward for axis in axes])
         self._limit = np.array([axis.force_limit or np.inf for axis in axes])
@@ -156,6 +197,10 @@ class _Servo:
         controls = np.zeros((len(velocity), self._model.nu))
         controls[:, self._velocity_input] = velocity * self._to_si
         controls[:, self._force_input] = self._told(velocity, acceleration)
+        if len(self._integrates):
+            nodes = polyline_nodes(setpoints, self._period)
+            meant = ((nodes[1:] + nodes[:-1]) / 2 - self._trail * velocity) * self._to_si
+            controls[:, self._position_input] = meant[:, self._integrates]
         return controls
 
     def _told(self, velocity: FloatArray, acceleration: FloatArray) -> FloatArray:
@@ -166,11 +211,19 @@ class _Servo:
         )
 
     def _samples(self, setpoint: Setpoints, states: FloatArray) -> Samples:
-        position = states[:, 1 + self._qpos] / self._to_si
-        velocity = states[:, 1 + self._model.nq + self._dof] / self._to_si
-        return Samples(setpoint, position, velocity, self._force(setpoint, position, velocity))
+        motor = states[:, 1 + self._qpos] / self._to_si
+        speed = states[:, 1 + self._model.nq + self._dof] / self._to_si
+        force = self._force(setpoint, motor, speed, states)
+        position, velocity = motor.copy(), speed.copy()
+        position[:, self._gives] += states[:, 1 + self._give_qpos] / self._to_si[self._gives]
+        velocity[:, self._gives] += (
+            states[:, 1 + self._model.nq + self._give_dof] / self._to_si[self._gives]
+        )
+        return Samples(setpoint, position, velocity, force)
 
-    def _force(self, setpoint: Setpoints, position: FloatArray, velocity: FloatArray) -> FloatArray:
+    def _force(
+        self, setpoint: Setpoints, position: FloatArray, velocity: FloatArray, states: FloatArray
+    ) -> FloatArray:
         """What the drives push with around the instants of the samples, within their limits.
 
         Taken from the setpoint itself: at a corner of the polyline that is drawn through it the
@@ -182,4 +235,7 @@ class _Servo:
             - self._velocity_gain * velocity * self._to_si
             + self._told(setpoint.velocity, setpoint.acceleration)
         )
+        first = 1 + self._model.nq + self._model.nv
+        left_behind = states[:, first + self._integral_state]
+        force[:, self._integrates] += self._integral_gain[self._integrates] * left_behind
         return np.clip(force, -self._limit, self._limit)

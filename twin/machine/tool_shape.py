@@ -10,7 +10,18 @@ from twin.units import MM
 VISUAL_GROUP = 2
 """Geom group of what is only looked at; the physics drops it."""
 
-_NO_CONTACT = {"contype": 0, "conaffinity": 0, "group": VISUAL_GROUP, "mass": 0.0}
+COLLISION_GROUP = 3
+"""Geom group of what may not meet; the physics drops it too, the clearance is watched apart."""
+TOOL_SIDE, PART_SIDE, FRAME_SIDE = 1, 2, 4
+"""Sides of a collision, as bits of ``contype``: head and holder, table and fixture, column."""
+
+_VISUAL = {"contype": 0, "conaffinity": 0, "group": VISUAL_GROUP, "mass": 0.0}
+_COLLISION = {
+    "contype": TOOL_SIDE,
+    "conaffinity": PART_SIDE | FRAME_SIDE,
+    "group": COLLISION_GROUP,
+    "mass": 0.0,
+}
 
 
 class ToolShape(Protocol):
@@ -64,6 +75,12 @@ class Cylinder:
     bottom: float
 
 
+_HOLDER = ("tool_flange", "tool_nut")
+_COLLISION_NAMES = {
+    "tool_flange": "holder's flange",
+    "tool_nut": "holder's nut",
+    "tool_shank": "tool's shank",
+}
 _FLANGE_HEIGHT = 0.3
 _COLLET_RADIUS = 4.0
 _HOLDER_SHARE = 0.55
@@ -94,7 +111,8 @@ def add_tool(spec: mujoco.MjSpec, tool: ToolShape) -> None:
     """Put the tool into the spindle: geoms on the body that carries the site ``spindle_nose``.
 
     Args:
-        spec: The machine; gains geoms and the site ``tool_tip``.
+        spec: The machine; gains geoms and the site ``tool_tip``. All but the cutting part may
+            collide.
         tool: The tool.
     """
     nose = spec.site("spindle_nose")
@@ -111,16 +129,17 @@ def add_tool(spec: mujoco.MjSpec, tool: ToolShape) -> None:
                 size=[piece.radius * MM, 0.0, 0.0],
                 pos=[x, y, z + bottom * MM],
                 material="carbide",
-                **_NO_CONTACT,
+                **_VISUAL,
             )
         if piece.top <= bottom:
             continue
-        body.add_geom(
-            name=piece.name,
-            type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-            size=[piece.radius * MM, (piece.top - bottom) / 2 * MM, 0.0],
-            pos=[x, y, z + (piece.top + bottom) / 2 * MM],
-            material="carbide" if piece.name in ("tool_cutter", "tool_shank") else "tool_steel",
-            **_NO_CONTACT,
-        )
+        form = {
+            "type": mujoco.mjtGeom.mjGEOM_CYLINDER,
+            "size": [piece.radius * MM, (piece.top - bottom) / 2 * MM, 0.0],
+            "pos": [x, y, z + (piece.top + bottom) / 2 * MM],
+        }
+        material = "tool_steel" if piece.name in _HOLDER else "carbide"
+        body.add_geom(name=piece.name, material=material, **form, **_VISUAL)
+        if piece.name != "tool_cutter":
+            body.add_geom(name=_COLLISION_NAMES[piece.name], **form, **_COLLISION)
     body.add_site(name="tool_tip", pos=[x, y, z - tool.length * MM], size=[0.001] * 3, group=4)

@@ -1,0 +1,78 @@
+"""``twin run``: the whole chain into a folder, and the verdict for a person."""
+
+from pathlib import Path
+
+import typer
+
+from twin.alarm_text import alarm_diagnostic
+from twin.chain import Run
+from twin.errors import ExitCode
+from twin.outcome import Outcome
+from twin.preparation import prepare
+from twin.progress import shown_progress
+
+RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
+"""What a run may leave; an earlier run's files of these names are removed when one begins."""
+
+EXIT_CODES = {"pass": ExitCode.OK, "fail": ExitCode.FAILED, "alarm": ExitCode.ALARM}
+
+
+def run_and_print(
+    path: Path,
+    out: Path | None,
+    *,
+    dialect: str | None,
+    machine: str | None,
+    video: bool,
+    strict: bool,
+) -> ExitCode:
+    """Run a program or a job, write its results and print the verdict.
+
+    Args:
+        path: NC program or job file.
+        out: Folder for the results; ``out/<program>`` by default.
+        dialect: Overrides the job's dialect.
+        machine: Overrides the job's machine.
+        video: Film the run too.
+        strict: Warnings of the interpreter are errors.
+
+    Raises:
+        TwinError: Something is wrong before the run could end; see each error's exit code.
+    """
+    preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
+    folder = out or Path("out") / preparation.job.program.stem
+    run = Run(preparation, keep_contour=video)
+    survey = run.survey()
+    _clear(folder)
+    with shown_progress() as progress:
+        outcome = run.execute(survey, folder, progress)
+        if video and outcome.samples:
+            film_run(run, folder, progress)
+        write_results(run, outcome, folder)
+    _print_findings(run, outcome)
+    typer.echo(f"{_summary(outcome)}: {folder}")
+    return outcome.verdict.exit_code
+
+
+def _clear(folder: Path) -> None:
+    for name in RESULT_FILES:
+        (folder / name).unlink(missing_ok=True)
+
+
+def _print_findings(run: Run, outcome: Outcome) -> None:
+    for warning in outcome.warnings:
+        typer.echo(str(warning), err=True)
+    for alarm in outcome.alarms:
+        typer.echo(str(alarm_diagnostic(alarm, run.preparation.source)), err=True)
+    if not outcome.alarms:
+        for reason in outcome.verdict.reasons:
+            typer.echo(f"{run.preparation.source.name}: {reason}", err=True)
+
+
+def _summary(outcome: Outcome) -> str:
+    contour = outcome.figures.contour
+    return (
+        f"{outcome.verdict.outcome}: contour error at most {contour.max:.1f} µm "
+        f"(line {contour.worst_line}), {outcome.duration_s:.3f} s of machine time "
+        f"in {outcome.wall_s:.1f} s"
+    )
