@@ -19,7 +19,7 @@ def samples(position: FloatArray, line: int | FloatArray = 1, start: float = 0.0
     lines = np.broadcast_to(np.asarray(line, np.int64), len(position)).copy()
     time = start + 1e-3 * np.arange(len(position), dtype=np.float64)
     setpoint = Setpoints(time, lines, lines - 1, column, position, still, still)
-    return Samples(setpoint, position, still, still)
+    return Samples(setpoint, position.copy(), still, still)
 
 
 @pytest.fixture(name="samples")

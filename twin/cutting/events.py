@@ -25,12 +25,15 @@ class CutEvent:
         time_s: When it began [s].
         depth_mm: Its greatest depth below the material that was first met [mm].
         position: Tool tip in the part's frame at its beginning [mm].
+        what: ``rapid``; or which part of the tool gouges: ``flute`` (the cut is deeper than the
+            flutes are long), ``shank``, ``holder``.
     """
 
     line: int
     time_s: float
     depth_mm: float
     position: tuple[float, float, float]
+    what: str
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -53,6 +56,11 @@ class Stretches:
     removed: FloatArray
     depth: FloatArray
 
+    @property
+    def path(self) -> FloatArray:
+        """Length of each, shape (n,) [mm]."""
+        return np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+
 
 class EventLog:
     """Keeps the first and the worst of each occurrence."""
@@ -60,13 +68,15 @@ class EventLog:
     def __init__(self) -> None:
         self._events: dict[Hashable, CutEvent] = {}
 
-    def note(self, key: Hashable, stretches: Stretches, index: int, depth: float) -> None:
+    def note(
+        self, key: Hashable, what: str, stretches: Stretches, index: int, depth: float
+    ) -> None:
         """Add one stretch to the occurrence called ``key``."""
         known = self._events.get(key)
         if known is None:
             x, y, z = (float(value) for value in stretches.points[index])
             line, time = int(stretches.line[index]), float(stretches.time[index])
-            self._events[key] = CutEvent(line, time, depth, (x, y, z))
+            self._events[key] = CutEvent(line, time, depth, (x, y, z), what)
         elif depth > known.depth_mm:
             self._events[key] = dataclasses.replace(known, depth_mm=depth)
 
@@ -102,7 +112,7 @@ class RapidWatch:
             tip = float(min(stretches.points[i : i + 2, 2]))
             surface = max(self._surface.get(key, tip), tip + float(stretches.depth[i]))
             self._surface[key] = surface
-            self._log.note(key, stretches, int(i), surface - tip)
+            self._log.note(key, "rapid", stretches, int(i), surface - tip)
         self._runs, self._running, self._start = int(run[-1]), bool(rapid[-1]), start[-1].copy()
 
     def events(self) -> tuple[CutEvent, ...]:

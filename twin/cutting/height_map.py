@@ -5,13 +5,16 @@ cell describes the part exactly, up to the size of the cells.
 """
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 
+from twin.cutting.drape_kernels import drape
 from twin.cutting.outline import BoolArray, Outline, outline
 from twin.errors import ConfigError
 from twin.job import StockTable
 from twin.nc.canonical import FloatArray
+from twin.stl_file import read_stl
 
 CELL_LIMIT = 64_000_000
 """Cells that a height map may have: half a gigabyte of heights."""
@@ -65,6 +68,8 @@ class HeightMap:
 def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
     """The uncut stock as a height map; a cell holds material when its middle lies in the blank.
 
+    Of an STL file's shape the highest surface counts, with material all the way down below it.
+
     Args:
         stock: The blank.
         corner: Where the blank's program coordinates have their origin in the part's frame,
@@ -72,7 +77,7 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
         cell: Side of a cell [mm].
 
     Raises:
-        ConfigError: The map would have more cells than ``CELL_LIMIT``.
+        ConfigError: The map would have more cells than ``CELL_LIMIT``, or an STL file is wrong.
     """
     center = np.asarray(stock.position) + corner
     width, depth, height = stock.extent
@@ -91,4 +96,11 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
     edge = outline(stock, (float(center[0]), float(center[1])))
     result = HeightMap(origin, cell, bottom, np.full((count_y, count_x), top), top, edge)
     result.heights[~edge.contains(*np.meshgrid(result.x, result.y))] = bottom
+    if stock.file is not None:
+        mesh = read_stl(Path(stock.file))
+        low, high = mesh.bounds
+        middle = np.array([*(0.5 * (low + high))[:2], high[2]])
+        triangles = np.ascontiguousarray(mesh.triangles - middle + center, dtype=np.float64)
+        result.heights[:] = bottom
+        drape(result.heights, result.origin, cell, triangles)
     return result

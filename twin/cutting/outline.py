@@ -13,31 +13,35 @@ BoolArray = npt.NDArray[np.bool_]
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Outline:
-    """A rectangle along X and Y, or a circle.
+    """A rectangle along X and Y, or a circle, perhaps with a hole in its middle.
 
     Attributes:
         center: X and Y of its middle [mm].
         half: Half of its size along X and Y [mm].
         round: Whether it is a circle.
+        bore: Radius of the hole [mm]; 0 for none.
     """
 
     center: tuple[float, float]
     half: tuple[float, float]
     round: bool
+    bore: float = 0.0
 
     def contains(self, x: FloatArray, y: FloatArray) -> BoolArray:
         """Which points lie inside or on the edge."""
         across, along = np.abs(x - self.center[0]), np.abs(y - self.center[1])
         if self.round:
-            return across**2 + along**2 <= self.half[0] ** 2
+            squared = across**2 + along**2
+            return (squared <= self.half[0] ** 2) & (squared >= self.bore**2)
         return (across <= self.half[0]) & (along <= self.half[1])
 
     def snap(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Move points that lie outside onto the edge."""
         across, along = x - self.center[0], y - self.center[1]
         if self.round:
-            far = np.maximum(np.hypot(across, along), self.half[0])
-            across, along = across * self.half[0] / far, along * self.half[0] / far
+            distance = np.maximum(np.hypot(across, along), 1e-12)
+            factor = np.clip(distance, self.bore, self.half[0]) / distance
+            across, along = across * factor, along * factor
         else:
             across = np.clip(across, -self.half[0], self.half[0])
             along = np.clip(along, -self.half[1], self.half[1])
@@ -47,4 +51,6 @@ class Outline:
 def outline(stock: StockTable, center: tuple[float, float]) -> Outline:
     """The outline of a blank whose top face has its middle at ``center`` [mm]."""
     width, depth, _ = stock.extent
-    return Outline(center, (0.5 * width, 0.5 * depth), stock.shape == "cylinder")
+    return Outline(
+        center, (0.5 * width, 0.5 * depth), stock.diameter is not None, 0.5 * (stock.bore or 0.0)
+    )

@@ -126,6 +126,50 @@ def sweep(
 
 
 @numba.njit(cache=True)
+def overlap(
+    heights: FloatArray,
+    origin: tuple[float, float],
+    cell: float,
+    top: float,
+    points: FloatArray,
+    radius: float,
+    above: float,
+    depth: FloatArray,
+) -> None:
+    """How deep a cylinder that must not cut, such as the holder, goes into the material.
+
+    Args:
+        heights: The height map, shape (ny, nx) [mm].
+        origin: X and Y of the middle of cell ``[0, 0]`` [mm].
+        cell: Side of a cell [mm].
+        top: Z above which there is no material [mm].
+        points: Tool tip positions, shape (n, 3) [mm].
+        radius: Of the cylinder [mm].
+        above: Height of its lower end above the tip [mm].
+        depth: Set to the greatest overlap along each line, shape (n - 1,) [mm].
+    """
+    rows, columns = heights.shape
+    cylinder = (radius, radius, 0.0, 0.0)
+    for i in range(len(points) - 1):
+        depth[i] = 0.0
+        ax, ay = points[i, 0], points[i, 1]
+        bx, by = points[i + 1, 0], points[i + 1, 1]
+        if min(points[i, 2], points[i + 1, 2]) + above >= top:
+            continue
+        low = max(0, math.ceil((min(ay, by) - radius - origin[1]) / cell))
+        high = min(rows - 1, math.floor((max(ay, by) + radius - origin[1]) / cell))
+        for row in range(low, high + 1):
+            y = origin[1] + row * cell
+            left, right = _chord(ax, ay, bx, by, radius, y)
+            first = max(0, math.ceil((left - origin[0]) / cell))
+            end = min(columns - 1, math.floor((right - origin[0]) / cell)) + 1
+            for column in range(first, end):
+                x = origin[0] + column * cell
+                lower = _lowest(x, y, points[i], points[i + 1], cylinder) + above
+                depth[i] = max(depth[i], heights[row, column] - lower)
+
+
+@numba.njit(cache=True)
 def _chord(
     ax: float, ay: float, bx: float, by: float, radius: float, y: float
 ) -> tuple[float, float]:

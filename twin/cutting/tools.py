@@ -1,11 +1,14 @@
 """What a turning tool's lower end looks like: its lowest height over every radius."""
 
 import dataclasses
+import itertools
+import math
+from collections.abc import Iterable
 
 import numpy as np
 
 from twin.job import ToolTable
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import FloatArray, IntArray
 
 FINEST_CELL_MM = 0.1
 """The finest grid that is chosen without being asked for [mm]."""
@@ -41,14 +44,58 @@ class Profile:
         return np.where(np.asarray(radius) <= self.radius, rise, np.inf)
 
 
+DRILL_POINT = 118.0
+"""Included angle of a twist drill's point where the job names none [deg] (DIN 1412, form A)."""
+CHAMFER_POINT = 90.0
+"""Included angle of a chamfer cutter where the job names none [deg]."""
+
+
 def profile(tool: ToolTable) -> Profile:
     """The profile of a tool of the job."""
     radius = 0.5 * tool.diameter
     if tool.kind == "ball":
         return Profile(radius, flat=0.0, corner=radius)
+    if tool.kind == "bull":
+        assert tool.corner is not None
+        return Profile(radius, flat=radius - tool.corner, corner=tool.corner)
+    if tool.kind == "drill":
+        return Profile(radius, flat=0.0, slope=_cone_slope(tool.angle or DRILL_POINT))
+    if tool.kind == "chamfer":
+        return Profile(radius, flat=0.5 * tool.tip, slope=_cone_slope(tool.angle or CHAMFER_POINT))
     return Profile(radius, flat=radius)
 
 
-def default_cell(tool: ToolTable) -> float:
-    """Grid for a job that names none: a tenth of the tool's radius, 0.1 mm at the finest [mm]."""
-    return max(FINEST_CELL_MM, 0.05 * tool.diameter)
+def _cone_slope(angle: float) -> float:
+    return 1.0 / math.tan(math.radians(0.5 * angle))
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ToolPlan:
+    """Which tool is in the spindle during which moves of a program.
+
+    Attributes:
+        tools: In the order in which they come into the spindle; the first is in it at the start.
+        first_move: Number of the first move that each is in the spindle for, rising from 0.
+    """
+
+    tools: tuple[ToolTable, ...]
+    first_move: tuple[int, ...] = (0,)
+
+    def runs(self, move: IntArray) -> list[tuple[slice, ToolTable]]:
+        """Split samples where the tool changes.
+
+        Args:
+            move: Move number of each sample, never falling, shape (n,).
+        """
+        number = np.searchsorted(self.first_move, np.maximum(move, 0), side="right") - 1
+        ends = [*(np.flatnonzero(np.diff(number)) + 1).tolist(), len(move)]
+        return [
+            (slice(first, end), self.tools[int(number[first])])
+            for first, end in itertools.pairwise([0, *ends])
+            if first < end
+        ]
+
+
+def default_cell(tools: Iterable[ToolTable]) -> float:
+    """Grid for a job that names none: a tenth of the smallest tool's radius, 0.1 mm at least [mm]."""
+    return max(FINEST_CELL_MM, 0.05 * min(tool.diameter for tool in tools))

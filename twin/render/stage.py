@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
-from twin.cutting.cut import Cutter
+from twin.cutting.cut import Cutter, Rectangle, union
 from twin.cutting.outline import BoolArray
 from twin.errors import RenderError
 from twin.job import StockTable, ToolTable
@@ -17,7 +17,7 @@ from twin.recording import Recording, Samples
 from twin.render.canvas import Canvas, Pixels, Quality, canvas, prepare
 from twin.render.placement import Joints, Placement, place
 from twin.render.replay import rapid_mask
-from twin.render.stock_surface import Rectangle, StockSurface
+from twin.render.stock_surface import StockSurface
 from twin.render.trail import Trail, trail_points
 from twin.render.work_holding import add_work_holding
 
@@ -91,7 +91,7 @@ class Stage:
         self._position = samples.joint_position[-1]
         if self._cutter is not None:
             self._cutter.add(samples, rapid_mask(samples, self._scene.rapid_moves))
-            self._changed = _union(self._changed, self._cutter.changed)
+            self._changed = union(self._changed, self._cutter.changed)
 
     def picture(self, camera: str) -> Pixels:
         """Draw what a camera sees now, shape (height, width, 3)."""
@@ -154,11 +154,3 @@ def _trail_radius(points: FloatArray) -> float:
     if not len(points):
         return TRAIL_MM[0]
     return float(np.clip(TRAIL_SHARE * np.ptp(points, axis=0).max(), *TRAIL_MM))
-
-
-def _union(a: Rectangle, b: Rectangle) -> Rectangle:
-    if a[0] >= a[1]:
-        return b
-    if b[0] >= b[1]:
-        return a
-    return (min(a[0], b[0]), max(a[1], b[1]), min(a[2], b[2]), max(a[3], b[3]))

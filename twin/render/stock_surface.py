@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from twin.cutting.cut import Rectangle
 from twin.cutting.height_map import HeightMap
 from twin.cutting.net import Net, net, open_edges
 from twin.nc.canonical import FloatArray, IntArray
@@ -32,9 +33,6 @@ MACHINED_RGB = (226, 230, 235)
 MATERIAL = "stock"
 SIDE = "stock_side"
 FLAT_FACES = np.array([[0, 1, 2], [0, 2, 3]])
-
-Rectangle = tuple[int, int, int, int]
-"""Row, row end, column, column end."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
