@@ -11,6 +11,7 @@ from twin.nc.canonical import (
     NO_BLOCK_NUMBER,
     Axes,
     Chunk,
+    Corner,
     Dwell,
     Event,
     FloatArray,
@@ -112,6 +113,10 @@ class Program:
             normal=np.full((1, 3), np.nan),
             radius=column(np.nan),
             sweep=column(0.0),
+            corner=np.array([Corner.EXACT_STOP], np.uint8),
+            corner_tolerance=column(np.nan),
+            acceleration=column(np.nan),
+            deceleration=column(np.nan),
         )
         self.parts.append(dataclasses.replace(move, **arc))
         return self
