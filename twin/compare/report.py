@@ -11,7 +11,7 @@ import jinja2
 import markupsafe
 import numpy as np
 
-from twin.compare.figures import ArcFigures, Figures
+from twin.compare.figures import ArcFigures, Figures, WorstPlace
 from twin.compare.plots import (
     Plot,
     error_plot,
@@ -33,6 +33,8 @@ _HEADINGS = {
 }
 _HOVER_POINTS = 2000
 _CONTEXT_LINES = 2
+_WORST_SHOWN = 6
+_SMALLEST_SHARE = 0.05
 _MEDIA = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 
 
@@ -99,10 +101,16 @@ def render_report(report: Report) -> str:
             for _, arc in arcs
             if len(arc.polar)
         ],
-        worst=[(place, _excerpt(source, place.line)) for place in report.figures.worst],
+        worst=[(place, _excerpt(source, place.line)) for place in _worth_showing(report.figures)],
         reason_texts=[_line_text(source, reason.line) for reason in report.verdict.reasons],
         stills=[(caption, _data_address(path)) for caption, path in report.stills],
     )
+
+
+def _worth_showing(figures: Figures) -> list[WorstPlace]:
+    """The worst lines, without those that are hardly off compared with the worst."""
+    least = figures.contour.max * _SMALLEST_SHARE
+    return [place for place in figures.worst if place.error_um > least][:_WORST_SHOWN]
 
 
 def _arcs_by_line(arcs: Sequence[ArcFigures]) -> list[tuple[int, ArcFigures]]:
