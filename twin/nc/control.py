@@ -87,6 +87,7 @@ class Control:
         self.rapid_feed = NAN
         self.axis_limits: dict[int, float] = {}
         self.axis_accelerations: dict[int, float] = {}
+        self._last: Segment | None = None
         self.ended = False
         for number in dialect.start:
             self._set(number, dialect.g[number])
@@ -103,6 +104,8 @@ class Control:
         self.report.line = block.line
         if block.skippable and self.settings.block_skip:
             return
+        if self.dialect.repeat_word:
+            block = self._repeated(block)
         if block.statement is not None:
             self._run_statement(block.statement)
             return
@@ -136,6 +139,26 @@ class Control:
         """The program begins."""
         if self.dialect.prepare is not None:
             self.dialect.prepare(self)
+
+    def _repeated(self, block: Block) -> Block:
+        """Run a block with a repeat word as often as it says, but once; return it without."""
+        words = [word for word in block.words if word.address == self.dialect.repeat_word]
+        if not words:
+            return block
+        word = words[0]
+        value = word.value
+        count = self.evaluate(value, word) if isinstance(value, Expression) else value
+        rest = tuple(each for each in block.words if each is not word)
+        if count < 1.0 or count != int(count):
+            self.fail("repeat-count", f"{word.address} must count 1 or more runs", word)
+        if any(each.address in "MTDH" for each in rest):
+            self.fail("repeat-count", f"{word.address} repeats motion only, no M, T, D or H", word)
+        if count > self.settings.step_limit:
+            self.fail("endless-program", f"more than {self.settings.step_limit} runs", word)
+        plain = dataclasses.replace(block, words=rest)
+        for _ in range(int(count) - 1):
+            self.run(plain)
+        return plain
 
     def _run_statement(self, statement: Statement) -> None:
         self.words, self.codes = {}, []
@@ -254,6 +277,8 @@ class Control:
     def _run_function(self, word: Word, code: MCode) -> None:
         if code.action is not None:
             code.action(self)
+        if code.silent:
+            return
         arguments = self.take_function_arguments(word)
         self.function(f"M{_integer(_number(word))}", arguments)
         if code.ends:
@@ -272,7 +297,9 @@ class Control:
 
     def _move(self) -> None:
         words = self.words
-        if not words or not any(address in self.dialect.motion_words for address in words):
+        starts_cycle = any(code.sets.get("cycle") is not None for _, code in self.codes)
+        motion_words = self.dialect.motion_words
+        if not starts_cycle and not any(address in motion_words for address in words):
             return
         interpolation = self.modal.cycle or self.modal.interpolation
         if interpolation is None:
@@ -286,6 +313,8 @@ class Control:
         if self.dialect.before_motion is not None:
             self.dialect.before_motion(self, interpolation.rapid)
         interpolation.perform(self)
+        if self.dialect.after_motion is not None:
+            self.dialect.after_motion(self)
 
     def _refuse_unused(self) -> NoReturn:
         word = next(iter(self.words.values()), None) or self.series[0]
@@ -444,36 +473,48 @@ class Control:
             return
         modal = self.modal
         is_arc = center is not None
+        length = self._length(end, center, normal, sweep)
         if self.series and self.dialect.place_switches is not None:
-            self.dialect.place_switches(self, self._length(end, center, normal, sweep))
-        feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc)
+            self.dialect.place_switches(self, length)
+        feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc, length)
         acceleration, deceleration = self.acceleration, self.deceleration
         if self.axis_limits or self.axis_accelerations:
-            length = self._length(end, center, normal, sweep)
             share = self._axis_shares(end, length, is_arc)
             feed = _limited(feed, self.axis_limits, share)
             acceleration = _limited(acceleration, self.axis_accelerations, share)
             deceleration = _limited(deceleration, self.axis_accelerations, share)
-        self.path.add(
-            Segment(
-                motion=Motion.RAPID if rapid else Motion.FEED,
-                line=self.block.line,
-                block=self.block.number,
-                start=self.part,
-                end=end,
-                display=target,
-                feed=feed,
-                corner=Corner.EXACT_STOP if rapid else modal.corner,
-                corner_tolerance=modal.corner_tolerance,
-                acceleration=acceleration,
-                deceleration=deceleration,
-                center=center,
-                normal=normal,
-                sweep=sweep,
-            )
+        self._last = Segment(
+            motion=Motion.RAPID if rapid else Motion.FEED,
+            line=self.block.line,
+            block=self.block.number,
+            start=self.part,
+            end=end,
+            display=target,
+            feed=feed,
+            corner=Corner.EXACT_STOP if rapid else modal.corner,
+            corner_tolerance=modal.corner_tolerance,
+            acceleration=acceleration,
+            deceleration=deceleration,
+            center=center,
+            normal=normal,
+            sweep=sweep,
         )
+        self.path.add(self._last)
         self.programmed = target
         self.part = end
+
+    @property
+    def direction(self) -> Vector | None:
+        """Where the last move was going when it ended, programmed coordinates; None before one."""
+        move = self._last
+        if move is None:
+            return None
+        x, y, z = (new - old for new, old in zip(move.end[:3], move.start[:3], strict=True))
+        if move.center is not None:
+            arm = tuple(a - b for a, b in zip(move.end[:3], move.center, strict=True))
+            sign = math.copysign(1.0, move.sweep)
+            x, y, z = (sign * value for value in cross(move.normal, (arm[0], arm[1], arm[2])))
+        return self.frame.unturn((x, y, z))
 
     def _length(
         self, end: list[float], center: Vector | None, normal: Vector, sweep: float
@@ -492,7 +533,7 @@ class Control:
         shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
         return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
-    def _feed_per_minute(self, end: list[float], is_arc: bool) -> float:
+    def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
         turning = not is_arc and all(
             new == old or not linear
             for new, old, linear in zip(end, self.part, self.linear, strict=True)
@@ -505,8 +546,10 @@ class Control:
             )
             settings = self.settings
             return settings.default_rotary_feed if turning else settings.default_feed
-        feed = self.feed if turning else self.feed * self.modal.unit
         mode = self.modal.feed_mode
+        if mode is FeedMode.SECONDS_PER_BLOCK:
+            return length / self.feed * 60.0
+        feed = self.feed if turning else self.feed * self.modal.unit
         if mode is FeedMode.PER_MINUTE:
             return feed
         if mode is FeedMode.PER_SECOND:

@@ -114,7 +114,9 @@ def compensate(control: Control, side: float, radius: float) -> None:
     if radius == 0.0:
         return
     plane = control.part_plane()
-    control.path.start_compensation(plane, side * control.frame.handedness, radius)
+    control.path.start_compensation(
+        plane, side * control.frame.handedness, radius, square=control.modal.square_corners
+    )
 
 
 def _compensation_by_table(control: Control, side: float) -> None:
