@@ -40,6 +40,10 @@ class Samples:
     def __len__(self) -> int:
         return len(self.setpoint)
 
+    def __getitem__(self, index: slice) -> "Samples":
+        """A run of samples, as columns again."""
+        return Samples(*(getattr(self, field.name)[index] for field in dataclasses.fields(self)))
+
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class RecordingHeader:

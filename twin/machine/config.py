@@ -17,8 +17,24 @@ NonNegative = Annotated[float, Field(ge=0)]
 Share = Annotated[float, Field(ge=0, le=1)]
 
 
+class LuGreTable(Table):
+    """Friction with a memory: bristles that bend before they slip (Canudas de Wit et al. 1995)."""
+
+    stiffness: Positive
+    """Of the bristles [N/mm or N m/deg]: the axis moves elastically before it breaks away."""
+    damping: NonNegative = 0.0
+    """Of the bristles [N s/mm or N m s/deg]."""
+    static_friction: NonNegative = 0.0
+    """Force at which the axis breaks away [N or N m]; at least ``dry_friction``, and that if 0."""
+    stribeck_velocity: Positive = 1.0
+    """Speed over which friction falls from static to dry [mm/s or deg/s]."""
+
+
 class AxisTable(Table):
-    """One axis: its joint, its travel, what it can do, and how its drive is tuned."""
+    """One axis: its joint, its travel, what it can do, and how its drive is tuned.
+
+    What is not given is ideal: no friction, no backlash, a stiff screw, no limits.
+    """
 
     joint: str
     """Joint in the MJCF model; the actuator has the axis's name."""
@@ -28,24 +44,61 @@ class AxisTable(Table):
     """Rotary only: turns without end and may be declared periodic to the control."""
     travel: tuple[float, float] | None = None
     """Lowest and highest machine coordinate [mm or deg]; none: endless."""
+    overtravel: NonNegative = 2.0
+    """How far beyond its travel the axis meets its limit switch [mm or deg]."""
     velocity: Positive
     """Rapid velocity, never exceeded [mm/s or deg/s]."""
     acceleration: Positive
     """[mm/s² or deg/s²]."""
     jerk: Positive
     """[mm/s³ or deg/s³]."""
+    motor_inertia: NonNegative = 0.0
+    """Of the motor's rotor, coupling included [kg m²]; counts only where ``lead`` is given."""
+    screw_inertia: NonNegative = 0.0
+    """Of whatever turns with the motor: ball screw, worm, pulley [kg m²]."""
+    lead: Positive | None = None
+    """Axis travel per turn of the motor [mm or deg]; none: a direct drive, nothing is reflected."""
+    viscous_friction: NonNegative = 0.0
+    """Of guides and screw [N s/mm or N m s/deg]."""
+    dry_friction: NonNegative = 0.0
+    """Coulomb friction of guides and screw [N or N m]."""
+    lugre: LuGreTable | None = None
+    """Refines ``dry_friction``; none: Coulomb's law."""
+    backlash: NonNegative = 0.0
+    """Free play between motor and axis [mm or deg]; the position loop closes at the motor."""
+    stiffness: NonNegative = 0.0
+    """Of screw, nut and bearings between motor and axis [N/mm or N m/deg]; 0: rigid, or, with
+    backlash, as stiff as the servo period allows to simulate."""
+    counterbalance: Share | None = None
+    """Share of the weight on the axis that a counterbalance takes; none: as the model says."""
     kv: Positive
     """Position-loop gain [(m/min)/mm; rotary (1000 deg/min)/deg]: lag = velocity / gain."""
-    damping_ratio: Positive = 0.7
-    """Of the position loop seen as a second-order system."""
+    damping_ratio: Positive = 1.0
+    """Of the position loop seen as a second-order system; 1 is the fastest that cannot overshoot."""
+    reset_time_s: NonNegative = 0.0
+    """Integral action of the velocity loop: takes what friction and weight leave behind [s]; 0: none."""
     velocity_feedforward: Share = 0.0
     """Share of the setpoint velocity that the drive is told; 1 removes the lag."""
     acceleration_feedforward: Share = 0.0
     """Share of the inertial force that the drive adds in advance."""
     force_limit: NonNegative = 0.0
     """Largest drive force [N or N m]; 0: no limit."""
+    saturation_time_s: NonNegative = 0.05
+    """Alarm when the drive stays at its force limit for this long [s]."""
     following_error_limit: NonNegative = 0.0
     """Alarm above this lag [mm or deg]; 0: none."""
+
+    @pydantic.model_validator(mode="after")
+    def _friction_fits(self) -> "AxisTable":
+        if self.lugre is not None and not self.dry_friction:
+            raise ValueError("lugre refines dry_friction, which is 0")
+        if self.lugre is not None and 0 < self.lugre.static_friction < self.dry_friction:
+            raise ValueError("lugre.static_friction must not be below dry_friction")
+        if self.stiffness and not self.lead:
+            raise ValueError("stiffness lies between motor and axis: give motor_inertia and lead")
+        if self.backlash and not self.lead:
+            raise ValueError("backlash lies between motor and axis: give motor_inertia and lead")
+        return self
 
 
 class PathTable(Table):
@@ -68,6 +121,23 @@ class TableTable(Table):
     """Name of the rotary axis that turns the part about +Z."""
     center: tuple[float, float] = (0.0, 0.0)
     """Machine X and Y at which the tool stands over the axis of rotation [mm]."""
+
+
+class FixtureTable(Table):
+    """A box clamped to the work-holding surface, such as the jaw of a vise."""
+
+    name: str
+    size: tuple[Positive, Positive, Positive]
+    """Along X, Y, Z [mm]."""
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Centre of its lower face over the middle of the surface [mm], all axes at zero."""
+
+
+class CollisionTable(Table):
+    """What the control watches between the tool's side and the part's."""
+
+    near_miss: NonNegative = 5.0
+    """Clearance below which a run reports a near miss [mm]."""
 
 
 class ControlTable(Table):
@@ -94,6 +164,8 @@ class MachineFile(Table):
     """By axis name; must hold X, Y and Z."""
     path: PathTable
     table: TableTable | None = None
+    fixtures: tuple[FixtureTable, ...] = ()
+    collision: CollisionTable = CollisionTable()
     control: ControlTable = ControlTable()
 
     @pydantic.model_validator(mode="after")

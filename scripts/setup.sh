@@ -1,0 +1,51 @@
+# Sourced by the other scripts: makes .venv with everything that the project needs.
+# Nothing is done again while pyproject.toml and constraints.txt stay as they are.
+# shellcheck shell=bash
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+_need_packages() {
+    # Debian packages: with the rights to install them do so, else say what is missing.
+    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+        echo "installing Debian packages: $*"
+        apt-get update -qq
+        DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+    else
+        echo "please install: sudo apt-get install $*" >&2
+        return 1
+    fi
+}
+
+_has_library() { ldconfig -p | grep -q "$1"; }
+
+_find_python() {
+    local candidate
+    for candidate in python3 python3.13 python3.12 python3.11; do
+        if command -v "$candidate" >/dev/null &&
+            "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 11))'; then
+            echo "$candidate"
+            return
+        fi
+    done
+    echo "Python 3.11 or later is needed" >&2
+    return 1
+}
+
+setup_environment() {
+    local python stamp
+    python=$(_find_python)
+    "$python" -c 'import ensurepip, venv' 2>/dev/null || _need_packages python3-venv
+    # Off-screen pictures: EGL with Mesa's software drivers. Without them all but pictures works.
+    if ! _has_library libEGL.so.1 || ! _has_library libEGL_mesa.so.0; then
+        _need_packages libegl1 libegl-mesa0 libgl1-mesa-dri || true
+    fi
+    stamp=$(cat pyproject.toml constraints.txt | sha256sum | cut -d' ' -f1)
+    if [ "$(cat .venv/stamp 2>/dev/null)" != "$stamp" ]; then
+        echo "setting up .venv"
+        [ -x .venv/bin/python ] || "$python" -m venv .venv
+        .venv/bin/python -m pip install --quiet --disable-pip-version-check \
+            --constraint constraints.txt --editable '.[dev]'
+        echo "$stamp" >.venv/stamp
+    fi
+    PATH="$PWD/.venv/bin:$PATH"
+}

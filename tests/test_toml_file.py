@@ -1,0 +1,63 @@
+from pathlib import Path
+
+import pytest
+
+from twin.errors import ConfigError, ExitCode
+from twin.job import JobFile, read_job
+from twin.toml_file import read_toml
+
+
+def job_text(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "job.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('program = "a.nc"\nmaschine = "mill4"', "did you mean 'machine'?"),
+        ('program = "a.nc"\n[tolerance]\ncontur_um = 3', "did you mean 'contour_um'?"),
+        ('program = "a.nc"\n[[tools]]\nnumber = 1\nlenght = 3.0', "did you mean 'length'?"),
+        ('machine = "mill4"', "'program' is missing"),
+        ('program = "a.nc"\n[tolerance]\ncontour_um = -1', "tolerance.contour_um"),
+        ('program = "a.nc"\n[tolerance]\ncontour_um = nan', "tolerance.contour_um"),
+        ('program = "a.nc"\n[stock]\nshape = "box"', "needs size"),
+        (
+            'program = "a.nc"\n[stock]\nshape = "cylinder"\ndiameter = 3.0',
+            "needs diameter and height",
+        ),
+        ("program = [", "is not TOML"),
+    ],
+)
+def test_wrong_files_say_which_key_and_what_would_fit(tmp_path: Path, text: str, said: str):
+    with pytest.raises(ConfigError) as caught:
+        read_toml(job_text(tmp_path, text), JobFile)
+    assert said in str(caught.value)
+    assert "job.toml" in str(caught.value)
+    assert caught.value.exit_code is ExitCode.USAGE
+
+
+def test_missing_and_binary_files_are_refused(tmp_path: Path):
+    with pytest.raises(ConfigError, match="cannot be read"):
+        read_toml(tmp_path / "absent.toml", JobFile)
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ConfigError, match="not UTF-8"):
+        read_toml(tmp_path / "binary.toml", JobFile)
+
+
+def test_a_program_is_run_by_the_job_beside_it(tmp_path: Path):
+    program = tmp_path / "part.nc"
+    program.write_text("G0 X0", encoding="utf-8")
+    assert read_job(program).file == JobFile(program="part.nc")
+    (tmp_path / "part.toml").write_text(
+        'program = "part.nc"\ndefault_feed = 77.0', encoding="utf-8"
+    )
+    assert read_job(program).file.default_feed == 77.0
+    assert read_job(tmp_path / "part.toml").program == program
+
+
+def test_a_job_without_its_program_is_refused(tmp_path: Path):
+    path = job_text(tmp_path, 'program = "absent.nc"')
+    with pytest.raises(ConfigError, match=r"absent\.nc: no such NC program"):
+        read_job(path)

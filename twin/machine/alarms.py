@@ -1,0 +1,54 @@
+"""Alarms: what a control raises when a program asks for more than the machine can give."""
+
+import dataclasses
+from typing import Literal
+
+from twin.errors import ExitCode, TwinError
+
+AlarmCode = Literal["soft-limit", "hard-limit", "following-error", "drive-saturation", "collision"]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Alarm:
+    """One alarm.
+
+    Attributes:
+        code: Stable, searchable name of the kind.
+        line: Source line of the program, 0 before the first.
+        time_s: When, from the start of the program [s]; 0 for what is seen before motion starts.
+        axis: Name of the axis, empty where it concerns the whole machine.
+        message: What happened, in one sentence with numbers.
+    """
+
+    code: AlarmCode
+    line: int
+    time_s: float
+    axis: str
+    message: str
+
+    def __str__(self) -> str:
+        """One line for a person."""
+        return f"line {self.line}, {self.time_s:.3f} s: {self.code}: {self.message}"
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class NearMiss:
+    """The closest that the tool's side and the part's came without touching.
+
+    Attributes:
+        clearance_mm: Between the two [mm].
+        line: Source line of the program.
+        time_s: When, from the start of the program [s].
+        between: Names of the two.
+    """
+
+    clearance_mm: float
+    line: int
+    time_s: float
+    between: tuple[str, str]
+
+
+class SimulationError(TwinError):
+    """The simulation itself failed: MuJoCo warned, or a number is not finite."""
+
+    exit_code = ExitCode.ALARM

@@ -1,0 +1,165 @@
+"""The circular test of ISO 230-4 on the simulated machine: how round does it go?
+
+A circle is run at a constant feed in both directions; the run-up and a quarter turn settle it, the
+turn after that is measured. From the measured points, seen from the commanded centre, come
+
+* radial deviation F: the largest and smallest distance outward from the commanded circle;
+* circular deviation G(b): the smallest width of two circles about one centre that hold the paths of
+  both directions, here about their common least-squares centre;
+* circular hysteresis H: the largest radial difference between the directions at one angle;
+* mean radius error: how much the least-squares circle of both differs from the commanded one;
+* quadrant peaks: how far the path leaps out where an axis turns round, over its surroundings.
+"""
+
+import dataclasses
+
+import mujoco
+import numpy as np
+
+from twin.errors import UsageError
+from twin.machine.circle_path import PLANES, RUN_IN, CirclePath
+from twin.machine.config import Machine
+from twin.machine.model import build_spec, physics_model
+from twin.machine.simulate import simulate
+from twin.nc.canonical import FloatArray
+from twin.units import UM_PER_MM
+
+ANGLES = 3600
+"""Points of the evaluated circle."""
+_PEAK = 8.0
+"""Half the window that a quadrant peak lies in [deg]."""
+_AROUND = 16.0
+"""Half the window of the surroundings that it is measured against [deg]."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class CircularTest:
+    """Result of a circular test.
+
+    Attributes:
+        machine: Name of the machine.
+        plane: As in ``PLANES``.
+        radius_mm: Commanded.
+        feed: Commanded [mm/min].
+        angle_deg: Shape (n,), from 0 in equal steps.
+        counter_clockwise_um: Distance outward from the commanded circle, shape (n,) [µm].
+        clockwise_um: The same for the other direction.
+        circular_deviation_um: G(b).
+        radial_deviation_um: F, largest and smallest.
+        hysteresis_um: H.
+        mean_radius_error_um: Of both directions together.
+        quadrant_peaks_um: At 0°, 90°, 180° and 270°, outward positive: of the direction that leaps
+            further.
+        quadrant_names: Which axis turns round there.
+    """
+
+    machine: str
+    plane: str
+    radius_mm: float
+    feed: float
+    angle_deg: FloatArray
+    counter_clockwise_um: FloatArray
+    clockwise_um: FloatArray
+    circular_deviation_um: float
+    radial_deviation_um: tuple[float, float]
+    hysteresis_um: float
+    mean_radius_error_um: float
+    quadrant_peaks_um: tuple[float, float, float, float]
+    quadrant_names: tuple[str, str, str, str]
+
+    def as_contract(self, plot: str | None = None) -> dict[str, object]:
+        """The figures as ``twin machine circle --format json`` prints them.
+
+        Args:
+            plot: Name of the picture, where one was written.
+        """
+        largest, smallest = self.radial_deviation_um
+        return {
+            "machine": self.machine,
+            "plane": self.plane,
+            "radius_mm": self.radius_mm,
+            "feed_mm_per_min": self.feed,
+            "circular_deviation_um": self.circular_deviation_um,
+            "radial_deviation_um": {"max": largest, "min": smallest},
+            "hysteresis_um": self.hysteresis_um,
+            "mean_radius_error_um": self.mean_radius_error_um,
+            "quadrant_peaks_um": list(self.quadrant_peaks_um),
+            "quadrants": list(self.quadrant_names),
+            "plot": plot,
+        }
+
+
+def circular_test(machine: Machine, radius: float, feed: float, plane: str = "XY") -> CircularTest:
+    """Run the circular test.
+
+    Args:
+        machine: The machine.
+        radius: [mm].
+        feed: Along the circle [mm/min].
+        plane: ``XY``, ``ZX`` or ``YZ``; ``XYC`` follows a point of the turning table.
+
+    Raises:
+        UsageError: The machine cannot run that circle, or raised an alarm on it.
+        ConfigError: The model is wrong.
+    """
+    paths = [CirclePath(machine, plane, radius, feed, direction) for direction in (1, -1)]
+    model = physics_model(machine, build_spec(machine))
+    angle = np.arange(ANGLES, dtype=np.float64) * (360.0 / ANGLES)
+    forth, back = (_deviation_um(path, model, angle) for path in paths)
+    x, y, mean = _least_squares_circle(angle, (forth + back) / 2)
+    turned = np.deg2rad(angle)
+    centred = np.stack([forth, back]) - x * np.cos(turned) - y * np.sin(turned)
+    both = np.stack([forth, back])
+    return CircularTest(
+        machine=machine.file.name,
+        plane=plane,
+        radius_mm=radius,
+        feed=feed,
+        angle_deg=angle,
+        counter_clockwise_um=forth,
+        clockwise_um=back,
+        circular_deviation_um=float(np.ptp(centred)),
+        radial_deviation_um=(float(both.max()), float(both.min())),
+        hysteresis_um=float(np.abs(forth - back).max()),
+        mean_radius_error_um=float(mean),
+        quadrant_peaks_um=_quadrant_peaks(angle, both),
+        quadrant_names=_quadrant_names(plane),
+    )
+
+
+def _deviation_um(path: CirclePath, model: mujoco.MjModel, angle: FloatArray) -> FloatArray:
+    """Measured turn of one direction at even angles, shape (n,) [µm]."""
+    run = simulate(path.machine, model, path.setpoints())
+    # Only the plane's two coordinates are kept: a slow, large circle has millions of samples.
+    points = np.concatenate([path.measured(samples.joint_position) for samples in run])
+    if run.alarm is not None:
+        raise UsageError(f"the circle stopped with an alarm: {run.alarm.message}")
+    along = path.direction * np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
+    begin = along[-1] - 2.0 * np.pi
+    assert begin > RUN_IN / 2
+    kept = along >= begin - 0.1
+    radius = np.hypot(points[kept, 0], points[kept, 1])
+    wanted = begin + np.mod(path.direction * np.deg2rad(angle) - begin, 2.0 * np.pi)
+    return (np.interp(wanted, along[kept], radius) - path.radius) * UM_PER_MM
+
+
+def _least_squares_circle(angle: FloatArray, deviation: FloatArray) -> tuple[float, float, float]:
+    """Centre and mean radius of deviations from a circle, for deviations far below its radius."""
+    turned = np.deg2rad(angle)
+    x, y = 2.0 * np.mean(deviation * np.cos(turned)), 2.0 * np.mean(deviation * np.sin(turned))
+    return float(x), float(y), float(np.mean(deviation))
+
+
+def _quadrant_peaks(angle: FloatArray, both: FloatArray) -> tuple[float, float, float, float]:
+    peaks = []
+    for quadrant in (0.0, 90.0, 180.0, 270.0):
+        away = np.abs((angle - quadrant + 180.0) % 360.0 - 180.0)
+        around = both[:, (away > _PEAK) & (away < _AROUND)].mean(axis=1, keepdims=True)
+        leap = (both[:, away <= _PEAK] - around).ravel()
+        peaks.append(float(leap[np.argmax(np.abs(leap))]))
+    return (peaks[0], peaks[1], peaks[2], peaks[3])
+
+
+def _quadrant_names(plane: str) -> tuple[str, str, str, str]:
+    first, second = PLANES[plane]
+    return (f"+{first}", f"+{second}", f"-{first}", f"-{second}")

@@ -1,0 +1,99 @@
+"""Servo drives: gains derived from what they move, never typed.
+
+Each axis is one ``<intvelocity>`` actuator, whose input is integrated to the position setpoint p
+(``sampling`` says why), and a ``<motor>`` that adds what the drive is told in advance. On the joint
+q they push together with
+
+    F = kp (p - q) - kv q' + ff.
+
+On a moved mass m this is a second-order system of natural frequency w and damping ratio z when
+
+    kp = m w²,    kv = 2 z m w.
+
+On a line at constant speed V and with ff = 0 the joint trails by V kv/kp = V 2 z/w. The trade
+states that trail as the loop gain Kv = speed/lag, hence
+
+    w = 2 z Kv.
+
+Told a share s of the setpoint's velocity and a share r of its acceleration,
+
+    ff = s kv p' + r m p'',
+
+the trail is (1 - s) V/Kv, and with s = r = 1 the joint follows exactly.
+
+Seen as a cascade, this is a position loop of gain Kv around a velocity loop of gain kv. With a reset
+time Tn the velocity loop also integrates what is left of its error,
+
+    F += kv/Tn ∫ (Kv (p - q) + s p' - q') dt.
+
+Since q' and p' integrate to q and p, that is kv/Tn (p - q) + kv Kv/Tn ∫ (p - (1 - s) p'/Kv - q) dt: a
+stiffer proportional part, and a ``<pid>`` actuator that has nothing but an integrator, whose input is
+the setpoint less the trail that is meant to be.
+"""
+
+import dataclasses
+import math
+
+from twin.machine.config import AxisTable
+from twin.units import kv_per_second, to_si
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Drive:
+    """One axis's position loop, in SI.
+
+    Attributes:
+        moved: What the motor feels: moved mass [kg] or inertia [kg m²], motor and screw included.
+        natural_frequency: w, of the loop without its integrator [rad/s].
+        position_gain: Of the position error, kp and what the integrator adds [N/m or N m/rad].
+        velocity_gain: kv [N s/m or N m s/rad].
+        integral_gain: Of the position error's integral [N/(m s) or N m/(rad s)]; 0: none.
+    """
+
+    moved: float
+    natural_frequency: float
+    position_gain: float
+    velocity_gain: float
+    integral_gain: float
+
+
+def reflected_inertia(axis: AxisTable) -> float:
+    """Inertia of motor and screw as the axis feels it: J (2 pi / lead)².
+
+    Returns:
+        Mass [kg] for linear axes, moment of inertia [kg m²] for rotary ones.
+    """
+    if axis.lead is None:
+        return 0.0
+    turns_to_travel = 2.0 * math.pi / (axis.lead * to_si(axis.kind))
+    return (axis.motor_inertia + axis.screw_inertia) * turns_to_travel**2
+
+
+def tune(axis: AxisTable, moved: float) -> Drive:
+    """Gains of an axis that moves a known mass or inertia.
+
+    Args:
+        axis: The axis with its loop gain and damping ratio.
+        moved: Mass [kg] or moment of inertia [kg m²], motor and screw included.
+    """
+    loop_gain = kv_per_second(axis.kv)
+    frequency = 2.0 * axis.damping_ratio * loop_gain
+    velocity_gain = 2.0 * axis.damping_ratio * moved * frequency
+    reset_rate = 1.0 / axis.reset_time_s if axis.reset_time_s else 0.0
+    return Drive(
+        moved=moved,
+        natural_frequency=frequency,
+        position_gain=moved * frequency**2 + velocity_gain * reset_rate,
+        velocity_gain=velocity_gain,
+        integral_gain=velocity_gain * reset_rate * loop_gain,
+    )
+
+
+def feedforward_name(axis: str) -> str:
+    """Name of the actuator that adds what an axis's drive is told in advance."""
+    return f"{axis} feed-forward"
+
+
+def integral_name(axis: str) -> str:
+    """Name of the actuator that integrates what an axis leaves behind."""
+    return f"{axis} integral"

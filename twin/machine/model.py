@@ -1,0 +1,206 @@
+"""The MuJoCo model of a machine: its MJCF file, its drives, the tool in its spindle."""
+
+import mujoco
+import numpy as np
+
+from twin.errors import ConfigError
+from twin.machine.config import Machine
+from twin.machine.drives import Drive, feedforward_name, integral_name, tune
+from twin.machine.tool_shape import (
+    COLLISION_GROUP,
+    FRAME_SIDE,
+    PART_SIDE,
+    TOOL_SIDE,
+    VISUAL_GROUP,
+    DefaultTool,
+    ToolShape,
+    add_tool,
+)
+from twin.machine.transmission import add_friction_and_give, add_inertia, has_give
+from twin.units import MM
+
+SPINDLE_NOSE = "spindle_nose"
+"""Site on the head at the lower end of the spindle, on its axis."""
+TABLE_TOP = "table_top"
+"""Site in the middle of the work-holding surface."""
+ROTARY_TABLE = "rotary_table"
+"""Body that the part is clamped to."""
+
+_JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
+
+
+_POSITION_INPUT = 1
+"""What MuJoCo calls ``input="pos"``."""
+
+
+def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec:
+    """Build the editable model: machine, lights, cameras, drives, tool.
+
+    Args:
+        machine: The machine file.
+        tool: What the spindle holds; a 10 mm end mill by default.
+
+    Returns:
+        A specification that compiles; other rooms may add to it, to ``rotary_table`` above all.
+
+    Raises:
+        ConfigError: The model cannot be read, or lacks what the machine file or the rooms name.
+    """
+    try:
+        spec = mujoco.MjSpec.from_file(str(machine.model_path))
+    except ValueError as error:
+        raise ConfigError(f"{machine.model_path}: is not an MJCF model: {error}") from error
+    _require(machine, "site", SPINDLE_NOSE, [site.name for site in spec.sites])
+    _require(machine, "site", TABLE_TOP, [site.name for site in spec.sites])
+    _require(machine, "body", ROTARY_TABLE, [body.name for body in spec.bodies])
+    _set_clock(spec, machine)
+    _set_inertia(spec, machine)
+    _set_drives(spec, machine)
+    _add_fixtures(spec, machine)
+    add_tool(spec, tool or DefaultTool())
+    return spec
+
+
+def _require(machine: Machine, what: str, name: str, known: list[str]) -> None:
+    if name not in known:
+        raise ConfigError(
+            f"{machine.model_path}: has no {what} '{name}'; it has {', '.join(filter(None, known))}"
+        )
+
+
+def _set_clock(spec: mujoco.MjSpec, machine: Machine) -> None:
+    """RK4 at the servo period: ``sampling`` says why, and its tests hold it to 0.1 µm."""
+    spec.option.timestep = machine.file.servo_period_s
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+
+
+def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
+    for name in machine.axes.names:
+        axis = machine.axis(name)
+        _require(machine, "joint", axis.joint, [joint.name for joint in spec.joints])
+        if spec.joint(axis.joint).type != _JOINT_TYPES[axis.kind]:
+            raise ConfigError(
+                f"{machine.model_path}: joint '{axis.joint}' does not move as axis {name}, "
+                f"which is {axis.kind}, must"
+            )
+        add_inertia(spec, axis)
+
+
+def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
+    known = [actuator.name for actuator in spec.actuators]
+    for name in machine.axes.names:
+        _require(machine, "actuator", name, known)
+    found = drives(machine, _compile(spec, machine))
+    for name, drive in zip(machine.axes.names, found, strict=True):
+        axis = machine.axis(name)
+        servo = spec.actuator(name)
+        servo.target = axis.joint
+        servo.trntype = mujoco.mjtTrn.mjTRN_JOINT
+        servo.set_to_intvelocity(kp=drive.position_gain, kv=drive.velocity_gain)
+        servo.actlimited = False
+        servo.forcelimited = False
+        feedforward = spec.add_actuator(
+            name=feedforward_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
+        )
+        feedforward.set_to_motor()
+        if drive.integral_gain:
+            integral = spec.add_actuator(
+                name=integral_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
+            )
+            integral.set_to_pid(kp=0.0, kv=0.0, ki=drive.integral_gain, ctrlspec=_POSITION_INPUT)
+        joint = spec.joint(axis.joint)
+        joint.actfrclimited = axis.force_limit > 0
+        joint.actfrcrange = np.array([-axis.force_limit, axis.force_limit])
+        add_friction_and_give(spec, axis, drive.moved, machine.file.servo_period_s)
+    if any(has_give(machine.axis(name)) for name in machine.axes.names):
+        for key in list(spec.keys):
+            spec.delete(key)
+
+
+def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
+    top = spec.site(TABLE_TOP)
+    for fixture in machine.file.fixtures:
+        half = np.array(fixture.size) / 2 * MM
+        center = top.pos + np.array(fixture.position) * MM + [0.0, 0.0, half[2]]
+        for name, group, material in (
+            (fixture.name, COLLISION_GROUP, ""),
+            (f"{fixture.name} seen", VISUAL_GROUP, "steel"),
+        ):
+            collides = group == COLLISION_GROUP
+            top.parent.add_geom(
+                name=name,
+                type=mujoco.mjtGeom.mjGEOM_BOX,
+                size=list(half),
+                pos=list(center),
+                material=material,
+                group=group,
+                contype=PART_SIDE if collides else 0,
+                conaffinity=TOOL_SIDE | FRAME_SIDE if collides else 0,
+                mass=0.0,
+            )
+
+
+def _compile(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise ConfigError(f"{machine.model_path}: does not compile: {error}") from error
+
+
+def drives(machine: Machine, model: mujoco.MjModel) -> tuple[Drive, ...]:
+    """Derive every axis's position loop from the masses of the compiled model at home.
+
+    Returns:
+        One drive per axis, in the order of ``machine.axes``.
+    """
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    inertia = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, inertia)
+    found = []
+    for name in machine.axes.names:
+        axis = machine.axis(name)
+        dof = int(model.joint(axis.joint).dofadr[0])
+        found.append(tune(axis, float(inertia[dof, dof])))
+    return tuple(found)
+
+
+def physics_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Compile the model without its geoms: the same motion, in less time.
+
+    Every moving body has its own inertial, so that geoms weigh nothing; what may not meet is
+    watched by ``clearance``, and a run ends where it meets.
+
+    Raises:
+        ConfigError: The specification does not compile.
+    """
+    return _without(spec, machine, VISUAL_GROUP, COLLISION_GROUP)
+
+
+def clearance_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Compile the model with only those geoms that may not meet.
+
+    Raises:
+        ConfigError: The specification does not compile.
+    """
+    return _without(spec, machine, VISUAL_GROUP)
+
+
+def _without(spec: mujoco.MjSpec, machine: Machine, *groups: int) -> mujoco.MjModel:
+    lean = spec.copy()
+    for geom in list(lean.geoms):
+        if geom.group in groups:
+            lean.delete(geom)
+    for mesh in list(lean.meshes):
+        lean.delete(mesh)
+    return _compile(lean, machine)
+
+
+def spindle_over_table_mm(machine: Machine) -> float:
+    """Height of the spindle nose over the work-holding surface with all axes at zero [mm]."""
+    model = _compile(build_spec(machine), machine)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    nose, table = data.site(SPINDLE_NOSE).xpos, data.site(TABLE_TOP).xpos
+    return float((nose[2] - table[2]) / MM)

@@ -1,0 +1,145 @@
+"""The tool in the spindle, as bodies of revolution in the model."""
+
+import dataclasses
+from typing import Protocol
+
+import mujoco
+
+from twin.units import MM
+
+VISUAL_GROUP = 2
+"""Geom group of what is only looked at; the physics drops it."""
+
+COLLISION_GROUP = 3
+"""Geom group of what may not meet; the physics drops it too, the clearance is watched apart."""
+TOOL_SIDE, PART_SIDE, FRAME_SIDE = 1, 2, 4
+"""Sides of a collision, as bits of ``contype``: head and holder, table and fixture, column."""
+
+_VISUAL = {"contype": 0, "conaffinity": 0, "group": VISUAL_GROUP, "mass": 0.0}
+_COLLISION = {
+    "contype": TOOL_SIDE,
+    "conaffinity": PART_SIDE | FRAME_SIDE,
+    "group": COLLISION_GROUP,
+    "mass": 0.0,
+}
+
+
+class ToolShape(Protocol):
+    """What the machine needs to know of a tool; the job's tool table fits."""
+
+    @property
+    def kind(self) -> str:
+        """``flat`` or ``ball``."""
+        ...
+
+    @property
+    def diameter(self) -> float:
+        """Of the cutting edge [mm]."""
+        ...
+
+    @property
+    def length(self) -> float:
+        """From the spindle nose to the tip, holder included [mm]."""
+        ...
+
+    @property
+    def flute(self) -> float:
+        """Length of the cutting part [mm]."""
+        ...
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class DefaultTool:
+    """A 10 mm end mill, for a machine shown without a job."""
+
+    kind: str = "flat"
+    diameter: float = 10.0
+    length: float = 60.0
+    flute: float = 25.0
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Cylinder:
+    """A piece of the tool in the spindle's frame: z is 0 at the nose and negative below.
+
+    Attributes:
+        name: Of the geom.
+        radius: [mm].
+        top: z of the upper end [mm].
+        bottom: z of the lower end [mm].
+    """
+
+    name: str
+    radius: float
+    top: float
+    bottom: float
+
+
+_HOLDER = ("tool_flange", "tool_nut")
+_COLLISION_NAMES = {
+    "tool_flange": "holder's flange",
+    "tool_nut": "holder's nut",
+    "tool_shank": "tool's shank",
+}
+_FLANGE_HEIGHT = 0.3
+_COLLET_RADIUS = 4.0
+_HOLDER_SHARE = 0.55
+"""Share of the length above the flutes that the holder takes; the rest is free shank."""
+_FLANGE_RADIUS = 31.5
+"""Of a BT40 flange [mm] (JIS B 6339: 63 mm diameter)."""
+
+
+def tool_cylinders(tool: ToolShape) -> tuple[Cylinder, ...]:
+    """Flange, collet nut, shank and cutter, from the spindle nose down.
+
+    The cutter's bottom is the tip, ``tool.length`` below the nose.
+    """
+    flute = min(tool.flute, 0.8 * tool.length)
+    above = tool.length - flute
+    flange = _FLANGE_HEIGHT * above
+    nut = _HOLDER_SHARE * above + 0.25 * flange
+    shank = tool.diameter / 2.0
+    return (
+        Cylinder("tool_flange", max(_FLANGE_RADIUS, shank), 0.0, -flange),
+        Cylinder("tool_nut", max(shank + _COLLET_RADIUS, 16.0), -flange, -nut),
+        Cylinder("tool_shank", shank * 0.98, -nut, -above),
+        Cylinder("tool_cutter", shank, -above, -tool.length),
+    )
+
+
+def add_tool(spec: mujoco.MjSpec, tool: ToolShape) -> None:
+    """Put the tool into the spindle: geoms on the body that carries the site ``spindle_nose``.
+
+    Args:
+        spec: The machine; gains geoms and the site ``tool_tip``. All but the cutting part may
+            collide.
+        tool: The tool.
+    """
+    nose = spec.site("spindle_nose")
+    body = nose.parent
+    x, y, z = (float(value) for value in nose.pos)
+    for piece in tool_cylinders(tool):
+        bottom = piece.bottom
+        is_ball = piece.name == "tool_cutter" and tool.kind == "ball"
+        if is_ball:
+            bottom += piece.radius
+            body.add_geom(
+                name="tool_ball",
+                type=mujoco.mjtGeom.mjGEOM_SPHERE,
+                size=[piece.radius * MM, 0.0, 0.0],
+                pos=[x, y, z + bottom * MM],
+                material="carbide",
+                **_VISUAL,
+            )
+        if piece.top <= bottom:
+            continue
+        form = {
+            "type": mujoco.mjtGeom.mjGEOM_CYLINDER,
+            "size": [piece.radius * MM, (piece.top - bottom) / 2 * MM, 0.0],
+            "pos": [x, y, z + (piece.top + bottom) / 2 * MM],
+        }
+        material = "tool_steel" if piece.name in _HOLDER else "carbide"
+        body.add_geom(name=piece.name, material=material, **form, **_VISUAL)
+        if piece.name != "tool_cutter":
+            body.add_geom(name=_COLLISION_NAMES[piece.name], **form, **_COLLISION)
+    body.add_site(name="tool_tip", pos=[x, y, z - tool.length * MM], size=[0.001] * 3, group=4)

@@ -1,0 +1,105 @@
+"""Phases of constant jerk, read off at the ticks of the servo clock."""
+
+import math
+
+import numba
+
+from twin.nc.canonical import FloatArray, IntArray
+
+
+@numba.njit(cache=True)
+def sample_path(
+    phases: FloatArray, phase_pieces: IntArray, lengths: FloatArray,
+    first_tick: int, period: float, cursor: IntArray,
+    piece: IntArray, path: FloatArray,
+) -> int:  # fmt: skip
+    """Where the path is at consecutive ticks.
+
+    Args:
+        phases: Rows begin [s], duration [s], x, v, a, j, shape (m, 6).
+        phase_pieces: First and last piece of each phase, shape (m, 2).
+        lengths: Of the pieces, in x, shape (n,).
+        first_tick: Number of the first tick wanted.
+        period: Servo period [s].
+        cursor: Phase at which to begin; overwritten by the one to go on with, shape (1,).
+        piece: Result: piece of each sample, shape (capacity,).
+        path: Result: x within the piece, v, a of each sample, shape (capacity, 3).
+
+    Returns:
+        How many samples there are: until the phases or the capacity end.
+    """
+    row = cursor[0]
+    count = 0
+    while row < len(phase_pieces) and count < len(piece):
+        t = (first_tick + count) * period - phases[row, 0]
+        if t >= phases[row, 1]:
+            row += 1
+            continue
+        t = max(t, 0.0)
+        v, a, j = phases[row, 3], phases[row, 4], phases[row, 5]
+        x = phases[row, 2] + ((j / 6.0 * t + 0.5 * a) * t + v) * t
+        i = phase_pieces[row, 0]
+        while i < phase_pieces[row, 1] and x >= lengths[i]:
+            x -= lengths[i]
+            i += 1
+        piece[count] = i
+        path[count, 0] = min(x, lengths[i])
+        path[count, 1] = max(0.0, v + (0.5 * j * t + a) * t)
+        path[count, 2] = a + j * t
+        count += 1
+    cursor[0] = row
+    return count
+
+
+@numba.njit(cache=True)
+def sample_axes(
+    base: FloatArray, drift: FloatArray, cosine: FloatArray, sine: FloatArray,
+    angle: FloatArray, end: FloatArray,
+    begin: FloatArray, fraction_per_length: FloatArray, origin: FloatArray,
+    piece: IntArray, path: FloatArray,
+    fraction: FloatArray, position: FloatArray, velocity: FloatArray, acceleration: FloatArray,
+) -> None:  # fmt: skip
+    """The axes where the path is.
+
+    Args:
+        base: Columns of the pieces' ``Geometry``, and so on to ``end``.
+        drift: See above.
+        cosine: See above.
+        sine: See above.
+        angle: See above.
+        end: See above.
+        begin: Columns of ``Pieces``.
+        fraction_per_length: See above.
+        origin: Machine coordinates of program zero, shape (k,).
+        piece: From ``sample_path``, shape (m,).
+        path: From ``sample_path``, shape (m, 3).
+        fraction: Result, shape (m,).
+        position: Result, shape (m, k), and so on to ``acceleration``.
+        velocity: See above.
+        acceleration: See above.
+    """
+    width = base.shape[1]
+    for row in range(len(piece)):
+        i = piece[row]
+        scale = fraction_per_length[i]
+        u = min(1.0, begin[i] + path[row, 0] * scale)
+        du = path[row, 1] * scale
+        ddu = path[row, 2] * scale
+        fraction[row] = u
+        for axis in range(width):
+            position[row, axis] = base[i, axis] + u * drift[i, axis]
+            velocity[row, axis] = drift[i, axis] * du
+            acceleration[row, axis] = drift[i, axis] * ddu
+        if angle[i] != 0.0:
+            turn, turn_v, turn_a = angle[i] * u, angle[i] * du, angle[i] * ddu
+            c, s = math.cos(turn), math.sin(turn)
+            for axis in range(3):
+                across = cosine[i, axis] * c + sine[i, axis] * s
+                along = sine[i, axis] * c - cosine[i, axis] * s
+                position[row, axis] += across
+                velocity[row, axis] += along * turn_v
+                acceleration[row, axis] += along * turn_a - across * turn_v * turn_v
+        for axis in range(width):
+            if u >= 1.0:
+                position[row, axis] = end[i, axis]
+            position[row, axis] += origin[axis]

@@ -1,0 +1,129 @@
+"""The exact geometry of canonical moves by path fraction.
+
+Every move, line or arc or helix, with any further axes in step, has the one form
+
+    q(u) = base + cosine cos(angle u) + sine sin(angle u) + drift u,   u from 0 to 1,
+
+where ``cosine`` and ``sine`` span the plane of an arc and vanish for a line. Its derivatives of
+any order follow from it.
+"""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from twin.nc.canonical import FloatArray, IntArray, Moves, Shape
+from twin.toolpath.geometry_kernels import evaluate
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Geometry:
+    """The geometry of n moves over k axes, as columns, in the coordinates of the moves.
+
+    An arc whose end misses the circle by rounding is closed on its end: the miss is spread evenly
+    over the path, so that consecutive moves join without a gap.
+
+    Attributes:
+        base: Shape (n, k) [mm or deg].
+        drift: Travel that goes evenly with the path, shape (n, k) [mm or deg].
+        cosine: From the centre of an arc to its start, shape (n, 3) [mm].
+        sine: ``cosine`` a quarter turn counter-clockwise about the normal, shape (n, 3) [mm].
+        angle: Signed sweep, shape (n,) [rad].
+        end: Position at u = 1 as the move states it, shape (n, k) [mm or deg].
+    """
+
+    base: FloatArray
+    drift: FloatArray
+    cosine: FloatArray
+    sine: FloatArray
+    angle: FloatArray
+    end: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.angle)
+
+    def __getitem__(self, index: slice | IntArray) -> "Geometry":
+        """A selection of the moves, as columns again."""
+        return Geometry(*(getattr(self, field.name)[index] for field in dataclasses.fields(self)))
+
+    def position(self, move: IntArray, fraction: FloatArray) -> FloatArray:
+        """Where the axes are.
+
+        Args:
+            move: Row of the geometry, shape (m,).
+            fraction: Path fraction u of it, 0 to 1, shape (m,).
+
+        Returns:
+            Shape (m, k) [mm or deg].
+        """
+        return self._evaluate(move, fraction, 0)
+
+    def derivative(self, move: IntArray, fraction: FloatArray, order: int) -> FloatArray:
+        """How the axes go with the path fraction.
+
+        Args:
+            move: Row of the geometry, shape (m,).
+            fraction: Path fraction u, 0 to 1, shape (m,).
+            order: 1, 2 or 3.
+
+        Returns:
+            d^order q / du^order, shape (m, k) [mm or deg].
+        """
+        return self._evaluate(move, fraction, order)
+
+    def curvature(self, move: IntArray, fraction: FloatArray) -> FloatArray:
+        """Curvature of the path of X Y Z: ``|q' x q''| / |q'|^3``, 0 where it stands still.
+
+        Args:
+            move: Row of the geometry, shape (m,).
+            fraction: Path fraction u, 0 to 1, shape (m,).
+
+        Returns:
+            Shape (m,) [1/mm].
+        """
+        first = self.derivative(move, fraction, 1)[:, :3]
+        second = self.derivative(move, fraction, 2)[:, :3]
+        speed = np.linalg.norm(first, axis=1)
+        bend = np.linalg.norm(np.cross(first, second), axis=1)
+        return np.divide(bend, speed**3, out=np.zeros_like(bend), where=speed > 0.0)
+
+    def _evaluate(self, move: IntArray, fraction: FloatArray, order: int) -> FloatArray:
+        out = np.zeros((len(move), self.base.shape[1]))
+        evaluate(
+            self.base, self.drift, self.cosine, self.sine, self.angle, self.end,
+            move, fraction, order, out,
+        )  # fmt: skip
+        return out
+
+
+def geometry(moves: Moves) -> Geometry:
+    """Bring canonical moves into their common form (formula in ``twin.nc.canonical``)."""
+    arc = moves.shape == Shape.ARC
+    angle = np.where(arc, np.deg2rad(moves.sweep), 0.0)
+    cosine = np.zeros((len(moves), 3))
+    sine = np.zeros((len(moves), 3))
+    normal = moves.normal[arc]
+    spoke = moves.start[arc, :3] - moves.center[arc]
+    cosine[arc] = spoke - normal * np.sum(normal * spoke, axis=1, keepdims=True)
+    sine[arc] = np.cross(normal, cosine[arc])
+    base = moves.start.copy()
+    base[:, :3] -= cosine
+    drift = moves.end - base
+    drift[:, :3] -= cosine * np.cos(angle)[:, None] + sine * np.sin(angle)[:, None]
+    return Geometry(base, drift, cosine, sine, angle, moves.end)
+
+
+def joined(parts: list[Geometry]) -> Geometry:
+    """Consecutive geometries as one.
+
+    Raises:
+        ValueError: There is nothing to join.
+    """
+    if not parts:
+        raise ValueError("no geometries to join")
+    columns: Any = (
+        np.concatenate([getattr(part, field.name) for part in parts])
+        for field in dataclasses.fields(Geometry)
+    )
+    return Geometry(*columns)

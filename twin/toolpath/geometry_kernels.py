@@ -1,0 +1,57 @@
+"""The inner loop of ``twin.toolpath.geometry``."""
+
+import math
+
+import numba
+import numpy as np
+
+from twin.nc.canonical import FloatArray, IntArray
+
+
+@numba.njit(cache=True)
+def evaluate(
+    base: FloatArray,
+    drift: FloatArray,
+    cosine: FloatArray,
+    sine: FloatArray,
+    angle: FloatArray,
+    end: FloatArray,
+    move: IntArray,
+    fraction: FloatArray,
+    order: int,
+    out: FloatArray,
+) -> None:
+    """Position (order 0) or derivative by path fraction (order 1 to 3) of rows of a geometry.
+
+    Args:
+        base: Columns of ``Geometry``, and so on to ``end``.
+        drift: See above.
+        cosine: See above.
+        sine: See above.
+        angle: See above.
+        end: See above.
+        move: Rows, shape (m,).
+        fraction: Path fractions, shape (m,).
+        order: 0 to 3.
+        out: Result, shape (m, k) [mm or deg].
+    """
+    for row in range(len(move)):
+        i = move[row]
+        u = fraction[row]
+        if order == 0 and u >= 1.0:
+            out[row] = end[i]
+            continue
+        if order == 0:
+            out[row] = base[i] + u * drift[i]
+        elif order == 1:
+            out[row] = drift[i]
+        else:
+            out[row] = np.zeros(base.shape[1])
+        if angle[i] != 0.0:
+            # Each derivative of cos and sin is a quarter turn on and a factor of the angle.
+            turned = angle[i] * u + order * (math.pi / 2.0)
+            scale = angle[i] ** order
+            for axis in range(3):
+                out[row, axis] += scale * (
+                    cosine[i, axis] * math.cos(turned) + sine[i, axis] * math.sin(turned)
+                )
