@@ -8,7 +8,7 @@ back to the height at which the cycle was called, with G99 to the reference plan
 
 from twin.nc.control import Control
 from twin.nc.dialect import GCode, Interpolation
-from twin.nc.dialects.fagor8070_arcs import take_goal
+from twin.nc.dialects.fagor8070.polar import take_goal
 from twin.nc.drilling import Drilling, Retract, drill
 
 

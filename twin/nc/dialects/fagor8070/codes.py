@@ -1,27 +1,18 @@
-"""Fagor CNC 8070, milling model."""
+"""G codes of the Fagor CNC 8070."""
 
 from collections.abc import Mapping
 
-from twin.nc import iso, iso_cycles, offsets
+from twin.nc import iso_cycles, offsets
 from twin.nc.blocks import Word
 from twin.nc.canonical import Corner
 from twin.nc.control import Control
 from twin.nc.dialect import (
     Action,
-    Comment,
-    Decision,
-    Dialect,
     FeedMode,
     GCode,
-    Mark,
-    MCode,
-    Syntax,
 )
-from twin.nc.dialects import fagor8070_arcs as arcs
-from twin.nc.dialects import fagor8070_frames as frames
-from twin.nc.dialects import fagor8070_program as program
-from twin.nc.dialects.fagor8070_cycles import CYCLES
-from twin.nc.dialects.fagor8070_memory import FagorMemory
+from twin.nc.dialects.fagor8070 import arcs, frames, polar
+from twin.nc.dialects.fagor8070.cycles import CYCLES
 from twin.nc.planes import XY, YZ, ZX, Plane
 
 
@@ -62,7 +53,7 @@ def forget_polar_values(action: Action | None) -> Action:
     def both(control: Control) -> None:
         if action is not None:
             action(control)
-        arcs.forget_polar(control)
+        polar.forget_polar(control)
 
     return both
 
@@ -130,8 +121,8 @@ CODES: dict[int, GCode] = {
     18: _plane("plane Z X", ZX),
     19: _plane("plane Y Z", YZ),
     20: GCode(meaning="any plane: X1 Z2", group="plane", action=frames.any_plane, ground="manual"),
-    30: _do("polar origin: I J, or where the tool stands", arcs.set_polar_origin),
-    31: _do("temporary polar origin at the arc's centre", arcs.temporary_polar_origin),
+    30: _do("polar origin: I J, or where the tool stands", polar.set_polar_origin),
+    31: _do("temporary polar origin at the arc's centre", polar.temporary_polar_origin),
     33: GCode(meaning="threading", refused="the twin's spindle has no angle", ground="manual"),
     **_refused("corner blend or tangential entry", _BLEND, range(36, 40)),
     40: _do("radius compensation off", offsets.end_compensation, group="compensation"),
@@ -203,202 +194,3 @@ CODES: dict[int, GCode] = {
     265: _g("arc centre corrected", "centre correction"),
     266: GCode(meaning="feed override at 100 %", refused=_UNKNOWN, ground="manual"),
 }
-
-DECISIONS = (
-    Decision(
-        "What do an omitted R or Q keep after a Cartesian move or a new G30?",
-        "The current point's polar value about the current origin.",
-        "It is identical where the last move was polar and the origin is unchanged.",
-    ),
-    Decision(
-        "Is R0 allowed?",
-        "For G00 and G01; for arcs it is a program error.",
-        "The manual's own example ends with R0 Q90; an arc of radius 0 is none.",
-    ),
-    Decision(
-        "What if a helix's end point and pitch disagree?",
-        "The end point and the height win, whole turns = nearest fit, with a warning.",
-        "The end point is what the next block relies on.",
-    ),
-    Decision(
-        "How does the rotary axis C read G90 targets?",
-        "As commanded (linear-like); the machine option module_rotary makes the sign the "
-        "direction, by less than one turn.",
-        "The axis type is a machine parameter.",
-    ),
-    Decision(
-        "What is R in an arc block?",
-        "Beside a coordinate of the plane the circle's radius, without one the polar radius.",
-        "The forms of the manual differ in nothing else.",
-    ),
-    Decision(
-        "When does G30 in a motion block take effect?",
-        "Before the motion.",
-        "It says where the block's R and Q are measured from.",
-    ),
-    Decision(
-        "Which sign has a helix's pitch?",
-        "None: the height gives the direction.",
-        "The manual's height -90 with K17 is legal.",
-    ),
-    Decision(
-        "What does G53 do?",
-        "Coordinates count from machine zero until the next work offset.",
-        "The quick reference calls it the cancelling of offsets.",
-    ),
-    Decision(
-        "How does G50 pass corners?",
-        "On the exact path; G05 may round them by the machine's tolerance, G07 stops.",
-        "G50 goes on when the theoretical move has ended, without waiting for the position.",
-    ),
-    Decision(
-        "How does compensation (G137) pass outside corners?",
-        "Between lines that turn by 90 degrees or less the parallels are extended until they meet; "
-        "other corners are rolled around, and with G136 all of them.",
-        "A longer extension leaves the contour without need.",
-    ),
-    Decision(
-        "How often does NR run a block?",
-        "As often as it says, the block's own run included.",
-        "A number of repetitions of 1 is a block that runs.",
-    ),
-    Decision(
-        "What if a $CASE runs into the next?",
-        "A program error that asks for $BREAK.",
-        "The manual's examples all end with $BREAK.",
-    ),
-    Decision(
-        "What if a rotation (G73) begins while another is in force?",
-        "A program error.",
-        "Adding and replacing are both known among controls.",
-    ),
-    Decision(
-        "Which way do arcs turn in G20?",
-        "G03 turns from the abscissa towards the ordinate.",
-        "It is so in G17, G18 and G19.",
-    ),
-    Decision(
-        "What if the program ends without M30?",
-        "Its last line ends it, with a warning.",
-        "Nothing else can follow.",
-    ),
-    Decision(
-        "What does D name?",
-        "D1 is the tool's own length and radius, D0 none; M06 brings D1.",
-        "The job's tools have one offset each.",
-    ),
-)
-
-FAGOR8070 = Dialect(
-    name="fagor8070",
-    title="Fagor CNC 8070 (milling)",
-    code_page="cp1252",
-    syntax=Syntax(
-        address=(
-            r"G0*4(?=[ \t]+[0-9.])|G263[ \t]*=|G159[ \t]*=|R1[ \t]*="
-            r"|[XYZABCUVW]1?[ \t]*=|NR|[A-Z]"
-        ),
-        comments=(Comment("(", ")"), Comment(";")),
-        expressions=program.EXPRESSIONS,
-        statement=program.STATEMENT,
-        named_labels=True,
-        incremental_suffix=True,
-        aliases={
-            **{f"{axis}1": axis for axis in "XYZABCUVW"},
-            **{f"G{'0' * zeros}4": "G04" for zeros in range(4)},
-        },
-    ),
-    groups=(
-        "units",
-        "plane",
-        "distance",
-        "centre",
-        "feed",
-        "corner",
-        "offset",
-        "return plane",
-        "compensation corners",
-        "compensation",
-        "motion",
-        "cycle",
-    ),
-    g=CODES,
-    start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 138, 152, 197, 262, 265),
-    m={
-        **iso.M_CODES,
-        6: MCode(meaning="tool change", action=frames.change_tool, ground="manual"),
-        17: MCode(
-            meaning="end of subroutine",
-            late=True,
-            action=program.return_,
-            silent=True,
-            ground="manual",
-        ),
-        19: MCode(meaning="spindle orientation", ground="manual"),
-        29: MCode(
-            meaning="end of subroutine",
-            late=True,
-            action=program.return_,
-            silent=True,
-            ground="manual",
-        ),
-        **{number: MCode(meaning="spindle gear", ground="manual") for number in range(41, 45)},
-    },
-    motion_words=frozenset("XYZABCUVWIJKRQ") | {"R1"},
-    repeat_word="NR",
-    words={
-        "F": iso.set_feed,
-        "S": iso.set_spindle,
-        "T": frames.select_tool,
-        "D": frames.tool_offset,
-        "H": auxiliary,
-        "G04": plain_dwell,
-        "G159": frames.numbered_offset,
-        "G263": arcs.set_circle_radius,
-    },
-    statements=program.STATEMENTS,
-    other_statement=program.other_statement,
-    word_meanings={
-        "N": "block number",
-        "G": "preparatory code",
-        **{
-            axis: f"{axis} axis; {axis}1= and a trailing I (incremental) too"
-            for axis in "XYZABCUVW"
-        },
-        "I": "centre along X; abscissa of G30; depth of a cycle",
-        "J": "centre along Y; ordinate of G30; number of pecks",
-        "K": "centre along Z; pitch of a helix; seconds of G04 and of a cycle",
-        "R": "polar radius; radius of the arc where a coordinate of the plane stands beside it",
-        "R1": "radius of the arc, in force as G263=",
-        "Q": "polar angle; direction of a chord; angle of G73",
-        "F": "feed",
-        "S": "spindle speed; scale of G72",
-        "T": "tool",
-        "D": "tool offset: 1, or 0 for none",
-        "H": "auxiliary function",
-        "M": "machine function",
-        "NR": "how often the block runs",
-        "G04": "seconds of a dwell",
-        "G159": "number of a work offset",
-        "G263": "radius of the arcs that follow",
-    },
-    units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
-    decisions=DECISIONS,
-    marks=(
-        Mark(r"\bR[ \t]*[\d.]+.*\bQ[ \t]*-?[\d.]+", "polar coordinates R and Q"),
-        Mark(r"\bG0*(?:30|31|26[1-5])\b", "G30, G31, G261 to G265"),
-        Mark(r"^[^\"$]*;", "a comment after ;"),
-        Mark(r"\$(?:IF|ELSE|ENDIF|WHILE|DO|ENDDO|FOR|SWITCH|GOTO)\b(?!\$)", "$IF, $WHILE, $GOTO"),
-        Mark(r"#(?:RPT|TIME|CALL|PCALL|MCALL|RET|COMMENT)\b", "#RPT, #CALL, #TIME"),
-        Mark(r"\bP\d+[ \t]*=", "P1= (a parameter)"),
-        Mark(r"\b[XYZC]-?[\d.]+I(?![\d-])", "X20I (one word incremental)"),
-        Mark(r"\b[XYZ]1[ \t]*=", "X1="),
-    ),
-    start_state={"square_corners": True},
-    memory=FagorMemory,
-    before_motion=frames.turn_in_commanded_direction,
-    read_variable=program.read_variable,
-    prepare=program.begin,
-    after_motion=program.call_after_motion,
-    finish=program.warn_of_missing_end,
-)

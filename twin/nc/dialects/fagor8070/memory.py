@@ -5,7 +5,7 @@ import dataclasses
 from twin.nc.arcs import Point
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
-from twin.nc.dialects.fagor8070_structure import Structure
+from twin.nc.dialects.fagor8070.structure import Structure
 
 ModalCall = tuple[str, dict[str, float], Statement]
 

@@ -3,8 +3,8 @@
 from twin.nc.arcs import direction
 from twin.nc.blocks import Word
 from twin.nc.control import Control
-from twin.nc.dialects.fagor8070_arcs import forget_polar, reset_polar_origin
-from twin.nc.dialects.fagor8070_memory import memory_of
+from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.polar import forget_polar, reset_polar_origin
 from twin.nc.frame import IDENTITY, Matrix, multiply
 from twin.nc.offsets import refuse_plane_change, select_offset, set_length, tool_numbered
 from twin.nc.planes import Plane, Vector, cross
