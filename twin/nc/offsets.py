@@ -40,7 +40,11 @@ def cancel_offset(control: Control) -> None:
     """
     zero = control.settings.machine_zero
     if zero is None:
-        control.fail("no-machine-zero", "G53 needs a machine, and none is given", None)
+        control.fail(
+            "no-machine-zero",
+            "G53 counts from machine zero, and the job does not say where that lies",
+            hint="write part_zero with its Z into the job file",
+        )
     _shift_by(control, zero)
 
 
