@@ -16,6 +16,7 @@ Conventions, once for all rooms:
 * ``length`` is what the feed counts: mm along the path of X Y Z, or, where these stand still, the
   length of the other linear axes, and where those stand still too, the degrees of the rotary axes
   (Euclidean where several move).
+* A rapid starts and ends at standstill, and so does whatever touches a dwell or a function.
 """
 
 import dataclasses
@@ -60,6 +61,17 @@ class FeedUnit(enum.IntEnum):
 
 
 FEED_UNIT_NAMES = {FeedUnit.MM_PER_MIN: "mm/min", FeedUnit.DEG_PER_MIN: "deg/min"}
+
+
+class Corner(enum.IntEnum):
+    """How the end of a move is passed."""
+
+    EXACT_STOP = 0
+    """The axes come to rest."""
+    EXACT_PATH = 1
+    """The path is kept; the speed falls only as far as the corner demands."""
+    CONTINUOUS = 2
+    """The corner may be rounded, by ``corner_tolerance`` at most."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -114,6 +126,12 @@ class Moves:
         normal: Unit normal of arcs, shape (n, 3); NaN for lines.
         radius: Shape (n,) [mm]; NaN for lines.
         sweep: Signed angle of arcs, all turns counted, shape (n,) [deg]; 0 for lines.
+        corner: ``Corner`` codes of the moves' ends, shape (n,).
+        corner_tolerance: Largest rounding of a continuous corner, shape (n,) [mm]; NaN: the
+            machine's.
+        acceleration: Programmed limit along the path, shape (n,) [mm/s² or deg/s² by
+            ``feed_unit``]; NaN: the machine's.
+        deceleration: The same for slowing down, positive, shape (n,).
     """
 
     axes: Axes
@@ -131,6 +149,10 @@ class Moves:
     normal: FloatArray
     radius: FloatArray
     sweep: FloatArray
+    corner: CodeArray
+    corner_tolerance: FloatArray
+    acceleration: FloatArray
+    deceleration: FloatArray
 
     def __len__(self) -> int:
         return len(self.line)
@@ -146,7 +168,7 @@ class Moves:
 
 
 _COLUMNS = tuple(field.name for field in dataclasses.fields(Moves) if field.name != "axes")
-_CODES = ("motion", "shape", "feed_unit")
+_CODES = ("motion", "shape", "feed_unit", "corner")
 _INTEGERS = ("line", "block")
 _VECTORS = ("center", "normal")
 _AXIS_ROWS = ("start", "end", "display")
@@ -198,12 +220,15 @@ class Function:
         line: Source line.
         word: The word without leading zeros, such as ``M3``.
         arguments: Further words that belong to it, such as S.
+        at: How much of the next move's path lies behind when it happens, 0 to 1; above 0 only for
+            switch points, which do not stop the path.
     """
 
     before: int
     line: int
     word: str
     arguments: Mapping[str, float]
+    at: float = 0.0
 
 
 Event = Dwell | Function

@@ -31,5 +31,8 @@ class ControlSettings:
     strict: bool = False
     """Turn warnings into errors."""
 
-    step_limit: int = 1_000_000
-    """Blocks that may be executed through jumps and loops before a program counts as endless."""
+    block_skip: bool = False
+    """Blocks that begin with a slash are left out."""
+
+    step_limit: int = 50_000
+    """Blocks that may be run again through jumps and loops before a program counts as endless."""

@@ -1,0 +1,93 @@
+"""Shared by this folder's tests: run a text in a dialect and look at what comes out."""
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+from twin.job import read_job
+from twin.nc.canonical import Axes, Chunk, Event, Moves, concatenate
+from twin.nc.diagnostics import Diagnostic, ProgramError
+from twin.nc.dialects import dialect_named
+from twin.nc.interpreter import Interpretation
+from twin.nc.jsonl import records
+from twin.nc.settings import ControlSettings
+from twin.nc.source import read_source, source_from_text
+
+ROOT = Path(__file__).resolve().parents[2]
+MILL = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
+SETTINGS = ControlSettings(axes=MILL, periodic=frozenset({"C"}))
+
+
+@dataclasses.dataclass(frozen=True)
+class Outcome:
+    """All of a program at once."""
+
+    moves: Moves
+    events: list[Event]
+    warnings: list[Diagnostic]
+    error: Diagnostic | None
+    position: dict[str, float]
+    display: dict[str, float]
+
+    @property
+    def codes(self) -> list[str]:
+        return [warning.code for warning in self.warnings]
+
+    def end(self, row: int) -> dict[str, float]:
+        return self.moves.axes.named(self.moves.end[row])
+
+    def delta(self, row: int) -> dict[str, float]:
+        return self.moves.axes.named(self.moves.end[row] - self.moves.start[row])
+
+
+def run(text: str, dialect: str, settings: ControlSettings = SETTINGS, **changes: Any) -> Outcome:
+    settings = dataclasses.replace(settings, **changes)
+    interpretation = Interpretation(source_from_text(text), dialect_named(dialect), settings)
+    chunks: list[Chunk] = []
+    error = None
+    try:
+        chunks.extend(interpretation.chunks())
+    except ProgramError as raised:
+        error = raised.diagnostic
+    events = [event for chunk in chunks for event in chunk.events]
+    return Outcome(
+        concatenate((chunk.moves for chunk in chunks), settings.axes),
+        events,
+        list(interpretation.diagnostics),
+        error,
+        settings.axes.named(interpretation.position),
+        settings.axes.named(interpretation.display),
+    )
+
+
+def good(text: str, dialect: str, **changes: Any) -> Outcome:
+    outcome = run(text, dialect, **changes)
+    assert outcome.error is None, outcome.error
+    return outcome
+
+
+def bad(text: str, dialect: str, **changes: Any) -> Diagnostic:
+    outcome = run(text, dialect, **changes)
+    assert outcome.error is not None
+    return outcome.error
+
+
+def shipped(path: Path) -> Interpretation:
+    """A program with the settings of the job beside it."""
+    job = read_job(path)
+    assert job.file.dialect is not None
+    dialect = dialect_named(job.file.dialect)
+    settings = dataclasses.replace(
+        SETTINGS, start=job.file.start, default_feed=job.file.default_feed or 1000.0
+    )
+    return Interpretation(read_source(path, dialect), dialect, settings)
+
+
+def all_records(interpretation: Interpretation) -> list[dict[str, Any]]:
+    """The records of a program, its error included."""
+    found = []
+    try:
+        found.extend(records(interpretation))
+    except ProgramError:
+        assert found[-1]["severity"] == "error"
+    return found

@@ -1,0 +1,41 @@
+"""Wrong programs: each file of ``tests/bad`` with the diagnostic that it must earn.
+
+``python -m tests.nc.test_nc_bad`` writes the expected diagnostics anew; look at the difference.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from tests.nc.nc_running import ROOT, SETTINGS
+from twin.nc.diagnostics import ProgramError
+from twin.nc.dialects import dialect_named
+from twin.nc.interpreter import Interpretation
+from twin.nc.source import source_from_bytes
+
+BAD = sorted((ROOT / "tests" / "bad").glob("*/*.nc"))
+
+
+def diagnostic_of(path: Path) -> str:
+    dialect = dialect_named(path.parent.name)
+    source = source_from_bytes(path.read_bytes(), path.name, dialect)
+    with pytest.raises(ProgramError) as raised:
+        for _ in Interpretation(source, dialect, SETTINGS).chunks():
+            pass
+    return f"{raised.value}\n"
+
+
+@pytest.mark.parametrize("path", BAD, ids=lambda path: f"{path.parts[-2]}/{path.stem}")
+def test_diagnostic(path: Path) -> None:
+    made = diagnostic_of(path)
+    assert made == path.with_suffix(".expected").read_text(encoding="utf-8")
+    assert f" {path.stem.split('.')[0]}: " in made
+
+
+def write_all() -> None:
+    for path in BAD:
+        path.with_suffix(".expected").write_text(diagnostic_of(path), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_all()

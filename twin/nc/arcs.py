@@ -1,0 +1,117 @@
+"""Arc geometry in a plane: centres from radii, tangents and points, and signed sweeps."""
+
+import math
+
+Point = tuple[float, float]
+
+SAME_POINT = 1e-6
+"""Points nearer than this are one point [mm]: far below any control's resolution."""
+
+ROUNDING = 0.002
+"""What two coordinates rounded to 0.001 can put between a radius and its chord [mm]."""
+
+TURN = 360.0
+
+
+def distance(left: Point, right: Point) -> float:
+    """Between two points [mm]."""
+    return math.hypot(right[0] - left[0], right[1] - left[1])
+
+
+def direction(angle: float) -> Point:
+    """Unit vector at an angle [deg]; exact at every quarter turn."""
+    angle = math.fmod(angle, TURN)
+    quarter = angle / 90.0
+    if quarter == int(quarter):
+        return _QUARTERS[int(quarter) % 4]
+    radians = math.radians(angle)
+    return (math.cos(radians), math.sin(radians))
+
+
+_QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
+
+
+def turned(point: Point, center: Point, angle: float) -> Point:
+    """A point turned about a centre [deg]; exact at every quarter turn."""
+    cosine, sine = direction(angle)
+    x, y = point[0] - center[0], point[1] - center[1]
+    return (center[0] + cosine * x - sine * y, center[1] + sine * x + cosine * y)
+
+
+def angle_of(point: Point, center: Point) -> float:
+    """Direction from a centre to a point, 0 to below 360 [deg]."""
+    angle = math.degrees(math.atan2(point[1] - center[1], point[0] - center[0]))
+    return angle if angle >= 0.0 else angle + TURN
+
+
+def sweep_between(start: Point, end: Point, center: Point, *, clockwise: bool) -> float:
+    """Signed angle from start to end about the centre [deg]; a whole turn where they meet."""
+    turn = -TURN if clockwise else TURN
+    if distance(start, end) < SAME_POINT:
+        return turn
+    ux, uy = start[0] - center[0], start[1] - center[1]
+    vx, vy = end[0] - center[0], end[1] - center[1]
+    angle = math.degrees(math.atan2(ux * vy - uy * vx, ux * vx + uy * vy))
+    if clockwise:
+        return angle if angle < 0.0 else angle - TURN
+    return angle if angle > 0.0 else angle + TURN
+
+
+def center_by_radius(
+    start: Point, end: Point, radius: float, *, clockwise: bool, larger: bool
+) -> Point | None:
+    """Centre of the arc of a given radius [mm].
+
+    Args:
+        start: First point.
+        end: Last point, not the same.
+        radius: Positive.
+        clockwise: Sense of the arc.
+        larger: The arc beyond 180° of the two that fit.
+
+    Returns:
+        The centre; None where the radius is shorter than half the chord.
+    """
+    chord = distance(start, end)
+    if radius < chord / 2.0 - ROUNDING or chord < SAME_POINT:
+        return None
+    middle = ((start[0] + end[0]) / 2.0, (start[1] + end[1]) / 2.0)
+    height = math.sqrt(max(0.0, radius * radius - chord * chord / 4.0))
+    side = height / chord if clockwise == larger else -height / chord
+    return (
+        middle[0] - side * (end[1] - start[1]),
+        middle[1] + side * (end[0] - start[0]),
+    )
+
+
+def equidistant(start: Point, end: Point, center: Point) -> Point:
+    """The point of the perpendicular bisector of start and end that is nearest to ``center``."""
+    chord = distance(start, end)
+    if chord < SAME_POINT:
+        return center
+    ux, uy = (end[0] - start[0]) / chord, (end[1] - start[1]) / chord
+    along = (center[0] - start[0]) * ux + (center[1] - start[1]) * uy - chord / 2.0
+    return (center[0] - along * ux, center[1] - along * uy)
+
+
+def center_through(first: Point, second: Point, third: Point) -> Point | None:
+    """Centre of the circle through three points; None where they lie on a line."""
+    ax, ay = second[0] - first[0], second[1] - first[1]
+    bx, by = third[0] - first[0], third[1] - first[1]
+    area = 2.0 * (ax * by - ay * bx)
+    if abs(area) < SAME_POINT * max(math.hypot(ax, ay), math.hypot(bx, by)):
+        return None
+    a2, b2 = ax * ax + ay * ay, bx * bx + by * by
+    return (first[0] + (by * a2 - ay * b2) / area, first[1] + (ax * b2 - bx * a2) / area)
+
+
+def center_tangent(start: Point, end: Point, direction: Point) -> Point | None:
+    """Centre of the arc that leaves ``start`` along ``direction``; None where it is straight."""
+    chord_x, chord_y = end[0] - start[0], end[1] - start[1]
+    length = math.hypot(*direction)
+    normal_x, normal_y = -direction[1] / length, direction[0] / length
+    across = chord_x * normal_x + chord_y * normal_y
+    if abs(across) < SAME_POINT:
+        return None
+    radius = (chord_x * chord_x + chord_y * chord_y) / (2.0 * across)
+    return (start[0] + radius * normal_x, start[1] + radius * normal_y)

@@ -1,0 +1,223 @@
+"""What a dialect declares: its codes, words, syntax, start state and the decisions behind them."""
+
+import dataclasses
+import enum
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Literal
+
+from twin.nc.canonical import Corner
+from twin.nc.expressions import ExpressionSyntax
+from twin.nc.planes import XY, Plane
+
+if TYPE_CHECKING:
+    from twin.nc.blocks import Statement, Word
+    from twin.nc.control import Control
+
+Action = Callable[["Control"], None]
+WordAction = Callable[["Control", "Word"], None]
+StatementAction = Callable[["Control", "Statement"], None]
+
+Ground = Literal["seed", "manual", "decision"]
+"""On what a code's meaning rests: the control's own page, its manuals, or this project."""
+
+
+class FeedMode(enum.Enum):
+    """What F counts."""
+
+    PER_MINUTE = "per minute"
+    PER_SECOND = "per second"
+    SECONDS_PER_BLOCK = "seconds per block"
+    PER_REVOLUTION = "per revolution"
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Interpolation:
+    """How axis words become a move.
+
+    Attributes:
+        perform: Takes the block's words and moves.
+        rapid: At the machine's own speed.
+    """
+
+    perform: Action
+    rapid: bool = False
+
+
+@dataclasses.dataclass(slots=True)
+class Modal:
+    """What stays in force from block to block; G codes set it by name."""
+
+    interpolation: Interpolation | None = None
+    plane: Plane = XY
+    incremental: bool = False
+    center_absolute: bool = False
+    unit: float = 1.0
+    """Of programmed lengths [mm]."""
+    feed_mode: FeedMode = FeedMode.PER_MINUTE
+    corner: Corner = Corner.EXACT_PATH
+    corner_tolerance: float = float("nan")
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class GCode:
+    """One G code.
+
+    Attributes:
+        meaning: For people, in a few words.
+        group: Modal group; codes of one group exclude each other in a block. Empty: not modal.
+        sets: Fields of ``Modal`` and their values.
+        action: Done before the block moves.
+        perform: Done in place of a move.
+        takes: Addresses that ``perform`` wants although they have a modal meaning elsewhere.
+        after: Done when the block has moved.
+        once: What it sets holds for its block only.
+        alone: No other word may stand in its block.
+        ground: On what the meaning rests.
+    """
+
+    meaning: str
+    group: str = ""
+    sets: Mapping[str, object] = dataclasses.field(default_factory=dict)
+    action: Action | None = None
+    perform: Action | None = None
+    takes: str = ""
+    after: Action | None = None
+    once: bool = False
+    alone: bool = False
+    ground: Ground = "decision"
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class MCode:
+    """One M code.
+
+    Attributes:
+        meaning: For people.
+        late: Takes effect when the block has moved.
+        ends: Ends the program.
+        action: What it does besides being reported as a function.
+        ground: On what the meaning rests.
+    """
+
+    meaning: str
+    late: bool = False
+    ends: bool = False
+    action: Action | None = None
+    ground: Ground = "decision"
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Comment:
+    """A kind of comment; an empty ``closing`` lets it run to the end of the line."""
+
+    opening: str
+    closing: str = ""
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Syntax:
+    """How a dialect writes its blocks.
+
+    Attributes:
+        address: Regular expression of an address.
+        comments: Kinds of comments.
+        expressions: How values are computed; None where only numbers are written.
+        statement: Regular expression of what begins a statement; its group 1 is the keyword.
+        several_blocks: A further N begins a further block on the same line.
+        incremental_suffix: ``X20I`` makes one word incremental.
+        aliases: Addresses that mean another one.
+        excused: Why a line that cannot be read may be left out, given it and the line before:
+            code of the warning, or None.
+    """
+
+    address: str = "[A-Z]"
+    comments: tuple[Comment, ...]
+    expressions: ExpressionSyntax | None = None
+    statement: str | None = None
+    several_blocks: bool = False
+    incremental_suffix: bool = False
+    aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    excused: Callable[[str, str], str | None] = lambda _line, _previous: None
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Decision:
+    """What the project decided where the control's documents are silent.
+
+    Attributes:
+        question: What they leave open.
+        answer: What the twin does.
+        reason: Why.
+    """
+
+    question: str
+    answer: str
+    reason: str
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Mark:
+    """Something that only this dialect's programs hold.
+
+    Attributes:
+        pattern: Regular expression, searched line by line without regard to case.
+        shown: How a person would say it.
+    """
+
+    pattern: str
+    shown: str
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Dialect:
+    """One control's language, as data and a few own rules.
+
+    Attributes:
+        name: As given on the command line.
+        title: The control.
+        code_page: Legacy code page of its programs.
+        syntax: How blocks are written.
+        groups: Modal groups in the order in which they take effect.
+        g: G codes by number.
+        start: G codes in force when a program starts.
+        m: M codes by number.
+        any_m: M codes outside the table are functions too.
+        axis_letters: Addresses that name axes.
+        motion_words: Addresses that make a block move, the axes among them.
+        function_letters: Addresses that belong to an M function of their block.
+        words: Addresses with a modal meaning, and what they do.
+        statements: Keywords of statements, and what they do.
+        word_meanings: What the addresses mean, for people.
+        units: Units of lengths and feeds, for people.
+        decisions: Every decision taken for it.
+        marks: What tells its programs from others.
+        start_state: Fields of ``Modal`` that no G code sets.
+        memory: Makes the object that holds what only this dialect remembers.
+        before_motion: Done before every motion block, told whether it is rapid.
+        read_variable: Value of a variable, given its name and index.
+        finish: Done when the program ends without an end code.
+    """
+
+    name: str
+    title: str
+    code_page: str
+    syntax: Syntax
+    groups: tuple[str, ...]
+    g: Mapping[int, GCode]
+    start: tuple[int, ...]
+    m: Mapping[int, MCode]
+    any_m: bool = False
+    axis_letters: frozenset[str] = frozenset("XYZABCUVW")
+    motion_words: frozenset[str] = frozenset("XYZABCUVWIJKR")
+    function_letters: str = ""
+    words: Mapping[str, WordAction]
+    statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
+    word_meanings: Mapping[str, str]
+    units: str
+    decisions: tuple[Decision, ...]
+    marks: tuple[Mark, ...]
+    start_state: Mapping[str, object] = dataclasses.field(default_factory=dict)
+    memory: Callable[[], object] = object
+    before_motion: Callable[["Control", bool], None] | None = None
+    read_variable: Callable[["Control", str, float | None], float] | None = None
+    finish: Action | None = None

@@ -1,0 +1,172 @@
+"""A Russian control with G102, the recalculation of periodic rotary axes.
+
+Its own page (seed) says all about G102; the rest is the base of ISO 6983-1 and GOST 20999-83.
+"""
+
+import dataclasses
+import math
+import re
+
+from twin.nc import iso
+from twin.nc.canonical import Corner
+from twin.nc.control import Control
+from twin.nc.dialect import Comment, Decision, Dialect, GCode, Mark, Syntax
+
+RESOLUTION = 9
+"""Decimals of a degree that a start point is rounded to before the remainder is taken.
+
+Decision: three G91 moves of 120° must count as 360, whatever binary fractions add up to.
+"""
+
+
+@dataclasses.dataclass(slots=True)
+class Periods:
+    """The axes whose start point is recalculated, and their periods [deg]."""
+
+    by_axis: dict[int, float] = dataclasses.field(default_factory=dict)
+
+
+def _periods(control: Control) -> Periods:
+    assert isinstance(control.memory, Periods)
+    return control.memory
+
+
+def switch_recalculation(control: Control) -> None:
+    """G102: ``C360`` switches the recalculation of C on with period 360, ``C0`` off.
+
+    Raises:
+        ProgramError: No axis, one that is not periodic, or a negative period.
+    """
+    words = control.take_axis_words()
+    if not words:
+        control.fail("g102-axis", "G102 needs a periodic axis", hint="write G102 C360 or G102 C0")
+    periodic = sorted(control.settings.periodic)
+    for index, word in words:
+        if word.address not in control.settings.periodic:
+            control.fail(
+                "not-periodic",
+                f"{word.address} is not declared as a periodic axis on this machine",
+                word,
+                hint=f"periodic axes: {', '.join(periodic) or 'none'}",
+            )
+        period = control.number(word)
+        if period < 0.0:
+            control.fail("g102-period", f"{word.text} is no period", word, "360, or 0 for off")
+        if period == 0.0:
+            _periods(control).by_axis.pop(index, None)
+        else:
+            _periods(control).by_axis[index] = period
+
+
+def recalculate_start(control: Control, rapid: bool) -> None:
+    """Give every recalculated axis the remainder of its start point; the table stands still.
+
+    The remainder keeps the sign of the start point (seed, example 7), as C's ``fmod`` does.
+    Decision: in blocks of interpolation only, as the seed says, unless the machine's
+    ``recalculate_on_rapid`` is set; and in blocks without the axis too, since the seed speaks of
+    the block's start point.
+    """
+    periods = _periods(control).by_axis
+    if not periods or (rapid and not control.settings.recalculate_on_rapid):
+        return
+    programmed = list(control.programmed)
+    for index, period in periods.items():
+        old = round(programmed[index], RESOLUTION)
+        if abs(old) >= period:
+            programmed[index] = math.fmod(old, period)
+    if programmed != control.programmed:
+        control.relabel(programmed, "turns")
+
+
+_CYRILLIC_WORD = re.compile("[А-Яа-яЁё]{2}")
+_READABLE_WORD = re.compile(r"[ \t]*[A-Z][ \t]*[+-]?[0-9.]", re.IGNORECASE)
+_ELLIPSIS = re.compile(r"[ \t]*\.{3,}[ \t]*(?:\$.*)?")
+
+
+def excuse(line: str, previous: str) -> str | None:
+    """Why a line that is no block may be left out.
+
+    The control's document breaks long comments over two printed lines and shows omitted blocks by
+    dots; programs copied from it hold both. Decision: a line of Cyrillic prose right after a line
+    with a comment is that comment's tail, as long as it does not begin with a readable word.
+    """
+    if _ELLIPSIS.fullmatch(line):
+        return "ellipsis"
+    prose = _CYRILLIC_WORD.search(line) and not _READABLE_WORD.match(line)
+    if prose and "$" in previous:
+        return "comment-tail"
+    return None
+
+
+DECISIONS = (
+    Decision(
+        "Does the recalculation touch G0?",
+        "No: interpolated blocks (G1, G2, G3) only; the machine's recalculate_on_rapid turns it on.",
+        "The page says 'in the mode of interpolation'.",
+    ),
+    Decision(
+        "When does a start point count as a whole turn?",
+        "It is rounded to 1e-9 degree before the remainder is taken.",
+        "Three incremental moves of 120 degrees must count as 360.",
+    ),
+    Decision(
+        "What if G102 names an axis that is not periodic?",
+        "A program error that names the axis and the machine's periodic axes.",
+        "The page reserves G102 for axes that are configured as periodic.",
+    ),
+    Decision(
+        "What does the coordinate become after G102 C0?",
+        "The relabelled coordinate stays.",
+        "Switching off ends the recalculation; it does not undo it.",
+    ),
+    Decision(
+        "How does a path pass its corners?",
+        "Exactly; G9 and G61 stop, G64 returns to the exact path.",
+        "Nothing in the page allows the tool to leave the programmed path.",
+    ),
+    Decision(
+        "What does F count?",
+        "mm/min along the path of X, Y, Z; deg/min where only rotary axes move.",
+        "1200 degrees per minute is the only sensible reading of the page's G1 C359.999 F1200.",
+    ),
+)
+
+GOST = Dialect(
+    name="gost",
+    title="Russian control with G102 (ISO 6983-1, GOST 20999-83)",
+    code_page="cp1251",
+    syntax=Syntax(comments=(Comment("$"), Comment("(", ")"), Comment("%")), excused=excuse),
+    groups=iso.GROUPS,
+    g={
+        **iso.MOTION,
+        **iso.DWELL,
+        9: GCode(
+            meaning="exact stop in this block",
+            sets={"corner": Corner.EXACT_STOP},
+            once=True,
+        ),
+        **iso.PLANES,
+        61: GCode(meaning="exact stop mode", group="corner", sets={"corner": Corner.EXACT_STOP}),
+        64: GCode(meaning="exact path mode", group="corner", sets={"corner": Corner.EXACT_PATH}),
+        **iso.UNITS,
+        **iso.DISTANCE,
+        **iso.PRESET,
+        102: GCode(
+            meaning="recalculation of a periodic axis: C360 on, C0 off",
+            perform=switch_recalculation,
+            ground="seed",
+        ),
+    },
+    start=(17, 64, 71, 90),
+    m=iso.M_CODES,
+    words=iso.WORDS,
+    word_meanings=iso.WORD_MEANINGS,
+    units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
+    decisions=DECISIONS,
+    marks=(
+        Mark(r"\bG102[ \t]*[A-Z]", "G102 with an axis"),
+        Mark(r"^[^$]*(?:\$\w+\$[^$]*)*\$(?=\s|$|[А-Яа-я])", "$ before a comment"),
+    ),
+    memory=Periods,
+    before_motion=recalculate_start,
+)

@@ -1,0 +1,222 @@
+"""MEFI CNC8x6: axes dragged by circular motion, and jumps with repeat.
+
+Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base of ISO 6983-1.
+"""
+
+import dataclasses
+
+from twin.nc import iso
+from twin.nc.arcs import sweep_between
+from twin.nc.circular import iso_arc_center, start_and_end
+from twin.nc.control import Control
+from twin.nc.dialect import Comment, Decision, Dialect, GCode, Interpolation, Mark, Syntax
+
+
+@dataclasses.dataclass(slots=True)
+class Dragging:
+    """What G10, G09 and G73 leave behind.
+
+    Attributes:
+        leads: Lead of each dragged axis per full circle, by column [mm or deg].
+        on: G09 is in force.
+        repeats: Jumps left of each G73 block that is being repeated, by line and part.
+    """
+
+    leads: dict[int, float] = dataclasses.field(default_factory=dict)
+    on: bool = False
+    repeats: dict[tuple[int, int], int] = dataclasses.field(default_factory=dict)
+
+
+def _dragging(control: Control) -> Dragging:
+    assert isinstance(control.memory, Dragging)
+    return control.memory
+
+
+def store_leads(control: Control) -> None:
+    """G10: the block does not move; each axis word is that axis's lead per full circle."""
+    words = control.take_axis_words()
+    if not words:
+        control.fail("lead", "G10 needs the axis to drag", hint="write Z1.05 G10")
+    for index, word in words:
+        _dragging(control).leads[index] = control.axis_value(index, word)
+
+
+def switch_on(control: Control) -> None:
+    """G09: circles drag.
+
+    Raises:
+        ProgramError: No lead is stored.
+    """
+    if not any(_dragging(control).leads.values()):
+        control.fail(
+            "no-lead",
+            "G09 finds no lead",
+            control.code_word(9),
+            hint="store it in a block before: Z1.05 G10",
+        )
+    _dragging(control).on = True
+
+
+def switch_off(control: Control) -> None:
+    """G98: circles no longer drag; the leads stay (page: valid until changed)."""
+    _dragging(control).on = False
+
+
+def jump_with_repeat(control: Control) -> None:
+    """G73: after the block's own motion go on at block L, Q times.
+
+    Raises:
+        ProgramError: L is missing or names no block; Q is no count.
+    """
+    target, count = control.take("L"), control.take("Q")
+    if target is None:
+        numbers = ", ".join(f"N{number}" for number in sorted(control.flow.labels())[:12])
+        code = control.code_word(73)
+        control.fail(
+            "jump-target", "G73 needs L: the block to jump to", code, hint=f"blocks here: {numbers}"
+        )
+    wanted = 1.0 if count is None else control.number(count)
+    if not (wanted >= 0.0 and wanted == int(wanted)):
+        control.fail("repeat-count", "Q must count jumps", count)
+    repeats = _dragging(control).repeats
+    place = (control.block.line, control.block.part)
+    left = repeats.get(place, int(wanted))
+    if left == 0:
+        repeats.pop(place, None)
+        return
+    repeats[place] = left - 1
+    number = control.number(target)
+    if number != int(number):
+        control.fail("jump-target", f"{target.text} is no block number", target)
+    control.flow.jump(int(number), (target.column, target.width), "L")
+
+
+def _arc(control: Control, *, clockwise: bool) -> None:
+    dragging = _dragging(control)
+    leads = dragging.leads if dragging.on else {}
+    plane = control.modal.plane
+    for index, lead in leads.items():
+        name = control.settings.axes.names[index]
+        if lead and index < 3 and abs(plane.normal[index]) < 0.5:
+            message = f"{name} lies in the plane {plane.name} and cannot be dragged by its circles"
+            control.fail("dragged-axis", message)
+        if lead and name in control.words:
+            control.fail(
+                "dragged-axis",
+                f"{name} is dragged by the circle and cannot be programmed as well",
+                control.words[name],
+                hint="leave it out, or end the helix by G98",
+            )
+    target = control.target()
+    center = iso_arc_center(control, target, clockwise=clockwise)
+    start, end = start_and_end(control, target)
+    sweep = sweep_between(start[:2], end[:2], center, clockwise=clockwise)
+    for index, lead in leads.items():
+        target[index] += lead * abs(sweep) / 360.0
+    control.arc_to(target, plane.world(*center, start.height), sweep)
+
+
+def clockwise_arc(control: Control) -> None:
+    """G02, dragging when G09 is in force."""
+    _arc(control, clockwise=True)
+
+
+def counter_clockwise_arc(control: Control) -> None:
+    """G03, dragging when G09 is in force."""
+    _arc(control, clockwise=False)
+
+
+CLOCKWISE = Interpolation(clockwise_arc)
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+
+DECISIONS = (
+    Decision(
+        "What are I, J, K relative to?",
+        "To the start of the arc; a missing one is 0.",
+        "In the page's example relative and absolute centres coincide; ISO 6983-1 is relative.",
+    ),
+    Decision(
+        "Which way does a lead drag?",
+        "A positive lead moves the dragged axis in + for G02 and G03 alike, by "
+        "lead · |sweep| / 360.",
+        "The page calls it the distance per full circle and ties no sign to the sense.",
+    ),
+    Decision(
+        "What if a G09 arc block also programs the dragged axis?",
+        "A program error.",
+        "Two commands for one axis contradict each other.",
+    ),
+    Decision(
+        "What if G09 comes without a lead?",
+        "A program error.",
+        "A flat circle is not what a helix code asks for.",
+    ),
+    Decision(
+        "In which order do motion and jump of a G73 block happen, and how often?",
+        "The block's own motion first, then the jump, Q times; the counter belongs to the block "
+        "and starts anew when the loop is entered again; a missing Q is 1.",
+        "The page's Q20 gives 21 circles.",
+    ),
+    Decision(
+        "What about G codes that the page does not name?",
+        "Those of ISO 6983-1 have their meaning there; any other is a program error.",
+        "Ignoring a code is a guess.",
+    ),
+    Decision(
+        "What does F count?",
+        "mm/min along the path of X, Y, Z; deg/min where only rotary axes move.",
+        "ISO practice; the page shows no feed.",
+    ),
+    Decision(
+        "How does a path pass its corners?",
+        "Exactly: the speed falls as far as the corner demands, and no more.",
+        "Nothing in the page allows the tool to leave the programmed path.",
+    ),
+)
+
+MEFI = Dialect(
+    name="mefi",
+    title="MEFI CNC8x6",
+    code_page="cp1250",
+    syntax=Syntax(comments=(Comment('"'), Comment("%"))),
+    groups=(*iso.GROUPS, "helix"),
+    g={
+        **iso.MOTION,
+        2: GCode(
+            meaning="arc clockwise",
+            group="motion",
+            sets={"interpolation": CLOCKWISE},
+            ground="seed",
+        ),
+        3: GCode(
+            meaning="arc counter-clockwise",
+            group="motion",
+            sets={"interpolation": COUNTER_CLOCKWISE},
+        ),
+        **iso.DWELL,
+        9: GCode(meaning="helix on", group="helix", action=switch_on, ground="seed"),
+        10: GCode(meaning="lead of the dragged axis", perform=store_leads, ground="seed"),
+        **iso.PLANES,
+        **iso.UNITS,
+        73: GCode(meaning="jump with repeat: L, Q", after=jump_with_repeat, ground="seed"),
+        **iso.DISTANCE,
+        **iso.PRESET,
+        98: GCode(meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"),
+    },
+    start=(17, 71, 90),
+    m=iso.M_CODES,
+    words=iso.WORDS,
+    word_meanings={
+        **iso.WORD_MEANINGS,
+        "L": "block to jump to (G73)",
+        "Q": "number of jumps (G73)",
+    },
+    units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
+    decisions=DECISIONS,
+    marks=(
+        Mark(r'"', 'a comment after "'),
+        Mark(r"\bG73\b.*\bL[ \t]*\d|\bL[ \t]*\d+.*\bG73\b", "G73 with L"),
+        Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
+    ),
+    memory=Dragging,
+)

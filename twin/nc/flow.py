@@ -1,0 +1,141 @@
+"""Which block comes next: straight on, jumps, and a guard against programs without an end."""
+
+import re
+from typing import NamedTuple, NoReturn
+
+from twin.nc.blocks import Block
+from twin.nc.diagnostics import ProgramError
+from twin.nc.lexer import Lexer
+from twin.nc.reporter import Reporter
+from twin.nc.source import Source
+
+_LABEL = re.compile(r"N[ \t]*0*([0-9]+)", re.IGNORECASE)
+_CACHED_LINES = 10_000
+"""Lines whose blocks are remembered once a program has jumped."""
+
+
+class Place(NamedTuple):
+    """A block of the program: its line, from 0, and its part of the line."""
+
+    line: int
+    part: int
+
+
+class Flow:
+    """The program counter.
+
+    Attributes:
+        place: The block that comes next.
+    """
+
+    def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
+        self._lines = source.lines
+        self._lexer = lexer
+        self._report = report
+        self._step_limit = step_limit
+        self._steps_left = step_limit
+        self._furthest = Place(-1, 0)
+        self._labels: dict[int, list[Place]] | None = None
+        self._cache: dict[int, tuple[Block, ...]] = {}
+        self._jumped = False
+        self._here: tuple[Block, ...] = ()
+        self._here_line = -1
+        self.place = Place(0, 0)
+
+    def next(self) -> Block | None:
+        """The next block, or None at the end of the program.
+
+        Raises:
+            ProgramError: Its line cannot be read, or the program runs without end.
+        """
+        line, part = self.place
+        while line < len(self._lines):
+            blocks = self._blocks(line)
+            if part < len(blocks):
+                self.place = Place(line, part + 1)
+                self._count(Place(line, part))
+                return blocks[part]
+            line, part = line + 1, 0
+        self.place = Place(line, 0)
+        return None
+
+    def jump(self, number: int, fail_at: tuple[int, int], word: str) -> None:
+        """Go on at the block with an N number.
+
+        Args:
+            number: The N number.
+            fail_at: Column and width of the word that asks for it, for the diagnostic.
+            word: That word's meaning, for the diagnostic.
+
+        Raises:
+            ProgramError: No block or more than one has it.
+        """
+        places = self.labels().get(number, [])
+        if len(places) != 1:
+            self._refuse_label(number, len(places), fail_at, word)
+        self._jumped = True
+        self.place = places[0]
+
+    def labels(self) -> dict[int, list[Place]]:
+        """Where every N number stands."""
+        if self._labels is None:
+            self._labels = {}
+            for line, text in enumerate(self._lines):
+                if _LABEL.search(text) is not None:
+                    for block in self._readable_blocks(line):
+                        if block.number >= 0:
+                            places = self._labels.setdefault(block.number, [])
+                            places.append(Place(line, block.part))
+        return self._labels
+
+    def _readable_blocks(self, line: int) -> tuple[Block, ...]:
+        """A line's blocks; a line that cannot be read has no labels until it is run."""
+        before = self._report.line, len(self._report.warnings)
+        try:
+            return self._blocks(line)
+        except ProgramError:
+            return ()
+        finally:
+            self._report.line = before[0]
+            del self._report.warnings[before[1] :]
+
+    def _blocks(self, line: int) -> tuple[Block, ...]:
+        if line == self._here_line:
+            return self._here
+        blocks = self._cache.get(line)
+        if blocks is None:
+            previous = self._lines[line - 1] if line else ""
+            blocks = self._lexer.blocks(self._lines[line], line + 1, previous)
+            if self._jumped and len(self._cache) < _CACHED_LINES:
+                self._cache[line] = blocks
+        self._here, self._here_line = blocks, line
+        return blocks
+
+    def _count(self, place: Place) -> None:
+        if place > self._furthest:
+            self._furthest = place
+            return
+        self._steps_left -= 1
+        if self._steps_left < 0:
+            self._report.line = place.line + 1
+            self._report.fail(
+                "endless-program",
+                f"more than {self._step_limit} blocks were repeated",
+                hint="if the program is meant to run this long, raise the job's step_limit",
+            )
+
+    def _refuse_label(
+        self, number: int, count: int, fail_at: tuple[int, int], word: str
+    ) -> NoReturn:
+        known = sorted(self.labels())
+        shown = ", ".join(f"N{each}" for each in known[:_SHOWN_LABELS])
+        more = ", ..." if len(known) > _SHOWN_LABELS else ""
+        code, message = "unknown-label", f"{word} names N{number}, and no block has this number"
+        if count > 1:
+            code, message = "ambiguous-label", f"{word} names N{number}, and {count} blocks have it"
+        self._report.fail(
+            code, message, *fail_at, hint=f"blocks here: {shown}{more}" if known else None
+        )
+
+
+_SHOWN_LABELS = 12

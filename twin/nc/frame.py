@@ -1,0 +1,123 @@
+"""From programmed coordinates to the part's: offsets, presets, turns, mirror, rotation, scale."""
+
+import math
+
+from twin.nc.planes import Vector
+
+Matrix = tuple[Vector, Vector, Vector]
+IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+class Frame:
+    """``part = matrix · programmed + shift`` for X, Y, Z; further axes are shifted only.
+
+    The shift is the sum of named ones (a work offset, a preset, whole turns of a rotary axis), so
+    that each can be changed without knowing of the others.
+    """
+
+    def __init__(self, axis_count: int) -> None:
+        self._shifts: dict[str, list[float]] = {}
+        self._count = axis_count
+        self.total = [0.0] * axis_count
+        """Sum of all shifts, shape (k,) [mm or deg]."""
+        self.matrix = IDENTITY
+        """Mirror, rotation and scale of X, Y, Z."""
+        self.plain = True
+        """The matrix is the identity."""
+
+    def shift(self, name: str) -> list[float]:
+        """The named shift, shape (k,)."""
+        return list(self._shifts.get(name, [0.0] * self._count))
+
+    def set_shift(self, name: str, values: list[float]) -> None:
+        """Replace the named shift."""
+        self._shifts[name] = values
+        self.total = [sum(each) for each in zip(*self._shifts.values(), strict=True)]
+
+    def set_matrix(self, matrix: Matrix) -> None:
+        """Replace mirror, rotation and scale."""
+        self.matrix = matrix
+        self.plain = matrix == IDENTITY
+
+    def to_part(self, programmed: list[float]) -> list[float]:
+        """Part coordinates of a programmed position, shape (k,)."""
+        if self.plain:
+            return [value + shift for value, shift in zip(programmed, self.total, strict=True)]
+        turned = [*self.turn((programmed[0], programmed[1], programmed[2])), *programmed[3:]]
+        return [value + shift for value, shift in zip(turned, self.total, strict=True)]
+
+    def to_programmed(self, part: list[float]) -> list[float]:
+        """The inverse of ``to_part``."""
+        values = [value - shift for value, shift in zip(part, self.total, strict=True)]
+        if self.plain:
+            return values
+        return [*_apply(_inverse(self.matrix), (values[0], values[1], values[2])), *values[3:]]
+
+    def point(self, programmed: Vector) -> Vector:
+        """Part coordinates of a point of X, Y, Z."""
+        x, y, z = programmed if self.plain else self.turn(programmed)
+        return (x + self.total[0], y + self.total[1], z + self.total[2])
+
+    def turn(self, vector: Vector) -> Vector:
+        """A direction of X, Y, Z as the part sees it."""
+        return _apply(self.matrix, vector)
+
+    def arc(self, normal: Vector, sweep: float) -> tuple[Vector, float]:
+        """Normal and sweep of an arc as the part sees them; a mirror reverses the sense."""
+        if self.plain:
+            return normal, sweep
+        x, y, z = self.turn(normal)
+        length = math.sqrt(x * x + y * y + z * z)
+        sign = math.copysign(1.0, _determinant(self.matrix))
+        return (x / length, y / length, z / length), sweep * sign
+
+
+def multiply(left: Matrix, right: Matrix) -> Matrix:
+    """The matrix product."""
+    columns = list(zip(*right, strict=True))
+    rows = [
+        tuple(sum(a * b for a, b in zip(row, column, strict=True)) for column in columns)
+        for row in left
+    ]
+    return ((*rows[0],), (*rows[1],), (*rows[2],))  # pyright: ignore[reportReturnType]
+
+
+def _apply(matrix: Matrix, vector: Vector) -> Vector:
+    x, y, z = vector
+    a, b, c = matrix
+    return (
+        a[0] * x + a[1] * y + a[2] * z,
+        b[0] * x + b[1] * y + b[2] * z,
+        c[0] * x + c[1] * y + c[2] * z,
+    )
+
+
+def _determinant(matrix: Matrix) -> float:
+    a, b, c = matrix
+    return (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+
+
+def _inverse(matrix: Matrix) -> Matrix:
+    a, b, c = matrix
+    d = _determinant(matrix)
+    return (
+        (
+            (b[1] * c[2] - b[2] * c[1]) / d,
+            (a[2] * c[1] - a[1] * c[2]) / d,
+            (a[1] * b[2] - a[2] * b[1]) / d,
+        ),
+        (
+            (b[2] * c[0] - b[0] * c[2]) / d,
+            (a[0] * c[2] - a[2] * c[0]) / d,
+            (a[2] * b[0] - a[0] * b[2]) / d,
+        ),
+        (
+            (b[0] * c[1] - b[1] * c[0]) / d,
+            (a[1] * c[0] - a[0] * c[1]) / d,
+            (a[0] * b[1] - a[1] * b[0]) / d,
+        ),
+    )

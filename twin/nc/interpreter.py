@@ -1,0 +1,63 @@
+"""Runs a program: text in, chunks of canonical moves out."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from twin.nc.canonical import Chunk, FloatArray
+from twin.nc.control import Control
+from twin.nc.diagnostics import Diagnostic, ProgramError
+from twin.nc.dialect import Dialect
+from twin.nc.move_columns import CHUNK
+from twin.nc.settings import ControlSettings
+from twin.nc.source import Source
+
+
+class Interpretation:
+    """One run of a program on one control.
+
+    Attributes:
+        source: The program.
+        dialect: The language it is read in.
+        settings: What the control was told of the machine and the job.
+    """
+
+    def __init__(self, source: Source, dialect: Dialect, settings: ControlSettings) -> None:
+        self.source = source
+        self.dialect = dialect
+        self.settings = settings
+        self._control = Control(dialect, settings, source)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The warnings so far."""
+        return tuple(self._control.report.warnings)
+
+    @property
+    def position(self) -> FloatArray:
+        """Where the axes stand in part coordinates, shape (k,) [mm or deg]."""
+        return np.array(self._control.part)
+
+    @property
+    def display(self) -> FloatArray:
+        """What the control's screen shows, shape (k,) [mm or deg]."""
+        return np.array(self._control.programmed)
+
+    def chunks(self) -> Iterator[Chunk]:
+        """Run the program once; a few thousand moves at a time.
+
+        Raises:
+            ProgramError: The program is wrong; the moves before the error have been yielded.
+        """
+        control = self._control
+        try:
+            while not control.ended and (block := control.flow.next()) is not None:
+                control.run(block)
+                if len(control.columns) >= CHUNK:
+                    yield control.columns.take()
+            if not control.ended and self.dialect.finish is not None:
+                self.dialect.finish(control)
+        except ProgramError:
+            yield control.columns.take()
+            raise
+        yield control.columns.take()

@@ -1,0 +1,127 @@
+"""The ISO 6983-1 base that several dialects share: codes, words and what they do."""
+
+from twin.nc.blocks import Word
+from twin.nc.circular import clockwise_arc, counter_clockwise_arc
+from twin.nc.control import Control
+from twin.nc.dialect import GCode, Interpolation, MCode
+from twin.nc.linear import feed_line, rapid_line
+from twin.nc.planes import XY, YZ, ZX
+
+RAPID = Interpolation(rapid_line, rapid=True)
+FEED = Interpolation(feed_line)
+CLOCKWISE = Interpolation(clockwise_arc)
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+
+
+def set_feed(control: Control, word: Word) -> None:
+    """F: the feed; must be positive."""
+    feed = control.number(word)
+    if not feed > 0.0:
+        control.fail("feed-range", f"the feed {word.text} is not positive", word)
+    control.feed = feed
+
+
+def set_spindle(control: Control, word: Word) -> None:
+    """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
+    speed = control.number(word)
+    if speed < 0.0:
+        control.fail("spindle-range", f"the speed {word.text} is negative", word)
+    control.spindle = speed
+    if not any(other.address == "M" and other.value in (3.0, 4.0) for other in control.block.words):
+        control.function("S", {"S": speed})
+
+
+def select_tool(control: Control, word: Word) -> None:
+    """T: the tool that comes next."""
+    number = control.number(word)
+    if number < 0.0 or number != int(number):
+        control.fail("tool-number", f"{word.text} is no tool number", word)
+    control.function(f"T{int(number)}", {})
+
+
+def dwell_seconds(control: Control) -> None:
+    """G4: wait for the seconds of P, X or F."""
+    words = [control.words.pop(letter) for letter in "PXF" if letter in control.words]
+    if len(words) != 1:
+        control.fail("dwell", "G4 needs its time", hint="write G4 P and the seconds")
+    seconds = control.number(words[0])
+    if seconds < 0.0:
+        control.fail("dwell", f"{words[0].text} is no time", words[0])
+    control.dwell(seconds)
+
+
+def preset(control: Control) -> None:
+    """G92: the place where the machine stands gets the coordinates of the block."""
+    programmed = list(control.programmed)
+    words = control.take_axis_words()
+    if not words:
+        control.fail("preset", "G92 needs the coordinates that this place shall have")
+    for index, word in words:
+        programmed[index] = control.axis_value(index, word)
+    control.relabel(programmed, "preset")
+
+
+PLANES = {
+    17: GCode(meaning="plane X Y", group="plane", sets={"plane": XY}),
+    18: GCode(meaning="plane Z X", group="plane", sets={"plane": ZX}),
+    19: GCode(meaning="plane Y Z", group="plane", sets={"plane": YZ}),
+}
+DISTANCE = {
+    90: GCode(meaning="absolute coordinates", group="distance", sets={"incremental": False}),
+    91: GCode(meaning="incremental coordinates", group="distance", sets={"incremental": True}),
+}
+UNITS = {
+    70: GCode(meaning="inches", group="units", sets={"unit": 25.4}),
+    71: GCode(meaning="millimetres", group="units", sets={"unit": 1.0}),
+}
+MOTION = {
+    0: GCode(meaning="rapid positioning", group="motion", sets={"interpolation": RAPID}),
+    1: GCode(meaning="straight line", group="motion", sets={"interpolation": FEED}),
+    2: GCode(meaning="arc clockwise", group="motion", sets={"interpolation": CLOCKWISE}),
+    3: GCode(
+        meaning="arc counter-clockwise", group="motion", sets={"interpolation": COUNTER_CLOCKWISE}
+    ),
+}
+DWELL = {4: GCode(meaning="dwell, seconds in P, X or F", perform=dwell_seconds, takes="F")}
+PRESET = {92: GCode(meaning="preset the position", perform=preset)}
+
+GROUPS = ("units", "plane", "distance", "feed", "corner", "offset", "compensation", "motion")
+
+M_CODES = {
+    0: MCode(meaning="program stop", late=True),
+    1: MCode(meaning="optional stop", late=True),
+    2: MCode(meaning="end of program", late=True, ends=True),
+    3: MCode(meaning="spindle clockwise"),
+    4: MCode(meaning="spindle counter-clockwise"),
+    5: MCode(meaning="spindle stop", late=True),
+    6: MCode(meaning="tool change"),
+    7: MCode(meaning="mist on"),
+    8: MCode(meaning="coolant on"),
+    9: MCode(meaning="coolant off", late=True),
+    30: MCode(meaning="end of program and back to its start", late=True, ends=True),
+}
+
+WORDS = {"F": set_feed, "S": set_spindle, "T": select_tool}
+
+WORD_MEANINGS = {
+    "N": "block number",
+    "G": "preparatory code",
+    "X": "X axis",
+    "Y": "Y axis",
+    "Z": "Z axis",
+    "A": "A axis",
+    "B": "B axis",
+    "C": "C axis",
+    "U": "U axis",
+    "V": "V axis",
+    "W": "W axis",
+    "I": "centre along X, from the start of the arc",
+    "J": "centre along Y",
+    "K": "centre along Z",
+    "R": "radius of the arc; negative: the larger of the two",
+    "P": "seconds of a dwell",
+    "F": "feed",
+    "S": "spindle speed",
+    "T": "tool",
+    "M": "machine function",
+}

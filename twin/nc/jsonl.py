@@ -1,0 +1,173 @@
+"""What the interpreter made of a program, as lines of JSON or of text."""
+
+import json
+import math
+from collections.abc import Generator, Iterator
+from typing import Any
+
+from twin.nc.canonical import (
+    FEED_UNIT_NAMES,
+    NO_BLOCK_NUMBER,
+    Axes,
+    Chunk,
+    Dwell,
+    Event,
+    FeedUnit,
+    Motion,
+    Moves,
+    Shape,
+)
+from twin.nc.diagnostics import Diagnostic, ProgramError
+from twin.nc.interpreter import Interpretation
+
+Record = dict[str, Any]
+
+
+def records(interpretation: Interpretation) -> Iterator[Record]:
+    """Everything the program comes to, one record each, in program order.
+
+    Raises:
+        ProgramError: After its diagnostic has been yielded as the last record.
+    """
+    axes = interpretation.settings.axes
+    count, length, turn, told = 0, 0.0, 0.0, 0
+    try:
+        for chunk in interpretation.chunks():
+            yield from _chunk_records(chunk)
+            count += len(chunk.moves)
+            turning = chunk.moves.feed_unit == FeedUnit.DEG_PER_MIN
+            length += float(chunk.moves.length[~turning].sum())
+            turn += float(chunk.moves.length[turning].sum())
+            told = yield from _new_warnings(interpretation, told)
+    except ProgramError as error:
+        yield from _new_warnings(interpretation, told)
+        yield _diagnostic(error.diagnostic)
+        raise
+    yield {
+        "type": "end",
+        "position": axes.named(interpretation.position),
+        "display": axes.named(interpretation.display),
+        "moves": count,
+        "length": length,
+        "turn": turn,
+    }
+
+
+def json_lines(interpretation: Interpretation) -> Iterator[str]:
+    """The records as JSON, one object a line.
+
+    Raises:
+        ProgramError: As in ``records``.
+    """
+    for record in records(interpretation):
+        yield json.dumps(record, ensure_ascii=False, allow_nan=False)
+
+
+def text_lines(interpretation: Interpretation) -> Iterator[str]:
+    """The records for a person, one a line.
+
+    Raises:
+        ProgramError: As in ``records``.
+    """
+    for record in records(interpretation):
+        yield _TEXT[record["type"]](record)
+
+
+def _new_warnings(interpretation: Interpretation, told: int) -> Generator[Record, None, int]:
+    warnings = interpretation.diagnostics
+    for diagnostic in warnings[told:]:
+        yield _diagnostic(diagnostic)
+    return len(warnings)
+
+
+def _chunk_records(chunk: Chunk) -> Iterator[Record]:
+    moves, events = chunk.moves, iter(chunk.events)
+    event = next(events, None)
+    for row in range(len(moves) + 1):
+        while event is not None and event.before == row:
+            yield _event(event)
+            event = next(events, None)
+        if row < len(moves):
+            yield _move(moves, row)
+
+
+def _event(event: Event) -> Record:
+    if isinstance(event, Dwell):
+        return {"type": "dwell", "line": event.line, "seconds": event.seconds}
+    record: Record = {
+        "type": "function",
+        "line": event.line,
+        "word": event.word,
+        "arguments": dict(event.arguments),
+    }
+    if event.at > 0.0:
+        record["at"] = event.at
+    return record
+
+
+def _move(moves: Moves, row: int) -> Record:
+    axes: Axes = moves.axes
+    block, feed = int(moves.block[row]), float(moves.feed[row])
+    record: Record = {
+        "type": "move",
+        "motion": Motion(moves.motion[row]).name.lower(),
+        "shape": Shape(moves.shape[row]).name.lower(),
+        "line": int(moves.line[row]),
+        "block": None if block == NO_BLOCK_NUMBER else f"N{block}",
+        "start": axes.named(moves.start[row]),
+        "end": axes.named(moves.end[row]),
+        "length": float(moves.length[row]),
+        "feed": None if math.isnan(feed) else feed,
+        "feed_unit": FEED_UNIT_NAMES[FeedUnit(moves.feed_unit[row])],
+    }
+    if moves.shape[row] == Shape.ARC:
+        record["arc"] = {
+            "center": [float(value) for value in moves.center[row]],
+            "normal": [float(value) for value in moves.normal[row]],
+            "radius": float(moves.radius[row]),
+            "sweep": float(moves.sweep[row]),
+        }
+    return record
+
+
+def _diagnostic(diagnostic: Diagnostic) -> Record:
+    return {
+        "type": "diagnostic",
+        "severity": diagnostic.severity,
+        "code": diagnostic.code,
+        "line": diagnostic.line,
+        "column": diagnostic.column,
+        "message": diagnostic.message,
+        "hint": diagnostic.hint,
+    }
+
+
+def _named(values: dict[str, float]) -> str:
+    return " ".join(f"{name}{value:.10g}" for name, value in values.items())
+
+
+def _move_text(record: Record) -> str:
+    line, feed = f"{record['line']:6d}", record["feed"]
+    pace = "rapid" if feed is None else f"F{feed:.10g} {record['feed_unit']}"
+    arc = record.get("arc")
+    bend = "" if arc is None else f"  R{arc['radius']:.10g} sweep {arc['sweep']:.10g}"
+    return f"{line}  {record['shape']:4s}  {_named(record['end'])}  {pace}{bend}"
+
+
+def _function_text(record: Record) -> str:
+    return f"{record['line']:6d}  {record['word']}  {_named(record['arguments'])}".rstrip()
+
+
+def _end_text(record: Record) -> str:
+    return f"   end  {_named(record['position'])}  ({record['moves']} moves, {record['length']:.10g} mm)"
+
+
+_TEXT = {
+    "move": _move_text,
+    "dwell": lambda record: f"{record['line']:6d}  dwell {record['seconds']:.10g} s",
+    "function": _function_text,
+    "diagnostic": lambda record: (
+        f"{record['line']:6d}  {record['severity']} {record['code']}: {record['message']}"
+    ),
+    "end": _end_text,
+}

@@ -1,0 +1,172 @@
+"""Collects moves and events one by one and hands them out as columns."""
+
+import dataclasses
+import math
+
+import numpy as np
+
+from twin.nc.canonical import (
+    Axes,
+    Chunk,
+    Corner,
+    Dwell,
+    Event,
+    FeedUnit,
+    FloatArray,
+    Function,
+    Motion,
+    Moves,
+    Shape,
+)
+from twin.nc.planes import Vector
+
+CHUNK = 4096
+"""Moves in a chunk: enough to make NumPy's overhead vanish, little to hold in memory."""
+
+NAN = math.nan
+
+
+@dataclasses.dataclass(slots=True)
+class Segment:
+    """One move in part coordinates, before it becomes a row.
+
+    Attributes:
+        motion: Rapid or feed.
+        line: Source line.
+        block: N number or ``NO_BLOCK_NUMBER``.
+        start: Shape (k,) [mm or deg].
+        end: Shape (k,) [mm or deg].
+        display: What the screen shows at the end, shape (k,).
+        feed: [mm/min or deg/min]; NaN for rapids.
+        corner: How the end is passed.
+        corner_tolerance: [mm]; NaN: the machine's.
+        acceleration: [mm/s²]; NaN: the machine's.
+        deceleration: [mm/s²]; NaN: the machine's.
+        center: Centre of an arc at the height of its start [mm], or None for a line.
+        normal: Unit normal of an arc.
+        sweep: Signed angle of an arc [deg].
+    """
+
+    motion: Motion
+    line: int
+    block: int
+    start: list[float]
+    end: list[float]
+    display: list[float]
+    feed: float = NAN
+    corner: Corner = Corner.EXACT_PATH
+    corner_tolerance: float = NAN
+    acceleration: float = NAN
+    deceleration: float = NAN
+    center: Vector | None = None
+    normal: Vector = (NAN, NAN, NAN)
+    sweep: float = 0.0
+
+
+class MoveColumns:
+    """The moves and events since the last ``take``."""
+
+    def __init__(self, axes: Axes) -> None:
+        self._axes = axes
+        self._other_linear = np.array([kind == "linear" for kind in axes.kinds])
+        self._other_linear[:3] = False
+        self._rotary = axes.rotary()
+        self._clear()
+
+    def _clear(self) -> None:
+        self._codes: list[int] = []
+        self._values: list[float] = []
+        self._positions: list[float] = []
+        self._events: list[Event] = []
+        self._count = 0
+
+    def __len__(self) -> int:
+        return self._count
+
+    def add(self, move: Segment) -> None:
+        """Append a move."""
+        center = move.center
+        self._codes += (
+            move.motion,
+            Shape.LINE if center is None else Shape.ARC,
+            move.line,
+            move.block,
+            move.corner,
+        )
+        self._values += (
+            *((NAN, NAN, NAN) if center is None else center),
+            *move.normal,
+            move.sweep,
+            move.feed,
+            move.corner_tolerance,
+            move.acceleration,
+            move.deceleration,
+        )
+        self._positions += move.start
+        self._positions += move.end
+        self._positions += move.display
+        self._count += 1
+
+    def dwell(self, line: int, seconds: float) -> None:
+        """Append a dwell after the moves so far."""
+        self._events.append(Dwell(self._count, line, seconds))
+
+    def function(self, line: int, word: str, arguments: dict[str, float], at: float) -> None:
+        """Append a function after the moves so far."""
+        self._events.append(Function(self._count, line, word, arguments, at))
+
+    def take(self) -> Chunk:
+        """All that was appended, as columns; nothing is left here."""
+        n, k = self._count, len(self._axes)
+        codes = np.array(self._codes, np.int64).reshape(n, 5)
+        values = np.array(self._values, np.float64).reshape(n, 11)
+        positions = np.array(self._positions, np.float64).reshape(n, 3, k)
+        events = tuple(self._events)
+        self._clear()
+        start, end = positions[:, 0], positions[:, 1]
+        shape = codes[:, 1].astype(np.uint8)
+        center, normal = values[:, 0:3], values[:, 3:6]
+        radius = np.linalg.norm(start[:, :3] - center, axis=1)
+        length, unit = self._measure(start, end, normal, radius, values[:, 6])
+        moves = Moves(
+            axes=self._axes,
+            motion=codes[:, 0].astype(np.uint8),
+            shape=shape,
+            line=codes[:, 2].copy(),
+            block=codes[:, 3].copy(),
+            start=start.copy(),
+            end=end.copy(),
+            display=positions[:, 2].copy(),
+            feed=values[:, 7].copy(),
+            feed_unit=unit.astype(np.uint8),
+            length=length,
+            center=center.copy(),
+            normal=normal.copy(),
+            radius=radius,
+            sweep=values[:, 6].copy(),
+            corner=codes[:, 4].astype(np.uint8),
+            corner_tolerance=values[:, 8].copy(),
+            acceleration=values[:, 9].copy(),
+            deceleration=values[:, 10].copy(),
+        )
+        return Chunk(moves, events)
+
+    def _measure(
+        self,
+        start: FloatArray,
+        end: FloatArray,
+        normal: FloatArray,
+        radius: FloatArray,
+        sweep: FloatArray,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Length that the feed counts and its unit, by the convention of ``canonical``."""
+        delta = end - start
+        spatial = np.linalg.norm(delta[:, :3], axis=1)
+        advance = np.sum(delta[:, :3] * normal, axis=1)
+        arc = np.hypot(radius * np.deg2rad(sweep), advance)
+        path = np.where(np.isnan(radius), spatial, arc)
+        linear = np.linalg.norm(delta[:, self._other_linear], axis=1)
+        rotary = np.linalg.norm(delta[:, self._rotary], axis=1)
+        length = np.where(path > 0.0, path, np.where(linear > 0.0, linear, rotary))
+        turning = (path == 0.0) & (linear == 0.0) & (rotary > 0.0)
+        return length, np.where(turning, float(FeedUnit.DEG_PER_MIN), float(FeedUnit.MM_PER_MIN))

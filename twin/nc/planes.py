@@ -1,0 +1,94 @@
+"""Working planes: the two directions in which arcs are drawn, and the one they turn about."""
+
+import dataclasses
+import math
+from typing import NamedTuple
+
+Vector = tuple[float, float, float]
+
+
+class Local(NamedTuple):
+    """A point as a plane sees it [mm]."""
+
+    abscissa: float
+    ordinate: float
+    height: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Plane:
+    """A right-handed frame of unit vectors: abscissa x ordinate = normal.
+
+    Attributes:
+        name: As the programmer calls it.
+        abscissa: Direction of angle 0.
+        ordinate: Direction of angle 90.
+        normal: Axis that positive arcs turn about counter-clockwise.
+    """
+
+    name: str
+    abscissa: Vector
+    ordinate: Vector
+    normal: Vector
+
+    @property
+    def axes(self) -> tuple[int, int, int]:
+        """Columns of abscissa, ordinate and normal, for planes along the axes."""
+        return (_column(self.abscissa), _column(self.ordinate), _column(self.normal))
+
+    def local(self, point: Vector | list[float]) -> Local:
+        """A point of X, Y, Z (further axes are ignored) seen from the plane."""
+        x, y, z = point[0], point[1], point[2]
+        a, o, n = self.abscissa, self.ordinate, self.normal
+        return Local(
+            a[0] * x + a[1] * y + a[2] * z,
+            o[0] * x + o[1] * y + o[2] * z,
+            n[0] * x + n[1] * y + n[2] * z,
+        )
+
+    def world(self, abscissa: float, ordinate: float, height: float) -> Vector:
+        """The inverse of ``local``."""
+        a, o, n = self.abscissa, self.ordinate, self.normal
+        return (
+            a[0] * abscissa + o[0] * ordinate + n[0] * height,
+            a[1] * abscissa + o[1] * ordinate + n[1] * height,
+            a[2] * abscissa + o[2] * ordinate + n[2] * height,
+        )
+
+
+def _column(direction: Vector) -> int:
+    return max(range(3), key=lambda index: abs(direction[index]))
+
+
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
+XY = Plane("XY (G17)", _X, _Y, _Z)
+ZX = Plane("ZX (G18)", _Z, _X, _Y)
+YZ = Plane("YZ (G19)", _Y, _Z, _X)
+
+
+def plane_with_normal(normal: Vector) -> Plane:
+    """A plane of any normal; its abscissa lies level, as near to +X as it can.
+
+    Raises:
+        ValueError: The vector has no direction.
+    """
+    length = math.sqrt(sum(value * value for value in normal))
+    if not length > 0.0:
+        raise ValueError("a plane's normal needs a direction")
+    x, y, z = (value / length for value in normal)
+    level = math.hypot(x, y)
+    abscissa = (y / level, -x / level, 0.0) if level > 1e-12 else _X
+    if abscissa[0] < 0.0:
+        abscissa = (-abscissa[0], -abscissa[1], 0.0)
+    unit = (x, y, z)
+    return Plane("G16", abscissa, cross(unit, abscissa), unit)
+
+
+def cross(left: Vector, right: Vector) -> Vector:
+    """The vector product."""
+    return (
+        left[1] * right[2] - left[2] * right[1],
+        left[2] * right[0] - left[0] * right[2],
+        left[0] * right[1] - left[1] * right[0],
+    )
