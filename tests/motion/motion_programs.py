@@ -2,6 +2,7 @@
 
 import dataclasses
 import itertools
+import math
 
 import numpy as np
 from hypothesis import strategies as st
@@ -11,6 +12,7 @@ from twin.nc.canonical import (
     NO_BLOCK_NUMBER,
     Axes,
     Chunk,
+    Corner,
     Dwell,
     Event,
     FloatArray,
@@ -46,6 +48,10 @@ class Program:
         self.start = np.array(start or (0.0,) * len(AXES))
         self.parts: list[Moves] = []
         self.events: list[Event] = []
+        self.corner = Corner.EXACT_STOP
+        self.corner_tolerance = math.nan
+        self.acceleration = math.nan
+        self.deceleration = math.nan
 
     @property
     def position(self) -> FloatArray:
@@ -112,6 +118,10 @@ class Program:
             normal=np.full((1, 3), np.nan),
             radius=column(np.nan),
             sweep=column(0.0),
+            corner=np.array([self.corner], np.uint8),
+            corner_tolerance=column(self.corner_tolerance),
+            acceleration=column(self.acceleration),
+            deceleration=column(self.deceleration),
         )
         self.parts.append(dataclasses.replace(move, **arc))
         return self
