@@ -20,7 +20,11 @@ from twin.toolpath.geometry import Geometry, geometry, joined
 from twin.units import SECONDS_PER_MINUTE
 
 SHORTEST = 1e-9
-"""A shorter move takes no time [mm or deg]: a thousandth of the nanometre the path is kept to."""
+"""A shorter block takes no time [mm or deg]: a thousandth of the nanometre the path is kept to."""
+
+STEEPEST = 10.0
+"""How far an axis may go per path parameter; where one goes further than this while the feed counts
+next to nothing (C turns, X moves by a rounding), the parameter is stretched."""
 
 JOIN_TOLERANCE = 1e-6
 """Largest gap between consecutive moves that is rounding, not a fault [mm or deg]."""
@@ -35,7 +39,8 @@ class Blocks:
     Attributes:
         move: Number of the move in the whole program, -1 before the first, shape (n,).
         line: Source line, shape (n,).
-        length: What the feed counts, shape (n,) [mm or deg]; 0 for dwells.
+        length: In path parameter x, shape (n,) [mm or deg]; 0 for dwells.
+        stretch: Path parameter per what the feed counts, almost always 1, shape (n,).
         feed: Shape (n,) [mm/s or deg/s]; infinite for rapids.
         acceleration: Programmed, shape (n,) [mm/s² or deg/s²]; infinite: the machine's.
         deceleration: The same for slowing down.
@@ -49,6 +54,7 @@ class Blocks:
     move: IntArray
     line: IntArray
     length: FloatArray
+    stretch: FloatArray
     feed: FloatArray
     acceleration: FloatArray
     deceleration: FloatArray
@@ -124,8 +130,9 @@ def _stops(event: Event) -> bool:
 
 def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[Blocks, int, float]:
     """The blocks of moves, and the corner and tolerance at their end."""
-    long = moves.length >= SHORTEST
-    rows = np.flatnonzero(long)
+    travel = np.abs(moves.end - moves.start)
+    length = np.maximum(moves.length, travel.max(axis=1, initial=0.0) / STEEPEST)
+    rows = np.flatnonzero(length >= SHORTEST)
     corners = np.append(corner, moves.corner).astype(np.uint8)
     tolerances = np.append(tolerance, moves.corner_tolerance)
     before = np.append(rows, len(moves))
@@ -141,11 +148,13 @@ def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[
     at_border[1:][rapid] = Corner.EXACT_STOP
     shapes = geometry(kept)
     linear = ~kept.axes.rotary()
-    moved = np.abs(kept.end - kept.start)[:, linear].max(axis=1, initial=0.0)
+    moved = travel[rows][:, linear].max(axis=1, initial=0.0)
+    stretch = length / np.maximum(moves.length, 1e-12)
     blocks = Blocks(
         move=first + rows,
         line=kept.line,
-        length=kept.length,
+        length=length[rows],
+        stretch=stretch[rows],
         feed=np.where(rapid, np.inf, kept.feed / SECONDS_PER_MINUTE),
         acceleration=np.where(np.isnan(kept.acceleration), np.inf, kept.acceleration),
         deceleration=np.where(np.isnan(kept.deceleration), np.inf, kept.deceleration),
@@ -173,6 +182,7 @@ def _of_dwell(dwell: Dwell, move: int, position: FloatArray) -> Blocks:
         move=np.array([move]),
         line=np.array([dwell.line]),
         length=zero,
+        stretch=np.ones(1),
         feed=zero,
         acceleration=zero,
         deceleration=zero,

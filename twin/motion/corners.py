@@ -11,7 +11,7 @@ import dataclasses
 
 import numpy as np
 
-from twin.motion.blocks import Blocks
+from twin.motion.blocks import Blocks, BoolArray
 from twin.motion.corner_kernels import MOST_NEIGHBOURS, find_widths
 from twin.motion.limits import MotionLimits
 from twin.nc.canonical import Corner, FloatArray
@@ -58,7 +58,7 @@ def find_borders(blocks: Blocks, limits: MotionLimits) -> Borders:
     width = np.zeros(count)
     rounded = corner == Corner.CONTINUOUS
     if np.any(rounded):
-        per_width, per_square = _strictness(blocks, knee, bend, limits)
+        per_width, per_square = _strictness(blocks, rounded, knee, bend, limits)
         place = np.append(0.0, np.cumsum(blocks.length))
         width = find_widths(place, rounded, per_width, per_square)
 
@@ -89,13 +89,14 @@ def _allowed(largest: FloatArray | float, step: FloatArray) -> FloatArray:
 
 
 def _strictness(
-    blocks: Blocks, knee: FloatArray, bend: FloatArray, limits: MotionLimits
+    blocks: Blocks, rounded: BoolArray, knee: FloatArray, bend: FloatArray, limits: MotionLimits
 ) -> tuple[FloatArray, FloatArray]:
     """Shares of the tolerance that a rounding uses per width by its knee, and per width² by bend.
 
     Where tolerances differ, the strictest among the borders that roundings can reach counts.
     """
     own = np.where(np.isnan(blocks.tolerance), limits.corner_tolerance, blocks.tolerance)
+    own[~rounded] = np.inf
     spatial = own.copy()
     for shift in range(1, MOST_NEIGHBOURS + 1):
         np.minimum(spatial[shift:], own[:-shift], out=spatial[shift:])

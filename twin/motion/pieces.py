@@ -154,14 +154,14 @@ def _constant_limits(
         shapes.drift, shapes.cosine, shapes.sine, shapes.angle, begin, scale, length, rounding
     )
     first, second, third = bounds[:, 0], bounds[:, 1], bounds[:, 2]
-    path_acceleration = np.where(
+    path_acceleration = own.stretch * np.where(
         own.rotary_alone, limits.rotary_path_acceleration, limits.path_acceleration
     )
-    path_jerk = np.where(own.rotary_alone, limits.rotary_path_jerk, limits.path_jerk)
+    path_jerk = own.stretch * np.where(own.rotary_alone, limits.rotary_path_jerk, limits.path_jerk)
     with np.errstate(divide="ignore", over="ignore"):
-        velocity = np.minimum(own.feed, (limits.velocity / first).min(axis=1))
+        velocity = np.minimum(own.feed * own.stretch, (limits.velocity / first).min(axis=1))
         centripetal = (CENTRIPETAL_SHARE * limits.acceleration / second).min(axis=1)
-        centripetal = np.minimum(centripetal, path_acceleration / bend)
+        centripetal = np.minimum(centripetal, path_acceleration / own.stretch / bend)
         velocity = np.minimum(velocity, np.sqrt(centripetal))
         turning = (CURVE_JERK_SHARE * limits.jerk / third).min(axis=1)
         velocity = np.minimum(velocity, np.cbrt(turning))
@@ -173,6 +173,6 @@ def _constant_limits(
         tangential = np.minimum(tangential, mixed.min(axis=1))
         left = left - 3.0 * second * (velocity * tangential)[:, None]
         jerk = np.minimum(path_jerk, (left / first).min(axis=1))
-    acceleration = np.minimum(tangential, own.acceleration)
-    deceleration = np.minimum(tangential, own.deceleration)
+    acceleration = np.minimum(tangential, own.stretch * own.acceleration)
+    deceleration = np.minimum(tangential, own.stretch * own.deceleration)
     return velocity, acceleration, deceleration, jerk
