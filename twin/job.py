@@ -7,6 +7,7 @@ import pydantic
 from pydantic import Field
 
 from twin.errors import ConfigError
+from twin.stl_file import stl_extent
 from twin.toml_file import Table, read_toml
 
 Positive = Annotated[float, Field(gt=0)]
@@ -17,50 +18,110 @@ DEFAULT_CONTOUR_UM = 20.0
 
 
 class StockTable(Table):
-    """The blank: ``box`` with size, ``cylinder`` with diameter and height."""
+    """The blank: ``box``, ``cylinder``, ``tube``, or the shape of an ``stl`` file."""
 
-    shape: Literal["box", "cylinder"]
+    shape: Literal["box", "cylinder", "tube", "stl"]
     size: tuple[Positive, Positive, Positive] | None = None
     """Box: along X, Y, Z [mm]."""
     diameter: Positive | None = None
-    """Cylinder [mm]."""
+    """Cylinder and tube [mm]."""
     height: Positive | None = None
-    """Cylinder [mm]."""
+    """Cylinder and tube [mm]."""
+    bore: Positive | None = None
+    """Tube: diameter of its hole [mm]."""
+    file: str | None = None
+    """STL: its file [mm], relative to the job file."""
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Centre of the top face in program coordinates [mm]."""
+    """Centre of the top face in program coordinates [mm]; of the box around an STL."""
     cell: Positive | None = None
     """Grid of the height map [mm]; none: a tenth of the tool's radius, 0.1 at the finest."""
+    material: str | None = None
+    """What it is made of, for the cutting force; none: no force is reckoned."""
 
     @pydantic.model_validator(mode="after")
     def _dimensions_fit_shape(self) -> "StockTable":
-        box, round_ = self.size is not None, (self.diameter, self.height)
-        if self.shape == "box" and (not box or any(value is not None for value in round_)):
-            raise ValueError("shape 'box' needs size = [x, y, z] and nothing else")
-        if self.shape == "cylinder" and (box or any(value is None for value in round_)):
-            raise ValueError("shape 'cylinder' needs diameter and height and nothing else")
+        given = {name for name in _DIMENSIONS if getattr(self, name) is not None}
+        needed = _SHAPES[self.shape]
+        if given != set(needed):
+            raise ValueError(f"shape '{self.shape}' needs {' and '.join(needed)} and nothing else")
+        if self.bore is not None and self.diameter is not None and self.bore >= self.diameter:
+            raise ValueError("the bore of a tube must be smaller than its diameter")
         return self
 
     @property
     def extent(self) -> tuple[float, float, float]:
-        """Size of the box around the blank [mm]."""
+        """Size of the box around the blank [mm].
+
+        Raises:
+            ConfigError: The STL file cannot be read.
+        """
         if self.size is not None:
             return self.size
+        if self.file is not None:
+            return stl_extent(Path(self.file))
         assert self.diameter is not None
         assert self.height is not None
         return (self.diameter, self.diameter, self.height)
+
+
+_DIMENSIONS = ("size", "diameter", "height", "bore", "file")
+_SHAPES = {
+    "box": ("size",),
+    "cylinder": ("diameter", "height"),
+    "tube": ("diameter", "height", "bore"),
+    "stl": ("file",),
+}
 
 
 class ToolTable(Table):
     """One tool of the job."""
 
     number: Annotated[int, Field(ge=0)]
-    kind: Literal["flat", "ball"] = "flat"
+    kind: Literal["flat", "ball", "bull", "drill", "chamfer"] = "flat"
     diameter: Positive = 10.0
     """Of the cutting edge [mm]."""
     length: Positive = 60.0
     """From the spindle nose to the tip, holder included [mm]."""
     flute: Positive = 25.0
     """Length of the cutting part [mm]."""
+    corner: Positive | None = None
+    """Bull-nose: radius of the corner [mm]."""
+    angle: Annotated[float, Field(gt=0, lt=180)] | None = None
+    """Drill and chamfer: included angle of the point [deg]; none: 118 and 90."""
+    tip: Annotated[float, Field(ge=0)] = 0.0
+    """Chamfer: diameter of the flat at the tip [mm]."""
+    shank: Positive | None = None
+    """Diameter above the flutes [mm]; none: that of the cutting edge."""
+    free_length: Positive | None = None
+    """From the holder to the tip [mm]; none: the flutes and three eighths of the rest."""
+    holder: Positive = 32.0
+    """Diameter of the holder's nut [mm]."""
+    teeth: Annotated[int, Field(ge=1)] = 2
+    """Cutting edges, for the cutting force."""
+    speed: Positive | None = None
+    """Spindle speed for the cutting force [1/min]; none: no force is reckoned."""
+
+    @pydantic.model_validator(mode="after")
+    def _shape_is_whole(self) -> "ToolTable":
+        if (self.corner is not None) != (self.kind == "bull"):
+            raise ValueError("kind 'bull', and no other, needs corner = its radius")
+        if self.corner is not None and 2 * self.corner > self.diameter:
+            raise ValueError("the corner of a bull-nose cutter is at most half its diameter")
+        if self.angle is not None and self.kind not in ("drill", "chamfer"):
+            raise ValueError("angle belongs to the kinds 'drill' and 'chamfer'")
+        if self.tip and (self.kind != "chamfer" or self.tip >= self.diameter):
+            raise ValueError("tip belongs to the kind 'chamfer' and is smaller than its diameter")
+        if self.free_length is not None and self.free_length > self.length:
+            raise ValueError("free_length is at most the length")
+        return self
+
+    @property
+    def below_holder(self) -> float:
+        """From the holder to the tip [mm]."""
+        if self.free_length is not None:
+            return self.free_length
+        flute = min(self.flute, 0.8 * self.length)
+        return flute + 0.375 * (self.length - flute)
 
 
 class ToleranceTable(Table):
@@ -99,8 +160,11 @@ class JobFile(Table):
     """A shipped machine's name, or a path relative to the job file."""
     default_feed: Positive | None = None
     """Feed where the program sets none [mm/min]; none: the machine's."""
-    part_zero: dict[str, float] | None = None
-    """Program zero in machine coordinates, by axis [mm or deg]; missing axes are 0."""
+    default_rotary_feed: Positive | None = None
+    """The same for moves of rotary axes alone [deg/min]."""
+    part_zero: dict[str, float] = Field(default_factory=dict)
+    """Program zero in machine coordinates, by axis [mm or deg]; an axis left out: on the table's
+    centre line, at the height of the stock's top face, other axes at 0."""
     start: dict[str, float] = Field(default_factory=dict)
     """Where the axes stand when the program starts, program coordinates [mm or deg]."""
     stock: StockTable | None = None
@@ -123,11 +187,14 @@ class Job:
 
     Attributes:
         folder: What relative paths in it are relative to.
-        file: Its checked content.
+        file: Its checked content; the file of an STL stock is a whole path.
         program: The NC program.
     """
 
     def __init__(self, folder: Path, file: JobFile) -> None:
+        if file.stock is not None and file.stock.file is not None:
+            stock = file.stock.model_copy(update={"file": str(folder / file.stock.file)})
+            file = file.model_copy(update={"stock": stock})
         self.folder = folder
         self.file = file
         self.program = folder / file.program

@@ -14,9 +14,9 @@ WORK_HOLDING_HEIGHT = 40.0
 def part_zero(job: JobFile, machine: Machine, spindle_over_table: float) -> FloatArray:
     """Machine coordinates of program zero.
 
-    A job that gives ``part_zero`` is taken at its word; axes that it leaves out are 0. Otherwise
-    program zero lies on the table's centre line, at the height of the stock's top face; without a
-    stock in the middle of the Z travel.
+    An axis that the job's ``part_zero`` names is taken at its word. Otherwise program zero lies on
+    the table's centre line, at the height of the top face of the stock on its work holding;
+    without a stock in the middle of the Z travel.
 
     Args:
         job: The job file.
@@ -30,11 +30,9 @@ def part_zero(job: JobFile, machine: Machine, spindle_over_table: float) -> Floa
         ConfigError: An axis does not exist, or the stock would lie below the table.
     """
     zero = np.zeros(len(machine.axes))
-    if job.part_zero is None:
-        zero[:2] = machine.part_frame.center
-        zero[2] = _default_height(job, machine, spindle_over_table)
-    else:
-        _write_axes(zero, job.part_zero, machine, "part_zero")
+    zero[:2] = machine.part_frame.center
+    zero[2] = _default_height(job, machine, spindle_over_table)
+    _write_axes(zero, job.part_zero, machine, "part_zero")
     _require_stock_above_table(job, float(zero[2]), spindle_over_table)
     return zero
 

@@ -5,21 +5,25 @@ early M functions, the motion or what stands in its place, late M functions, jum
 be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
 """
 
+import dataclasses
+import math
 from collections.abc import Mapping
 from typing import NoReturn
 
-from twin.nc.blocks import Block, Word
+from twin.nc.blocks import Block, Statement, Word
 from twin.nc.canonical import Corner, Motion
 from twin.nc.dialect import Dialect, FeedMode, GCode, MCode, Modal
 from twin.nc.expressions import Expression, ExpressionError
 from twin.nc.flow import Flow
 from twin.nc.frame import Frame
 from twin.nc.lexer import Lexer
-from twin.nc.move_columns import NAN, MoveColumns, Segment
-from twin.nc.planes import Vector
+from twin.nc.move_columns import NAN, Segment
+from twin.nc.path import Path
+from twin.nc.planes import Plane, Vector, cross
 from twin.nc.reporter import Reporter
 from twin.nc.settings import ControlSettings
 from twin.nc.source import Source
+from twin.nc.tools import Tools
 
 _LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
@@ -39,11 +43,18 @@ class Control:
         programmed: Where it stands, as its screen shows it, shape (k,) [mm or deg].
         part: Where it stands in part coordinates, shape (k,) [mm or deg].
         feed: F as programmed, or None.
-        columns: The moves and events made so far.
+        spindle: S as programmed, or None [1/min].
+        tools: The tools in use.
+        path: Where moves and events go.
         flow: Which block comes next.
+        cycle_values: What the words of a canned cycle were last, by address.
         block: The block that is being run.
         words: Its words that nothing has taken yet.
         codes: Its G codes.
+        series: Its words for switch points, in order.
+        rapid_feed: Feed of rapids where the program limits it [mm/min]; NaN: the machine's.
+        axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
+        axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
         ended: An end code was run.
     """
 
@@ -65,11 +76,17 @@ class Control:
         self.spindle: float | None = None
         self.acceleration = NAN
         self.deceleration = NAN
-        self.columns = MoveColumns(settings.axes)
+        self.tools = Tools(settings.tools)
+        self.path = Path(settings.axes, self.part, self._refuse_move)
         self.flow = Flow(source, Lexer(dialect, self.report), settings.step_limit, self.report)
+        self.cycle_values: dict[str, float] = {}
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
         self.codes: list[tuple[Word, GCode]] = []
+        self.series: list[Word] = []
+        self.rapid_feed = NAN
+        self.axis_limits: dict[int, float] = {}
+        self.axis_accelerations: dict[int, float] = {}
         self.ended = False
         for number in dialect.start:
             self._set(number, dialect.g[number])
@@ -87,7 +104,7 @@ class Control:
         if block.skippable and self.settings.block_skip:
             return
         if block.statement is not None:
-            self.dialect.statements[block.statement.keyword](self, block.statement)
+            self._run_statement(block.statement)
             return
         functions = self._sort_words(block)
         codes = self.codes
@@ -110,10 +127,27 @@ class Control:
         for word, function in functions:
             if function.late:
                 self._run_function(word, function)
-        if self.words:
+        if self.words or self.series:
             self._refuse_unused()
         for name, value in restore:
             setattr(self.modal, name, value)
+
+    def prepare(self) -> None:
+        """The program begins."""
+        if self.dialect.prepare is not None:
+            self.dialect.prepare(self)
+
+    def _run_statement(self, statement: Statement) -> None:
+        self.words, self.codes = {}, []
+        action = self.dialect.statements.get(statement.keyword, self.dialect.other_statement)
+        assert action is not None
+        action(self, statement)
+
+    def finish(self) -> None:
+        """The program has ended, by an end code or by its last line."""
+        if not self.ended and self.dialect.finish is not None:
+            self.dialect.finish(self)
+        self.path.end_compensation()
 
     def _put_into_force(self) -> list[tuple[str, object]]:
         """Apply the block's codes; what those for this block only have replaced."""
@@ -129,14 +163,19 @@ class Control:
     def _sort_words(self, block: Block) -> list[tuple[Word, MCode]]:
         self.codes = []
         self.words = {}
+        self.series = []
         functions: list[tuple[Word, MCode]] = []
         for word in block.words:
-            if isinstance(word.value, Expression):
+            if isinstance(word.value, Expression) and word.address not in self.dialect.references:
                 word = word._replace(value=self.evaluate(word.value, word))
+            if word.address in self.dialect.signed and _number(word) < 0.0:
+                word = word._replace(address=f"{word.address}-")
             if word.address == "G":
                 self.codes.append((word, self._g_code(word)))
             elif word.address == "M":
                 functions.append((word, self._m_code(word)))
+            elif word.address in self.dialect.series and self._has_switch(block):
+                self.series.append(word)
             elif word.address in self.words:
                 self.fail("duplicate-word", f"'{word.address}' stands twice in the block", word)
             else:
@@ -144,6 +183,9 @@ class Control:
         if len(self.codes) > 1:
             self._check_groups()
         return functions
+
+    def _has_switch(self, block: Block) -> bool:
+        return any(word.address == self.dialect.series[0] for word in block.words)
 
     def _g_code(self, word: Word) -> GCode:
         code = self.dialect.g.get(_integer(_number(word)))
@@ -154,6 +196,8 @@ class Control:
                 word,
                 hint=f"known: {', '.join(f'G{number}' for number in sorted(self.dialect.g))}",
             )
+        if code.refused:
+            self.fail("unsupported-g", f"{word.text} ({code.meaning}): {code.refused}", word)
         return code
 
     def _m_code(self, word: Word) -> MCode:
@@ -218,7 +262,7 @@ class Control:
     def take_function_arguments(self, word: Word) -> dict[str, float]:
         """What belongs to an M function: its own words, and for a spindle start the speed."""
         arguments = {
-            address: self.take_number(address)
+            address: self.take_computed(address)
             for address in self.dialect.function_letters
             if address in self.words
         }
@@ -230,7 +274,7 @@ class Control:
         words = self.words
         if not words or not any(address in self.dialect.motion_words for address in words):
             return
-        interpolation = self.modal.interpolation
+        interpolation = self.modal.cycle or self.modal.interpolation
         if interpolation is None:
             word = next(iter(words.values()))
             self.fail(
@@ -244,7 +288,7 @@ class Control:
         interpolation.perform(self)
 
     def _refuse_unused(self) -> NoReturn:
-        word = next(iter(self.words.values()))
+        word = next(iter(self.words.values()), None) or self.series[0]
         if word.address in self.dialect.word_meanings:
             message = f"nothing in this block uses '{word.text}'"
         else:
@@ -252,6 +296,14 @@ class Control:
         known = ", ".join(self.dialect.word_meanings)
         code = "unused-word" if word.address in self.dialect.word_meanings else "unknown-word"
         self.fail(code, message, word, hint=f"words of {self.dialect.name}: {known}")
+
+    def saved_modal(self) -> tuple[Modal, dict[str, int]]:
+        """What is in force, to be restored later."""
+        return dataclasses.replace(self.modal), dict(self.active)
+
+    def restore_modal(self, saved: tuple[Modal, dict[str, int]]) -> None:
+        """Put back what ``saved_modal`` gave."""
+        self.modal, self.active = saved
 
     def code_word(self, number: int) -> Word | None:
         """Where the block writes a G code, for diagnostics."""
@@ -267,6 +319,13 @@ class Control:
         """Take the value of a word from the block."""
         word = self.words.pop(address, None)
         return default if word is None else _number(word)
+
+    def take_computed(self, address: str) -> float:
+        """Take the value of a word that may be a reference to a variable."""
+        word = self.words.pop(address)
+        if isinstance(word.value, Expression):
+            return self.evaluate(word.value, word)
+        return word.value
 
     def number(self, word: Word) -> float:
         """The value of a word."""
@@ -308,6 +367,32 @@ class Control:
             return float(expression.evaluate(self))
         except ExpressionError as error:
             self.fail(error.code, str(error), word, hint=error.hint)
+
+    def expression(self, text: str, column: int) -> Expression:
+        """Read a text that must be one expression."""
+        (only,) = self.expressions(text, column, 1)
+        return only
+
+    def expressions(self, text: str, column: int, count: int | None = None) -> list[Expression]:
+        """Read a text that must be expressions separated by commas."""
+        if not text.strip() and not count:
+            return []
+        try:
+            found, end = self.flow.lexer.expressions.read_list(text, 0)
+        except ExpressionError as error:
+            at = column + (error.column or 0)
+            self.report.fail(error.code, str(error), at, 1, error.hint)
+        if text[end:].strip() or (count is not None and len(found) != count):
+            wanted = "values" if count is None else f"{count} value" + "s" * (count > 1)
+            self.report.fail("expression", f"{wanted} must stand here and no more", column + end)
+        return found
+
+    def compute(self, expression: Expression, column: int) -> float:
+        """Compute an expression of a statement; errors point at its column."""
+        try:
+            return float(expression.evaluate(self))
+        except ExpressionError as error:
+            self.report.fail(error.code, str(error), column, len(expression.text), error.hint)
 
     def read_variable(self, name: str, index: float | None) -> float:
         """Value of a variable of the program, for expressions."""
@@ -358,7 +443,18 @@ class Control:
             self.programmed = target
             return
         modal = self.modal
-        self.columns.add(
+        is_arc = center is not None
+        if self.series and self.dialect.place_switches is not None:
+            self.dialect.place_switches(self, self._length(end, center, normal, sweep))
+        feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc)
+        acceleration, deceleration = self.acceleration, self.deceleration
+        if self.axis_limits or self.axis_accelerations:
+            length = self._length(end, center, normal, sweep)
+            share = self._axis_shares(end, length, is_arc)
+            feed = _limited(feed, self.axis_limits, share)
+            acceleration = _limited(acceleration, self.axis_accelerations, share)
+            deceleration = _limited(deceleration, self.axis_accelerations, share)
+        self.path.add(
             Segment(
                 motion=Motion.RAPID if rapid else Motion.FEED,
                 line=self.block.line,
@@ -366,11 +462,11 @@ class Control:
                 start=self.part,
                 end=end,
                 display=target,
-                feed=NAN if rapid else self._feed_per_minute(end, center is not None),
+                feed=feed,
                 corner=Corner.EXACT_STOP if rapid else modal.corner,
                 corner_tolerance=modal.corner_tolerance,
-                acceleration=self.acceleration,
-                deceleration=self.deceleration,
+                acceleration=acceleration,
+                deceleration=deceleration,
                 center=center,
                 normal=normal,
                 sweep=sweep,
@@ -378,6 +474,23 @@ class Control:
         )
         self.programmed = target
         self.part = end
+
+    def _length(
+        self, end: list[float], center: Vector | None, normal: Vector, sweep: float
+    ) -> float:
+        """What the feed counts, by the convention of ``canonical`` [mm or deg]."""
+        start = self.part
+        if center is not None:
+            radius = math.dist(start[:3], center)
+            advance = sum((end[i] - start[i]) * normal[i] for i in range(3))
+            return math.hypot(radius * math.radians(sweep), advance)
+        spatial = math.dist(start[:3], end[:3])
+        return spatial or math.dist(start[3:], end[3:])
+
+    def _axis_shares(self, end: list[float], length: float, is_arc: bool) -> list[float]:
+        """How much of the path's speed each axis takes at most."""
+        shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
+        return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
     def _feed_per_minute(self, end: list[float], is_arc: bool) -> float:
         turning = not is_arc and all(
@@ -393,15 +506,37 @@ class Control:
             settings = self.settings
             return settings.default_rotary_feed if turning else settings.default_feed
         feed = self.feed if turning else self.feed * self.modal.unit
-        return feed * 60.0 if self.modal.feed_mode is FeedMode.PER_SECOND else feed
+        mode = self.modal.feed_mode
+        if mode is FeedMode.PER_MINUTE:
+            return feed
+        if mode is FeedMode.PER_SECOND:
+            return feed * 60.0
+        if not self.spindle:
+            self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
+        return feed * self.spindle
 
     def dwell(self, seconds: float) -> None:
         """Wait."""
-        self.columns.dwell(self.block.line, seconds)
+        line = self.block.line
+        self.path.event(lambda columns: columns.dwell(line, seconds))
 
     def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
         """Report a function at this place of the path."""
-        self.columns.function(self.block.line, word, dict(arguments), at)
+        line, given = self.block.line, dict(arguments)
+        self.path.event(lambda columns: columns.function(line, word, given, at))
+
+    def part_plane(self) -> Plane:
+        """The working plane as the part sees it."""
+        plane, frame = self.modal.plane, self.frame
+        if frame.plain:
+            return plane
+        normal, _ = frame.arc(plane.normal, 0.0)
+        abscissa, _ = frame.arc(plane.abscissa, 0.0)
+        return Plane(plane.name, abscissa, cross(normal, abscissa), normal)
+
+    def _refuse_move(self, move: Segment, code: str, message: str) -> NoReturn:
+        self.report.line = move.line
+        self.report.fail(code, message)
 
     # --- labels of the screen
 
@@ -444,6 +579,12 @@ class Control:
         if word is None and self.block.words:
             word = self.block.words[0]
         return (0, 1) if word is None else (word.column, word.width)
+
+
+def _limited(value: float, limits: Mapping[int, float], shares: list[float]) -> float:
+    """A value along the path so that no axis exceeds its own limit; NaN is no limit."""
+    bounds = [limit / shares[index] for index, limit in limits.items() if shares[index] > 0.0]
+    return min([value, *bounds]) if value == value else min(bounds, default=value)
 
 
 def _number(word: Word) -> float:

@@ -27,7 +27,7 @@ class FeedMode(enum.Enum):
     PER_MINUTE = "per minute"
     PER_SECOND = "per second"
     SECONDS_PER_BLOCK = "seconds per block"
-    PER_REVOLUTION = "per revolution"
+    PER_REVOLUTION = "per revolution of the spindle"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -48,6 +48,10 @@ class Modal:
     """What stays in force from block to block; G codes set it by name."""
 
     interpolation: Interpolation | None = None
+    cycle: Interpolation | None = None
+    """A canned cycle; while it is in force it stands in the place of the interpolation."""
+    return_to_reference: bool = False
+    """Cycles end at their reference plane, not at the height where they were called."""
     plane: Plane = XY
     incremental: bool = False
     center_absolute: bool = False
@@ -72,6 +76,7 @@ class GCode:
         after: Done when the block has moved.
         once: What it sets holds for its block only.
         alone: No other word may stand in its block.
+        refused: Why the twin refuses a code that the control knows; empty: it does not.
         ground: On what the meaning rests.
     """
 
@@ -84,6 +89,7 @@ class GCode:
     after: Action | None = None
     once: bool = False
     alone: bool = False
+    refused: str = ""
     ground: Ground = "decision"
 
 
@@ -185,8 +191,12 @@ class Dialect:
         axis_letters: Addresses that name axes.
         motion_words: Addresses that make a block move, the axes among them.
         function_letters: Addresses that belong to an M function of their block.
+        references: Addresses whose value names a variable and is not computed.
+        signed: Addresses that are two words, one above and one below 0.
+        series: Addresses that may stand several times in a block with a switch point, in order.
         words: Addresses with a modal meaning, and what they do.
         statements: Keywords of statements, and what they do.
+        other_statement: What the others do, which begin with a name.
         word_meanings: What the addresses mean, for people.
         units: Units of lengths and feeds, for people.
         decisions: Every decision taken for it.
@@ -195,6 +205,8 @@ class Dialect:
         memory: Makes the object that holds what only this dialect remembers.
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
+        place_switches: Reports the block's switch points, told the length of its move.
+        prepare: Done before the first block.
         finish: Done when the program ends without an end code.
     """
 
@@ -210,8 +222,12 @@ class Dialect:
     axis_letters: frozenset[str] = frozenset("XYZABCUVW")
     motion_words: frozenset[str] = frozenset("XYZABCUVWIJKR")
     function_letters: str = ""
+    references: str = ""
+    signed: str = ""
+    series: str = ""
     words: Mapping[str, WordAction]
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
+    other_statement: StatementAction | None = None
     word_meanings: Mapping[str, str]
     units: str
     decisions: tuple[Decision, ...]
@@ -220,4 +236,6 @@ class Dialect:
     memory: Callable[[], object] = object
     before_motion: Callable[["Control", bool], None] | None = None
     read_variable: Callable[["Control", str, float | None], float] | None = None
+    place_switches: Callable[["Control", float], None] | None = None
+    prepare: Action | None = None
     finish: Action | None = None

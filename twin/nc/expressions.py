@@ -135,7 +135,9 @@ class ExpressionReader:
     def __init__(self, syntax: ExpressionSyntax) -> None:
         self._syntax = syntax
         symbols = sorted(syntax.operators, key=len, reverse=True)
-        self._operator = re.compile(rf"[ \t]*({'|'.join(map(_token, symbols))})", re.IGNORECASE)
+        self._operator = re.compile(
+            rf"[ \t]*({'|'.join(map(operator_pattern, symbols))})", re.IGNORECASE
+        )
         self._number = re.compile(NUMBER)
         self._variable = re.compile(syntax.variable, re.IGNORECASE)
         self._name = re.compile(r"[A-Z_][A-Z_0-9]*", re.IGNORECASE)
@@ -178,7 +180,10 @@ class ExpressionReader:
         return self._name.match(text, at)
 
 
-def _token(symbol: str) -> str:
+def operator_pattern(symbol: str) -> str:
+    """Regular expression of an operator; two slashes begin a comment."""
+    if symbol == "/":
+        return "/(?!/)"
     return re.escape(symbol) + (r"\b" if symbol[-1].isalpha() else "")
 
 

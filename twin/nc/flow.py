@@ -1,6 +1,8 @@
 """Which block comes next: straight on, jumps, and a guard against programs without an end."""
 
+import dataclasses
 import re
+from collections.abc import Callable
 from typing import NamedTuple, NoReturn
 
 from twin.nc.blocks import Block
@@ -21,11 +23,31 @@ class Place(NamedTuple):
     part: int
 
 
+@dataclasses.dataclass(slots=True)
+class Return:
+    """What happens when a called part of the program ends.
+
+    Attributes:
+        back: Where to go on.
+        leave: Done on the way back, such as forgetting local variables.
+        again: How often the part still runs anew before that.
+        first: Where it begins.
+        last: Its last block where it ends by place; None where it ends by a word.
+    """
+
+    back: "Place"
+    first: "Place"
+    leave: Callable[[], None] | None = None
+    again: int = 0
+    last: "Place | None" = None
+
+
 class Flow:
     """The program counter.
 
     Attributes:
         place: The block that comes next.
+        calls: The parts of the program that are being run for a caller, the innermost last.
     """
 
     def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
@@ -41,6 +63,17 @@ class Flow:
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
         self.place = Place(0, 0)
+        self.calls: list[Return] = []
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The program's text."""
+        return self._lines
+
+    @property
+    def lexer(self) -> Lexer:
+        """Reads the program's lines."""
+        return self._lexer
 
     def next(self) -> Block | None:
         """The next block, or None at the end of the program.
@@ -48,6 +81,8 @@ class Flow:
         Raises:
             ProgramError: Its line cannot be read, or the program runs without end.
         """
+        while self.calls and self._past_end(self.calls[-1]):
+            self.end_part()
         line, part = self.place
         while line < len(self._lines):
             blocks = self._blocks(line)
@@ -58,6 +93,53 @@ class Flow:
             line, part = line + 1, 0
         self.place = Place(line, 0)
         return None
+
+    def _past_end(self, call: Return) -> bool:
+        return call.last is not None and self.place > call.last
+
+    def call(self, call: Return, deepest: int, column: int, width: int) -> None:
+        """Run a part of the program for the block that asks for it.
+
+        Raises:
+            ProgramError: More than ``deepest`` parts call each other.
+        """
+        if len(self.calls) >= deepest:
+            message = f"more than {deepest} calls within calls"
+            self._report.fail("call-depth", message, column, width)
+        self._jumped = True
+        self.calls.append(call)
+        self.place = call.first
+
+    def end_part(self) -> None:
+        """The innermost called part has ended: run it again, or go back to its caller."""
+        call = self.calls[-1]
+        if call.again > 0:
+            call.again -= 1
+            self.place = call.first
+            return
+        self.calls.pop()
+        self.place = call.back
+        if call.leave is not None:
+            call.leave()
+
+    def go(self, place: Place) -> None:
+        """Go on at a place."""
+        self._jumped = True
+        self.place = place
+
+    def end(self) -> None:
+        """Go on behind the last line."""
+        self.place = Place(len(self._lines), 0)
+
+    def seek(self, wanted: Callable[[Block], bool]) -> bool:
+        """Go on at the next block that is wanted; stay where it is when there is none."""
+        line, part = self.place
+        for number in range(line, len(self._lines)):
+            for block in self._readable_blocks(number):
+                if (number > line or block.part >= part) and wanted(block):
+                    self.place = Place(number, block.part)
+                    return True
+        return False
 
     def jump(self, number: int, fail_at: tuple[int, int], word: str) -> None:
         """Go on at the block with an N number.

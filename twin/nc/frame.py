@@ -62,14 +62,18 @@ class Frame:
         """A direction of X, Y, Z as the part sees it."""
         return _apply(self.matrix, vector)
 
+    @property
+    def handedness(self) -> float:
+        """-1 where the matrix mirrors, else 1."""
+        return 1.0 if self.plain else math.copysign(1.0, _determinant(self.matrix))
+
     def arc(self, normal: Vector, sweep: float) -> tuple[Vector, float]:
         """Normal and sweep of an arc as the part sees them; a mirror reverses the sense."""
         if self.plain:
             return normal, sweep
         x, y, z = self.turn(normal)
         length = math.sqrt(x * x + y * y + z * z)
-        sign = math.copysign(1.0, _determinant(self.matrix))
-        return (x / length, y / length, z / length), sweep * sign
+        return (x / length, y / length, z / length), sweep * self.handedness
 
 
 def multiply(left: Matrix, right: Matrix) -> Matrix:

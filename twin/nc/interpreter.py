@@ -36,7 +36,7 @@ class Interpretation:
     @property
     def position(self) -> FloatArray:
         """Where the axes stand in part coordinates, shape (k,) [mm or deg]."""
-        return np.array(self._control.part)
+        return np.array(self._control.path.position)
 
     @property
     def display(self) -> FloatArray:
@@ -51,13 +51,13 @@ class Interpretation:
         """
         control = self._control
         try:
+            control.prepare()
             while not control.ended and (block := control.flow.next()) is not None:
                 control.run(block)
-                if len(control.columns) >= CHUNK:
-                    yield control.columns.take()
-            if not control.ended and self.dialect.finish is not None:
-                self.dialect.finish(control)
+                if len(control.path) >= CHUNK:
+                    yield control.path.take()
+            control.finish()
         except ProgramError:
-            yield control.columns.take()
+            yield control.path.take()
             raise
-        yield control.columns.take()
+        yield control.path.take()

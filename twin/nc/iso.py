@@ -3,8 +3,10 @@
 from twin.nc.blocks import Word
 from twin.nc.circular import clockwise_arc, counter_clockwise_arc
 from twin.nc.control import Control
-from twin.nc.dialect import GCode, Interpolation, MCode
+from twin.nc.dialect import FeedMode, GCode, Interpolation, MCode
+from twin.nc.iso_cycles import CYCLES
 from twin.nc.linear import feed_line, rapid_line
+from twin.nc.offsets import COMPENSATION, LENGTH, OFFSETS, PRESET, refuse_plane_change
 from twin.nc.planes import XY, YZ, ZX
 
 RAPID = Interpolation(rapid_line, rapid=True)
@@ -36,7 +38,13 @@ def select_tool(control: Control, word: Word) -> None:
     number = control.number(word)
     if number < 0.0 or number != int(number):
         control.fail("tool-number", f"{word.text} is no tool number", word)
+    control.tools.selected = int(number)
     control.function(f"T{int(number)}", {})
+
+
+def change_tool(control: Control) -> None:
+    """M6: the selected tool goes into the spindle."""
+    control.tools.change()
 
 
 def dwell_seconds(control: Control) -> None:
@@ -50,21 +58,10 @@ def dwell_seconds(control: Control) -> None:
     control.dwell(seconds)
 
 
-def preset(control: Control) -> None:
-    """G92: the place where the machine stands gets the coordinates of the block."""
-    programmed = list(control.programmed)
-    words = control.take_axis_words()
-    if not words:
-        control.fail("preset", "G92 needs the coordinates that this place shall have")
-    for index, word in words:
-        programmed[index] = control.axis_value(index, word)
-    control.relabel(programmed, "preset")
-
-
 PLANES = {
-    17: GCode(meaning="plane X Y", group="plane", sets={"plane": XY}),
-    18: GCode(meaning="plane Z X", group="plane", sets={"plane": ZX}),
-    19: GCode(meaning="plane Y Z", group="plane", sets={"plane": YZ}),
+    17: GCode(meaning="plane X Y", group="plane", sets={"plane": XY}, action=refuse_plane_change),
+    18: GCode(meaning="plane Z X", group="plane", sets={"plane": ZX}, action=refuse_plane_change),
+    19: GCode(meaning="plane Y Z", group="plane", sets={"plane": YZ}, action=refuse_plane_change),
 }
 DISTANCE = {
     90: GCode(meaning="absolute coordinates", group="distance", sets={"incremental": False}),
@@ -75,17 +72,61 @@ UNITS = {
     71: GCode(meaning="millimetres", group="units", sets={"unit": 1.0}),
 }
 MOTION = {
-    0: GCode(meaning="rapid positioning", group="motion", sets={"interpolation": RAPID}),
-    1: GCode(meaning="straight line", group="motion", sets={"interpolation": FEED}),
-    2: GCode(meaning="arc clockwise", group="motion", sets={"interpolation": CLOCKWISE}),
+    0: GCode(
+        meaning="rapid positioning", group="motion", sets={"interpolation": RAPID, "cycle": None}
+    ),
+    1: GCode(meaning="straight line", group="motion", sets={"interpolation": FEED, "cycle": None}),
+    2: GCode(
+        meaning="arc clockwise", group="motion", sets={"interpolation": CLOCKWISE, "cycle": None}
+    ),
     3: GCode(
-        meaning="arc counter-clockwise", group="motion", sets={"interpolation": COUNTER_CLOCKWISE}
+        meaning="arc counter-clockwise",
+        group="motion",
+        sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None},
     ),
 }
 DWELL = {4: GCode(meaning="dwell, seconds in P, X or F", perform=dwell_seconds, takes="F")}
-PRESET = {92: GCode(meaning="preset the position", perform=preset)}
 
-GROUPS = ("units", "plane", "distance", "feed", "corner", "offset", "compensation", "motion")
+FEEDS = {
+    94: GCode(meaning="feed per minute", group="feed", sets={"feed_mode": FeedMode.PER_MINUTE}),
+    95: GCode(
+        meaning="feed per revolution of the spindle",
+        group="feed",
+        sets={"feed_mode": FeedMode.PER_REVOLUTION},
+    ),
+}
+
+BASE = {
+    **MOTION,
+    **DWELL,
+    **PLANES,
+    **COMPENSATION,
+    **LENGTH,
+    **OFFSETS,
+    **UNITS,
+    **CYCLES,
+    **DISTANCE,
+    **PRESET,
+    **FEEDS,
+}
+"""The base that ``gost`` and ``mefi`` share; each replaces what its own page says otherwise."""
+
+START = (17, 40, 49, 71, 80, 90, 94)
+"""Codes in force when a program starts: none moves until one is programmed (decision)."""
+
+GROUPS = (
+    "units",
+    "plane",
+    "distance",
+    "feed",
+    "corner",
+    "offset",
+    "length",
+    "return plane",
+    "compensation",
+    "motion",
+    "cycle",
+)
 
 M_CODES = {
     0: MCode(meaning="program stop", late=True),
@@ -94,7 +135,7 @@ M_CODES = {
     3: MCode(meaning="spindle clockwise"),
     4: MCode(meaning="spindle counter-clockwise"),
     5: MCode(meaning="spindle stop", late=True),
-    6: MCode(meaning="tool change"),
+    6: MCode(meaning="tool change", action=change_tool),
     7: MCode(meaning="mist on"),
     8: MCode(meaning="coolant on"),
     9: MCode(meaning="coolant off", late=True),
@@ -118,8 +159,11 @@ WORD_MEANINGS = {
     "I": "centre along X, from the start of the arc",
     "J": "centre along Y",
     "K": "centre along Z",
-    "R": "radius of the arc; negative: the larger of the two",
+    "R": "radius of the arc, negative: the larger of the two; reference plane of a cycle",
+    "D": "tool whose radius compensates",
+    "H": "tool whose length compensates",
     "P": "seconds of a dwell",
+    "Q": "depth of one peck (G83)",
     "F": "feed",
     "S": "spindle speed",
     "T": "tool",

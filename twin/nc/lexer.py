@@ -12,6 +12,7 @@ from twin.nc.expressions import (
     NUMBER,
     ExpressionError,
     ExpressionReader,
+    operator_pattern,
 )
 from twin.nc.reporter import Reporter
 
@@ -21,6 +22,7 @@ LONGEST_LINE = 65_536
 _LARGEST_LABEL = 4_294_967_295
 """Largest N number (32 bits, as the Fagor manual states)."""
 
+_NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _BLANKS = re.compile(r"[ \t]*")
 _LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
 """Cyrillic letters that look like Latin ones: a keyboard left in the wrong layout."""
@@ -38,7 +40,7 @@ class Lexer:
         continues = "[0-9.]"
         if syntax.expressions is not None:
             operators = sorted(syntax.expressions.operators, key=len, reverse=True)
-            continues += rf"|[ \t]*(?:{'|'.join(map(re.escape, operators))})"
+            continues += rf"|[ \t]*(?:{'|'.join(map(operator_pattern, operators))})"
         suffix = r"(I(?![ \t]*[-+.0-9=\[P])|)" if syntax.incremental_suffix else "()"
         self._word = re.compile(
             rf"[ \t]*({syntax.address})[ \t]*([+-]?{NUMBER})(?!{continues}){suffix}",
@@ -165,7 +167,7 @@ class _LineReader:
         match = pattern.match(self._line, self._at) if pattern and not self._words else None
         if match is None:
             return False
-        text = self._without_comments(match.end())
+        text = self._statement_text(match.end())
         keyword = match[1].upper()
         begin = match.start(1)
         statement = Statement(keyword, text, begin, match.end())
@@ -182,14 +184,15 @@ class _LineReader:
         self._at = match.end() + len(text)
         return True
 
-    def _without_comments(self, start: int) -> str:
-        """The rest of the line up to a comment that closes it."""
-        ends = [
-            end
-            for comment in self._syntax.comments
-            if (end := self._line.find(comment.opening, start)) >= 0
-        ]
-        return self._line[start : min(ends)] if ends else self._line[start:]
+    def _statement_text(self, start: int) -> str:
+        """What belongs to a statement: up to a comment that ends the line, or the next block."""
+        end = len(self._line)
+        for comment in self._syntax.comments:
+            if not comment.closing and (found := self._line.find(comment.opening, start)) >= 0:
+                end = min(end, found)
+        if self._syntax.several_blocks and (label := _NEXT_LABEL.search(self._line, start, end)):
+            end = label.start()
+        return self._line[start:end]
 
     def _computed_word(self) -> bool:
         if self._lexer._reader is None:  # noqa: SLF001

@@ -6,6 +6,19 @@ from collections.abc import Mapping
 from twin.nc.canonical import Axes
 
 
+@dataclasses.dataclass(frozen=True, slots=True)
+class ToolData:
+    """What the control's tool table knows of a tool.
+
+    Attributes:
+        radius: Of its cutting edge [mm].
+        length: From the spindle nose to its tip [mm].
+    """
+
+    radius: float
+    length: float
+
+
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class ControlSettings:
     """The control's configuration for one run of a program."""
@@ -27,6 +40,21 @@ class ControlSettings:
 
     recalculate_on_rapid: bool = False
     """``gost``: G102 also relabels the start of G0 blocks (dialects.md: decision, default off)."""
+
+    tools: Mapping[int, ToolData] = dataclasses.field(default_factory=dict)
+    """The tool table by tool number; the first is in the spindle when the program starts."""
+
+    offsets: Mapping[str, Mapping[str, float]] = dataclasses.field(default_factory=dict)
+    """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
+
+    machine_zero: Mapping[str, float] | None = None
+    """Part coordinates of machine zero by axis [mm or deg]; None: not known, G53 is refused."""
+
+    variables: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    """Values of variables that the program reads but does not set, by their name in it."""
+
+    module_rotary: bool = False
+    """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
 
     strict: bool = False
     """Turn warnings into errors."""

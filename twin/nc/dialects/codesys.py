@@ -1,51 +1,53 @@
 """CODESYS SoftMotion CNC (DIN 66025 with SoftMotion's own codes)."""
 
-from twin.nc import iso
-from twin.nc.blocks import Word
+from twin.nc import iso, offsets
 from twin.nc.canonical import Corner
-from twin.nc.control import Control
 from twin.nc.dialect import (
     Comment,
     Decision,
     Dialect,
     FeedMode,
     GCode,
+    Interpolation,
     Mark,
     MCode,
     Syntax,
 )
+from twin.nc.dialects import codesys_codes as codes
+from twin.nc.dialects import codesys_program as program
 from twin.nc.dialects.codesys_arcs import CLOCKWISE, COUNTER_CLOCKWISE
-from twin.nc.planes import XY, YZ, ZX, plane_with_normal
+from twin.nc.dialects.codesys_curves import (
+    CLOCKWISE_ELLIPSE,
+    COUNTER_CLOCKWISE_ELLIPSE,
+    PARABOLA,
+)
+from twin.nc.planes import XY, YZ, ZX, Plane
+
+ADDITIONAL = "ABCPQUVW"
+"""Letters of additional axes."""
 
 
-def dwell(control: Control) -> None:
-    """G4: wait T seconds."""
-    word = control.take("T")
-    if word is None or control.number(word) < 0.0:
-        control.fail("dwell", "G4 needs T, its seconds", word, hint="write G4 T1")
-    control.dwell(control.number(word))
+def _motion(meaning: str, interpolation: Interpolation, *, seed: bool = False) -> GCode:
+    return GCode(
+        meaning=meaning,
+        group="motion",
+        sets={"interpolation": interpolation},
+        ground="seed" if seed else "manual",
+    )
 
 
-def free_plane(control: Control) -> None:
-    """G16: the plane whose normal is I, J, K."""
-    words = [control.words.pop(letter) for letter in "IJK" if letter in control.words]
-    values = {word.address: control.number(word) for word in words}
-    normal = (values.get("I", 0.0), values.get("J", 0.0), values.get("K", 0.0))
-    if not any(normal):
-        control.fail("plane-normal", "G16 needs the plane's normal", control.code_word(16))
-    control.modal.plane = plane_with_normal(normal)
+def _plane(meaning: str, plane: Plane) -> GCode:
+    return GCode(
+        meaning=meaning,
+        group="plane",
+        sets={"plane": plane},
+        action=offsets.refuse_plane_change,
+        ground="manual",
+    )
 
 
-def set_acceleration(control: Control, word: Word) -> None:
-    """E: above 0 the path's acceleration, below 0 its deceleration [units/s²]."""
-    value = control.number(word)
-    if value > 0.0:
-        control.acceleration = value
-    elif value < 0.0:
-        control.deceleration = -value
-    else:
-        control.fail("acceleration-range", "an acceleration of 0 never moves", word)
-
+_SPLINE = "splines are not drawn by the twin; write lines or arcs"
+_PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
 DECISIONS = (
     Decision(
@@ -96,6 +98,31 @@ DECISIONS = (
         "The centre then lies beside the start along the axis that was given.",
     ),
     Decision(
+        "Which unit have the angles of SIN, COS and TAN?",
+        "Radians.",
+        "They are functions of IEC 61131-3.",
+    ),
+    Decision(
+        "How do additional axes move?",
+        "Linearly with the path, A B C too.",
+        "Without slopes and smoothing a polynomial of third degree has nothing to bend for.",
+    ),
+    Decision(
+        "How fast is G0?",
+        "As fast as the machine can, unless FF limits it.",
+        "The default of FF is an input of the application.",
+    ),
+    Decision(
+        "What is a parabola's I J?",
+        "The point where the tangents of both ends meet.",
+        "It defines the parabola uniquely.",
+    ),
+    Decision(
+        "What does G56 do?",
+        "The place where the machine stands gets the given coordinates.",
+        "The manual calls it set reference.",
+    ),
+    Decision(
         "How does a path pass its corners?",
         "Exactly; the speed falls to 0 where the direction changes and next to G0.",
         "The documentation's block transition speed.",
@@ -104,43 +131,138 @@ DECISIONS = (
 
 CODESYS = Dialect(
     name="codesys",
-    title="CODESYS SoftMotion CNC",
+    title="CODESYS SoftMotion CNC (DIN 66025)",
     code_page="cp1252",
     syntax=Syntax(
+        address=r"FF|EF|[FE][XYZABCPQUVW](?![A-Z])|P[ABCPQUVW](?![A-Z])|L[?!]|[A-Z]",
         comments=(Comment("(*", "*)"), Comment("(", ")"), Comment("//"), Comment("%")),
+        expressions=program.EXPRESSIONS,
+        statement=program.STATEMENT,
         several_blocks=True,
     ),
-    groups=("plane", "distance", "centre", "motion"),
+    groups=(
+        "plane",
+        "distance",
+        "centre",
+        "offset",
+        "length",
+        "compensation",
+        "smoothing",
+        "additional axes",
+        "loops",
+        "motion",
+    ),
     g={
-        0: iso.MOTION[0],
-        1: iso.MOTION[1],
-        2: GCode(
-            meaning="arc clockwise",
-            group="motion",
-            sets={"interpolation": CLOCKWISE},
-            ground="seed",
-        ),
-        3: GCode(
-            meaning="arc counter-clockwise",
-            group="motion",
-            sets={"interpolation": COUNTER_CLOCKWISE},
-            ground="seed",
-        ),
-        4: GCode(meaning="dwell, seconds in T", perform=dwell, ground="manual"),
-        15: GCode(
-            meaning="2D mode: arcs in X Y", group="plane", sets={"plane": XY}, ground="manual"
-        ),
+        0: _motion("positioning in a straight line; FF is its feed", iso.RAPID),
+        1: _motion("straight line", iso.FEED, seed=True),
+        2: _motion("arc clockwise", CLOCKWISE, seed=True),
+        3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
+        4: GCode(meaning="dwell, seconds in T", perform=codes.dwell, ground="manual"),
+        5: GCode(meaning="point of a 2D spline", group="motion", refused=_SPLINE, ground="manual"),
+        6: _motion("parabola: X Y, tangents meet at I J", PARABOLA),
+        8: _motion("ellipse clockwise: X Y I J K R", CLOCKWISE_ELLIPSE),
+        9: _motion("ellipse counter-clockwise: X Y I J K R", COUNTER_CLOCKWISE_ELLIPSE),
+        10: GCode(meaning="point of a 3D spline", group="motion", refused=_SPLINE, ground="manual"),
+        15: _plane("2D mode: arcs in X Y", XY),
         16: GCode(
             meaning="3D mode, plane with normal I J K",
             group="plane",
-            action=free_plane,
+            action=codes.free_plane,
             ground="manual",
         ),
-        17: GCode(meaning="3D mode, plane X Y", group="plane", sets={"plane": XY}, ground="manual"),
-        18: GCode(meaning="3D mode, plane Z X", group="plane", sets={"plane": ZX}, ground="manual"),
-        19: GCode(meaning="3D mode, plane Y Z", group="plane", sets={"plane": YZ}, ground="manual"),
-        **iso.DISTANCE,
-        92: GCode(meaning="set position", perform=iso.preset, ground="manual"),
+        17: _plane("3D mode, plane X Y", XY),
+        18: _plane("3D mode, plane Z X", ZX),
+        19: _plane("3D mode, plane Y Z", YZ),
+        20: GCode(
+            meaning="jump to L (or the label L? behind) when K is not 0",
+            perform=program.conditional_jump,
+            takes="L!",
+            ground="manual",
+        ),
+        31: GCode(meaning="probe", perform=codes.probe, ground="manual"),
+        36: GCode(
+            meaning="write D to the variable O", perform=program.write_variable, ground="manual"
+        ),
+        37: GCode(
+            meaning="add D to the variable O", perform=program.add_to_variable, ground="manual"
+        ),
+        38: GCode(meaning="state flags", refused=_PROFILE, ground="manual"),
+        39: GCode(meaning="parameters of the preprocessing", refused=_PROFILE, ground="manual"),
+        40: GCode(
+            meaning="radius compensation off",
+            group="compensation",
+            action=offsets.end_compensation,
+            ground="manual",
+        ),
+        41: GCode(
+            meaning="radius compensation left, radius D",
+            group="compensation",
+            action=codes.left_of_contour,
+            ground="manual",
+        ),
+        42: GCode(
+            meaning="radius compensation right, radius D",
+            group="compensation",
+            action=codes.right_of_contour,
+            ground="manual",
+        ),
+        43: GCode(
+            meaning="tool length vector I J K",
+            group="length",
+            action=codes.length_vector,
+            ground="manual",
+        ),
+        50: GCode(meaning="smoothing off", group="smoothing", ground="manual"),
+        51: GCode(
+            meaning="spline smoothing of corners",
+            group="smoothing",
+            refused=_SPLINE,
+            ground="manual",
+        ),
+        52: GCode(
+            meaning="rounding of corners with an arc",
+            group="smoothing",
+            refused="corners are not rounded by the twin; write the arcs",
+            ground="manual",
+        ),
+        53: GCode(meaning="coordinate shift off", perform=codes.reset_shift, ground="manual"),
+        54: GCode(
+            meaning="coordinate shift, absolute", perform=codes.shift_absolutely, ground="manual"
+        ),
+        55: GCode(
+            meaning="coordinate shift, relative", perform=codes.shift_relatively, ground="manual"
+        ),
+        56: GCode(meaning="set the reference here", perform=codes.set_reference, ground="manual"),
+        60: GCode(meaning="loop avoidance off", group="loops", ground="manual"),
+        61: GCode(
+            meaning="loop avoidance on",
+            group="loops",
+            refused="the twin never cuts loops out of a path; it refuses what does not fit",
+            ground="manual",
+        ),
+        70: GCode(
+            meaning="smoothing of additional axes off", group="additional axes", ground="manual"
+        ),
+        71: GCode(
+            meaning="smoothing of additional axes on",
+            group="additional axes",
+            refused="additional axes go linearly with the path",
+            ground="manual",
+        ),
+        75: GCode(meaning="wait for the motion before variables are read", ground="manual"),
+        90: GCode(
+            meaning="absolute coordinates",
+            group="distance",
+            sets={"incremental": False},
+            ground="manual",
+        ),
+        91: GCode(
+            meaning="relative coordinates",
+            group="distance",
+            sets={"incremental": True},
+            ground="manual",
+        ),
+        92: GCode(meaning="set position", perform=offsets.preset, ground="manual"),
         98: GCode(
             meaning="centre I J K absolute",
             group="centre",
@@ -154,45 +276,83 @@ CODESYS = Dialect(
             ground="seed",
         ),
     },
-    start=(15, 90, 99),
+    start=(15, 40, 50, 60, 70, 90, 99),
     start_state={"feed_mode": FeedMode.PER_SECOND, "corner": Corner.EXACT_PATH},
-    m={
-        2: MCode(meaning="end of program", late=True, ends=True),
-        30: MCode(meaning="end of program", late=True, ends=True),
-    },
+    m={number: MCode(meaning="end of program", late=True, ends=True) for number in (2, 30)},
     any_m=True,
-    axis_letters=frozenset("XYZABCPQUVW"),
-    motion_words=frozenset("XYZABCPQUVWIJKRT"),
+    axis_letters=frozenset(f"XYZ{ADDITIONAL}"),
+    motion_words=frozenset(f"XYZ{ADDITIONAL}IJKRT"),
     function_letters="KLO",
-    words={"F": iso.set_feed, "E": set_acceleration},
+    references="O",
+    signed="E",
+    series="HOL",
+    words={
+        "F": iso.set_feed,
+        "E": codes.set_acceleration,
+        "E-": codes.set_acceleration,
+        "FF": codes.set_rapid_feed,
+        "EF": codes.refuse_rapid_acceleration,
+        "S": codes.refuse_profile,
+        "L!": codes.pass_label,
+        **{f"P{letter}": codes.set_period(letter) for letter in ADDITIONAL},
+        **{
+            f"F{letter}": codes.axis_limit(letter, acceleration=False)
+            for letter in f"XYZ{ADDITIONAL}"
+        },
+        **{
+            f"E{letter}": codes.axis_limit(letter, acceleration=True)
+            for letter in f"XYZ{ADDITIONAL}"
+        },
+    },
+    statements={
+        "LET": program.let,
+        "SUBPROGRAM": program.define,
+        "END_SUBPROGRAM": program.leave_subprogram,
+        "RETURN": program.leave_subprogram,
+    },
+    other_statement=program.assign_or_call,
     word_meanings={
         "N": "block number",
         "G": "preparatory code",
         "X": "X axis",
         "Y": "Y axis",
         "Z": "Z axis",
-        "A": "additional axis",
-        "B": "additional axis",
-        "C": "additional axis",
-        "P": "additional axis",
-        "Q": "additional axis",
-        "U": "additional axis",
-        "V": "additional axis",
-        "W": "additional axis",
-        "I": "centre along X",
+        **dict.fromkeys(ADDITIONAL, "additional axis, linear along the path"),
+        "I": "centre along X; component of a normal or a vector",
         "J": "centre along Y",
-        "K": "centre along Z; condition of a jump; parameter of M",
-        "R": "radius",
+        "K": "centre along Z; condition of a jump; angle of an ellipse; parameter of M",
+        "R": "radius; short by long half axis of an ellipse",
         "T": "opening angle; seconds of G4",
         "F": "feed per second",
-        "E": "above 0 acceleration, below 0 deceleration, per second squared",
+        "E": "acceleration per second squared",
+        "E-": "deceleration per second squared, below 0",
+        "FF": "feed of G0 per second; 0: the machine's",
+        "EF": "acceleration of G0; 0 only",
+        "D": "tool radius; value of G36 and G37",
+        "H": "switch point, negative: off",
+        "O": "place of a switch point as a share; variable of G36 and G37; parameter of M",
+        "L": "block to jump to; place of a switch point as a distance; parameter of M",
+        "L?": "label to jump to, forwards",
+        "L!": "label",
+        "S": "profile of additional axes; 0 only",
         "M": "machine function",
+        **{f"P{letter}": f"modulo period of {letter}; 0: none" for letter in ADDITIONAL},
+        **{f"F{letter}": f"largest velocity of {letter}" for letter in f"XYZ{ADDITIONAL}"},
+        **{f"E{letter}": f"largest acceleration of {letter}" for letter in f"XYZ{ADDITIONAL}"},
     },
     units="mm, degrees; F in units per second, E in units per second squared",
     decisions=DECISIONS,
     marks=(
-        Mark(r"\bN[ \t]*\d+\b.*\bN[ \t]*\d+\b", "several N blocks on one line"),
+        Mark(r"^[^\"$;]*\bN[ \t]*\d+\b[^\"$;]*\bN[ \t]*\d+\b", "several N blocks on one line"),
         Mark(r"\bG0?[23]\b.*[IJK].*\bT[ \t]*\d", "an arc with the opening angle T"),
+        Mark(r"\bG0?4[ \t]*T", "G4 T"),
         Mark(r"\bE[ \t]*[-+]?\d", "E, the acceleration"),
+        Mark(r"\$[A-Z_]\w*\$", "$variable$"),
+        Mark(r"\bLET[ \t]+#|\bSUBPROGRAM\b", "LET, SUBPROGRAM"),
+        Mark(r"\bG20[ \t]+L", "G20 L"),
     ),
+    memory=program.Variables,
+    before_motion=codes.take_shortest_way,
+    read_variable=program.read_variable,
+    place_switches=codes.place_switches,
 )

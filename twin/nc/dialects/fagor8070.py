@@ -1,6 +1,6 @@
 """Fagor CNC 8070, milling model."""
 
-from twin.nc import iso
+from twin.nc import iso, offsets
 from twin.nc.canonical import Corner
 from twin.nc.control import Control
 from twin.nc.dialect import Comment, Decision, Dialect, GCode, Mark, Syntax
@@ -66,22 +66,25 @@ FAGOR8070 = Dialect(
         0: GCode(
             meaning="rapid positioning",
             group="motion",
-            sets={"interpolation": RAPID},
+            sets={"interpolation": RAPID, "cycle": None},
             ground="manual",
         ),
         1: GCode(
-            meaning="straight line", group="motion", sets={"interpolation": FEED}, ground="manual"
+            meaning="straight line",
+            group="motion",
+            sets={"interpolation": FEED, "cycle": None},
+            ground="manual",
         ),
         2: GCode(
             meaning="arc clockwise",
             group="motion",
-            sets={"interpolation": CLOCKWISE},
+            sets={"interpolation": CLOCKWISE, "cycle": None},
             ground="seed",
         ),
         3: GCode(
             meaning="arc counter-clockwise",
             group="motion",
-            sets={"interpolation": COUNTER_CLOCKWISE},
+            sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None},
             ground="seed",
         ),
         4: GCode(meaning="dwell", perform=dwell, ground="manual"),
@@ -154,7 +157,7 @@ FAGOR8070 = Dialect(
         ),
         **iso.UNITS,
         **iso.DISTANCE,
-        **iso.PRESET,
+        **offsets.PRESET,
         94: GCode(meaning="feed per minute", group="feed", ground="manual"),
         261: GCode(
             meaning="centre in absolute coordinates",

@@ -7,7 +7,7 @@ import dataclasses
 import math
 import re
 
-from twin.nc import iso
+from twin.nc import iso, iso_cycles
 from twin.nc.canonical import Corner
 from twin.nc.control import Control
 from twin.nc.dialect import Comment, Decision, Dialect, GCode, Mark, Syntax
@@ -138,26 +138,22 @@ GOST = Dialect(
     syntax=Syntax(comments=(Comment("$"), Comment("(", ")"), Comment("%")), excused=excuse),
     groups=iso.GROUPS,
     g={
-        **iso.MOTION,
-        **iso.DWELL,
+        **iso.BASE,
+        **iso_cycles.RETURN,
         9: GCode(
             meaning="exact stop in this block",
             sets={"corner": Corner.EXACT_STOP},
             once=True,
         ),
-        **iso.PLANES,
         61: GCode(meaning="exact stop mode", group="corner", sets={"corner": Corner.EXACT_STOP}),
         64: GCode(meaning="exact path mode", group="corner", sets={"corner": Corner.EXACT_PATH}),
-        **iso.UNITS,
-        **iso.DISTANCE,
-        **iso.PRESET,
         102: GCode(
             meaning="recalculation of a periodic axis: C360 on, C0 off",
             perform=switch_recalculation,
             ground="seed",
         ),
     },
-    start=(17, 64, 71, 90),
+    start=(*iso.START, 64, 98),
     m=iso.M_CODES,
     words=iso.WORDS,
     word_meanings=iso.WORD_MEANINGS,

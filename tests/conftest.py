@@ -1,0 +1,35 @@
+"""Run the command line inside the test's own process, as a shell would see it."""
+
+import dataclasses
+import sys
+from collections.abc import Callable
+
+import pytest
+
+from twin import cli
+
+
+@dataclasses.dataclass(frozen=True)
+class Finished:
+    """What a command left behind."""
+
+    code: int
+    stdout: str
+    stderr: str
+
+
+Twin = Callable[..., Finished]
+
+
+@pytest.fixture
+def twin(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Twin:
+    """Call the command with arguments; a traceback would fail the test by itself."""
+
+    def call(*arguments: object) -> Finished:
+        monkeypatch.setattr(sys, "argv", ["twin", *map(str, arguments)])
+        with pytest.raises(SystemExit) as left:
+            cli.main()
+        captured = capsys.readouterr()
+        return Finished(int(left.value.code or 0), captured.out, captured.err)
+
+    return call

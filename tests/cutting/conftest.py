@@ -1,0 +1,27 @@
+"""Motion for the cutting tests, made by hand."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from twin.motion.setpoints import Setpoints
+from twin.nc.canonical import FloatArray
+from twin.recording import Samples
+
+Motion = Callable[..., Samples]
+
+
+def samples(position: FloatArray, line: int | FloatArray = 1, start: float = 0.0) -> Samples:
+    """Samples at 1 ms of axes that stand exactly where they were told to."""
+    position = np.asarray(position, np.float64)
+    still, column = np.zeros_like(position), np.zeros(len(position))
+    lines = np.broadcast_to(np.asarray(line, np.int64), len(position)).copy()
+    time = start + 1e-3 * np.arange(len(position), dtype=np.float64)
+    setpoint = Setpoints(time, lines, lines - 1, column, position, still, still)
+    return Samples(setpoint, position.copy(), still, still)
+
+
+@pytest.fixture(name="samples")
+def samples_fixture() -> Motion:
+    return samples

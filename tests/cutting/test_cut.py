@@ -1,0 +1,170 @@
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from tests.cutting.conftest import Motion
+from twin.cutting.cut import Cutter
+from twin.errors import ConfigError
+from twin.job import StockTable, ToolTable
+from twin.nc.canonical import FloatArray
+from twin.toolpath.part_frame import PartFrame
+
+FRAME = PartFrame(rotary=3, center=(0.0, 0.0))
+ZERO = np.zeros(4)
+TOOL = ToolTable(number=1, diameter=6.0, flute=8.0)
+PLATE = StockTable(shape="box", size=(80.0, 60.0, 10.0))
+
+
+def path(
+    x: FloatArray | float, y: FloatArray | float, z: FloatArray | float, c: FloatArray | float = 0.0
+) -> FloatArray:
+    return np.stack(np.broadcast_arrays(np.float64(x), y, z, c), axis=1)
+
+
+def plate(cell: float) -> StockTable:
+    return PLATE.model_copy(update={"cell": cell})
+
+
+def slot() -> tuple[FloatArray, float, float]:
+    motion = path(np.linspace(-20.0, 20.0, 500), np.linspace(-3.0, 5.0, 500), -4.0)
+    length = math.hypot(40.0, 8.0)
+    return motion, (length * 6.0 + math.pi * 9.0) * 4.0, (2 * length + math.pi * 6.0) * 4.0
+
+
+def hole() -> tuple[FloatArray, float, float]:
+    motion = path(3.3, 1.7, np.linspace(2.0, -7.0, 200))
+    return motion, math.pi * 9.0 * 7.0, math.pi * 6.0 * 7.0
+
+
+def circular_pocket() -> tuple[FloatArray, float, float]:
+    angle = np.linspace(0.0, 2 * math.pi, 4000)
+    motion = path(2.5 * np.cos(angle), 2.5 * np.sin(angle), -3.0)
+    return motion, math.pi * 5.5**2 * 3.0, math.pi * 11.0 * 3.0
+
+
+def helix_bore() -> tuple[FloatArray, float, float]:
+    angle = np.linspace(0.0, 8 * math.pi, 9000)
+    depth = np.minimum(angle / (6 * math.pi), 1.0) * 5.0
+    motion = path(2.0 * np.cos(angle), 2.0 * np.sin(angle), -depth)
+    return motion, math.pi * 25.0 * 5.0, math.pi * 10.0 * 5.0
+
+
+@pytest.mark.parametrize("shape", [slot, hole, circular_pocket, helix_bore])
+def test_removed_volume_approaches_the_formula_with_the_cell(
+    shape: Callable[[], tuple[FloatArray, float, float]], samples: Motion
+) -> None:
+    motion, exact, wall = shape()
+    for cell in (0.4, 0.2, 0.1, 0.05):
+        cutter = Cutter(plate(cell), TOOL, FRAME, ZERO)
+        cutter.add(samples(motion), np.zeros(len(motion), np.bool_))
+        result = cutter.result()
+        assert abs(result.removed_mm3 - exact) < 0.2 * wall * cell
+        assert result.cell_mm == cell
+        assert cutter.map.volume == pytest.approx(80.0 * 60.0 * 10.0 - result.removed_mm3)
+
+
+def test_turning_the_table_alone_cuts_a_ring(samples: Motion) -> None:
+    stock = StockTable(shape="cylinder", diameter=240.0, height=20.0, cell=0.25)
+    cutter = Cutter(stock, TOOL, FRAME, ZERO)
+    motion = path(100.0, 0.0, -2.0, np.linspace(0.0, 360.0, 20_000))
+    cutter.add(samples(motion), np.zeros(len(motion), np.bool_))
+    radius = np.hypot(*np.meshgrid(cutter.map.x, cutter.map.y))
+    cut = (cutter.map.heights == -2.0) & (radius < 120.0)
+    assert radius[cut].min() == pytest.approx(97.0, abs=0.01)
+    assert radius[cut].max() == pytest.approx(103.0, abs=0.01)
+    assert cut[(radius > 97.01) & (radius < 102.99)].all()
+    exact = 2 * math.pi * 100.0 * 6.0 * 2.0
+    assert cutter.result().removed_mm3 == pytest.approx(exact, rel=1e-3)
+
+
+def test_part_stands_where_its_zero_and_its_turn_say(samples: Motion) -> None:
+    frame = PartFrame(rotary=3, center=(300.0, 200.0), turn_zero=30.0)
+    zero = np.array([310.0, 190.0, -250.0, 30.0])
+    stock = StockTable(shape="box", size=(40.0, 20.0, 5.0), position=(4.0, 6.0, 1.0), cell=0.5)
+    cutter = Cutter(stock, TOOL, frame, zero)
+    assert cutter.map.top == -249.0
+    assert cutter.map.bottom == -254.0
+    assert cutter.map.x[[0, -1]].mean() == pytest.approx(14.0)
+    assert cutter.map.y[[0, -1]].mean() == pytest.approx(-4.0)
+    target = np.array([10.0 + 4.0 + 8.0, -10.0 + 6.0 + 2.0])
+    turned = np.deg2rad(-50.0)
+    x = math.cos(turned) * target[0] - math.sin(turned) * target[1]
+    y = math.sin(turned) * target[0] + math.cos(turned) * target[1]
+    motion = path(300.0 + x, 200.0 + y, np.array([-240.0, -252.0]), 80.0)
+    cutter.add(samples(motion), np.zeros(2, np.bool_))
+    rows, columns = np.nonzero(cutter.map.heights == -252.0)
+    assert cutter.map.x[columns].mean() == pytest.approx(target[0], abs=0.05)
+    assert cutter.map.y[rows].mean() == pytest.approx(target[1], abs=0.05)
+
+
+def test_chunks_make_no_difference(samples: Motion) -> None:
+    motion, exact, _ = helix_bore()
+    whole, pieces = (Cutter(plate(0.2), TOOL, FRAME, ZERO) for _ in range(2))
+    whole.add(samples(motion), np.zeros(len(motion), np.bool_))
+    for first in range(0, len(motion), 37):
+        piece = motion[first : first + 37]
+        pieces.add(samples(piece, start=first * 1e-3), np.zeros(len(piece), np.bool_))
+    assert pieces.result().removed_mm3 == pytest.approx(whole.result().removed_mm3, rel=1e-3)
+    assert whole.result().removed_mm3 == pytest.approx(exact, rel=1e-2)
+    assert whole.add(samples(motion[:0]), np.zeros(0, np.bool_)) == 0.0
+
+
+def test_air_is_the_share_of_the_feed_path_without_removal(samples: Motion) -> None:
+    cutter = Cutter(plate(0.2), TOOL, FRAME, ZERO)
+    # The edge meets the plate 3 mm before the axis does and leaves no wall behind the axis.
+    motion = path(np.linspace(-83.0, 83.0, 4000), 0.0, -1.0)
+    cutter.add(samples(motion), np.zeros(len(motion), np.bool_))
+    assert cutter.result().air_share == pytest.approx(0.5, abs=0.02)
+    cutter.add(samples(path(83.0, np.linspace(0, 99, 100), -1.0)), np.ones(100, np.bool_))
+    assert cutter.result().air_share == pytest.approx(0.5, abs=0.02)
+
+
+def test_rapid_into_stock_names_the_line_once_per_move(samples: Motion) -> None:
+    cutter = Cutter(plate(0.2), TOOL, FRAME, ZERO)
+    over = path(np.linspace(-60.0, -41.0, 200), 0.0, -2.5)
+    into = path(np.linspace(-41.0, 0.0, 400), 0.0, -2.5)
+    up = path(0.0, 0.0, np.linspace(-2.5, 5.0, 100))
+    down = path(20.0, 20.0, np.linspace(5.0, -1.0, 100))
+    motion = np.concatenate([over, into, up, down])
+    line = np.repeat([7, 7, 8, 9], [200, 400, 100, 100])
+    rapid = np.repeat([True, True, True, True], [200, 400, 100, 100])
+    for first in range(0, len(motion), 150):
+        part = slice(first, first + 150)
+        cutter.add(samples(motion[part], line[part], start=first * 1e-3), rapid[part])
+    events = cutter.result().rapid_into_stock
+    assert [event.line for event in events] == [7, 9]
+    assert events[0].depth_mm == pytest.approx(2.5)
+    assert events[1].depth_mm == pytest.approx(1.0)
+    assert 0.14 < events[0].time_s < 0.24
+    assert events[0].position[0] == pytest.approx(-43.0, abs=2.0)
+
+
+def test_a_feed_that_ends_in_the_rapid_is_no_collision(samples: Motion) -> None:
+    cutter = Cutter(plate(0.05), TOOL, FRAME, ZERO)
+    feed = path(np.linspace(-20.0, 0.0, 500), 0.0, -5.0)
+    rest = path(np.minimum(np.linspace(0.0, 1.0, 300), 0.15), 0.0, np.linspace(-5.0, 30.0, 300))
+    cutter.add(samples(feed, 1), np.zeros(500, np.bool_))
+    before = cutter.result().removed_mm3
+    cutter.add(samples(rest, 2, start=0.5), np.ones(300, np.bool_))
+    assert cutter.result().removed_mm3 > before
+    assert cutter.result().rapid_into_stock == ()
+
+
+def test_cut_deeper_than_the_flutes_is_a_gouge(samples: Motion) -> None:
+    cutter = Cutter(plate(0.2), TOOL, FRAME, ZERO)
+    motion = path(np.linspace(-20.0, 20.0, 500), 0.0, np.linspace(-7.0, -9.0, 500))
+    cutter.add(samples(motion, 4), np.zeros(500, np.bool_))
+    (gouge,) = cutter.result().gouges
+    assert gouge.line == 4
+    assert gouge.depth_mm == pytest.approx(1.0, abs=0.01)
+    assert cutter.result().as_json()["gouges"][0]["line"] == 4
+
+
+def test_grid_follows_the_tool_and_refuses_what_memory_cannot_hold() -> None:
+    assert Cutter(PLATE, TOOL, FRAME, ZERO).map.cell == pytest.approx(0.3)
+    small = ToolTable(number=1, diameter=0.5)
+    assert Cutter(PLATE, small, FRAME, ZERO).map.cell == 0.1
+    with pytest.raises(ConfigError, match=r"stock\.cell = 0\.001 .* 80000 x 60000"):
+        Cutter(plate(0.001), TOOL, FRAME, ZERO)

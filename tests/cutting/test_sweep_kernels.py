@@ -1,0 +1,125 @@
+import dataclasses
+import itertools
+
+import hypothesis
+import hypothesis.strategies as st
+import numpy as np
+import pytest
+
+from twin.cutting.sweep_kernels import sweep, thin
+from twin.cutting.tools import Profile
+from twin.nc.canonical import FloatArray
+
+PROFILES = (
+    Profile(3.0, flat=3.0),
+    Profile(3.0, flat=0.0, corner=3.0),
+    Profile(3.0, flat=2.0, corner=1.0),
+    Profile(3.0, flat=0.0, slope=0.6),
+    Profile(3.0, flat=1.0, slope=1.0),
+)
+CELL = 0.37
+BOTTOM = -4.0
+
+
+def swept_by_small_steps(points: FloatArray, cutter: Profile, shape: tuple[int, int]) -> FloatArray:
+    """The height map after many stamps of the cutter along each line."""
+    y, x = CELL * np.indices(shape)
+    heights = np.zeros(shape)
+    for a, b in itertools.pairwise(points):
+        for t in np.linspace(0.0, 1.0, 401):
+            tip = a + t * (b - a)
+            lower = tip[2] + cutter.height(np.hypot(x - tip[0], y - tip[1]))
+            heights = np.maximum(np.minimum(heights, lower), BOTTOM)
+    return heights
+
+
+def swept(
+    points: FloatArray, cutter: Profile, shape: tuple[int, int]
+) -> tuple[FloatArray, FloatArray, FloatArray, tuple[int, int, int, int]]:
+    heights = np.zeros(shape)
+    removed, depth = np.zeros(len(points) - 1), np.zeros(len(points) - 1)
+    profile = dataclasses.astuple(cutter)
+    changed = sweep(heights, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth)
+    return heights, removed, depth, changed
+
+
+coordinate = st.floats(-4.0, 12.0)
+points = st.lists(st.tuples(coordinate, coordinate, st.floats(-5.0, 1.0)), min_size=2, max_size=4)
+
+
+@hypothesis.settings(derandomize=True, max_examples=40, deadline=None)
+@hypothesis.given(points, st.sampled_from(PROFILES))
+def test_sweep_agrees_with_many_small_steps(
+    corners: list[tuple[float, float, float]], cutter: Profile
+) -> None:
+    path = np.array(corners)
+    shape = (19, 23)
+    heights, removed, depth, changed = swept(path, cutter, shape)
+    step = np.abs(np.diff(path, axis=0)).max() / 400
+    stamped = swept_by_small_steps(path, cutter, shape)
+    grown = dataclasses.replace(cutter, radius=cutter.radius + step, flat=cutter.flat + step)
+    assert np.all(heights <= stamped + 1e-9)
+    assert np.all(heights >= swept_by_small_steps(path, grown, shape) - 2 * step - 1e-9)
+    assert removed.sum() == pytest.approx(-heights.sum() * CELL**2, abs=1e-9)
+    assert depth.max() <= -BOTTOM
+    rows, columns = np.nonzero(heights)
+    if len(rows):
+        assert changed[0] <= rows.min()
+        assert changed[1] > rows.max()
+        assert changed[2] <= columns.min()
+        assert changed[3] > columns.max()
+    else:
+        assert changed[0] >= changed[1]
+
+
+def test_level_sweep_is_the_stadium() -> None:
+    path = np.array([[2.0, 3.0, -1.0], [6.0, 4.0, -1.0]])
+    heights, removed, depth, _ = swept(path, PROFILES[0], (25, 25))
+    y, x = CELL * np.indices(heights.shape)
+    way = path[1, :2] - path[0, :2]
+    t = np.clip(((x - 2.0) * way[0] + (y - 3.0) * way[1]) / (way @ way), 0.0, 1.0)
+    inside = np.hypot(x - 2.0 - t * way[0], y - 3.0 - t * way[1]) <= 3.0
+    np.testing.assert_array_equal(heights, np.where(inside, -1.0, 0.0))
+    assert removed[0] == pytest.approx(inside.sum() * CELL**2)
+    assert depth[0] == 1.0
+
+
+def thin_in_python(path: FloatArray, group: FloatArray, tolerance: float) -> list[int]:
+    chosen = [0]
+    while chosen[-1] < len(path) - 1:
+        last = chosen[-1] + 1
+        while last + 1 < len(path) and group[last + 1] == group[last]:
+            a, b = path[chosen[-1]], path[last + 1]
+            way = b - a
+            between = path[chosen[-1] + 1 : last + 1] - a
+            length = way @ way
+            share = np.clip(between @ way / length, 0.0, 1.0) if length else np.zeros(len(between))
+            if np.linalg.norm(between - share[:, None] * way, axis=1).max() > tolerance:
+                break
+            last += 1
+        chosen.append(last)
+    return chosen
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_thin_agrees_with_plain_python(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    path = np.cumsum(np.repeat(random.normal(size=(12, 3)), 7, axis=0), axis=0)
+    path += random.normal(scale=1e-3, size=path.shape)
+    group = np.arange(len(path)) // 20
+    chosen = thin(path, group, 2e-3, 1e9, 10_000)
+    assert chosen.tolist() == thin_in_python(path, group.astype(np.float64), 2e-3)
+    assert len(chosen) < len(path)
+
+
+def test_thin_keeps_standstill_reversal_and_limits() -> None:
+    still = np.zeros((10, 3))
+    group = np.zeros(10, np.int64)
+    assert thin(still, group, 1e-3, 1.0, 100).tolist() == [0, 9]
+    there_and_back = np.array([[x, 0.0, 0.0] for x in (0, 1, 2, 3, 2, 1)])
+    assert 3 in thin(there_and_back, group[:6], 1e-3, 100.0, 100)
+    ahead = np.array([[x, 0.0, 0.0] for x in range(10)], np.float64)
+    assert thin(ahead, group, 1e-3, 3.0, 100).tolist() == [0, 3, 6, 9]
+    assert thin(ahead, group, 1e-3, 100.0, 2).tolist() == [0, 2, 4, 6, 8, 9]
+    assert thin(ahead, group + (np.arange(10) > 4), 1e-3, 100.0, 100).tolist() == [0, 4, 9]
+    assert thin(still[:1], group[:1], 1e-3, 1.0, 100).tolist() == [0]

@@ -1,0 +1,53 @@
+import pytest
+
+from twin.errors import RenderError
+from twin.render import doctor, gl
+from twin.render.gl import Probe
+
+
+def test_doctor_finds_opengl_and_encoder() -> None:
+    facts = doctor.render_facts()
+    assert facts.ready
+    assert facts.backend in gl.BACKENDS
+    assert facts.renderer
+    assert facts.encoder == "libx264"
+
+
+def test_probe_of_a_backend_that_cannot_work_says_why() -> None:
+    found = gl.probe("no_such_backend")
+    assert found.error
+    assert not found.renderer
+
+
+def broken(backend: str) -> Probe:
+    return Probe(backend, error=f"lib{backend}.so: cannot open shared object file")
+
+
+def test_without_opengl_the_message_names_the_packages(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gl, "probe", broken)
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    with pytest.raises(RenderError, match=r"(?s)libegl.so.*libosmesa.so.*libegl1.*libosmesa6"):
+        gl.choose_backend()
+    facts = doctor.render_facts()
+    assert not facts.ready
+    assert "apt-get install" in facts.problems[0]
+
+
+def test_osmesa_is_taken_where_egl_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    monkeypatch.setattr(
+        gl, "probe", lambda name: broken(name) if name == "egl" else Probe(name, renderer="soft")
+    )
+    assert gl.choose_backend().backend == "osmesa"
+
+
+def test_the_user_may_name_the_backend(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gl, "probe", lambda name: Probe(name, renderer=name))
+    for name in gl.BACKENDS:
+        monkeypatch.setenv("MUJOCO_GL", name)
+        assert gl.choose_backend().backend == name
+
+
+def test_missing_encoder_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doctor, "H264_ENCODER", "no_such_encoder")
+    assert "no_such_encoder" in doctor.render_facts().problems[0]

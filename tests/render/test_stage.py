@@ -1,0 +1,162 @@
+"""What is on the picture, by segmentation and coarse statistics: it holds on any OpenGL."""
+
+import dataclasses
+
+import mujoco
+import numpy as np
+import pytest
+
+from tests.render.conftest import RAPID_MOVES, STOCK, TOOL
+from twin.errors import RenderError
+from twin.job import StockTable
+from twin.machine.config import Machine
+from twin.nc.canonical import FloatArray
+from twin.recording import Recording
+from twin.render.canvas import DRAFT, Pixels
+from twin.render.film import moment
+from twin.render.placement import tip_position
+from twin.render.replay import deal
+from twin.render.stage import Scene, Stage, stage
+
+SIZE = (320, 240)
+
+
+@pytest.fixture
+def scene(recording: Recording, spec: mujoco.MjSpec, machine: Machine) -> Scene:
+    return Scene(
+        recording=recording,
+        spec=spec,
+        machine=machine,
+        tool=TOOL,
+        stock=STOCK,
+        rapid_moves=RAPID_MOVES,
+    )
+
+
+def play_to(play: Stage, recording: Recording, samples: int) -> None:
+    for chunk, _ in deal(recording, np.array([samples])):
+        play.advance(chunk)
+
+
+def projected(play: Stage, camera: str, point: FloatArray) -> tuple[float, float]:
+    """Column and row of a point of the world."""
+    model, data = play.model, play.data
+    eye = data.camera(camera)
+    seen = eye.xmat.reshape(3, 3).T @ (point - eye.xpos)
+    focal = 0.5 * SIZE[1] / np.tan(0.5 * np.deg2rad(model.camera(camera).fovy[0]))
+    return SIZE[0] / 2 - focal * seen[0] / seen[2], SIZE[1] / 2 + focal * seen[1] / seen[2]
+
+
+@pytest.mark.parametrize("line", [2, 3, 4])
+def test_tool_tip_is_where_the_recording_says(scene: Scene, line: int) -> None:
+    with stage(scene, SIZE, DRAFT) as play:
+        play_to(play, scene.recording, moment(scene.recording, line=line) - 60)
+        tool = play.objects("overview") == int(play.model.geom("tool").id)
+        tip = tip_position(play.model, play.data, TOOL.length)
+        column, row = projected(play, "overview", tip)
+    rows, columns = np.nonzero(tool)
+    assert rows.max() == pytest.approx(row, abs=4)
+    assert columns[rows > rows.max() - 5].mean() == pytest.approx(column, abs=2)
+
+
+def stock_pixels(play: Stage, camera: str) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]:
+    names = [play.model.geom(number).name.startswith("stock") for number in range(play.model.ngeom)]
+    return np.array([*names, False])[play.objects(camera)]
+
+
+def groove(before: Pixels, after: Pixels) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]:
+    return np.abs(after.astype(int) - before.astype(int)).max(axis=2) > 25
+
+
+def test_groove_is_where_the_tool_was(scene: Scene) -> None:
+    with stage(scene, SIZE, DRAFT) as play:
+        blank, stock = play.picture("top"), stock_pixels(play, "top")
+        play_to(play, scene.recording, moment(scene.recording, line=3))
+        # Away from tool and trail: the slot is 10 mm wide along X from -40 to 40.
+        cut = groove(blank, play.picture("top"))
+        body = play.data.body("rotary_table")
+
+        def at(x: float, y: float) -> bool:
+            part = np.array([[x, y, -235.0]])
+            local = play.placement.points(part)[0]
+            world = body.xpos + body.xmat.reshape(3, 3) @ local
+            column, row = projected(play, "top", world)
+            return bool(cut[round(row), round(column)])
+
+        stock_now = stock_pixels(play, "top")
+        for x in (-35.0, -20.0, 0.0, 20.0):
+            assert at(x, 3.0)
+            assert at(x, -3.0)
+    assert stock.sum() > 2000
+    assert stock_now.sum() > 0.5 * stock.sum()
+
+
+def test_stock_turns_with_the_table(scene: Scene) -> None:
+    with stage(scene, SIZE, DRAFT) as play:
+        play_to(play, scene.recording, moment(scene.recording, line=1))
+        rows, columns = np.nonzero(stock_pixels(play, "top"))
+        lying = np.ptp(columns) / np.ptp(rows)
+        play_to(play, scene.recording, 0)
+        play.advance(next(iter(scene.recording.chunks()))[-1:])
+        rows, columns = np.nonzero(stock_pixels(play, "top"))
+        standing = np.ptp(columns) / np.ptp(rows)
+    assert lying > 1.2
+    assert standing < 0.85
+
+
+def test_trail_grows(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("twin.render.stage.TRAIL_MM", (2.0, 2.0))
+
+    def visible(play: Stage) -> int:
+        names = [
+            play.model.geom(number).name.startswith("trail") for number in range(play.model.ngeom)
+        ]
+        return int(np.array([*names, False])[play.objects("top")].sum())
+
+    scene = dataclasses.replace(scene, stock=None)
+    with stage(scene, SIZE, DRAFT) as play:
+        assert visible(play) == 0
+        play_to(play, scene.recording, moment(scene.recording, line=3))
+        slot = visible(play)
+        assert slot > 10
+        rest = [samples for samples, _ in deal(scene.recording, np.array([751, 1001]))][1]
+        play.advance(rest)
+        assert visible(play) > slot + 10
+
+
+def test_a_hole_through_the_stock_shows_the_table(scene: Scene) -> None:
+    thin = StockTable(shape="cylinder", diameter=100.0, height=4.0, position=(0, 0, -4), cell=0.5)
+    with stage(dataclasses.replace(scene, stock=thin), SIZE, DRAFT) as play:
+        plate = int(play.model.geom("plate").id)
+        before = (play.objects("top") == plate).sum()
+        play_to(play, scene.recording, moment(scene.recording, line=3))
+        after = (play.objects("top") == plate).sum()
+    assert after < before, "the sheet floats over the plate, and the slot is not through yet"
+    through = thin.model_copy(update={"position": (0.0, 0.0, -3.0), "height": 1.5})
+    with stage(dataclasses.replace(scene, stock=through), SIZE, DRAFT) as play:
+        before = (play.objects("top") == plate).sum()
+        play_to(play, scene.recording, moment(scene.recording, line=3))
+        after = (play.objects("top") == plate).sum()
+    assert after > before + 100
+
+
+def test_shadows_fall(scene: Scene) -> None:
+    pictures = []
+    for quality in (DRAFT, dataclasses.replace(DRAFT, shadows=True)):
+        with stage(scene, SIZE, quality) as play:
+            play_to(play, scene.recording, 500)
+            pictures.append(play.picture("overview").astype(float))
+    darker = pictures[0] - pictures[1] > 8
+    assert darker.any(axis=2).sum() > 20
+
+
+def test_moments(recording: Recording) -> None:
+    assert moment(recording) == 1001
+    assert moment(recording, time_s=0.0) == 1
+    assert moment(recording, time_s=0.5) == 501
+    assert moment(recording, line=1) == 250
+    assert moment(recording, line=4) == 1001
+    with pytest.raises(RenderError, match="line 9"):
+        moment(recording, line=9)
+    with pytest.raises(RenderError, match="ends at 1 s"):
+        moment(recording, time_s=3.0)

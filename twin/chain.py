@@ -1,0 +1,260 @@
+"""The order of the rooms: text, moves, setpoints, samples, figures, in chunks."""
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from twin import __version__
+from twin.compare.comparison import Comparison
+from twin.compare.trace import Trace
+from twin.compare.verdict import judge
+from twin.cutting.cut import CutResult, Cutter
+from twin.cutting.part import write_stl
+from twin.machine.alarms import Alarm
+from twin.machine.config import Machine
+from twin.machine.model import build_spec, spindle_over_table_mm
+from twin.machine.simulate import Simulation, simulate
+from twin.machine.travel import soft_limit_alarm
+from twin.motion.limits import MotionLimits
+from twin.motion.planner import plan
+from twin.motion.setpoints import Setpoints
+from twin.motion.settle import settle
+from twin.nc.canonical import Chunk, FloatArray, IntArray, Motion
+from twin.nc.diagnostics import Diagnostic
+from twin.outcome import Outcome
+from twin.placement import part_zero
+from twin.preparation import Preparation
+from twin.progress import Progress
+from twin.recording import RecordingHeader, Samples, record
+from twin.stages import StageClock
+from twin.toolpath.part_frame import PartFrame
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Survey:
+    """What a first pass over the program found, before anything moves.
+
+    Attributes:
+        moves: How many moves the program makes.
+        warnings: What the interpreter had to say.
+        alarm: The soft-limit alarm of the first move that leaves the travel, if any.
+    """
+
+    moves: int
+    warnings: tuple[Diagnostic, ...]
+    alarm: Alarm | None
+
+
+class Run:
+    """One run of a prepared job.
+
+    Attributes:
+        preparation: The job made concrete.
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        part_frame: How the part turns under the tool.
+        spec: The model of the machine with the job's first tool in the spindle.
+        clock: How long each stage took; a film's goes on it too.
+        trace: The run thinned for plots.
+        contour_um: Contour error of every sample, for those who draw it; empty unless kept.
+    """
+
+    def __init__(self, preparation: Preparation, *, keep_contour: bool = False) -> None:
+        """Lay the job out on its machine.
+
+        Args:
+            preparation: The job made concrete.
+            keep_contour: Keep the contour error of every sample in memory.
+
+        Raises:
+            ConfigError: The model is wrong, or the stock does not fit on the table.
+        """
+        machine, job = preparation.machine, preparation.job.file
+        self.preparation = preparation
+        self.spec: mujoco.MjSpec = build_spec(machine, job.tools[0])
+        self.part_zero = part_zero(job, machine, spindle_over_table_mm(machine))
+        rotary = machine.part_frame.rotary
+        turn_zero = 0.0 if rotary is None else float(self.part_zero[rotary])
+        self.part_frame: PartFrame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
+        self.clock = StageClock()
+        self.trace = Trace(machine.axes, self.part_zero)
+        self.contour_um: list[FloatArray] = []
+        self._keep_contour = keep_contour
+        self._motion = bytearray()
+        self._planned_s = 0.0
+
+    def execute(self, survey: Survey, out: Path, progress: Progress) -> Outcome:
+        """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
+
+        A program that would leave the travel moves nothing and writes nothing.
+
+        Args:
+            survey: What the first pass found.
+            out: The folder.
+            progress: Told how far the simulation is.
+
+        Raises:
+            SimulationError: The simulation failed; the recording is not kept.
+        """
+        preparation = self.preparation
+        comparison = Comparison(preparation.machine.axes, self.part_frame, self.part_zero)
+        cutter = self._cutter()
+        track = _Track(self.part_zero, preparation.start)
+        alarm = survey.alarm
+        if alarm is None:
+            with record(out / "recording.h5", self._header()) as writer:
+                simulation = self._simulation(comparison)
+                for samples in self.clock.watch("simulate", simulation):
+                    track.add(samples)
+                    with self.clock.stage("compare"):
+                        contour_um = comparison.add(samples)
+                        self.trace.add(samples, contour_um)
+                    if self._keep_contour:
+                        self.contour_um.append(contour_um)
+                    with self.clock.stage("cut"):
+                        if cutter is not None:
+                            cutter.add(samples, self._is_rapid(samples.setpoint.move))
+                    with self.clock.stage("record"):
+                        writer.append(samples)
+                    progress("simulate", track.progress(survey.moves))
+            alarm = simulation.alarm
+        cut = self._finish_part(cutter, out) if cutter is not None and len(track) else None
+        figures = comparison.result()
+        alarms = () if alarm is None else (alarm,)
+        return Outcome(
+            verdict=judge(figures, preparation.job.file.tolerance, alarms),
+            figures=figures,
+            cut=cut,
+            alarms=alarms,
+            warnings=survey.warnings,
+            samples=len(track),
+            duration_s=min(self._planned_s, track.time_s),
+            final_commanded=track.commanded,
+            final_simulated=track.simulated,
+        )
+
+    def survey(self) -> Survey:
+        """Interpret the whole program once, so that no error is met with the machine half-way.
+
+        Raises:
+            ProgramError: The program is wrong.
+        """
+        interpretation = self.preparation.interpretation()
+        moves, alarm = 0, None
+        for chunk in self.clock.watch("interpret", interpretation.chunks()):
+            moves += len(chunk.moves)
+            if alarm is None:
+                alarm = soft_limit_alarm(self.preparation.machine, chunk.moves, self.part_zero)
+        return Survey(moves=moves, warnings=tuple(interpretation.diagnostics), alarm=alarm)
+
+    def _simulation(self, comparison: Comparison) -> Simulation:
+        machine = self.preparation.machine
+        period = machine.file.servo_period_s
+        setpoints = plan(
+            self.clock.watch("interpret", self._chunks(comparison)),
+            motion_limits(machine),
+            period_s=period,
+            part_zero=self.part_zero,
+            start=self.preparation.start + self.part_zero,
+        )
+        return simulate(
+            machine, self.spec, self.clock.watch("plan", settle(self._planned(setpoints), period))
+        )
+
+    def _planned(self, setpoints: Iterator[Setpoints]) -> Iterator[Setpoints]:
+        for chunk in setpoints:
+            self._planned_s = float(chunk.time[-1])
+            yield chunk
+
+    def _chunks(self, comparison: Comparison) -> Iterator[Chunk]:
+        """The program's moves on their way to the planner; those who judge hear of them too."""
+        for chunk in self.preparation.interpretation().chunks():
+            comparison.expect(chunk.moves)
+            self._motion += chunk.moves.motion.tobytes()
+            yield chunk
+
+    @property
+    def rapid_moves(self) -> npt.NDArray[np.bool_]:
+        """Which of the program's moves so far are rapids, by move number."""
+        return np.frombuffer(bytes(self._motion), np.uint8) == Motion.RAPID
+
+    def _is_rapid(self, move: IntArray) -> npt.NDArray[np.bool_]:
+        if not self._motion:
+            return np.zeros(len(move), np.bool_)
+        motion = np.frombuffer(self._motion, np.uint8)
+        return (move >= 0) & (motion[np.maximum(move, 0)] == Motion.RAPID)
+
+    def _cutter(self) -> Cutter | None:
+        job = self.preparation.job.file
+        if job.stock is None:
+            return None
+        return Cutter(job.stock, job.tools[0], self.part_frame, self.part_zero)
+
+    def _finish_part(self, cutter: Cutter, out: Path) -> CutResult:
+        with self.clock.stage("cut"):
+            write_stl(cutter.map, out / "part.stl")
+            return cutter.result()
+
+    def _header(self) -> RecordingHeader:
+        preparation = self.preparation
+        return RecordingHeader(
+            axes=preparation.machine.axes,
+            period_s=preparation.machine.file.servo_period_s,
+            part_zero=self.part_zero,
+            part_frame=self.part_frame,
+            program=preparation.source.name,
+            program_text=preparation.source.text,
+            program_sha256=preparation.source.sha256,
+            dialect=preparation.dialect.name,
+            machine=preparation.machine.file.name,
+            twin_version=__version__,
+            mujoco_version=mujoco.__version__,
+        )
+
+
+class _Track:
+    """How far the run has come and where the axes stand, in program coordinates."""
+
+    def __init__(self, part_zero: FloatArray, start: FloatArray) -> None:
+        self._part_zero = part_zero
+        self._count = 0
+        self._place = (-1, 0.0)
+        self.time_s = 0.0
+        self.commanded = start
+        self.simulated = start
+
+    def __len__(self) -> int:
+        return self._count
+
+    def add(self, samples: Samples) -> None:
+        """Take note of a chunk."""
+        setpoint = samples.setpoint
+        self._count += len(samples)
+        self.time_s = float(setpoint.time[-1])
+        self._place = (int(setpoint.move[-1]), float(setpoint.fraction[-1]))
+        self.commanded = setpoint.position[-1] - self._part_zero
+        self.simulated = samples.joint_position[-1] - self._part_zero
+
+    def progress(self, moves: int) -> float:
+        """Share of the program that is done, 0 to 1."""
+        move, fraction = self._place
+        return (move + fraction) / moves if moves else 1.0
+
+
+def motion_limits(machine: Machine) -> MotionLimits:
+    """The planner's view of a machine file."""
+    axes = [machine.axis(name) for name in machine.axes.names]
+    path = machine.file.path
+    return MotionLimits(
+        velocity=np.array([axis.velocity for axis in axes]),
+        acceleration=np.array([axis.acceleration for axis in axes]),
+        jerk=np.array([axis.jerk for axis in axes]),
+        path_acceleration=path.acceleration,
+        path_jerk=path.jerk,
+        rotary_path_acceleration=path.rotary_acceleration or math.inf,
+        rotary_path_jerk=path.rotary_jerk or math.inf,
+    )

@@ -1,0 +1,29 @@
+"""``twin doctor``: what this computer can do, and what to install where it cannot."""
+
+import importlib.metadata
+import platform
+import sys
+
+import typer
+
+from twin.errors import ExitCode
+from twin.resources import machine_names
+
+LIBRARIES = ("mujoco", "numpy", "numba", "h5py", "trimesh", "av", "pillow", "matplotlib", "typer")
+
+
+def print_doctor() -> ExitCode:
+    """Print what was found; pictures that cannot be made are an error, the rest runs without."""
+    from twin.render.doctor import render_facts
+
+    typer.echo(f"python     {platform.python_version()} ({sys.executable})")
+    for name in LIBRARIES:
+        typer.echo(f"{name:<10} {importlib.metadata.version(name)}")
+    typer.echo(f"machines   {', '.join(machine_names())}")
+    facts = render_facts()
+    typer.echo(f"OpenGL     {facts.backend or 'none'} {facts.renderer}".rstrip())
+    typer.echo(f"video      {facts.encoder or 'none'}")
+    for problem in facts.problems:
+        typer.echo(f"problem: {problem}", err=True)
+    typer.echo("all rooms work here" if facts.ready else "all rooms but the pictures work here")
+    return ExitCode.OK if facts.ready else ExitCode.USAGE

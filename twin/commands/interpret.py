@@ -1,0 +1,28 @@
+"""``twin interpret``: the canonical moves of a program, as text or as JSON lines."""
+
+import sys
+from pathlib import Path
+
+from twin.errors import UsageError
+from twin.nc.jsonl import json_lines, text_lines
+from twin.preparation import prepare
+
+FORMATS = {"text": text_lines, "jsonl": json_lines}
+
+
+def print_interpretation(
+    program: Path, *, dialect: str | None, machine: str | None, form: str, strict: bool
+) -> None:
+    """Print the program's moves, dwells, functions and warnings to stdout, in program order.
+
+    Raises:
+        UsageError: The format is unknown, or the program cannot be prepared.
+        ProgramError: The program is wrong; what came before the error was printed.
+    """
+    if form not in FORMATS:
+        raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
+    interpretation = prepare(
+        program, dialect=dialect, machine=machine, strict=strict
+    ).interpretation()
+    for line in FORMATS[form](interpretation):
+        sys.stdout.write(f"{line}\n")

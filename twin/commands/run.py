@@ -1,0 +1,98 @@
+"""``twin run``: the whole chain into a folder, and the verdict for a person."""
+
+from pathlib import Path
+
+import typer
+
+from twin.alarm_text import alarm_diagnostic
+from twin.chain import Run
+from twin.commands.pictures import film_run
+from twin.compare.result import RunSummary, result, write_result
+from twin.errors import ExitCode
+from twin.outcome import Outcome
+from twin.preparation import prepare
+from twin.progress import shown_progress
+
+RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
+"""What a run may leave; an earlier run's files of these names are removed when one begins."""
+
+
+def run_and_print(
+    path: Path,
+    out: Path | None,
+    *,
+    dialect: str | None,
+    machine: str | None,
+    video: bool,
+    strict: bool,
+) -> ExitCode:
+    """Run a program or a job, write its results and print the verdict.
+
+    Args:
+        path: NC program or job file.
+        out: Folder for the results; ``out/<program>`` by default.
+        dialect: Overrides the job's dialect.
+        machine: Overrides the job's machine.
+        video: Film the run too.
+        strict: Warnings of the interpreter are errors.
+
+    Raises:
+        TwinError: Something is wrong before the run could end; see each error's exit code.
+    """
+    preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
+    folder = out or Path("out") / preparation.job.program.stem
+    run = Run(preparation, keep_contour=video)
+    survey = run.survey()
+    _clear(folder)
+    with shown_progress() as progress:
+        outcome = run.execute(survey, folder, progress)
+        if video and outcome.samples:
+            with run.clock.stage("render"):
+                film_run(run, folder, progress)
+    _write_result(run, outcome, folder)
+    _print_findings(run, outcome)
+    typer.echo(_summary(run, outcome, folder))
+    return outcome.verdict.exit_code
+
+
+def _clear(folder: Path) -> None:
+    for name in RESULT_FILES:
+        (folder / name).unlink(missing_ok=True)
+
+
+def _print_findings(run: Run, outcome: Outcome) -> None:
+    for warning in outcome.warnings:
+        typer.echo(str(warning), err=True)
+    for alarm in outcome.alarms:
+        typer.echo(str(alarm_diagnostic(alarm, run.preparation.source)), err=True)
+    if not outcome.alarms:
+        for reason in outcome.verdict.reasons:
+            typer.echo(f"{run.preparation.source.name}: {reason}", err=True)
+
+
+def _summary(run: Run, outcome: Outcome, folder: Path) -> str:
+    contour = outcome.figures.contour
+    return (
+        f"{outcome.verdict.outcome}: contour error at most {contour.max:.1f} µm "
+        f"(line {contour.worst_line}), {outcome.duration_s:.3f} s of machine time "
+        f"in {run.clock.wall_s:.1f} s; results in {folder}"
+    )
+
+
+def _write_result(run: Run, outcome: Outcome, folder: Path) -> None:
+    preparation = run.preparation
+    named = preparation.machine.axes.named
+    summary = RunSummary(
+        program=preparation.source.name,
+        dialect=preparation.dialect.name,
+        machine=preparation.machine.file.name,
+        duration_s=outcome.duration_s,
+        wall_s=run.clock.wall_s,
+        stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
+        cut=None if outcome.cut is None else outcome.cut.as_json(),
+        commanded=named(outcome.final_commanded),
+        simulated=named(outcome.final_simulated),
+    )
+    tolerance = preparation.job.file.tolerance
+    content = result(summary, outcome.figures, tolerance, outcome.verdict, outcome.alarms)
+    write_result(folder / "result.json", content)

@@ -1,0 +1,171 @@
+"""Circular figures after ISO 230-4, from points on a nominal circle.
+
+The definitions, as they are computed here (angles about the nominal centre, deviations positive
+outside):
+
+* **radial deviation F**: distance of an actual point from the nominal centre minus the nominal
+  radius; its greatest and least value are given. The nominal centre is the commanded one.
+* **circular deviation G**: least radial distance between two concentric circles that enclose the
+  actual path, evaluated about the least-squares circle, as the standard allows. An arc of less
+  than a full turn does not determine its own centre: about the commanded centre, so that
+  G = F_max - F_min.
+* **bidirectional circular deviation G(b)**: the same for the clockwise and the counter-clockwise
+  path together, about the least-squares circle of both.
+* **mean bidirectional radial deviation D**: radius of that common circle minus the nominal radius.
+* **hysteresis H**: greatest difference of the radial deviation between the two directions at the
+  same angle.
+"""
+
+import dataclasses
+
+import numpy as np
+
+from twin.nc.canonical import FloatArray, IntArray
+
+BINS_PER_TURN = 7200
+"""Angular resolution of the collected path: 0.05 degrees."""
+FULL_TURN_GAP = 5.0
+"""A path without a gap wider than this covers the full turn [deg]."""
+
+
+class CirclePath:
+    """An actual path around a nominal circle, collected by angle in bounded memory.
+
+    Of every bin the points with the least and the greatest radial deviation are kept, so that
+    however long the path is, no peak is lost; the mean of every bin weighs all angles alike in
+    the least-squares circle, wherever the tool moved slowly.
+
+    Args:
+        radius: Nominal [mm].
+    """
+
+    def __init__(self, radius: float) -> None:
+        self.radius = radius
+        self._count = np.zeros(BINS_PER_TURN, np.int64)
+        self._angle = np.zeros(BINS_PER_TURN)
+        self._deviation = np.zeros(BINS_PER_TURN)
+        self._least = np.full((BINS_PER_TURN, 2), np.inf)
+        self._greatest = np.full((BINS_PER_TURN, 2), -np.inf)
+
+    def add(self, x: FloatArray, y: FloatArray) -> None:
+        """Take in points relative to the nominal centre, shape (n,) [mm]."""
+        angle = np.arctan2(y, x) % (2.0 * np.pi)
+        deviation = np.hypot(x, y) - self.radius
+        bins = np.minimum(
+            (angle * (BINS_PER_TURN / (2.0 * np.pi))).astype(np.int64), BINS_PER_TURN - 1
+        )
+        np.add.at(self._count, bins, 1)
+        np.add.at(self._angle, bins, angle)
+        np.add.at(self._deviation, bins, deviation)
+        order = np.argsort(deviation, kind="stable")
+        # Of several values written to one bin the last stays.
+        falling, rising = order[::-1], order
+        _keep(self._least, bins[falling], deviation[falling], angle[falling], np.less)
+        _keep(self._greatest, bins[rising], deviation[rising], angle[rising], np.greater)
+
+    @property
+    def filled(self) -> int:
+        """How many bins hold a point."""
+        return int(np.count_nonzero(self._count))
+
+    def mean(self) -> FloatArray:
+        """Mean angle [rad] and radial deviation [mm] of the filled bins, shape (m, 2)."""
+        filled = self._count > 0
+        count = self._count[filled]
+        return np.column_stack([self._angle[filled] / count, self._deviation[filled] / count])
+
+    def extremes(self) -> FloatArray:
+        """Angle [rad] and radial deviation [mm] of the kept points, shape (2 m, 2)."""
+        filled = self._count > 0
+        return np.concatenate([self._least[filled], self._greatest[filled]])[:, ::-1]
+
+    def covers_full_turn(self) -> bool:
+        """Whether no gap in the angles is wider than ``FULL_TURN_GAP``."""
+        angle = np.sort(self.mean()[:, 0])
+        gaps = np.diff(np.append(angle, angle[:1] + 2.0 * np.pi))
+        return bool(len(angle) >= 3 and gaps.max() <= np.deg2rad(FULL_TURN_GAP))
+
+
+def _keep(
+    best: FloatArray, bins: IntArray, deviation: FloatArray, angle: FloatArray, better: np.ufunc
+) -> None:
+    chosen = better(deviation, best[bins, 0])
+    best[bins[chosen], 0] = deviation[chosen]
+    best[bins[chosen], 1] = angle[chosen]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class CircleFigures:
+    """Figures of one path, or of both directions together.
+
+    Attributes:
+        circular_deviation_um: G, or G(b) of two paths [µm].
+        radial_max_um: F_max [µm].
+        radial_min_um: F_min [µm].
+        mean_radius_error_um: Least-squares radius minus nominal; D of two paths [µm].
+    """
+
+    circular_deviation_um: float
+    radial_max_um: float
+    radial_min_um: float
+    mean_radius_error_um: float
+
+
+def circle_figures(*paths: CirclePath) -> CircleFigures:
+    """Evaluate one path, or the clockwise and the counter-clockwise path together.
+
+    Raises:
+        ValueError: There is no path, or a path without points.
+    """
+    if not paths or any(path.filled == 0 for path in paths):
+        raise ValueError("circular figures need paths with points")
+    radius = paths[0].radius
+    extremes = np.concatenate([path.extremes() for path in paths])
+    means = np.concatenate([path.mean() for path in paths])
+    center, mean_radius = np.zeros(2), radius + float(means[:, 1].mean())
+    if all(path.covers_full_turn() for path in paths):
+        center, mean_radius = _least_squares_circle(_points(means, radius))
+    around = np.linalg.norm(_points(extremes, radius) - center, axis=1)
+    return CircleFigures(
+        circular_deviation_um=float(np.ptp(around)) * 1e3,
+        radial_max_um=float(extremes[:, 1].max()) * 1e3,
+        radial_min_um=float(extremes[:, 1].min()) * 1e3,
+        mean_radius_error_um=(mean_radius - radius) * 1e3,
+    )
+
+
+def hysteresis_um(one: CirclePath, other: CirclePath, *, step_deg: float = 1.0) -> float:
+    """H: greatest difference between the two directions at the same angle [µm].
+
+    Both paths are read every ``step_deg`` by interpolation between their neighbouring bins.
+    """
+    angles = np.deg2rad(np.arange(0.0, 360.0, step_deg))
+    read = [
+        np.interp(angles, *path.mean()[np.argsort(path.mean()[:, 0])].T, period=2.0 * np.pi)
+        for path in (one, other)
+    ]
+    return float(np.abs(read[0] - read[1]).max()) * 1e3
+
+
+def _points(polar: FloatArray, radius: float) -> FloatArray:
+    distance = radius + polar[:, 1]
+    return np.column_stack([distance * np.cos(polar[:, 0]), distance * np.sin(polar[:, 0])])
+
+
+def _least_squares_circle(points: FloatArray) -> tuple[FloatArray, float]:
+    """Centre and radius that minimise the squared radial distances (Gauss-Newton).
+
+    The start is the nominal centre, which an actual path misses by little.
+    """
+    center = np.zeros(2)
+    radius = float(np.linalg.norm(points, axis=1).mean())
+    for _ in range(20):
+        offset = points - center
+        distance = np.linalg.norm(offset, axis=1)
+        outward = offset / distance[:, None]
+        slope = np.column_stack([outward, np.ones(len(points))])
+        change = np.linalg.lstsq(slope, distance - radius, rcond=None)[0]
+        center, radius = center + change[:2], radius + float(change[2])
+        if np.abs(change).max() < 1e-10:
+            break
+    return center, radius

@@ -1,0 +1,233 @@
+"""The comparison of a run with its program: following error and contour error, chunk by chunk."""
+
+import numpy as np
+
+from twin.compare.arcs import ArcCollector
+from twin.compare.contour_kernels import follow
+from twin.compare.figures import AxisTracking, ContourFigures, Figures, WorstPlace
+from twin.compare.statistics import Distribution, Extent
+from twin.errors import RecordingError
+from twin.nc.canonical import Axes, FloatArray, IntArray, Moves, concatenate
+from twin.recording import Samples
+from twin.toolpath.nearest import drop_moves, join_paths, path_columns
+from twin.toolpath.part_frame import PartFrame
+from twin.units import MDEG_PER_DEGREE, UM_PER_MM
+
+REACH_S = 0.5
+"""A tool that is later than this has left the place on the path that it is held against [s]. The
+slowest position loop in use, 1 (m/min)/mm, lags by 0.06 s."""
+WORST_PLACES = 10
+_ROWS = 4096
+"""Samples that are worked on at once: bounds how many arcs are open at a time."""
+
+
+class Comparison:
+    """Compares the simulated joints of a run with its program, in bounded memory.
+
+    The contour error of a sample is the shortest distance from the simulated tool point to the
+    commanded geometry, both in the part's frame (``twin.toolpath.part_frame``), where the tool
+    really cuts. The search follows the tool along the path (``contour_kernels.follow``), so that
+    a path that crosses itself is not mistaken. Being late on the path is following error alone.
+
+    Args:
+        axes: Axes of moves and samples.
+        part_frame: How the part turns under the tool.
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+    """
+
+    def __init__(self, axes: Axes, part_frame: PartFrame, part_zero: FloatArray) -> None:
+        self.axes = axes
+        self._frame = part_frame
+        self._part_zero = np.asarray(part_zero, np.float64)
+        self._first = 0
+        self._moves = Moves.empty(axes)
+        self._path = path_columns(self._moves, part_frame, self._part_zero)
+        self._waiting: list[Moves] = []
+        self._state = np.full(6, np.nan)
+        self._late = (np.zeros(0), np.zeros((0, 2)))
+        self._duration = 0.0
+        self._axis_extent = [Extent() for _ in axes.names]
+        self._axis_worst = [(0, 0.0) for _ in axes.names]
+        self._contour = Distribution()
+        self._arcs = ArcCollector()
+        self._worst: dict[int, WorstPlace] = {}
+
+    def expect(self, moves: Moves) -> None:
+        """Announce the next moves of the program, in order, before their samples are added.
+
+        Args:
+            moves: In part coordinates; their numbers go on from the last call's.
+        """
+        if len(moves):
+            self._waiting.append(moves)
+
+    def add(self, samples: Samples) -> FloatArray:
+        """Compare the next chunk.
+
+        Args:
+            samples: n samples that follow the last chunk; their moves have been announced.
+
+        Returns:
+            Contour error of each sample, shape (n,) [µm].
+
+        Raises:
+            RecordingError: A joint position is not a finite number, or a sample names a move that
+                was not announced.
+        """
+        if not np.isfinite(samples.joint_position).all():
+            raise RecordingError("the recording holds joint positions that are not numbers")
+        self._take_waiting()
+        parts = [
+            self._add(_rows(samples, slice(first, first + _ROWS)))
+            for first in range(0, len(samples), _ROWS)
+        ]
+        return np.concatenate(parts) if parts else np.zeros(0)
+
+    def _take_waiting(self) -> None:
+        if self._waiting:
+            new = concatenate(self._waiting, self.axes)
+            self._waiting = []
+            self._moves = concatenate([self._moves, new], self.axes)
+            new_path = path_columns(new, self._frame, self._part_zero)
+            self._path = join_paths(self._path, new_path)
+
+    def _add(self, samples: Samples) -> FloatArray:
+        setpoint = samples.setpoint
+        self._duration = float(setpoint.time[-1])
+        self._add_tracking(samples)
+        point = np.ascontiguousarray(self._frame.position(samples.joint_position))
+        if int(setpoint.move.max()) >= self._first + len(self._moves):
+            raise RecordingError(
+                f"a sample names move {setpoint.move.max()}, but the program has only "
+                f"{self._first + len(self._moves)} moves"
+            )
+        if len(self._moves) == 0:
+            distance = np.linalg.norm(point - self._frame.position(setpoint.position), axis=1)
+            place, fraction = None, np.zeros(0)
+        else:
+            distance, place, fraction = self._follow(samples, point)
+        error = distance * UM_PER_MM
+        self._contour.add(error)
+        line = setpoint.line if place is None else self._moves.line[place]
+        self._keep_worst(error, line, setpoint.time, setpoint.position)
+        if place is not None:
+            offset = self._offsets(point, place)
+            circular = self._path.turn_rate == 0.0
+            self._arcs.add(
+                self._moves, circular, self._first, place, fraction, offset, setpoint.time
+            )
+            self._drop_passed()
+        return error
+
+    def _add_tracking(self, samples: Samples) -> None:
+        difference = samples.setpoint.position - samples.joint_position
+        for column, kind in enumerate(self.axes.kinds):
+            error = difference[:, column] * (UM_PER_MM if kind == "linear" else MDEG_PER_DEGREE)
+            before = self._axis_extent[column].greatest
+            self._axis_extent[column].add(error)
+            if self._axis_extent[column].greatest > before:
+                row = int(np.abs(error).argmax())
+                self._axis_worst[column] = (
+                    int(samples.setpoint.line[row]), float(samples.setpoint.time[row])
+                )  # fmt: skip
+
+    def _follow(
+        self, samples: Samples, point: FloatArray
+    ) -> tuple[FloatArray, IntArray, FloatArray]:
+        setpoint = samples.setpoint
+        started = setpoint.move >= 0
+        command = np.column_stack(
+            [np.maximum(setpoint.move, 0), np.where(started, setpoint.fraction, 0.0)]
+        )
+        time = np.concatenate([self._late[0], setpoint.time])
+        late = np.concatenate([self._late[1], command])
+        back_row = np.searchsorted(time, setpoint.time - REACH_S)
+        shift = np.array([self._first, 0.0])
+        if np.isnan(self._state[0]):
+            where = self._frame.position(setpoint.position[:1])[0]
+            self._state[:] = (*command[0], *where, 0.0)
+        count = len(setpoint)
+        distance, fraction = np.zeros(count), np.zeros(count)
+        place = np.zeros(count, np.int64)
+        self._state[0] -= self._first
+        follow(
+            self._path, point, command - shift, late[back_row] - shift, self._state,
+            distance, place, fraction,
+        )  # fmt: skip
+        self._state[0] += self._first
+        self._late = time[back_row[-1] :], late[back_row[-1] :]
+        return distance, place, fraction
+
+    def _offsets(self, point: FloatArray, place: IntArray) -> FloatArray:
+        """Tool relative to the centre of the nearest move's arc, in the arc's plane [mm]."""
+        path = self._path
+        cosine, sine = np.cos(path.turn[place]), np.sin(path.turn[place])
+        back = point.copy()
+        back[:, 0] = cosine * point[:, 0] + sine * point[:, 1]
+        back[:, 1] = cosine * point[:, 1] - sine * point[:, 0]
+        back -= path.origin[place]
+        radius = np.maximum(np.linalg.norm(path.first[place], axis=1), np.finfo(float).tiny)
+        along = np.einsum("ij,ij->i", back, path.first[place]) / radius
+        across = np.einsum("ij,ij->i", back, path.second[place]) / radius
+        return np.column_stack([along, across])
+
+    def _keep_worst(
+        self, error: FloatArray, line: IntArray, time: FloatArray, position: FloatArray
+    ) -> None:
+        least = min((w.error_um for w in self._worst.values()), default=0.0)
+        floor = least if len(self._worst) >= WORST_PLACES else -1.0
+        rows = np.flatnonzero(error > floor)
+        rows = rows[np.lexsort((-error[rows], line[rows]))]
+        _, heads = np.unique(line[rows], return_index=True)
+        for row in rows[heads]:
+            known = self._worst.get(int(line[row]))
+            if known is None or error[row] > known.error_um:
+                self._worst[int(line[row])] = WorstPlace(
+                    int(line[row]), float(time[row]), float(error[row]),
+                    position[row] - self._part_zero,
+                )  # fmt: skip
+        kept = sorted(self._worst.values(), key=lambda w: (-w.error_um, w.line))[:WORST_PLACES]
+        self._worst = {place.line: place for place in kept}
+
+    def _drop_passed(self) -> None:
+        """Let go of the moves that neither the tool nor the search can come back to."""
+        reached = min(int(self._state[0]), int(self._late[1][0, 0]))
+        self._arcs.finish(reached)
+        passed = reached - self._first
+        if passed > 0 and 2 * passed >= len(self._moves):
+            self._moves = concatenate([self._moves[passed:]], self.axes)
+            self._path = drop_moves(self._path, passed)
+            self._first = reached
+
+    def result(self) -> Figures:
+        """The figures of everything added so far."""
+        worst = tuple(self._worst.values())
+        tracking = {
+            name: AxisTracking(kind, extent.greatest, extent.rms, *place)
+            for name, kind, extent, place in zip(
+                self.axes.names, self.axes.kinds, self._axis_extent, self._axis_worst, strict=True
+            )
+        }
+        return Figures(
+            samples=self._contour.count,
+            duration_s=self._duration,
+            tracking=tracking,
+            contour=ContourFigures(
+                max=self._contour.greatest,
+                rms=self._contour.rms,
+                p99=self._contour.percentile(99.0),
+                worst_line=worst[0].line if worst else 0,
+                worst_time_s=worst[0].time_s if worst else 0.0,
+            ),
+            arcs=self._arcs.figures(),
+            worst=worst,
+        )
+
+
+def _rows(samples: Samples, rows: slice) -> Samples:
+    return Samples(
+        samples.setpoint[rows],
+        samples.joint_position[rows],
+        samples.joint_velocity[rows],
+        samples.drive_force[rows],
+    )

@@ -1,0 +1,114 @@
+"""The figures of a run: what the comparison found, ready for the verdict and the report."""
+
+import dataclasses
+from collections.abc import Mapping
+
+from twin.nc.canonical import FloatArray
+from twin.units import AxisKind
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class AxisTracking:
+    """Following error of one axis: setpoint minus simulated position.
+
+    Attributes:
+        kind: ``linear`` counts in µm, ``rotary`` in mdeg.
+        max: Greatest magnitude [µm or mdeg].
+        rms: Root mean square over all samples [µm or mdeg].
+        line: Program line commanded at the greatest.
+        time_s: When that was [s].
+    """
+
+    kind: AxisKind
+    max: float
+    rms: float
+    line: int
+    time_s: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ContourFigures:
+    """Contour error: shortest distance from the tool to the commanded path, seen from the part.
+
+    Attributes:
+        max: Greatest [µm].
+        rms: Root mean square over all samples [µm].
+        p99: What 99 % of the samples do not exceed [µm], to 0.1 %.
+        worst_line: Source line of the block nearest to the worst point; 0 without samples.
+        worst_time_s: When it was reached [s].
+    """
+
+    max: float
+    rms: float
+    p99: float
+    worst_line: int
+    worst_time_s: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class WorstPlace:
+    """The greatest contour error on one program line.
+
+    Attributes:
+        line: Source line of the block.
+        time_s: When [s].
+        error_um: Contour error [µm].
+        position: Commanded part coordinates of all axes, shape (k,) [mm or deg].
+    """
+
+    line: int
+    time_s: float
+    error_um: float
+    position: FloatArray
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ArcFigures:
+    """Circular figures of one arc block of at least 90 degrees, with the table at rest.
+
+    Attributes:
+        line: Source line.
+        time_s: When the tool reached the arc [s].
+        radius_mm: Commanded radius [mm].
+        sweep_deg: Commanded opening angle, signed, all turns [deg].
+        circular_deviation_um: ISO 230-4 circular deviation G (see ``twin.compare.circle``) [µm].
+        radial_max_um: Greatest radial deviation, positive outside the commanded circle [µm].
+        radial_min_um: Least radial deviation [µm].
+        polar: Angle [deg] and radial deviation [µm] by row for a polar plot, shape (m, 2); empty
+            for all but the worst arcs.
+    """
+
+    line: int
+    time_s: float
+    radius_mm: float
+    sweep_deg: float
+    circular_deviation_um: float
+    radial_max_um: float
+    radial_min_um: float
+    polar: FloatArray
+
+    @property
+    def radial_deviation_um(self) -> float:
+        """The radial deviation that is farthest from zero, with its sign [µm]."""
+        return max(self.radial_max_um, self.radial_min_um, key=abs)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Figures:
+    """Everything the comparison found.
+
+    Attributes:
+        samples: How many samples were compared.
+        duration_s: Time of the last sample [s].
+        tracking: By axis name.
+        contour: Over the whole program.
+        arcs: In program order.
+        worst: The lines with the greatest contour errors, greatest first.
+    """
+
+    samples: int
+    duration_s: float
+    tracking: Mapping[str, AxisTracking]
+    contour: ContourFigures
+    arcs: tuple[ArcFigures, ...]
+    worst: tuple[WorstPlace, ...]

@@ -1,0 +1,125 @@
+"""``result.json``: the verdict and every figure behind it, in the form that users script against."""
+
+import dataclasses
+import json
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from twin.compare.figures import ArcFigures, AxisTracking, Figures
+from twin.compare.verdict import AlarmLike, Verdict
+from twin.files import write_text
+from twin.job import ToleranceTable
+from twin.units import AxisKind
+
+SCHEMA = 1
+_DIGITS = 6
+"""Figures are written to the picometre or microdegree; more digits would be noise."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class RunSummary:
+    """What the result says beside the figures; the caller knows it.
+
+    Attributes:
+        program: Name of the program, as the user gave it.
+        dialect: Its dialect.
+        machine: Name of the machine.
+        duration_s: Machine time of the program, without the settling after it [s].
+        wall_s: How long the whole run took [s].
+        stages: Seconds by stage: ``interpret_s``, ``plan_s``, ``simulate_s``, ``compare_s``,
+            ``cut_s``, ``render_s``; a stage that was left out is 0.
+        cut: The content of the key ``cut``, or None when nothing was cut.
+        commanded: Final setpoint by axis, part coordinates [mm or deg].
+        simulated: Final joint position by axis, part coordinates [mm or deg].
+    """
+
+    program: str
+    dialect: str
+    machine: str
+    duration_s: float
+    wall_s: float
+    stages: Mapping[str, float]
+    cut: Mapping[str, Any] | None
+    commanded: Mapping[str, float]
+    simulated: Mapping[str, float]
+
+
+STAGES = ("interpret_s", "plan_s", "simulate_s", "compare_s", "cut_s", "render_s")
+
+
+def result(
+    summary: RunSummary,
+    figures: Figures,
+    tolerance: ToleranceTable,
+    verdict: Verdict,
+    alarms: Sequence[AlarmLike] = (),
+) -> dict[str, Any]:
+    """Put the result of a run together, ready for JSON.
+
+    Returns:
+        The content of ``result.json``; numbers that do not exist are None.
+    """
+    contour = figures.contour
+    content = {
+        "schema": SCHEMA,
+        "program": summary.program,
+        "dialect": summary.dialect,
+        "machine": summary.machine,
+        "verdict": verdict.outcome,
+        "reasons": [dataclasses.asdict(reason) for reason in verdict.reasons],
+        "duration_s": summary.duration_s,
+        "samples": figures.samples,
+        "wall_s": summary.wall_s,
+        "real_time_factor": summary.duration_s / summary.wall_s if summary.wall_s > 0 else None,
+        "stages": {name: summary.stages.get(name, 0.0) for name in STAGES},
+        "tracking_um": _tracking(figures, "linear"),
+        "tracking_mdeg": _tracking(figures, "rotary"),
+        "contour_um": dataclasses.asdict(contour),
+        "arcs": [_arc(arc) for arc in figures.arcs],
+        "tolerance": tolerance.model_dump(exclude_none=True),
+        "alarms": [
+            {"code": a.code, "line": a.line, "time_s": a.time_s, "message": a.message}
+            for a in alarms
+        ],
+        "cut": None if summary.cut is None else dict(summary.cut),
+        "final": {"commanded": dict(summary.commanded), "simulated": dict(summary.simulated)},
+    }
+    return _rounded(content)
+
+
+def write_result(path: Path, content: Mapping[str, Any]) -> None:
+    """Write ``result.json``, complete or not at all."""
+    write_text(path, json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def _tracking(figures: Figures, kind: AxisKind) -> dict[str, dict[str, float]]:
+    return {name: _axis(axis) for name, axis in figures.tracking.items() if axis.kind == kind}
+
+
+def _axis(axis: AxisTracking) -> dict[str, float]:
+    return {"max": axis.max, "rms": axis.rms, "worst_line": axis.line, "worst_time_s": axis.time_s}
+
+
+def _arc(arc: ArcFigures) -> dict[str, float]:
+    return {
+        "line": arc.line,
+        "time_s": arc.time_s,
+        "radius_mm": arc.radius_mm,
+        "sweep_deg": arc.sweep_deg,
+        "circular_deviation_um": arc.circular_deviation_um,
+        "radial_deviation_um": arc.radial_deviation_um,
+        "radial_max_um": arc.radial_max_um,
+        "radial_min_um": arc.radial_min_um,
+    }
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, float):
+        return round(value, _DIGITS) if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
+    return value

@@ -1,0 +1,239 @@
+"""Cutting: the recorded motion takes material off the stock, and what it did is noted."""
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+
+from twin.cutting.events import SCRAPE_MM, CutEvent, EventLog, RapidWatch, Stretches
+from twin.cutting.force import cutting_load, cutting_width, kienzle
+from twin.cutting.height_map import BoolArray, blank
+from twin.cutting.ledger import BlockCut, Ledger
+from twin.cutting.sweep_kernels import overlap, sweep, thin
+from twin.cutting.tools import ToolPlan, default_cell, profile
+from twin.job import StockTable, ToolTable
+from twin.nc.canonical import FloatArray, IntArray
+from twin.recording import Samples
+from twin.toolpath.part_frame import PartFrame
+
+STRAIGHT_SHARE = 0.01
+"""Samples this share of a cell off a straight line count as on it."""
+
+LONGEST_SHARE = 0.5
+"""Longest stretch that is swept at once, as a share of the tool's radius: it is also how finely
+cutting is told from air."""
+
+MOST_JOINED = 64
+"""Samples that one stretch may stand for."""
+
+AIR_MM = 1e-3
+"""A stretch that takes less than this off one cell cuts air [mm]."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class CutResult:
+    """What was cut."""
+
+    removed_mm3: float
+    """Material taken off [mm³]."""
+    cell_mm: float
+    """Side of a cell of the height map [mm]."""
+    air_share: float
+    """Share of the cutting feed's path that met no material."""
+    gouges: tuple[CutEvent, ...]
+    """Flutes too short, shank or holder in the material; one each per program line."""
+    rapid_into_stock: tuple[CutEvent, ...]
+    """Rapids that met material, one per move."""
+    blocks: Mapping[int, BlockCut]
+    """What each program line took off."""
+    bin_s: float
+    """Length of a bin of ``removed_over_time`` [s]."""
+    removed_over_time: tuple[float, ...]
+    """Material taken off in each bin of time, from 0 on [mm³]."""
+    force_n: float | None
+    """Greatest mean cutting force [N]; None: the job names no material or no spindle speed."""
+    power_w: float | None
+    """Greatest mean cutting power [W]; None as for the force."""
+
+    def as_json(self) -> dict[str, Any]:
+        """The ``cut`` object of ``result.json``."""
+        result = dataclasses.asdict(self)
+        blocks = {line: dataclasses.asdict(block) for line, block in self.blocks.items()}
+        result["blocks"] = [{"line": line, **block} for line, block in sorted(blocks.items())]
+        return result
+
+
+class Cutter:
+    """Cuts stock along recorded motion, chunk by chunk; memory does not grow with the time.
+
+    Attributes:
+        map: The height map as cut so far; look, but let only the cutter change it.
+        changed: Cells that changed in the last ``add``: row, row end, column, column end; none
+            when the rows end before they begin.
+        tool: What is in the spindle after the last ``add``.
+    """
+
+    def __init__(
+        self,
+        stock: StockTable,
+        tool: ToolTable | ToolPlan,
+        part_frame: PartFrame,
+        part_zero: FloatArray,
+        *,
+        along: Literal["joints", "setpoints"] = "joints",
+    ) -> None:
+        """Lay the uncut stock on the table.
+
+        Args:
+            stock: The blank.
+            tool: What is in the spindle, or what is in it when.
+            part_frame: How the part turns under the tool.
+            part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+            along: Whether the simulated motion cuts or the commanded one.
+
+        Raises:
+            ConfigError: The stock is too large for its grid, its file cannot be read, or its
+                material is not known.
+        """
+        self._plan = tool if isinstance(tool, ToolPlan) else ToolPlan((tool,))
+        self.tool = self._plan.tools[0]
+        corner = np.asarray(part_zero[:3]) - np.array([*part_frame.center, 0.0])
+        self.map = blank(stock, corner, stock.cell or default_cell(self._plan.tools))
+        self.changed = (0, 0, 0, 0)
+        self._material = kienzle(stock)
+        self._along = along
+        self._part_frame = part_frame
+        self._last: tuple[FloatArray, float] | None = None
+        self._removed = 0.0
+        self._feed_path = 0.0
+        self._air_path = 0.0
+        self._force: float | None = None
+        self._power: float | None = None
+        self._gouges = EventLog()
+        self._rapids = RapidWatch()
+        self._ledger = Ledger()
+
+    def add(self, samples: Samples, rapid: BoolArray) -> float:
+        """Cut along a chunk that follows the last one.
+
+        Args:
+            samples: n samples.
+            rapid: Which of them belong to rapids, shape (n,).
+
+        Returns:
+            Material that this chunk took off [mm³].
+        """
+        before = self._removed
+        self.changed = (0, 0, 0, 0)
+        if not len(samples):
+            return 0.0
+        setpoint = samples.setpoint
+        joints = samples.joint_position if self._along == "joints" else setpoint.position
+        points = self._part_frame.position(joints)
+        for run, tool in self._plan.runs(setpoint.move):
+            if tool is not self.tool:
+                self.tool, self._last = tool, None
+            self._cut(points[run], setpoint.time[run], setpoint.line[run], np.asarray(rapid)[run])
+        return self._removed - before
+
+    def result(self) -> CutResult:
+        """What was cut so far."""
+        bin_s, over_time = self._ledger.over_time
+        return CutResult(
+            removed_mm3=self._removed,
+            cell_mm=self.map.cell,
+            air_share=self._air_path / self._feed_path if self._feed_path else 0.0,
+            gouges=self._gouges.events(),
+            rapid_into_stock=self._rapids.events(),
+            blocks=self._ledger.blocks,
+            bin_s=bin_s,
+            removed_over_time=tuple(over_time.tolist()),
+            force_n=self._force,
+            power_w=self._power,
+        )
+
+    def _cut(self, points: FloatArray, time: FloatArray, line: IntArray, rapid: BoolArray) -> None:
+        """Cut with one tool from the last point of the run before through all of this one's."""
+        before, since = (points[:1], time[0]) if self._last is None else self._last
+        self._last = points[-1:].copy(), float(time[-1])
+        points = np.concatenate([before, points])
+        edge = profile(self.tool)
+        chosen = thin(
+            points,
+            np.concatenate([line[:1] * 2 + rapid[:1], line * 2 + rapid]),
+            STRAIGHT_SHARE * self.map.cell,
+            LONGEST_SHARE * edge.radius,
+            MOST_JOINED,
+        )
+        points, sample = points[chosen], chosen[1:] - 1
+        overlaps = self._overlaps(points)
+        removed, depth = np.zeros(len(sample)), np.zeros(len(sample))
+        changed = sweep(
+            self.map.heights,
+            self.map.origin,
+            self.map.cell,
+            self.map.bottom,
+            points,
+            dataclasses.astuple(edge),
+            removed,
+            depth,
+        )
+        self.changed = union(self.changed, changed)
+        self._removed += float(removed.sum())
+        stretches = Stretches(points, time[sample], line[sample], rapid[sample], removed, depth)
+        overlaps["flute"] = depth - self.tool.flute
+        for what, excess in overlaps.items():
+            for i in np.flatnonzero(excess > SCRAPE_MM):
+                key = (what, int(stretches.line[i]))
+                self._gouges.note(key, what, stretches, int(i), float(excess[i]))
+        self._rapids.add(stretches)
+        self._note(stretches, np.diff(stretches.time, prepend=since))
+
+    def _overlaps(self, points: FloatArray) -> dict[str, FloatArray]:
+        """How deep shank and holder go into the material along each stretch [mm]."""
+        tool = self.tool
+        found = {}
+        cylinders = {"holder": (tool.holder, tool.below_holder)}
+        if tool.shank is not None and tool.shank > tool.diameter:
+            cylinders["shank"] = (tool.shank, tool.flute)
+        for what, (diameter, above) in cylinders.items():
+            found[what] = np.zeros(len(points) - 1)
+            overlap(
+                self.map.heights,
+                self.map.origin,
+                self.map.cell,
+                self.map.top,
+                points,
+                0.5 * diameter,
+                above,
+                found[what],
+            )
+        return found
+
+    def _note(self, stretches: Stretches, duration: FloatArray) -> None:
+        """Enter air and removal, and the force where it can be reckoned."""
+        path = stretches.path
+        air = stretches.removed < AIR_MM * self.map.cell**2
+        self._feed_path += float(path[~stretches.rapid].sum())
+        self._air_path += float(path[~stretches.rapid & air].sum())
+        force = None
+        if self._material is not None and self.tool.speed is not None and len(duration):
+            load = cutting_load(stretches, duration, self.tool, self._material)
+            force = load.force
+            self._force = max(self._force or 0.0, float(force.max()))
+            self._power = max(self._power or 0.0, float(load.power.max()))
+        self._ledger.add(stretches, cutting_width(stretches, self.tool.diameter), force)
+
+
+Rectangle = tuple[int, int, int, int]
+"""Row, row end, column, column end of cells."""
+
+
+def union(a: Rectangle, b: Rectangle) -> Rectangle:
+    """The smallest rectangle around two; one that ends before it begins is empty."""
+    if a[0] >= a[1]:
+        return b
+    if b[0] >= b[1]:
+        return a
+    return (min(a[0], b[0]), max(a[1], b[1]), min(a[2], b[2]), max(a[3], b[3]))

@@ -1,0 +1,106 @@
+"""The height map: how high the material stands over every cell of the part's own frame.
+
+The rotary table turns about Z, so that the tool never tilts against the part and one height per
+cell describes the part exactly, up to the size of the cells.
+"""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+
+from twin.cutting.drape_kernels import drape
+from twin.cutting.outline import BoolArray, Outline, outline
+from twin.errors import ConfigError
+from twin.job import StockTable
+from twin.nc.canonical import FloatArray
+from twin.stl_file import read_stl
+
+CELL_LIMIT = 64_000_000
+"""Cells that a height map may have: half a gigabyte of heights."""
+
+
+@dataclasses.dataclass(slots=True)
+class HeightMap:
+    """Columns of material on a square grid, in the part's frame.
+
+    Attributes:
+        origin: X and Y of the middle of cell ``[0, 0]`` [mm].
+        cell: Side of a cell [mm].
+        bottom: Z of the underside [mm].
+        heights: Z of the material over each cell, shape (ny, nx) [mm]; ``bottom`` where there is
+            none. This is what cutting changes.
+        top: Z of the blank's top face [mm].
+        outline: Where the blank ends sideways.
+    """
+
+    origin: tuple[float, float]
+    cell: float
+    bottom: float
+    heights: FloatArray
+    top: float
+    outline: Outline
+
+    @property
+    def volume(self) -> float:
+        """Material that is left [mm³]."""
+        return float((self.heights - self.bottom).sum()) * self.cell**2
+
+    @property
+    def x(self) -> FloatArray:
+        """X of the middles of the columns of cells, shape (nx,) [mm]."""
+        return self.origin[0] + self.cell * np.arange(self.heights.shape[1])
+
+    @property
+    def y(self) -> FloatArray:
+        """Y of the middles of the rows of cells, shape (ny,) [mm]."""
+        return self.origin[1] + self.cell * np.arange(self.heights.shape[0])
+
+    def solid(self) -> BoolArray:
+        """Cells that hold any material, shape (ny, nx)."""
+        return self.heights > self.bottom
+
+    def copy(self) -> "HeightMap":
+        """A map that can be cut without touching this one."""
+        return dataclasses.replace(self, heights=self.heights.copy())
+
+
+def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
+    """The uncut stock as a height map; a cell holds material when its middle lies in the blank.
+
+    Of an STL file's shape the highest surface counts, with material all the way down below it.
+
+    Args:
+        stock: The blank.
+        corner: Where the blank's program coordinates have their origin in the part's frame,
+            shape (3,) [mm]: the part zero less the centre of the table.
+        cell: Side of a cell [mm].
+
+    Raises:
+        ConfigError: The map would have more cells than ``CELL_LIMIT``, or an STL file is wrong.
+    """
+    center = np.asarray(stock.position) + corner
+    width, depth, height = stock.extent
+    count_x, count_y = max(1, round(width / cell)), max(1, round(depth / cell))
+    if count_x * count_y > CELL_LIMIT:
+        coarsest = (width * depth / CELL_LIMIT) ** 0.5
+        raise ConfigError(
+            f"stock.cell = {cell:g} mm would need {count_x} x {count_y} cells; "
+            f"{coarsest:.2g} mm is the finest for this stock"
+        )
+    origin = (
+        float(center[0]) - 0.5 * (count_x - 1) * cell,
+        float(center[1]) - 0.5 * (count_y - 1) * cell,
+    )
+    top, bottom = float(center[2]), float(center[2]) - height
+    edge = outline(stock, (float(center[0]), float(center[1])))
+    result = HeightMap(origin, cell, bottom, np.full((count_y, count_x), top), top, edge)
+    result.heights[~edge.contains(*np.meshgrid(result.x, result.y))] = bottom
+    if stock.file is not None:
+        mesh = read_stl(Path(stock.file))
+        low, high = mesh.bounds
+        middle = np.array([*(0.5 * (low + high))[:2], high[2]])
+        triangles = np.ascontiguousarray(mesh.triangles - middle + center, dtype=np.float64)
+        result.heights[:] = bottom
+        drape(result.heights, result.origin, cell, triangles)
+    return result

@@ -1,0 +1,56 @@
+"""Where a blank ends sideways."""
+
+import dataclasses
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.job import StockTable
+from twin.nc.canonical import FloatArray
+
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Outline:
+    """A rectangle along X and Y, or a circle, perhaps with a hole in its middle.
+
+    Attributes:
+        center: X and Y of its middle [mm].
+        half: Half of its size along X and Y [mm].
+        round: Whether it is a circle.
+        bore: Radius of the hole [mm]; 0 for none.
+    """
+
+    center: tuple[float, float]
+    half: tuple[float, float]
+    round: bool
+    bore: float = 0.0
+
+    def contains(self, x: FloatArray, y: FloatArray) -> BoolArray:
+        """Which points lie inside or on the edge."""
+        across, along = np.abs(x - self.center[0]), np.abs(y - self.center[1])
+        if self.round:
+            squared = across**2 + along**2
+            return (squared <= self.half[0] ** 2) & (squared >= self.bore**2)
+        return (across <= self.half[0]) & (along <= self.half[1])
+
+    def snap(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Move points that lie outside onto the edge."""
+        across, along = x - self.center[0], y - self.center[1]
+        if self.round:
+            distance = np.maximum(np.hypot(across, along), 1e-12)
+            factor = np.clip(distance, self.bore, self.half[0]) / distance
+            across, along = across * factor, along * factor
+        else:
+            across = np.clip(across, -self.half[0], self.half[0])
+            along = np.clip(along, -self.half[1], self.half[1])
+        return self.center[0] + across, self.center[1] + along
+
+
+def outline(stock: StockTable, center: tuple[float, float]) -> Outline:
+    """The outline of a blank whose top face has its middle at ``center`` [mm]."""
+    width, depth, _ = stock.extent
+    return Outline(
+        center, (0.5 * width, 0.5 * depth), stock.diameter is not None, 0.5 * (stock.bore or 0.0)
+    )

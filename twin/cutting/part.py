@@ -1,0 +1,102 @@
+"""The machined part as a closed mesh."""
+
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from twin.cutting.colours import RAW_RGB, Colours, surface_colours
+from twin.cutting.height_map import HeightMap
+from twin.cutting.net import all_corners, net, open_edges, surface_faces
+from twin.cutting.outline import BoolArray
+from twin.files import complete_or_absent
+from twin.units import MM
+
+_TO_GLTF = MM * np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1 / MM]])
+"""From mm with Z up to m with Y up."""
+
+MESH_CELLS = 400_000
+"""Cells of the finest mesh that is written; a finer map is thinned to it."""
+
+
+def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> trimesh.Trimesh:
+    """The cut stock as a closed mesh: its surface, walls down to the underside, the underside.
+
+    Steps between cells become faces one cell wide; where the cut went through, there is a hole.
+    A map of more than ``MESH_CELLS`` cells is thinned first. Nothing left gives an empty mesh.
+
+    Args:
+        height_map: The cut stock.
+        colours: One for each cell, shape (ny, nx, 3); the underside is raw. None: no colours.
+    """
+    step = 1
+    while height_map.heights[::step, ::step].size > MESH_CELLS:
+        step += 1
+    surface = net(height_map, step)
+    heights = surface.heights(height_map)
+    patches = surface.patches & all_corners(heights > height_map.bottom)
+    _separate_pinches(patches)
+    top_faces = surface_faces(patches)
+    below = heights.size
+    start, end = open_edges(patches).T
+    walls = np.concatenate(
+        [
+            np.stack([end, start, start + below], 1),
+            np.stack([end, start + below, end + below], 1),
+        ]
+    )
+    faces = np.concatenate([top_faces, top_faces[:, ::-1] + below, walls])
+    plan = np.stack([surface.x.ravel(), surface.y.ravel()], 1)
+    top = np.column_stack([plan, heights.ravel()])
+    bottom = np.column_stack([plan, np.full(below, height_map.bottom)])
+    used, renumbered = np.unique(faces, return_inverse=True)
+    vertices = np.concatenate([top, bottom])[used]
+    painted = None
+    if colours is not None:
+        skin = np.where(surface.cell.ravel() < 0, 0, surface.cell.ravel())
+        raw = np.tile(np.array(RAW_RGB, np.uint8), (below, 1))
+        painted = np.concatenate([colours.reshape(-1, 3)[skin], raw])[used]
+    faces = renumbered.reshape(faces.shape)
+    return trimesh.Trimesh(vertices, faces, vertex_colors=painted, process=False)
+
+
+def _separate_pinches(patches: BoolArray) -> None:
+    """Take away patches that hang together at one corner only, where a solid has no thickness."""
+    while True:
+        a, b = patches[:-1, :-1], patches[1:, 1:]
+        c, d = patches[:-1, 1:], patches[1:, :-1]
+        rising, falling = a & b & ~c & ~d, c & d & ~a & ~b
+        if not (rising.any() or falling.any()):
+            return
+        b &= ~rising
+        d &= ~falling
+
+
+def write_glb(height_map: HeightMap, path: Path, colours: Colours | None = None) -> None:
+    """Write the part as binary glTF, which browsers and viewers show in colours.
+
+    Lengths are metres and Y points up, as glTF has it.
+
+    Args:
+        height_map: The cut stock.
+        path: The file, complete or not at all.
+        colours: One for each cell, shape (ny, nx, 3); None: raw and machined surfaces differ.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    mesh = part_mesh(height_map, surface_colours(height_map) if colours is None else colours)
+    mesh.apply_transform(_TO_GLTF)
+    with complete_or_absent(path) as temporary:
+        mesh.export(temporary, file_type="glb")
+
+
+def write_stl(height_map: HeightMap, path: Path) -> None:
+    """Write the part as binary STL [mm], complete or not at all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    mesh = part_mesh(height_map)
+    with complete_or_absent(path) as temporary:
+        mesh.export(temporary, file_type="stl")

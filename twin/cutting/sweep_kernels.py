@@ -1,0 +1,325 @@
+"""Hot loops of cutting: thin the samples, then sweep the tool along what is left."""
+
+import math
+
+import numba
+import numpy as np
+
+from twin.nc.canonical import FloatArray, IntArray
+
+_BISECTIONS = 40
+"""Halvings of a sweep in search of its lowest point: 1e-12 of its length."""
+
+
+@numba.njit(cache=True)
+def thin(
+    points: FloatArray, group: IntArray, tolerance: float, longest: float, most: int
+) -> IntArray:
+    """Choose samples between which the tool moved straight.
+
+    From each chosen sample on, samples are passed over while all that were passed lie within
+    ``tolerance`` of the straight line between the chosen ones, the line is no longer than
+    ``longest``, and the group stays the same.
+
+    Args:
+        points: Tool positions, shape (n, 3) [mm].
+        group: Samples of different groups are never joined, shape (n,).
+        tolerance: Largest distance of a sample from the line that replaces it [mm].
+        longest: Longest line [mm].
+        most: Most samples that one line may replace.
+
+    Returns:
+        Indices of the chosen samples, rising; the first and the last sample are among them.
+    """
+    count = len(points)
+    chosen = np.zeros(count, np.int64)
+    kept = 1
+    anchor = 0
+    while anchor < count - 1:
+        last = anchor + 1
+        while last + 1 < count and last + 1 - anchor <= most:
+            following = last + 1
+            if group[following] != group[last]:
+                break
+            if not _straight(points, anchor, following, tolerance, longest):
+                break
+            last = following
+        chosen[kept] = last
+        kept += 1
+        anchor = last
+    return chosen[:kept]
+
+
+@numba.njit(cache=True)
+def _straight(points: FloatArray, first: int, last: int, tolerance: float, longest: float) -> bool:
+    ax, ay, az = points[first]
+    dx, dy, dz = points[last, 0] - ax, points[last, 1] - ay, points[last, 2] - az
+    squared = dx * dx + dy * dy + dz * dz
+    if squared > longest * longest:
+        return False
+    for between in range(first + 1, last):
+        px, py, pz = points[between, 0] - ax, points[between, 1] - ay, points[between, 2] - az
+        share = 0.0
+        if squared > 0.0:
+            share = min(1.0, max(0.0, (px * dx + py * dy + pz * dz) / squared))
+        px, py, pz = px - share * dx, py - share * dy, pz - share * dz
+        if px * px + py * py + pz * pz > tolerance * tolerance:
+            return False
+    return True
+
+
+@numba.njit(cache=True)
+def sweep(
+    heights: FloatArray,
+    origin: tuple[float, float],
+    cell: float,
+    bottom: float,
+    points: FloatArray,
+    profile: tuple[float, float, float, float],
+    removed: FloatArray,
+    depth: FloatArray,
+) -> tuple[int, int, int, int]:
+    """Cut the material that the tool meets on its way from point to point.
+
+    Every cell's new height is exact for the straight sweep: the lowest height over its middle
+    that the tool's profile has anywhere along the line.
+
+    Args:
+        heights: The height map, shape (ny, nx) [mm]; changed in place.
+        origin: X and Y of the middle of cell ``[0, 0]`` [mm].
+        cell: Side of a cell [mm].
+        bottom: Z below which there is nothing to cut [mm].
+        points: Tool tip positions, shape (n, 3) [mm].
+        profile: Radius, flat, corner, slope of ``twin.cutting.tools.Profile``.
+        removed: Set to the material removed by each line, shape (n - 1,) [mm³].
+        depth: Set to the greatest depth of material removed by each line, shape (n - 1,) [mm].
+
+    Returns:
+        First and last-but-one row, first and last-but-one column of the cells that changed.
+    """
+    row_first, row_end, column_first, column_end = heights.shape[0], 0, heights.shape[1], 0
+    radius = profile[0]
+    rows, columns = heights.shape
+    for i in range(len(points) - 1):
+        volume, deepest = 0.0, 0.0
+        ax, ay = points[i, 0], points[i, 1]
+        bx, by = points[i + 1, 0], points[i + 1, 1]
+        low = max(0, math.ceil((min(ay, by) - radius - origin[1]) / cell))
+        high = min(rows - 1, math.floor((max(ay, by) + radius - origin[1]) / cell))
+        for row in range(low, high + 1):
+            left, right = _chord(ax, ay, bx, by, radius, origin[1] + row * cell)
+            first = max(0, math.ceil((left - origin[0]) / cell))
+            end = min(columns - 1, math.floor((right - origin[0]) / cell)) + 1
+            if first >= end:
+                continue
+            line = heights[row, first:end]
+            x, y = origin[0] + first * cell, origin[1] + row * cell
+            cut, most = _cut_row(line, x, y, cell, bottom, points[i], points[i + 1], profile)
+            if cut > 0.0:
+                volume += cut
+                deepest = max(deepest, most)
+                row_first, row_end = min(row_first, row), max(row_end, row + 1)
+                column_first, column_end = min(column_first, first), max(column_end, end)
+        removed[i] = volume * cell * cell
+        depth[i] = deepest
+    return row_first, row_end, column_first, column_end
+
+
+@numba.njit(cache=True)
+def overlap(
+    heights: FloatArray,
+    origin: tuple[float, float],
+    cell: float,
+    top: float,
+    points: FloatArray,
+    radius: float,
+    above: float,
+    depth: FloatArray,
+) -> None:
+    """How deep a cylinder that must not cut, such as the holder, goes into the material.
+
+    Args:
+        heights: The height map, shape (ny, nx) [mm].
+        origin: X and Y of the middle of cell ``[0, 0]`` [mm].
+        cell: Side of a cell [mm].
+        top: Z above which there is no material [mm].
+        points: Tool tip positions, shape (n, 3) [mm].
+        radius: Of the cylinder [mm].
+        above: Height of its lower end above the tip [mm].
+        depth: Set to the greatest overlap along each line, shape (n - 1,) [mm].
+    """
+    rows, columns = heights.shape
+    cylinder = (radius, radius, 0.0, 0.0)
+    for i in range(len(points) - 1):
+        depth[i] = 0.0
+        ax, ay = points[i, 0], points[i, 1]
+        bx, by = points[i + 1, 0], points[i + 1, 1]
+        if min(points[i, 2], points[i + 1, 2]) + above >= top:
+            continue
+        low = max(0, math.ceil((min(ay, by) - radius - origin[1]) / cell))
+        high = min(rows - 1, math.floor((max(ay, by) + radius - origin[1]) / cell))
+        for row in range(low, high + 1):
+            y = origin[1] + row * cell
+            left, right = _chord(ax, ay, bx, by, radius, y)
+            first = max(0, math.ceil((left - origin[0]) / cell))
+            end = min(columns - 1, math.floor((right - origin[0]) / cell)) + 1
+            for column in range(first, end):
+                x = origin[0] + column * cell
+                lower = _lowest(x, y, points[i], points[i + 1], cylinder) + above
+                depth[i] = max(depth[i], heights[row, column] - lower)
+
+
+@numba.njit(cache=True)
+def _chord(
+    ax: float, ay: float, bx: float, by: float, radius: float, y: float
+) -> tuple[float, float]:
+    """Where the row at ``y`` crosses the outline of a disc swept from a to b [mm]."""
+    left, right = math.inf, -math.inf
+    for cx, cy in ((ax, ay), (bx, by)):
+        squared = radius * radius - (y - cy) * (y - cy)
+        if squared >= 0.0:
+            half = math.sqrt(squared)
+            left, right = min(left, cx - half), max(right, cx + half)
+    dx, dy = bx - ax, by - ay
+    length = math.hypot(dx, dy)
+    if length > 0.0 and dy != 0.0:
+        for side in (-radius, radius):
+            share = (y - (ay + side * dx / length)) / dy
+            if 0.0 <= share <= 1.0:
+                x = ax - side * dy / length + share * dx
+                left, right = min(left, x), max(right, x)
+    return left, right
+
+
+@numba.njit(cache=True)
+def _cut_row(
+    line: FloatArray,
+    x: float,
+    y: float,
+    cell: float,
+    bottom: float,
+    a: FloatArray,
+    b: FloatArray,
+    profile: tuple[float, float, float, float],
+) -> tuple[float, float]:
+    """Lower one run of cells; returns the sum and the greatest of what was taken off [mm]."""
+    volume, deepest = 0.0, 0.0
+    if profile[1] >= profile[0] and a[2] == b[2]:
+        z = max(a[2], bottom)
+        for i in range(len(line)):
+            cut = max(line[i] - z, 0.0)
+            line[i] = min(line[i], z)
+            volume += cut
+            deepest = max(deepest, cut)
+        return volume, deepest
+    lowest = max(min(a[2], b[2]), bottom)
+    ball = profile[1] == 0.0 and profile[2] == profile[0]
+    for i in range(len(line)):
+        if line[i] <= lowest:
+            continue
+        if ball and _below_capsule(x + i * cell, y, line[i], a, b, profile[0]):
+            continue
+        z = max(_lowest(x + i * cell, y, a, b, profile), bottom)
+        cut = line[i] - z
+        if cut > 0.0:
+            line[i] = z
+            volume += cut
+            deepest = max(deepest, cut)
+    return volume, deepest
+
+
+@numba.njit(cache=True)
+def _below_capsule(
+    x: float, y: float, z: float, a: FloatArray, b: FloatArray, radius: float
+) -> bool:
+    """Whether a point no higher than a swept ball's centres is outside of it: a cheap refusal."""
+    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    px, py, pz = x - a[0], y - a[1], z - a[2] - radius
+    if pz > min(0.0, dz):
+        return False
+    squared = dx * dx + dy * dy + dz * dz
+    if squared > 0.0:
+        t = min(1.0, max(0.0, (px * dx + py * dy + pz * dz) / squared))
+        px, py, pz = px - t * dx, py - t * dy, pz - t * dz
+    return px * px + py * py + pz * pz >= radius * radius
+
+
+@numba.njit(cache=True)
+def _lowest(
+    x: float, y: float, a: FloatArray, b: FloatArray, profile: tuple[float, float, float, float]
+) -> float:
+    """Lowest height over (x, y) of a tool that moves straight from a to b; inf if it misses.
+
+    With t from 0 to 1 the distance from the axis is convex in t, the profile is convex and rises
+    with the distance, and the tip's height is linear: their sum is convex, so that its only
+    minimum is an end of the stretch in reach or the place where its slope changes sign.
+    """
+    radius, flat, corner, slope = profile
+    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    squared = dx * dx + dy * dy
+    px, py = x - a[0], y - a[1]
+    if squared == 0.0:
+        return min(a[2], b[2]) + _profile(math.hypot(px, py), radius, flat, corner, slope)
+    nearest = (px * dx + py * dy) / squared
+    across = px * dx + py * dy
+    offset = max(px * px + py * py - across * across / squared, 0.0)
+    reach = radius * radius - offset
+    if reach < 0.0:
+        return math.inf
+    half = math.sqrt(reach / squared)
+    first, last = max(0.0, nearest - half), min(1.0, nearest + half)
+    if first > last:
+        return math.inf
+    if dz == 0.0:
+        t = min(last, max(first, nearest))
+    elif flat >= radius:
+        t = last if dz < 0.0 else first
+    elif flat == 0.0 and corner > 0.0:
+        steepest = math.sqrt(reach / (squared * (squared + dz * dz)))
+        t = min(last, max(first, nearest - dz * steepest))
+    else:
+        t = _turning_point(first, last, nearest, squared, offset, dz, flat, corner, slope)
+    along = t - nearest
+    distance = math.sqrt(offset + squared * along * along)
+    return a[2] + t * dz + _profile(min(distance, radius), radius, flat, corner, slope)
+
+
+@numba.njit(cache=True)
+def _profile(distance: float, radius: float, flat: float, corner: float, slope: float) -> float:
+    if distance > radius:
+        return math.inf
+    beyond = max(distance - flat, 0.0)
+    if corner > 0.0:
+        return corner - math.sqrt(max(corner * corner - beyond * beyond, 0.0))
+    return slope * beyond
+
+
+@numba.njit(cache=True)
+def _turning_point(
+    first: float,
+    last: float,
+    nearest: float,
+    squared: float,
+    offset: float,
+    dz: float,
+    flat: float,
+    corner: float,
+    slope: float,
+) -> float:
+    """Where the height over a cell stops falling, by halving the stretch [share of the line]."""
+    for _ in range(_BISECTIONS):
+        t = 0.5 * (first + last)
+        along = t - nearest
+        distance = math.sqrt(offset + squared * along * along)
+        rise = dz
+        if distance > flat:
+            beyond = distance - flat
+            steepness = slope
+            if corner > 0.0:
+                steepness = beyond / math.sqrt(max(corner * corner - beyond * beyond, 1e-18))
+            rise += steepness * squared * along / distance
+        if rise > 0.0:
+            last = t
+        else:
+            first = t
+    return 0.5 * (first + last)

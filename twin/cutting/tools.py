@@ -1,0 +1,101 @@
+"""What a turning tool's lower end looks like: its lowest height over every radius."""
+
+import dataclasses
+import itertools
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from twin.job import ToolTable
+from twin.nc.canonical import FloatArray, IntArray
+
+FINEST_CELL_MM = 0.1
+"""The finest grid that is chosen without being asked for [mm]."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Profile:
+    """The surface that a turning cutter sweeps, from the axis outwards.
+
+    A disc of ``flat`` radius, then a quarter round of ``corner`` radius or a cone of ``slope`` up
+    to ``radius``: one form for flat, ball, bull-nose, drill and chamfer cutters. It is convex,
+    which is what makes the lowest height over a straight sweep unique.
+
+    Attributes:
+        radius: Of the cutting edge [mm].
+        flat: Radius of the disc at the tip [mm].
+        corner: Radius of the rounding [mm]; 0 for none.
+        slope: Rise of the cone over radius; 0 for none.
+    """
+
+    radius: float
+    flat: float
+    corner: float = 0.0
+    slope: float = 0.0
+
+    def height(self, radius: FloatArray) -> FloatArray:
+        """Height of the edge above the tip at distances from the axis [mm]; inf beyond the edge."""
+        beyond = np.maximum(np.asarray(radius, np.float64) - self.flat, 0.0)
+        if self.corner:
+            rise = self.corner - np.sqrt(np.maximum(self.corner**2 - beyond**2, 0.0))
+        else:
+            rise = self.slope * beyond
+        return np.where(np.asarray(radius) <= self.radius, rise, np.inf)
+
+
+DRILL_POINT = 118.0
+"""Included angle of a twist drill's point where the job names none [deg] (DIN 1412, form A)."""
+CHAMFER_POINT = 90.0
+"""Included angle of a chamfer cutter where the job names none [deg]."""
+
+
+def profile(tool: ToolTable) -> Profile:
+    """The profile of a tool of the job."""
+    radius = 0.5 * tool.diameter
+    if tool.kind == "ball":
+        return Profile(radius, flat=0.0, corner=radius)
+    if tool.kind == "bull":
+        assert tool.corner is not None
+        return Profile(radius, flat=radius - tool.corner, corner=tool.corner)
+    if tool.kind == "drill":
+        return Profile(radius, flat=0.0, slope=_cone_slope(tool.angle or DRILL_POINT))
+    if tool.kind == "chamfer":
+        return Profile(radius, flat=0.5 * tool.tip, slope=_cone_slope(tool.angle or CHAMFER_POINT))
+    return Profile(radius, flat=radius)
+
+
+def _cone_slope(angle: float) -> float:
+    return 1.0 / math.tan(math.radians(0.5 * angle))
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ToolPlan:
+    """Which tool is in the spindle during which moves of a program.
+
+    Attributes:
+        tools: In the order in which they come into the spindle; the first is in it at the start.
+        first_move: Number of the first move that each is in the spindle for, rising from 0.
+    """
+
+    tools: tuple[ToolTable, ...]
+    first_move: tuple[int, ...] = (0,)
+
+    def runs(self, move: IntArray) -> list[tuple[slice, ToolTable]]:
+        """Split samples where the tool changes.
+
+        Args:
+            move: Move number of each sample, never falling, shape (n,).
+        """
+        number = np.searchsorted(self.first_move, np.maximum(move, 0), side="right") - 1
+        ends = [*(np.flatnonzero(np.diff(number)) + 1).tolist(), len(move)]
+        return [
+            (slice(first, end), self.tools[int(number[first])])
+            for first, end in itertools.pairwise([0, *ends])
+            if first < end
+        ]
+
+
+def default_cell(tools: Iterable[ToolTable]) -> float:
+    """Grid for a job that names none: a tenth of the smallest tool's radius, 0.1 mm at least [mm]."""
+    return max(FINEST_CELL_MM, 0.05 * min(tool.diameter for tool in tools))

@@ -1,0 +1,209 @@
+"""Tool radius compensation: the path that keeps the tool's edge on the programmed contour.
+
+It looks one move ahead. Outside corners are rolled around on an arc about the corner, inside
+corners end where the parallel paths meet, the straight lead-in ends square to the first element of
+the contour and the straight lead-out starts square to its last. What does not fit is refused: an
+inside arc smaller than the tool, or an element that its neighbours leave no room for.
+"""
+
+import dataclasses
+from collections.abc import Callable
+from typing import NoReturn
+
+from twin.nc.arcs import SAME_POINT, Point, distance
+from twin.nc.canonical import Corner
+from twin.nc.contour import Element, crossings, turn_between
+from twin.nc.move_columns import NAN, Segment
+from twin.nc.planes import Plane
+
+Emit = Callable[[Segment], None]
+Refuse = Callable[[Segment, str, str], NoReturn]
+"""Told the segment, the code and the message; raises."""
+
+_STRAIGHT_ON = 1e-4
+"""Corners that turn by less pass as straight on [deg]."""
+
+
+@dataclasses.dataclass(slots=True)
+class _Held:
+    """A move that waits for its successor.
+
+    Attributes:
+        move: As programmed.
+        element: Its parallel in the plane; None for the lead-in, whose end is not known yet.
+        contour: Itself in the plane.
+        start: Where the compensated path has come to in the plane.
+        waiting: What happens at its end: events, and moves along the plane's normal.
+    """
+
+    move: Segment
+    contour: Element
+    element: Element | None
+    start: Point
+    waiting: list[Callable[[], None] | Segment]
+
+
+class Compensation:
+    """Compensation in force, from G41 or G42 to G40.
+
+    Attributes:
+        plane: In part coordinates.
+    """
+
+    def __init__(
+        self, plane: Plane, side: float, radius: float, emit: Emit, refuse: Refuse
+    ) -> None:
+        self.plane = plane
+        self._aside = side * radius
+        self._emit = emit
+        self._refuse = refuse
+        self._held: _Held | None = None
+
+    def add(self, move: Segment) -> None:
+        """The next move of the contour."""
+        start, end = self.plane.local(move.start), self.plane.local(move.end)
+        if move.center is None and distance(start[:2], end[:2]) < SAME_POINT:
+            self._pass(move)
+            return
+        contour = self._element(move)
+        if self._held is None:
+            if move.center is not None:
+                self._refuse(move, "compensation-start", "compensation must start on a line")
+            self._held = _Held(move, contour, None, start[:2], [])
+            return
+        element = self._parallel(move, contour)
+        at = self._join(self._held, contour, element, move)
+        self._held = _Held(move, contour, element, at, [])
+
+    def event(self, event: Callable[[], None]) -> None:
+        """Something that happens where the path has come to."""
+        if self._held is None:
+            event()
+        else:
+            self._held.waiting.append(event)
+
+    def finish(self) -> None:
+        """G40: what is held ends square to itself; the next move leads out."""
+        held = self._held
+        if held is not None:
+            if held.element is None:
+                self._end(held, held.contour.end)
+            else:
+                self._end(held, held.element.end)
+            self._held = None
+
+    def _pass(self, move: Segment) -> None:
+        if self._held is None:
+            self._emit(move)
+        else:
+            self._held.waiting.append(move)
+
+    def _element(self, move: Segment) -> Element:
+        start, end = self.plane.local(move.start)[:2], self.plane.local(move.end)[:2]
+        if move.center is None:
+            return Element(start, end)
+        sense = sum(a * b for a, b in zip(move.normal, self.plane.normal, strict=True))
+        if abs(sense) < 1.0 - 1e-9:
+            message = "an arc outside the compensated plane cannot be compensated"
+            self._refuse(move, "compensation-plane", message)
+        return Element(start, end, self.plane.local(move.center)[:2], move.sweep * sense)
+
+    def _parallel(self, move: Segment, contour: Element) -> Element:
+        element = contour.aside(self._aside)
+        if element is None:
+            self._refuse(
+                move,
+                "compensation-radius",
+                f"the tool's radius {abs(self._aside):g} does not fit into the arc of radius "
+                f"{contour.radius:.4f}",
+            )
+        return element
+
+    def _join(self, held: _Held, contour: Element, element: Element, move: Segment) -> Point:
+        """End the held move, go around the corner; return where the next one starts."""
+        if held.element is None:
+            self._end(held, element.start)
+            return element.start
+        turn = turn_between(held.contour, contour)
+        if abs(turn) < _STRAIGHT_ON:
+            self._end(held, element.start)
+            return element.start
+        if turn * self._aside < 0.0 or abs(turn) > 180.0 - _STRAIGHT_ON:
+            self._end(held, held.element.end)
+            self._roll(held, contour.start, element.start, turn)
+            return element.start
+        return self._inside(held, element, move)
+
+    def _inside(self, held: _Held, element: Element, move: Segment) -> Point:
+        before = held.element
+        assert before is not None
+        from_start = before.along(held.start)
+        corner = held.contour.end
+        fitting = [
+            point
+            for point in crossings(before, element)
+            if before.within(before.along(point))
+            and before.along(point) >= from_start
+            and element.within(element.along(point))
+        ]
+        if not fitting:
+            self._refuse(
+                move,
+                "compensation-gouge",
+                f"the tool's radius {abs(self._aside):g} does not fit into the inside corner: "
+                "it would cut into the contour before or after",
+            )
+        at = min(fitting, key=lambda point: distance(point, corner))
+        self._end(held, at)
+        return at
+
+    def _roll(self, held: _Held, corner: Point, end: Point, turn: float) -> None:
+        sweep = abs(turn) if self._aside < 0.0 else -abs(turn)
+        move, height = held.move, self.plane.local(held.move.end).height
+        assert held.element is not None
+        before = [*self.plane.world(*held.element.end, height), *move.end[3:]]
+        after = [*self.plane.world(*end, height), *move.end[3:]]
+        self._emit(
+            dataclasses.replace(
+                move,
+                start=before,
+                end=after,
+                center=self.plane.world(*corner, height),
+                normal=self.plane.normal,
+                sweep=sweep,
+                corner=Corner.EXACT_PATH,
+            )
+        )
+
+    def _end(self, held: _Held, at: Point) -> None:
+        """Emit the held move up to a point in the plane, then what waits for its end."""
+        move, plane = held.move, self.plane
+        start = plane.world(*held.start, plane.local(move.start).height)
+        end = plane.world(*at, plane.local(move.end).height)
+        sweep, center, normal = move.sweep, move.center, move.normal
+        if held.element is not None and held.element.center is not None:
+            sweep = held.element.cut(held.start, at).sweep
+            normal = plane.normal
+            center = plane.world(*held.element.center, plane.local(move.start).height)
+        self._emit(
+            dataclasses.replace(
+                move,
+                start=[*start, *move.start[3:]],
+                end=[*end, *move.end[3:]],
+                center=center,
+                normal=normal if center is not None else (NAN, NAN, NAN),
+                sweep=sweep,
+            )
+        )
+        for each in held.waiting:
+            if isinstance(each, Segment):
+                first, last = plane.local(each.start).height, plane.local(each.end).height
+                self._emit(
+                    dataclasses.replace(
+                        each,
+                        start=[*plane.world(*at, first), *each.start[3:]],
+                        end=[*plane.world(*at, last), *each.end[3:]],
+                    )
+                )
+            else:
+                each()

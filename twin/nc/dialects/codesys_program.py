@@ -1,0 +1,313 @@
+"""Variables, jumps and subprograms of CODESYS SoftMotion."""
+
+import dataclasses
+import math
+import re
+
+from twin.nc.blocks import Statement, Word
+from twin.nc.control import Control
+from twin.nc.expressions import (
+    ARITHMETIC,
+    COMPARISON,
+    Expression,
+    ExpressionError,
+    ExpressionSyntax,
+    FunctionOf,
+    Operator,
+)
+from twin.nc.flow import Place, Return
+
+DEEPEST_CALL = 14
+"""Subprograms within subprograms (manual, before 4.18)."""
+
+COUNTER_AT_START = -1.0
+"""The decoder's internal variable before G36 sets it (manual): a bare G20 L jumps."""
+
+EXPRESSIONS = ExpressionSyntax(
+    operators={
+        **ARITHMETIC,
+        **COMPARISON,
+        "=": Operator(3, lambda a, b: float(a == b)),
+        "<>": Operator(3, lambda a, b: float(a != b)),
+        "AND": Operator(2, lambda a, b: float(bool(a) and bool(b))),
+        "XOR": Operator(1, lambda a, b: float(bool(a) != bool(b))),
+        "OR": Operator(0, lambda a, b: float(bool(a) or bool(b))),
+    },
+    functions={
+        "SIN": FunctionOf(math.sin),
+        "COS": FunctionOf(math.cos),
+        "TAN": FunctionOf(math.tan),
+        "ASIN": FunctionOf(math.asin),
+        "ACOS": FunctionOf(math.acos),
+        "ATAN": FunctionOf(math.atan),
+        "ABS": FunctionOf(math.fabs),
+        "SQRT": FunctionOf(math.sqrt),
+        "EXP": FunctionOf(math.exp),
+        "LN": FunctionOf(math.log),
+        "LOG": FunctionOf(math.log10),
+        "TRUNC": FunctionOf(lambda value: float(math.trunc(value))),
+        "EXPT": FunctionOf(math.pow, 2),
+        "MIN": FunctionOf(min, 2),
+        "MAX": FunctionOf(max, 2),
+        "LIMIT": FunctionOf(lambda low, value, high: min(max(low, value), high), 3),
+        "SEL": FunctionOf(lambda choice, no, yes: yes if choice else no, 3),
+    },
+    constants={"PI": math.pi, "TRUE": 1.0, "FALSE": 0.0},
+    variable=r"\$[A-Z_][\w.]*\$|#[A-Z_]\w*",
+    brackets="()",
+    prefixes={"NOT": lambda value: float(not value)},
+)
+"""Angles of functions are radians, as IEC 61131-3 has them."""
+
+STATEMENT = (
+    r"LET\b|END_SUBPROGRAM\b|SUBPROGRAM\b|RETURN\b"
+    r"|#[A-Z_]\w*[ \t]*(?=:=)|[A-Z_]\w+(?=[ \t]*\{)|[A-Z_]{3,}\w*(?=[ \t]*\()"
+)
+
+_LET = re.compile(r"[ \t]*(#[A-Z_]\w*)[ \t]*(?::[ \t]*L?REAL)?[ \t]*(:=)?", re.IGNORECASE)
+_FORMAL = re.compile(
+    r"[ \t]*([A-Z_]\w*)[ \t]*[{(]([^})]*)[})][ \t]*(RESTORE)?[ \t]*", re.IGNORECASE
+)
+_SUBPROGRAM = re.compile(r"[ \t]*(?:N[ \t]*\d+[ \t]+)?(END_)?SUBPROGRAM\b(.*)", re.IGNORECASE)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Subprogram:
+    """A subprogram's heading.
+
+    Attributes:
+        place: Its first block.
+        formals: Names of its parameters.
+        restores: It puts modal codes back when it returns.
+    """
+
+    place: Place
+    formals: tuple[str, ...]
+    restores: bool
+
+
+@dataclasses.dataclass(slots=True)
+class Variables:
+    """What a program knows by name.
+
+    Attributes:
+        plc: Variables of the application, ``$name$``.
+        local: ``#name`` of the main program and of each call, the innermost last.
+        counter: The decoder's internal variable.
+        periods: Modulo periods of additional axes by column [mm or deg].
+        subprograms: By name; None before the program was searched for them.
+    """
+
+    plc: dict[str, float] = dataclasses.field(default_factory=dict)
+    local: list[dict[str, float]] = dataclasses.field(default_factory=lambda: [{}])
+    counter: float = COUNTER_AT_START
+    periods: dict[int, float] = dataclasses.field(default_factory=dict)
+    subprograms: dict[str, Subprogram] | None = None
+
+
+def variables(control: Control) -> Variables:
+    """The dialect's memory."""
+    assert isinstance(control.memory, Variables)
+    return control.memory
+
+
+def read_variable(control: Control, name: str, _index: float | None) -> float:
+    """Value of ``$name$`` or ``#name``; application variables may come from the job."""
+    known = variables(control)
+    if name.startswith("#"):
+        if name not in known.local[-1]:
+            raise ExpressionError(
+                "unknown-variable", f"{name} is not declared", None, f"write LET {name} : LREAL"
+            )
+        return known.local[-1][name]
+    if name in known.plc:
+        return known.plc[name]
+    for given, value in control.settings.variables.items():
+        if given.strip("$").upper() == name.strip("$"):
+            return value
+    raise ExpressionError(
+        "unknown-variable",
+        f"the application's variable {name} has no value",
+        None,
+        f"give it one in the job: [variables] {name.strip('$')} = 0.0",
+    )
+
+
+def let(control: Control, statement: Statement) -> None:
+    """LET: declare a local variable, 0 unless it is given a value."""
+    match = _LET.match(statement.text)
+    if match is None:
+        control.report.fail(
+            "declaration", "LET needs a variable", statement.column, 3, "LET #x : LREAL := 1"
+        )
+    rest, column = statement.text[match.end() :], statement.text_column + match.end()
+    value = 0.0
+    if match[2]:
+        value = control.compute(control.expression(rest, column), column)
+    elif rest.strip():
+        control.report.fail("declaration", "this cannot follow a declaration", column)
+    variables(control).local[-1][match[1].upper()] = value
+
+
+def assign(control: Control, statement: Statement) -> None:
+    """``#x := value``."""
+    name = statement.keyword.strip()
+    local = variables(control).local[-1]
+    if name not in local:
+        hint = f"write LET {name} : LREAL"
+        control.report.fail(
+            "unknown-variable", f"{name} is not declared", statement.column, len(name), hint
+        )
+    text, column = statement.text.lstrip()[2:], statement.text_column + 2
+    local[name] = control.compute(control.expression(text, column), column)
+
+
+def _reference(control: Control, word: Word | None) -> str | None:
+    """The variable that O names; None for the internal one."""
+    if word is None:
+        return None
+    name = word.value.text.upper() if isinstance(word.value, Expression) else ""
+    if not re.fullmatch(EXPRESSIONS.variable, name, re.IGNORECASE):
+        control.fail("variable-name", "O must name a variable", word, "write O$name$ or O#name")
+    return name
+
+
+def _store(control: Control, name: str | None, change: float, *, add: bool) -> None:
+    known = variables(control)
+    if name is None:
+        known.counter = known.counter + change if add else change
+        return
+    try:
+        before = read_variable(control, name, None) if add else 0.0
+    except ExpressionError as error:
+        control.fail(error.code, str(error), None, error.hint)
+    table = known.local[-1] if name.startswith("#") else known.plc
+    table[name] = before + change
+
+
+def write_variable(control: Control) -> None:
+    """G36: variable O, or the internal one, gets the value D."""
+    _change(control, add=False)
+
+
+def add_to_variable(control: Control) -> None:
+    """G37: D is added to variable O, or to the internal one."""
+    _change(control, add=True)
+
+
+def _change(control: Control, *, add: bool) -> None:
+    name, word = _reference(control, control.take("O")), control.take("D")
+    if word is None:
+        control.fail("variable-value", "the code needs its value D")
+    _store(control, name, control.number(word), add=add)
+
+
+def conditional_jump(control: Control) -> None:
+    """G20: go on at block L when K (or the internal variable) is not 0.
+
+    A label L?4 is looked for forwards as L!4; where it is missing, the blocks behind the jump are
+    not run (manual).
+    """
+    number, label = control.take("L"), control.take("L?")
+    condition = control.take_number("K", variables(control).counter)
+    target = number or label
+    if target is None:
+        control.fail("jump-target", "G20 needs L: the block to jump to", hint="write G20 L10 K1")
+    value = control.number(target)
+    if value != int(value) or value < 0.0:
+        control.fail("jump-target", f"{target.text} is no block number", target)
+    if condition == 0.0:
+        return
+    if number is not None:
+        control.flow.jump(int(value), (target.column, target.width), "L")
+    elif not control.flow.seek(
+        lambda block: any(w.address == "L!" and w.value == value for w in block.words)
+    ):
+        control.warn("label-not-found", f"no L!{value:g} follows: the program ends here", target)
+        control.flow.end()
+
+
+def _subprograms(control: Control) -> dict[str, Subprogram]:
+    known = variables(control)
+    if known.subprograms is None:
+        known.subprograms = {}
+        for line, text in enumerate(control.flow.lines):
+            match = _SUBPROGRAM.match(text)
+            heading = _FORMAL.match(match[2]) if match and not match[1] else None
+            if heading is not None:
+                formals = tuple(
+                    each.split(":")[0].strip().upper()
+                    for each in heading[2].split(",")
+                    if each.strip()
+                )
+                known.subprograms[heading[1].upper()] = Subprogram(
+                    Place(line + 1, 0), formals, heading[3] is not None
+                )
+    return known.subprograms
+
+
+def define(control: Control, statement: Statement) -> None:
+    """SUBPROGRAM: its blocks run when it is called; here they are passed over."""
+    if _FORMAL.fullmatch(statement.text) is None:
+        hint = "SUBPROGRAM Name{#a : LREAL} RESTORE"
+        control.report.fail("declaration", "the heading cannot be read", statement.column, 10, hint)
+    found = control.flow.seek(
+        lambda block: block.statement is not None and block.statement.keyword == "END_SUBPROGRAM"
+    )
+    if not found:
+        control.report.fail("open-subprogram", "END_SUBPROGRAM is missing", statement.column, 10)
+    control.flow.next()
+
+
+def call(control: Control, statement: Statement) -> None:
+    """``Name{values}``: run a subprogram with its own variables."""
+    name = statement.keyword.strip()
+    subprogram = _subprograms(control).get(name)
+    if subprogram is None:
+        known = ", ".join(sorted(_subprograms(control))) or "none"
+        control.report.fail(
+            "unknown-subprogram",
+            f"there is no subprogram {name}",
+            statement.column,
+            len(name),
+            hint=f"subprograms here: {known}",
+        )
+    text = statement.text.strip()
+    if text[-1:] not in ("}", ")"):
+        control.report.fail("expression", "the bracket is not closed", statement.text_column)
+    column = statement.text_column + statement.text.index(text[0]) + 1
+    values = [control.compute(each, column) for each in control.expressions(text[1:-1], column)]
+    if len(values) != len(subprogram.formals):
+        control.report.fail(
+            "call-values",
+            f"{name} takes {len(subprogram.formals)} values, not {len(values)}",
+            statement.column,
+            len(name),
+        )
+    known = variables(control)
+    before = control.saved_modal() if subprogram.restores else None
+
+    def leave() -> None:
+        known.local.pop()
+        if before is not None:
+            control.restore_modal(before)
+
+    back = Return(control.flow.place, subprogram.place, leave)
+    control.flow.call(back, DEEPEST_CALL, statement.column, len(name))
+    known.local.append(dict(zip(subprogram.formals, values, strict=True)))
+
+
+def assign_or_call(control: Control, statement: Statement) -> None:
+    """A statement that begins with a name."""
+    if statement.keyword.startswith("#"):
+        assign(control, statement)
+    else:
+        call(control, statement)
+
+
+def leave_subprogram(control: Control, statement: Statement) -> None:
+    """RETURN or END_SUBPROGRAM."""
+    if not control.flow.calls:
+        message = f"{statement.keyword} stands outside a subprogram"
+        control.report.fail("return-outside", message, statement.column, len(statement.keyword))
+    control.flow.end_part()

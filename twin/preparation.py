@@ -1,0 +1,91 @@
+"""From a job to everything that a run needs: the program, its dialect, the machine, the places."""
+
+import dataclasses
+from pathlib import Path
+
+from twin.errors import UsageError
+from twin.job import Job, read_job
+from twin.machine.config import Machine, read_machine
+from twin.nc.canonical import FloatArray
+from twin.nc.dialects import Dialect, dialect_named, recognise
+from twin.nc.interpreter import Interpretation
+from twin.nc.settings import ControlSettings
+from twin.nc.source import Source, read_source
+from twin.placement import start_position
+from twin.resources import machine_file
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Preparation:
+    """A job made concrete.
+
+    Attributes:
+        job: The job file and where it lies.
+        machine: The machine that it runs on.
+        source: The NC program.
+        dialect: The language that the program is written in.
+        settings: What the interpreter is told about machine and job.
+    """
+
+    job: Job
+    machine: Machine
+    source: Source
+    dialect: Dialect
+    settings: ControlSettings
+
+    def interpretation(self) -> Interpretation:
+        """A fresh pass over the program."""
+        return Interpretation(self.source, self.dialect, self.settings)
+
+    @property
+    def start(self) -> FloatArray:
+        """Where the axes stand at the program's start, program coordinates, shape (k,)."""
+        return start_position(self.job.file, self.machine)
+
+
+def prepare(
+    path: Path, *, dialect: str | None = None, machine: str | None = None, strict: bool = False
+) -> Preparation:
+    """Read a job, or a program with its job beside it, and all that it names.
+
+    Args:
+        path: NC program or job file.
+        dialect: Overrides the job's dialect.
+        machine: Overrides the job's machine; a path is relative to the working folder.
+        strict: Warnings of the interpreter are errors.
+
+    Raises:
+        UsageError: A file is missing or wrong, or the dialect cannot be told.
+    """
+    if not path.is_file():
+        raise UsageError(f"{path}: no such file")
+    job = read_job(path)
+    if machine is None:
+        found = machine_file(job.file.machine, beside=job.folder)
+    else:
+        found = machine_file(machine)
+    twin_machine = read_machine(found)
+    name = dialect or job.file.dialect
+    named = None if name is None else dialect_named(name)
+    source = read_source(job.program, named)
+    return Preparation(
+        job=job,
+        machine=twin_machine,
+        source=source,
+        dialect=named or recognise(source),
+        settings=_control_settings(job, twin_machine, strict=strict),
+    )
+
+
+def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSettings:
+    control = machine.file.control
+    start = start_position(job.file, machine)
+    return ControlSettings(
+        axes=machine.axes,
+        periodic=frozenset(name for name in machine.axes.names if machine.axis(name).periodic),
+        default_feed=job.file.default_feed or control.default_feed,
+        default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
+        start=machine.axes.named(start),
+        recalculate_on_rapid=control.recalculate_on_rapid,
+        strict=strict,
+    )

@@ -1,0 +1,225 @@
+"""The head-up display: program, axes, feed, error and time over the picture."""
+
+import dataclasses
+import functools
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from twin.nc.canonical import Axes, FloatArray
+from twin.render.canvas import Pixels
+
+INK = (24, 33, 42, 255)
+MUTED = (92, 105, 118, 255)
+ACCENT = (0, 96, 143, 255)
+ALERT = (196, 40, 27, 255)
+PAPER = (250, 252, 253, 225)
+WHITE = (255, 255, 255, 255)
+
+BASE_HEIGHT = 720
+"""Height of a picture for which the sizes below are written [px]."""
+
+LINES_SHOWN = 5
+COLUMNS_SHOWN = 34
+
+Font = ImageFont.FreeTypeFont
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Reading:
+    """What the display shows in one frame."""
+
+    line: int
+    """Source line of the running block; 0 before the first."""
+    position: FloatArray
+    """As the control counts: program coordinates, shape (k,) [mm or deg]."""
+    feed: float
+    """Speed along the path [mm/min, or deg/min where only rotary axes move]."""
+    feed_unit: str
+    error_um: float
+    """What ``error_name`` says [µm]."""
+    time_s: float
+    alarm: str = ""
+    """What is wrong; empty for nothing."""
+
+
+@functools.cache
+def _font(name: str, size: int) -> Font:
+    """A DejaVu font, which has Cyrillic and Czech letters; matplotlib brings it along."""
+    folder = Path(mpl.get_data_path()) / "fonts" / "ttf"
+    return ImageFont.truetype(str(folder / f"{name}.ttf"), size)
+
+
+class Display:
+    """Draws the display onto frames.
+
+    Its panels are at the lower corners, its title at the upper left.
+    """
+
+    def __init__(
+        self,
+        *,
+        title: str,
+        source: Sequence[str],
+        axes: Axes,
+        size: tuple[int, int],
+        speed: float | None,
+        error_name: str = "lag",
+    ) -> None:
+        """Lay the panels out.
+
+        Args:
+            title: Names of program and machine.
+            source: Lines of the program.
+            axes: Names and kinds of the axes.
+            size: Width and height of the frames [px].
+            speed: How much faster than in reality the film runs; None for a still.
+            error_name: What the error is called.
+        """
+        self._source = [_printable(line) for line in source]
+        self._axes = axes
+        self._size = size
+        self._scale = min(size[1] / BASE_HEIGHT, size[0] / 1280)
+        self._title = title if speed is None else f"{title}   ×{speed:.3g}"
+        self._error_name = error_name
+        self._mono = _font("DejaVuSansMono", self._px(17))
+        self._bold = _font("DejaVuSansMono-Bold", self._px(23))
+        self._small = _font("DejaVuSans", self._px(14))
+        self._heading = _font("DejaVuSans-Bold", self._px(17))
+
+    def _px(self, value: float) -> int:
+        return max(1, round(value * self._scale))
+
+    def draw(self, frame: Pixels, reading: Reading) -> Pixels:
+        """A copy of a frame with the display on it.
+
+        Args:
+            frame: Shape (height, width, 3).
+            reading: What to show.
+        """
+        result = frame.copy()
+        margin = self._px(18)
+        width, height = self._size
+        title = self._title_panel()
+        _paste(result, title, margin, margin)
+        if reading.alarm:
+            alarm = self._chip(reading.alarm, ALERT, WHITE)
+            _paste(result, alarm, (width - alarm.width) // 2, margin)
+        axes = self._axes_panel(reading)
+        _paste(result, axes, width - margin - axes.width, height - margin - axes.height)
+        if self._source:
+            program = self._program_panel(reading.line)
+            _paste(result, program, margin, height - margin - program.height)
+        return result
+
+    @functools.lru_cache(maxsize=1)  # noqa: B019 (a display lives as long as its film)
+    def _title_panel(self) -> Image.Image:
+        return self._chip(self._title, PAPER, INK)
+
+    def _chip(self, text: str, paper: tuple[int, ...], ink: tuple[int, ...]) -> Image.Image:
+        padding = self._px(12)
+        text = self._fitting(text, self._heading, self._size[0] // 2)
+        panel, draw = self._panel(
+            round(self._heading.getlength(text)) + 2 * padding, self._px(38), paper
+        )
+        draw.text((padding, self._px(19)), text, font=self._heading, fill=ink, anchor="lm")
+        return panel
+
+    @functools.lru_cache(maxsize=4)  # noqa: B019 (a display lives as long as its film)
+    def _program_panel(self, line: int) -> Image.Image:
+        padding, row = self._px(12), self._px(25)
+        shown = min(LINES_SHOWN, len(self._source))
+        first = min(max(0, line - 1 - LINES_SHOWN // 2), len(self._source) - shown)
+        digits = len(str(len(self._source)))
+        character = self._mono.getlength("0")
+        width = round(character * (digits + 2 + COLUMNS_SHOWN)) + 2 * padding
+        panel, draw = self._panel(width, shown * row + 2 * padding, PAPER)
+        for offset, text in enumerate(self._source[first : first + shown]):
+            number = first + offset + 1
+            middle = padding + offset * row + row // 2
+            running = number == line
+            if running:
+                box = (self._px(5), middle - row // 2, width - self._px(5), middle + row // 2)
+                draw.rounded_rectangle(box, self._px(4), fill=ACCENT)
+            ink = WHITE if running else INK
+            draw.text(
+                (padding, middle),
+                f"{number:>{digits}}",
+                font=self._mono,
+                fill=WHITE if running else MUTED,
+                anchor="lm",
+            )
+            if len(text) > COLUMNS_SHOWN:
+                text = text[: COLUMNS_SHOWN - 1] + "…"
+            place = (padding + character * (digits + 2), middle)
+            draw.text(place, text, font=self._mono, fill=ink, anchor="lm")
+        return panel
+
+    def _axes_panel(self, reading: Reading) -> Image.Image:
+        padding, row, small_row = self._px(14), self._px(30), self._px(23)
+        small = [
+            ("feed", f"{reading.feed:.0f} {reading.feed_unit}"),
+            (self._error_name, f"{reading.error_um:.1f} µm"),
+            ("time", _clock(reading.time_s)),
+        ]
+        width = self._px(262)
+        rows = len(self._axes.names) * row + self._px(10) + len(small) * small_row
+        panel, draw = self._panel(width, rows + 2 * padding, PAPER)
+        middle = padding + row // 2
+        right = width - padding
+        unit_width = self._px(38)
+        for name, kind, value in zip(
+            self._axes.names, self._axes.kinds, reading.position, strict=True
+        ):
+            draw.text((padding, middle), name, font=self._bold, fill=ACCENT, anchor="lm")
+            text = f"{value:.3f}" if abs(value) < 1e6 else f"{value:.6g}"
+            number = text.replace("-0.000", "0.000")
+            place = (right - unit_width, middle)
+            draw.text(place, number, font=self._bold, fill=INK, anchor="rm")
+            unit = "mm" if kind == "linear" else "°"
+            place = (right - unit_width + self._px(8), middle)
+            draw.text(place, unit, font=self._small, fill=MUTED, anchor="lm")
+            middle += row
+        middle += self._px(10) - (row - small_row) // 2
+        for name, text in small:
+            draw.text((padding, middle), name, font=self._small, fill=MUTED, anchor="lm")
+            draw.text((right, middle), text, font=self._mono, fill=INK, anchor="rm")
+            middle += small_row
+        return panel
+
+    def _panel(
+        self, width: int, height: int, paper: tuple[int, ...]
+    ) -> tuple[Image.Image, ImageDraw.ImageDraw]:
+        panel = Image.new("RGBA", (width, height), (*paper[:3], 0))
+        draw = ImageDraw.Draw(panel)
+        draw.rounded_rectangle((0, 0, width - 1, height - 1), self._px(8), fill=paper)
+        return panel, draw
+
+    def _fitting(self, text: str, font: Font, width: int) -> str:
+        while len(text) > 1 and font.getlength(text) > width:
+            text = text[:-2] + "…"
+        return text
+
+
+def _paste(frame: Pixels, panel: Image.Image, left: int, top: int) -> None:
+    """Lay a panel over a frame, as much of it as fits."""
+    left, top = max(0, left), max(0, top)
+    part = frame[top : top + panel.height, left : left + panel.width]
+    over = np.asarray(panel)[: part.shape[0], : part.shape[1]].astype(np.uint16)
+    alpha = over[..., 3:]
+    part[:] = ((part * (255 - alpha) + over[..., :3] * alpha) // 255).astype(np.uint8)
+
+
+def _printable(line: str) -> str:
+    return "".join(
+        character if character.isprintable() else " " for character in line.rstrip().expandtabs(4)
+    )
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(seconds, 60.0)
+    hours, minutes = divmod(int(minutes), 60)
+    return f"{hours}:{minutes:02d}:{rest:04.1f}" if hours else f"{minutes}:{rest:05.2f}"

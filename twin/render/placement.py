@@ -1,0 +1,90 @@
+"""Where the part's frame lies on the drawn machine."""
+
+import dataclasses
+
+import mujoco
+import numpy as np
+
+from twin.machine.config import Machine
+from twin.nc.canonical import FloatArray
+from twin.units import MM, to_si
+
+ROTARY_TABLE = "rotary_table"
+"""Body of the model that carries the part."""
+SPINDLE_NOSE = "spindle_nose"
+"""Site of the model from which the tool's length counts."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Placement:
+    """The part's frame, seen from the body that carries the part.
+
+    Attributes:
+        origin: Where the part frame's origin lies in the body's frame, shape (3,) [m].
+        rotation: Part frame to body frame, shape (3, 3).
+    """
+
+    origin: FloatArray
+    rotation: FloatArray
+
+    def points(self, part: FloatArray) -> FloatArray:
+        """Points of the part's frame [mm] in the body's frame [m], shape (n, 3)."""
+        return self.origin + MM * part @ self.rotation.T
+
+    @property
+    def quaternion(self) -> FloatArray:
+        """The rotation as MuJoCo writes it, shape (4,)."""
+        result = np.zeros(4)
+        mujoco.mju_mat2Quat(result, self.rotation.ravel())
+        return result
+
+
+class Joints:
+    """Sets the drawn machine's joints from machine coordinates."""
+
+    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+        names = machine.axes.names
+        self._address = [int(model.joint(machine.axis(name).joint).qposadr[0]) for name in names]
+        self._factor = np.array([to_si(kind) for kind in machine.axes.kinds])
+
+    def set(self, data: mujoco.MjData, position: FloatArray) -> None:
+        """Put the axes to ``position``, shape (k,) [mm or deg]."""
+        data.qpos[self._address] = position * self._factor
+
+
+def place(
+    machine: Machine, model: mujoco.MjModel, tool_length: float, turn_zero: float
+) -> Placement:
+    """Find the part's frame on the machine: by moving the tool point along its axes.
+
+    Args:
+        machine: The machine file.
+        model: The compiled machine.
+        tool_length: From the spindle nose to the tip [mm].
+        turn_zero: Rotary value at which the part's frame is parallel to the machine's [deg].
+    """
+    data = mujoco.MjData(model)
+    joints = Joints(machine, model)
+    zero = np.zeros(len(machine.axes))
+    zero[:2] = machine.part_frame.center
+    if machine.part_frame.rotary is not None:
+        zero[machine.part_frame.rotary] = turn_zero
+
+    def tip_from_body(offset: FloatArray) -> FloatArray:
+        position = zero.copy()
+        position[:3] += offset
+        joints.set(data, position)
+        mujoco.mj_kinematics(model, data)
+        body = data.body(ROTARY_TABLE)
+        tip = tip_position(model, data, tool_length)
+        return body.xmat.reshape(3, 3).T @ (tip - body.xpos)
+
+    origin = tip_from_body(np.zeros(3))
+    ways = [(tip_from_body(direction) - origin) / MM for direction in np.eye(3)]
+    return Placement(origin, np.stack(ways, axis=1))
+
+
+def tip_position(model: mujoco.MjModel, data: mujoco.MjData, tool_length: float) -> FloatArray:
+    """Where the tool's tip is in the world, shape (3,) [m]."""
+    nose = data.site(int(model.site(SPINDLE_NOSE).id))
+    return nose.xpos - MM * tool_length * nose.xmat.reshape(3, 3)[:, 2]

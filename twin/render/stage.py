@@ -1,0 +1,156 @@
+"""The drawn machine with its stock and trail, brought forward along a recording."""
+
+import contextlib
+import dataclasses
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+
+from twin.cutting.cut import Cutter, Rectangle, union
+from twin.cutting.outline import BoolArray
+from twin.errors import RenderError
+from twin.job import StockTable, ToolTable
+from twin.machine.config import Machine
+from twin.nc.canonical import FloatArray
+from twin.recording import Recording, Samples
+from twin.render.canvas import Canvas, Pixels, Quality, canvas, prepare
+from twin.render.placement import Joints, Placement, place
+from twin.render.replay import rapid_mask
+from twin.render.stock_surface import StockSurface
+from twin.render.trail import Trail, trail_points
+from twin.render.work_holding import add_work_holding
+
+TRAIL_SHARE = 0.003
+"""Radius of the trail's tube, as a share of the trail's extent."""
+TRAIL_MM = (0.1, 0.8)
+"""Its smallest and largest radius [mm]."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Scene:
+    """What is to be seen: a recording, and the machine and job that it was made with."""
+
+    recording: Recording
+    spec: mujoco.MjSpec
+    """Machine, tool and named cameras, as the machine room builds it; it is not changed."""
+    machine: Machine
+    tool: ToolTable
+    """What is in the spindle."""
+    stock: StockTable | None = None
+    rapid_moves: BoolArray | None = None
+    """Whether each move of the program is a rapid; none: none is."""
+
+    def camera_names(self) -> list[str]:
+        """Names of the cameras that can be asked for."""
+        return [camera.name for camera in self.spec.cameras if camera.name]
+
+    def require_camera(self, name: str) -> None:
+        """Refuse a camera that the machine does not have.
+
+        Raises:
+            RenderError: There is none; the message names those that there are.
+        """
+        if name not in self.camera_names():
+            known = ", ".join(self.camera_names()) or "none"
+            raise RenderError(f"no camera '{name}': the machine has {known}")
+
+
+class Stage:
+    """Plays a scene; open it with ``stage``."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        model: mujoco.MjModel,
+        placement: Placement,
+        drawing: Canvas,
+        surface: StockSurface | None,
+        cutter: Cutter | None,
+        trail: Trail,
+    ) -> None:
+        self.model = model
+        self.data = mujoco.MjData(model)
+        self.placement = placement
+        self._scene = scene
+        self._drawing = drawing
+        self._surface = surface
+        self._cutter = cutter
+        self._trail = trail
+        self._joints = Joints(scene.machine, model)
+        self._samples = 0
+        self._changed: Rectangle = (0, 0, 0, 0)
+        self._position = np.zeros(len(scene.machine.axes))
+        mujoco.mj_forward(model, self.data)
+
+    def advance(self, samples: Samples) -> None:
+        """Go on by samples that follow the last ones: move the axes, cut the stock."""
+        if not len(samples):
+            return
+        self._samples += len(samples)
+        self._position = samples.joint_position[-1]
+        if self._cutter is not None:
+            self._cutter.add(samples, rapid_mask(samples, self._scene.rapid_moves))
+            self._changed = union(self._changed, self._cutter.changed)
+
+    def picture(self, camera: str) -> Pixels:
+        """Draw what a camera sees now, shape (height, width, 3)."""
+        self._refresh()
+        return self._drawing.draw(self.data, int(self.model.camera(camera).id))
+
+    def objects(self, camera: str) -> np.ndarray[tuple[int, int], np.dtype[np.int32]]:
+        """Number of the geom that every pixel shows now, -1 for none, shape (height, width)."""
+        self._refresh()
+        return self._drawing.draw_objects(self.data, int(self.model.camera(camera).id))
+
+    def _refresh(self) -> None:
+        self._joints.set(self.data, self._position)
+        mujoco.mj_forward(self.model, self.data)
+        if self._surface is not None:
+            self._surface.update(self._drawing, self._changed)
+            self._changed = (0, 0, 0, 0)
+        if self._samples:
+            tip = self._scene.recording.header.part_frame.position(self._position[None])[0]
+            self._trail.show(self._drawing, self._samples, tip)
+
+
+@contextlib.contextmanager
+def stage(scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Stage]:
+    """Build the drawn machine and open the canvas.
+
+    Args:
+        scene: What is to be seen.
+        size: Width and height of the pictures [px].
+        quality: What a picture may cost.
+
+    Raises:
+        RenderError: No OpenGL works here.
+        ConfigError: The stock is too large for its grid.
+    """
+    header = scene.recording.header
+    spec = scene.spec.copy()
+    prepare(spec, quality, size)
+    turn_zero = header.part_frame.turn_zero
+    placement = place(scene.machine, spec.compile(), scene.tool.length, turn_zero)
+    cutter = surface = None
+    if scene.stock is not None:
+        cutter = Cutter(scene.stock, scene.tool, header.part_frame, header.part_zero)
+        surface = StockSurface(cutter.map, quality.drawn_cells)
+        surface.add_to(spec)
+        corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
+        add_work_holding(spec, scene.stock, placement, corner)
+    points = trail_points(scene.recording, scene.rapid_moves)
+    trail = Trail(points, _trail_radius(points.position))
+    trail.add_to(spec)
+    model = spec.compile()
+    if surface is not None:
+        surface.bind(model, placement)
+    trail.bind(model, placement)
+    with canvas(model, size, quality) as drawing:
+        yield Stage(scene, model, placement, drawing, surface, cutter, trail)
+
+
+def _trail_radius(points: FloatArray) -> float:
+    if not len(points):
+        return TRAIL_MM[0]
+    return float(np.clip(TRAIL_SHARE * np.ptp(points, axis=0).max(), *TRAIL_MM))

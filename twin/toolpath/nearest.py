@@ -1,0 +1,109 @@
+"""The commanded path in the part's frame, as columns that the nearest-point kernels read.
+
+A move over its fraction u from 0 to 1 is, in machine axes measured from the table's centre,
+
+    p(u) = origin + u along + cos(u sweep) first + sin(u sweep) second
+
+(lines have no sweep and no radius vectors), and the part sees it turned by the table:
+
+    P(u) = Rz(turn + u turn_rate) p(u)
+
+Other rotary axes than the table's, and linear axes beyond X Y Z, do not move the tool against the
+part; they have a following error but no contour error.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.nc.canonical import CodeArray, FloatArray, Moves, Shape
+from twin.toolpath.part_frame import PartFrame
+
+LINE, CIRCLE, CURVE = 0, 1, 2
+"""How the nearest point is found: closed form for the first two, Newton's method for the rest."""
+
+
+class PathColumns(NamedTuple):
+    """The geometry of n moves in the part's frame; every column is C-contiguous.
+
+    Attributes:
+        kind: ``LINE``, ``CIRCLE`` (an arc without lead) or ``CURVE``, shape (n,).
+        origin: Start of a line, centre of an arc at its start, shape (n, 3) [mm].
+        along: What is added linearly over the move, shape (n, 3) [mm].
+        first: From the centre to the start, shape (n, 3) [mm]; 0 for lines.
+        second: A quarter turn further about the normal, shape (n, 3) [mm]; 0 for lines.
+        sweep: Signed angle of the arc, shape (n,) [rad].
+        turn: How far the table has turned the part at the start, shape (n,) [rad].
+        turn_rate: How far the table turns during the move, shape (n,) [rad].
+    """
+
+    kind: CodeArray
+    origin: FloatArray
+    along: FloatArray
+    first: FloatArray
+    second: FloatArray
+    sweep: FloatArray
+    turn: FloatArray
+    turn_rate: FloatArray
+
+
+def path_columns(moves: Moves, frame: PartFrame, part_zero: FloatArray) -> PathColumns:
+    """Lay out canonical moves for the nearest-point kernels.
+
+    Args:
+        moves: Moves in part coordinates (program zero).
+        frame: How the part turns under the tool.
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+    """
+    shift = part_zero[:3] - np.array([*frame.center, 0.0])
+    arc = moves.shape == Shape.ARC
+    delta = moves.end[:, :3] - moves.start[:, :3]
+    normal = np.where(arc[:, None], moves.normal, 0.0)
+    first = np.where(arc[:, None], moves.start[:, :3] - moves.center, 0.0)
+    lead = np.einsum("ij,ij->i", delta, normal)
+    along = np.where(arc[:, None], lead[:, None] * normal, delta)
+    turn, turn_rate = np.zeros(len(moves)), np.zeros(len(moves))
+    if frame.rotary is not None:
+        zero = part_zero[frame.rotary] - frame.turn_zero
+        turn = np.deg2rad(moves.start[:, frame.rotary] + zero)
+        turn_rate = np.deg2rad(moves.end[:, frame.rotary] - moves.start[:, frame.rotary])
+    circle = arc & ~np.any(along, axis=1)
+    kind = np.where(circle, CIRCLE, np.where(arc, CURVE, LINE))
+    return PathColumns(
+        kind=np.where(turn_rate != 0.0, CURVE, kind).astype(np.uint8),
+        origin=np.where(arc[:, None], moves.center, moves.start[:, :3]) + shift,
+        along=np.ascontiguousarray(along),
+        first=first,
+        second=np.cross(normal, first),
+        sweep=np.where(arc, np.deg2rad(moves.sweep), 0.0),
+        turn=turn,
+        turn_rate=turn_rate,
+    )
+
+
+def join_paths(before: PathColumns, after: PathColumns) -> PathColumns:
+    """Join consecutive paths into one."""
+    return PathColumns(
+        kind=np.concatenate([before.kind, after.kind]),
+        origin=np.concatenate([before.origin, after.origin]),
+        along=np.concatenate([before.along, after.along]),
+        first=np.concatenate([before.first, after.first]),
+        second=np.concatenate([before.second, after.second]),
+        sweep=np.concatenate([before.sweep, after.sweep]),
+        turn=np.concatenate([before.turn, after.turn]),
+        turn_rate=np.concatenate([before.turn_rate, after.turn_rate]),
+    )
+
+
+def drop_moves(path: PathColumns, count: int) -> PathColumns:
+    """The path without its first ``count`` moves; their memory is given back."""
+    return PathColumns(
+        kind=path.kind[count:].copy(),
+        origin=path.origin[count:].copy(),
+        along=path.along[count:].copy(),
+        first=path.first[count:].copy(),
+        second=path.second[count:].copy(),
+        sweep=path.sweep[count:].copy(),
+        turn=path.turn[count:].copy(),
+        turn_rate=path.turn_rate[count:].copy(),
+    )

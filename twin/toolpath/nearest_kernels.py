@@ -1,0 +1,256 @@
+"""Nearest points on the commanded path, one at a time, for compiled loops.
+
+``path`` is a ``PathColumns``; a place on it is a move number and a fraction from 0 to 1; points
+are in the part's frame [mm]. Lines and circles with the table at rest are solved in closed form;
+helices, and whatever the table turns, by Newton's method kept inside brackets.
+"""
+
+import math
+
+import numba
+
+_LINE, _CIRCLE = 0, 1
+"""``twin.toolpath.nearest.LINE`` and ``CIRCLE``."""
+_RESOLUTION_MM = 1e-9
+"""A piece of a curve that can hold nothing nearer by more than this is left out."""
+_STEP_MM = 1e-10
+"""Newton's method ends when a step is shorter than this; the distance changes by far less."""
+_SMALLEST_PIECE = 2.0**-10
+"""Share of the searched stretch below which a piece is solved without the proof."""
+_ITERATIONS = 80
+"""More than bisection alone needs to halve a bracket down to rounding."""
+
+
+@numba.njit(cache=True)
+def derivatives(path, move, u):
+    """Point, first and second derivative by fraction in the part's frame, nine numbers [mm]."""
+    angle = u * path.sweep[move]
+    cosine, sine = math.cos(angle), math.sin(angle)
+    sweep = path.sweep[move]
+    f, s, o, a = path.first[move], path.second[move], path.origin[move], path.along[move]
+    px = o[0] + u * a[0] + cosine * f[0] + sine * s[0]
+    py = o[1] + u * a[1] + cosine * f[1] + sine * s[1]
+    pz = o[2] + u * a[2] + cosine * f[2] + sine * s[2]
+    dx = a[0] + sweep * (cosine * s[0] - sine * f[0])
+    dy = a[1] + sweep * (cosine * s[1] - sine * f[1])
+    dz = a[2] + sweep * (cosine * s[2] - sine * f[2])
+    ddx = -sweep * sweep * (cosine * f[0] + sine * s[0])
+    ddy = -sweep * sweep * (cosine * f[1] + sine * s[1])
+    ddz = -sweep * sweep * (cosine * f[2] + sine * s[2])
+    rate = path.turn_rate[move]
+    vx, vy = dx - rate * py, dy + rate * px
+    wx = ddx - 2.0 * rate * dy - rate * rate * px
+    wy = ddy + 2.0 * rate * dx - rate * rate * py
+    turned = path.turn[move] + u * rate
+    c, t = math.cos(turned), math.sin(turned)
+    return (
+        c * px - t * py, t * px + c * py, pz,
+        c * vx - t * vy, t * vx + c * vy, dz,
+        c * wx - t * wy, t * wx + c * wy, ddz,
+    )  # fmt: skip
+
+
+@numba.njit(cache=True)
+def distance_at(path, move, u, x, y, z):
+    """Distance from a point to one place of the path [mm]."""
+    px, py, pz, _, _, _, _, _, _ = derivatives(path, move, u)
+    return math.sqrt((px - x) ** 2 + (py - y) ** 2 + (pz - z) ** 2)
+
+
+@numba.njit(cache=True)
+def speed_at(path, move, u):
+    """How fast the place moves with the fraction, seen from the part [mm]."""
+    _, _, _, dx, dy, dz, _, _, _ = derivatives(path, move, u)
+    return math.sqrt(dx * dx + dy * dy + dz * dz)
+
+
+@numba.njit(cache=True)
+def walk(path, move, u, distance):
+    """The place a signed path length away, or the end of the path.
+
+    On curves whose speed changes, the length is measured with the speed where a move is entered:
+    good for margins, not for measuring.
+    """
+    last = len(path.sweep) - 1
+    left = abs(distance)
+    while left > 0.0:
+        speed = speed_at(path, move, u)
+        room = 1.0 - u if distance > 0.0 else u
+        if speed * room > left:
+            share = left / speed
+            return move, u + share if distance > 0.0 else u - share
+        left -= speed * room
+        if distance > 0.0:
+            if move == last:
+                return move, 1.0
+            move, u = move + 1, 0.0
+        else:
+            if move == 0:
+                return move, 0.0
+            move, u = move - 1, 1.0
+    return move, u
+
+
+@numba.njit(cache=True)
+def nearest_on_move(path, move, low, high, x, y, z):
+    """Nearest place of one move between two fractions.
+
+    Returns:
+        Its distance [mm] and its fraction. Of several equally near places on a circle, the last.
+    """
+    kind = path.kind[move]
+    if kind != _LINE and kind != _CIRCLE:
+        return _nearest_on_curve(path, move, low, high, x, y, z)
+    c, t = math.cos(path.turn[move]), math.sin(path.turn[move])
+    o = path.origin[move]
+    rx, ry, rz = c * x + t * y - o[0], c * y - t * x - o[1], z - o[2]
+    if kind == _LINE:
+        u = _project_on_line(path.along[move], low, high, rx, ry, rz)
+    else:
+        u = _project_on_circle(path, move, low, high, rx, ry, rz)
+    return distance_at(path, move, u, x, y, z), u
+
+
+@numba.njit(cache=True)
+def _project_on_line(along, low, high, rx, ry, rz):
+    squared = along[0] ** 2 + along[1] ** 2 + along[2] ** 2
+    if squared == 0.0:
+        return high
+    u = (rx * along[0] + ry * along[1] + rz * along[2]) / squared
+    return min(max(u, low), high)
+
+
+@numba.njit(cache=True)
+def _project_on_circle(path, move, low, high, rx, ry, rz):
+    first, second, sweep = path.first[move], path.second[move], path.sweep[move]
+    cosine = rx * first[0] + ry * first[1] + rz * first[2]
+    sine = rx * second[0] + ry * second[1] + rz * second[2]
+    if sweep == 0.0 or (cosine == 0.0 and sine == 0.0):
+        return high
+    angle = math.atan2(sine, cosine)
+    turn = 2.0 * math.pi / abs(sweep)
+    u = angle / sweep
+    u += math.floor((high - u) / turn) * turn
+    if u >= low:
+        return u
+    # Not between the two: the end that is nearer around the circle.
+    return high if u + turn - high < low - u else low
+
+
+@numba.njit(cache=True)
+def _slope(path, move, u, x, y, z):
+    """First and second derivative of half the squared distance."""
+    px, py, pz, dx, dy, dz, wx, wy, wz = derivatives(path, move, u)
+    rx, ry, rz = px - x, py - y, pz - z
+    slope = rx * dx + ry * dy + rz * dz
+    return slope, dx * dx + dy * dy + dz * dz + rx * wx + ry * wy + rz * wz
+
+
+@numba.njit(cache=True)
+def _root_between(path, move, low, high, x, y, z):
+    """The minimum of a convex piece."""
+    u = 0.5 * (low + high)
+    for _ in range(_ITERATIONS):
+        slope, curvature = _slope(path, move, u, x, y, z)
+        if slope > 0.0:
+            high = u
+        else:
+            low = u
+        new = u - slope / curvature if curvature > 0.0 else low
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        moved = abs(new - u) * speed_at(path, move, u)
+        u = new
+        if moved < _STEP_MM:
+            break
+    return u
+
+
+@numba.njit(cache=True)
+def _bounds(path, move):
+    """Largest second and third derivative of a move in the part's frame [mm]."""
+    f, o, a = path.first[move], path.origin[move], path.along[move]
+    radius = math.sqrt(f[0] ** 2 + f[1] ** 2 + f[2] ** 2)
+    straight = math.sqrt(a[0] ** 2 + a[1] ** 2 + a[2] ** 2)
+    reach = math.hypot(o[0], o[1]) + straight + radius
+    sweep, rate = abs(path.sweep[move]), abs(path.turn_rate[move])
+    speed = straight + sweep * radius
+    second = sweep**2 * radius
+    third = sweep**3 * radius
+    return (
+        second + 2.0 * rate * speed + rate**2 * reach,
+        third + 3.0 * rate * second + 3.0 * rate**2 * speed + rate**3 * reach,
+    )
+
+
+@numba.njit(cache=True)
+def _nearest_on_curve(path, move, low, high, x, y, z):
+    """Nearest place of a curve between two fractions; no minimum is missed, cusps included.
+
+    The fractions are gone through in pieces, each of which is proved to hold nothing nearer, or
+    proved convex and solved, or halved. Halving has an end where the distance hardly changes, as
+    it does about the middle of a circle.
+    """
+    second, third = _bounds(path, move)
+    best, best_u = distance_at(path, move, high, x, y, z), high
+    at_low = distance_at(path, move, low, x, y, z)
+    if at_low < best:
+        best, best_u = at_low, low
+    start, step = low, high - low
+    smallest = step * _SMALLEST_PIECE
+    while start < high:
+        end = min(start + step, high)
+        half = 0.5 * (end - start)
+        middle = start + half
+        here = distance_at(path, move, middle, x, y, z)
+        speed = speed_at(path, move, middle)
+        if here < best:
+            best, best_u = here, middle
+        across = (speed + 0.5 * second * half) * half
+        if here - across < best - _RESOLUTION_MM and across > _RESOLUTION_MM:
+            slope, curvature = _slope(path, move, middle, x, y, z)
+            bend = (3.0 * (speed + second * half) * second + (here + across) * third) * half
+            # Taylor's bound on half the squared distance: of circles about the point, and of all
+            # that is nearly so, it leaves out far longer pieces than the speed alone.
+            falls = abs(slope) * half + 0.5 * max(bend / 3.0 - curvature, 0.0) * half**2
+            nearest_possible = math.sqrt(max(here * here - 2.0 * falls, 0.0))
+            if nearest_possible < best - _RESOLUTION_MM:
+                if curvature <= bend and step > smallest:
+                    step = half
+                    continue
+                u = _root_between(path, move, start, end, x, y, z)
+                here = distance_at(path, move, u, x, y, z)
+                if here < best:
+                    best, best_u = here, u
+        start, step = end, 4.0 * half
+    return best, best_u
+
+
+@numba.njit(cache=True)
+def nearest_between(path, low_move, low_u, high_move, high_u, x, y, z, tie):
+    """Nearest place between two places of the path, ends included.
+
+    Args:
+        path: The moves.
+        low_move: Where the search begins.
+        low_u: Fraction of that move.
+        high_move: Where it ends, not before the beginning.
+        high_u: Fraction of that move.
+        x: The point, in the part's frame [mm].
+        y: The same.
+        z: The same.
+        tie: Of places whose distance differs by no more than this, the last is taken [mm].
+
+    Returns:
+        The shortest distance [mm], the move and the fraction of its place.
+    """
+    least = math.inf
+    place_move, place_u = high_move, high_u
+    for move in range(low_move, high_move + 1):
+        low = low_u if move == low_move else 0.0
+        high = high_u if move == high_move else 1.0
+        here, u = nearest_on_move(path, move, low, high, x, y, z)
+        if here <= least + tie:
+            place_move, place_u = move, u
+        least = min(least, here)
+    return least, place_move, place_u
