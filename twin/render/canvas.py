@@ -37,7 +37,7 @@ class Quality:
     shadows: bool
     samples: int
     drawn_cells: int
-    shadow_map: int = 2048
+    shadow_map: int = 4096
 
 
 DRAFT = Quality(shadows=False, samples=0, drawn_cells=160)

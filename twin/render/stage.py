@@ -14,9 +14,11 @@ from twin.job import StockTable, ToolTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.recording import Recording, Samples
+from twin.render.cameras import PART_CAMERAS, add_part_cameras, framed
 from twin.render.canvas import Canvas, Pixels, Quality, canvas, prepare
 from twin.render.placement import Joints, Placement, place
 from twin.render.replay import rapid_mask
+from twin.render.skin import Skin
 from twin.render.stock_surface import StockSurface
 from twin.render.trail import Trail, trail_points
 from twin.render.work_holding import add_work_holding
@@ -43,7 +45,8 @@ class Scene:
 
     def camera_names(self) -> list[str]:
         """Names of the cameras that can be asked for."""
-        return [camera.name for camera in self.spec.cameras if camera.name]
+        own = [camera.name for camera in self.spec.cameras if camera.name]
+        return own + [name for name in PART_CAMERAS if name not in own]
 
     def require_camera(self, name: str) -> None:
         """Refuse a camera that the machine does not have.
@@ -134,12 +137,17 @@ def stage(scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Sta
     placement = place(scene.machine, spec.compile(), scene.tool.length, turn_zero)
     cutter = surface = None
     if scene.stock is not None:
-        cutter = Cutter(scene.stock, scene.tool, header.part_frame, header.part_zero)
-        surface = StockSurface(cutter.map, quality.drawn_cells)
+        cutter = Cutter(
+            scene.stock, scene.tool, header.part_frame, header.part_zero, keep_marks=True
+        )
+        skin = Skin(cutter.map, cutter.marks)
+        surface = StockSurface(cutter.map, skin, quality.drawn_cells)
         surface.add_to(spec)
         corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
         add_work_holding(spec, scene.stock, placement, corner)
     points = trail_points(scene.recording, scene.rapid_moves)
+    seen = points.position if cutter is None else cutter.map.corners
+    add_part_cameras(spec, placement, *framed(seen))
     trail = Trail(points, _trail_radius(points.position))
     trail.add_to(spec)
     model = spec.compile()
