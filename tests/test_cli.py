@@ -107,7 +107,7 @@ def test_a_target_outside_the_travel_is_an_alarm_before_anything_moves(twin: Twi
     ],
 )
 def test_a_wrong_job_is_refused(twin: Twin, tmp_path: Path, job: str, said: str):
-    done = twin("run", program(tmp_path, "G0 X1\n", job), "--out", tmp_path / "out")
+    done = twin("run", program(tmp_path, "G102 C360\nG0 X1\n", job), "--out", tmp_path / "out")
     assert done.code == 2
     assert said in done.stderr
     assert not (tmp_path / "out").exists()
@@ -118,7 +118,7 @@ def test_what_is_not_there_is_refused(twin: Twin, tmp_path: Path):
     assert twin("run", tmp_path).code == 2
     assert twin("interpret", tmp_path / "absent.nc").code == 2
     assert twin("nonsense").code == 2
-    assert twin("interpret", program(tmp_path, "G0 X1\n"), "--format", "xml").code == 2
+    assert twin("interpret", program(tmp_path, "G102 C0\n"), "--format", "xml").code == 2
 
 
 def test_a_dull_drive_fails_the_tolerance_and_names_the_line(twin: Twin, tmp_path: Path):

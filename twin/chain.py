@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import numpy.typing as npt
 
 from twin import __version__
 from twin.compare.comparison import Comparison
+from twin.compare.trace import Trace
 from twin.compare.verdict import judge
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.part import write_stl
@@ -58,6 +58,8 @@ class Run:
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         part_frame: How the part turns under the tool.
         spec: The model of the machine with the job's first tool in the spindle.
+        clock: How long each stage took; a film's goes on it too.
+        trace: The run thinned for plots.
         contour_um: Contour error of every sample, for those who draw it; empty unless kept.
     """
 
@@ -78,7 +80,8 @@ class Run:
         rotary = machine.part_frame.rotary
         turn_zero = 0.0 if rotary is None else float(self.part_zero[rotary])
         self.part_frame: PartFrame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
-        self._clock = StageClock()
+        self.clock = StageClock()
+        self.trace = Trace(machine.axes, self.part_zero)
         self.contour_um: list[FloatArray] = []
         self._keep_contour = keep_contour
         self._motion = bytearray()
@@ -97,7 +100,6 @@ class Run:
         Raises:
             SimulationError: The simulation failed; the recording is not kept.
         """
-        began = time.perf_counter()
         preparation = self.preparation
         comparison = Comparison(preparation.machine.axes, self.part_frame, self.part_zero)
         cutter = self._cutter()
@@ -106,16 +108,17 @@ class Run:
         if alarm is None:
             with record(out / "recording.h5", self._header()) as writer:
                 simulation = self._simulation(comparison)
-                for samples in self._clock.watch("simulate", simulation):
+                for samples in self.clock.watch("simulate", simulation):
                     track.add(samples)
-                    with self._clock.stage("compare"):
+                    with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
+                        self.trace.add(samples, contour_um)
                     if self._keep_contour:
                         self.contour_um.append(contour_um)
-                    with self._clock.stage("cut"):
+                    with self.clock.stage("cut"):
                         if cutter is not None:
                             cutter.add(samples, self._is_rapid(samples.setpoint.move))
-                    with self._clock.stage("record"):
+                    with self.clock.stage("record"):
                         writer.append(samples)
                     progress("simulate", track.progress(survey.moves))
             alarm = simulation.alarm
@@ -132,8 +135,6 @@ class Run:
             duration_s=min(self._planned_s, track.time_s),
             final_commanded=track.commanded,
             final_simulated=track.simulated,
-            stages=dict(self._clock.seconds),
-            wall_s=time.perf_counter() - began,
         )
 
     def survey(self) -> Survey:
@@ -144,7 +145,7 @@ class Run:
         """
         interpretation = self.preparation.interpretation()
         moves, alarm = 0, None
-        for chunk in self._clock.watch("interpret", interpretation.chunks()):
+        for chunk in self.clock.watch("interpret", interpretation.chunks()):
             moves += len(chunk.moves)
             if alarm is None:
                 alarm = soft_limit_alarm(self.preparation.machine, chunk.moves, self.part_zero)
@@ -154,14 +155,14 @@ class Run:
         machine = self.preparation.machine
         period = machine.file.servo_period_s
         setpoints = plan(
-            self._clock.watch("interpret", self._chunks(comparison)),
+            self.clock.watch("interpret", self._chunks(comparison)),
             motion_limits(machine),
             period_s=period,
             part_zero=self.part_zero,
             start=self.preparation.start + self.part_zero,
         )
         return simulate(
-            machine, self.spec, self._clock.watch("plan", settle(self._planned(setpoints), period))
+            machine, self.spec, self.clock.watch("plan", settle(self._planned(setpoints), period))
         )
 
     def _planned(self, setpoints: Iterator[Setpoints]) -> Iterator[Setpoints]:
@@ -194,7 +195,7 @@ class Run:
         return Cutter(job.stock, job.tools[0], self.part_frame, self.part_zero)
 
     def _finish_part(self, cutter: Cutter, out: Path) -> CutResult:
-        with self._clock.stage("cut"):
+        with self.clock.stage("cut"):
             write_stl(cutter.map, out / "part.stl")
             return cutter.result()
 

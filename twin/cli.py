@@ -82,8 +82,8 @@ def run(
     """Interpret, plan, simulate, compare and cut; write the results and print the verdict."""
     from twin.commands.run import run_and_print
 
-    overrides = {"dialect": dialect, "machine": machine}
-    raise typer.Exit(run_and_print(job, out, overrides=overrides, video=video, strict=strict))
+    code = run_and_print(job, out, dialect=dialect, machine=machine, video=video, strict=strict)
+    raise typer.Exit(code)
 
 
 @app.command()

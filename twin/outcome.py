@@ -1,4 +1,4 @@
-"""What a run came to: everything that result.json, the report and the exit code are made of."""
+"""What a run came to: what result.json, the report and the exit code are made of."""
 
 import dataclasses
 
@@ -24,8 +24,6 @@ class Outcome:
         duration_s: Machine time of the program, settling not counted [s].
         final_commanded: Program coordinates at the end, shape (k,) [mm or deg].
         final_simulated: The same of the simulated joints.
-        stages: Wall time by stage [s].
-        wall_s: Wall time of the whole run [s].
     """
 
     verdict: Verdict
@@ -37,5 +35,3 @@ class Outcome:
     duration_s: float
     final_commanded: FloatArray
     final_simulated: FloatArray
-    stages: dict[str, float]
-    wall_s: float

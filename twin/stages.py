@@ -20,6 +20,12 @@ class StageClock:
         self.seconds: dict[str, float] = defaultdict(float)
         self._running: list[str] = []
         self._since = 0.0
+        self._began = time.perf_counter()
+
+    @property
+    def wall_s(self) -> float:
+        """Wall time since the clock was made [s]."""
+        return time.perf_counter() - self._began
 
     @contextlib.contextmanager
     def stage(self, name: str) -> Iterator[None]:

@@ -39,7 +39,7 @@ def setpoints(moves: Moves, *, per_move: int = 500, wait: int = 0) -> Setpoints:
     position = positions(moves, place)
     velocity = np.gradient(position, PERIOD, axis=0)
     return Setpoints(
-        time=PERIOD * np.arange(len(place)),
+        time=np.float64(PERIOD) * np.arange(len(place)),
         line=moves.line[row],
         move=row,
         fraction=place - row,

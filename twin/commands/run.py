@@ -6,6 +6,8 @@ import typer
 
 from twin.alarm_text import alarm_diagnostic
 from twin.chain import Run
+from twin.commands.pictures import film_run
+from twin.compare.result import RunSummary, result, write_result
 from twin.errors import ExitCode
 from twin.outcome import Outcome
 from twin.preparation import prepare
@@ -13,8 +15,6 @@ from twin.progress import shown_progress
 
 RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
 """What a run may leave; an earlier run's files of these names are removed when one begins."""
-
-EXIT_CODES = {"pass": ExitCode.OK, "fail": ExitCode.FAILED, "alarm": ExitCode.ALARM}
 
 
 def run_and_print(
@@ -47,10 +47,11 @@ def run_and_print(
     with shown_progress() as progress:
         outcome = run.execute(survey, folder, progress)
         if video and outcome.samples:
-            film_run(run, folder, progress)
-        write_results(run, outcome, folder)
+            with run.clock.stage("render"):
+                film_run(run, folder, progress)
+    _write_result(run, outcome, folder)
     _print_findings(run, outcome)
-    typer.echo(f"{_summary(outcome)}: {folder}")
+    typer.echo(_summary(run, outcome, folder))
     return outcome.verdict.exit_code
 
 
@@ -69,10 +70,29 @@ def _print_findings(run: Run, outcome: Outcome) -> None:
             typer.echo(f"{run.preparation.source.name}: {reason}", err=True)
 
 
-def _summary(outcome: Outcome) -> str:
+def _summary(run: Run, outcome: Outcome, folder: Path) -> str:
     contour = outcome.figures.contour
     return (
         f"{outcome.verdict.outcome}: contour error at most {contour.max:.1f} µm "
         f"(line {contour.worst_line}), {outcome.duration_s:.3f} s of machine time "
-        f"in {outcome.wall_s:.1f} s"
+        f"in {run.clock.wall_s:.1f} s; results in {folder}"
     )
+
+
+def _write_result(run: Run, outcome: Outcome, folder: Path) -> None:
+    preparation = run.preparation
+    named = preparation.machine.axes.named
+    summary = RunSummary(
+        program=preparation.source.name,
+        dialect=preparation.dialect.name,
+        machine=preparation.machine.file.name,
+        duration_s=outcome.duration_s,
+        wall_s=run.clock.wall_s,
+        stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
+        cut=None if outcome.cut is None else outcome.cut.as_json(),
+        commanded=named(outcome.final_commanded),
+        simulated=named(outcome.final_simulated),
+    )
+    tolerance = preparation.job.file.tolerance
+    content = result(summary, outcome.figures, tolerance, outcome.verdict, outcome.alarms)
+    write_result(folder / "result.json", content)

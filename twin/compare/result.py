@@ -26,6 +26,7 @@ class RunSummary:
         program: Name of the program, as the user gave it.
         dialect: Its dialect.
         machine: Name of the machine.
+        duration_s: Machine time of the program, without the settling after it [s].
         wall_s: How long the whole run took [s].
         stages: Seconds by stage: ``interpret_s``, ``plan_s``, ``simulate_s``, ``compare_s``,
             ``cut_s``, ``render_s``; a stage that was left out is 0.
@@ -37,6 +38,7 @@ class RunSummary:
     program: str
     dialect: str
     machine: str
+    duration_s: float
     wall_s: float
     stages: Mapping[str, float]
     cut: Mapping[str, Any] | None
@@ -67,10 +69,10 @@ def result(
         "machine": summary.machine,
         "verdict": verdict.outcome,
         "reasons": [dataclasses.asdict(reason) for reason in verdict.reasons],
-        "duration_s": figures.duration_s,
+        "duration_s": summary.duration_s,
         "samples": figures.samples,
         "wall_s": summary.wall_s,
-        "real_time_factor": figures.duration_s / summary.wall_s if summary.wall_s > 0 else None,
+        "real_time_factor": summary.duration_s / summary.wall_s if summary.wall_s > 0 else None,
         "stages": {name: summary.stages.get(name, 0.0) for name in STAGES},
         "tracking_um": _tracking(figures, "linear"),
         "tracking_mdeg": _tracking(figures, "rotary"),

@@ -44,7 +44,7 @@ class Trace:
         rows = np.column_stack(
             [
                 asked.time,
-                asked.line,
+                asked.line.astype(np.float64),
                 error_um,
                 samples.joint_position - self._part_zero,
                 asked.position - samples.joint_position,

@@ -1,0 +1,108 @@
+import dataclasses
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from twin.compare.figures import ArcFigures, AxisTracking, ContourFigures, Figures
+from twin.compare.result import RunSummary, result, write_result
+from twin.compare.verdict import judge
+from twin.errors import ExitCode
+from twin.job import ToleranceTable
+
+
+@dataclasses.dataclass(frozen=True)
+class Alarm:
+    code: str = "soft-limit"
+    line: int = 7
+    time_s: float = 1.5
+    message: str = "X leaves its travel"
+
+
+def figures(contour: float = 12.0, lag: float = 150.0, turn: float = 30.0) -> Figures:
+    return Figures(
+        samples=1000,
+        duration_s=2.5,
+        tracking={
+            "X": AxisTracking("linear", lag, 80.0, 3, 0.4),
+            "C": AxisTracking("rotary", turn, 10.0, 4, 0.6),
+        },
+        contour=ContourFigures(max=contour, rms=4.0, p99=11.0, worst_line=9, worst_time_s=1.25),
+        arcs=(ArcFigures(5, 0.2, 25.0, -360.0, 3.0, 1.0, -2.0, np.zeros((0, 2))),),
+        worst=(),
+    )
+
+
+def test_within_tolerance_passes_and_the_limit_itself_is_within():
+    for limit in (12.0, 20.0):
+        verdict = judge(figures(), ToleranceTable(contour_um=limit))
+        assert (verdict.outcome, verdict.reasons) == ("pass", ())
+        assert verdict.exit_code is ExitCode.OK
+
+
+def test_a_contour_error_fails_with_value_limit_line_and_time():
+    verdict = judge(figures(), ToleranceTable(contour_um=11.9))
+    assert (verdict.outcome, verdict.exit_code) == ("fail", ExitCode.FAILED)
+    (reason,) = verdict.reasons
+    assert (reason.what, reason.line, reason.time_s) == ("contour_um", 9, 1.25)
+    assert str(reason) == "line 9, 1.250 s: contour error 12.0 µm exceeds contour_um = 11.9"
+
+
+def test_following_error_is_judged_by_the_kind_of_axis_when_asked_for():
+    assert judge(figures(), ToleranceTable()).outcome == "pass"
+    verdict = judge(figures(), ToleranceTable(following_um=100.0, following_mdeg=20.0))
+    assert [(r.what, r.line) for r in verdict.reasons] == [
+        ("following_um", 3),
+        ("following_mdeg", 4),
+    ]
+    assert judge(figures(), ToleranceTable(following_um=150.0)).outcome == "pass"
+
+
+def test_an_alarm_outweighs_a_tolerance_and_is_told_first():
+    verdict = judge(figures(), ToleranceTable(contour_um=1.0), [Alarm()])
+    assert (verdict.outcome, verdict.exit_code) == ("alarm", ExitCode.ALARM)
+    assert [reason.what for reason in verdict.reasons] == ["soft-limit", "contour_um"]
+
+
+def summary() -> RunSummary:
+    return RunSummary(
+        program="ring.nc", dialect="gost", machine="mill4", wall_s=0.5,
+        stages={"interpret_s": 0.1, "simulate_s": 0.3}, cut={"removed_mm3": 10.0},
+        commanded={"X": 1.0}, simulated={"X": float("nan")},
+    )  # fmt: skip
+
+
+def test_the_result_has_every_key_of_the_contract(tmp_path: Path):
+    tolerance = ToleranceTable(contour_um=20.0)
+    verdict = judge(figures(), tolerance, [Alarm()])
+    write_result(
+        tmp_path / "result.json", result(summary(), figures(), tolerance, verdict, [Alarm()])
+    )
+    content = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))
+    assert content["schema"] == 1
+    assert content["verdict"] == "alarm"
+    assert content["real_time_factor"] == 5.0
+    assert set(content["stages"]) == {
+        "interpret_s", "plan_s", "simulate_s", "compare_s", "cut_s", "render_s",
+    }  # fmt: skip
+    assert content["tracking_um"]["X"]["max"] == 150.0
+    assert content["tracking_mdeg"]["C"]["rms"] == 10.0
+    assert content["contour_um"] == {
+        "max": 12.0, "rms": 4.0, "p99": 11.0, "worst_line": 9, "worst_time_s": 1.25,
+    }  # fmt: skip
+    (arc,) = content["arcs"]
+    assert (arc["line"], arc["radius_mm"], arc["circular_deviation_um"]) == (5, 25.0, 3.0)
+    assert arc["radial_deviation_um"] == -2.0
+    assert content["tolerance"]["contour_um"] == 20.0
+    assert content["alarms"] == [dataclasses.asdict(Alarm())]
+    assert content["cut"] == {"removed_mm3": 10.0}
+    assert content["final"] == {"commanded": {"X": 1.0}, "simulated": {"X": None}}
+    for key in ("program", "dialect", "machine", "duration_s", "samples", "wall_s"):
+        assert key in content
+
+
+def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path: Path):
+    with pytest.raises(ValueError, match="JSON"):
+        write_result(tmp_path / "result.json", {"value": float("nan")})
+    assert list(tmp_path.iterdir()) == []
