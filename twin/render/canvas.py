@@ -68,21 +68,22 @@ class Canvas:
         self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self.context)
         self._view = mujoco.MjrRect(0, 0, *size)
-        self._shape = (size[1], size[0], 3)
 
-    def draw(self, data: mujoco.MjData, camera: int) -> Pixels:
+    def draw(self, data: mujoco.MjData, camera: int, size: tuple[int, int] | None = None) -> Pixels:
         """Draw one frame, top row first.
 
         Args:
             data: Positions of everything (after ``mj_forward`` or the like).
             camera: Number of the camera in the model.
+            size: Width and height, at most those of the canvas [px]; None: all of it.
 
         Returns:
             Shape (height, width, 3).
         """
         self._update(data, camera)
-        mujoco.mjr_render(self._view, self._scene, self.context)
-        return self._read()
+        view = self._view if size is None else mujoco.MjrRect(0, 0, *size)
+        mujoco.mjr_render(view, self._scene, self.context)
+        return self._read(view)
 
     def draw_objects(self, data: mujoco.MjData, camera: int) -> npt.NDArray[np.int32]:
         """Which geom every pixel shows: its number in the model, -1 for none.
@@ -96,7 +97,7 @@ class Canvas:
         self._scene.flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = True
         mujoco.mjr_render(self._view, self._scene, self.context)
         self._scene.flags[:] = flags
-        red, green, blue = np.moveaxis(self._read().astype(np.int64), 2, 0)
+        red, green, blue = np.moveaxis(self._read(self._view).astype(np.int64), 2, 0)
         number = red + 256 * green + 65536 * blue
         geoms = np.full(self._scene.ngeom + 1, -1, np.int32)
         for geom in self._scene.geoms[: self._scene.ngeom]:
@@ -116,9 +117,9 @@ class Canvas:
             self._scene,
         )
 
-    def _read(self) -> Pixels:
-        pixels = np.zeros(self._shape, np.uint8)
-        mujoco.mjr_readPixels(pixels, None, self._view, self.context)
+    def _read(self, view: mujoco.MjrRect) -> Pixels:
+        pixels = np.zeros((view.height, view.width, 3), np.uint8)
+        mujoco.mjr_readPixels(pixels, None, view, self.context)
         return pixels[::-1]
 
     def upload_mesh(self, mesh: int) -> None:

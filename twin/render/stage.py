@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import math
 from collections.abc import Iterator
 
 import mujoco
@@ -23,6 +24,9 @@ from twin.render.stock_surface import StockSurface
 from twin.render.trail import Trail, trail_points
 from twin.render.work_holding import add_work_holding
 
+BETWEEN_FIELDS = 255
+"""Grey of the line between the fields of a split picture."""
+
 TRAIL_SHARE = 0.003
 """Radius of the trail's tube, as a share of the trail's extent."""
 TRAIL_MM = (0.1, 0.8)
@@ -42,6 +46,10 @@ class Scene:
     stock: StockTable | None = None
     rapid_moves: BoolArray | None = None
     """Whether each move of the program is a rapid; none: none is."""
+    error_um: FloatArray | None = None
+    """Error of every sample that colours the trail, shape (n,) [µm]; none: one colour."""
+    error_scale_um: float | None = None
+    """Error that has the last colour [µm]; none: the greatest."""
 
     def camera_names(self) -> list[str]:
         """Names of the cameras that can be asked for."""
@@ -68,6 +76,7 @@ class Stage:
         model: mujoco.MjModel,
         placement: Placement,
         drawing: Canvas,
+        size: tuple[int, int],
         surface: StockSurface | None,
         cutter: Cutter | None,
         trail: Trail,
@@ -77,6 +86,7 @@ class Stage:
         self.placement = placement
         self._scene = scene
         self._drawing = drawing
+        self._size = size
         self._surface = surface
         self._cutter = cutter
         self._trail = trail
@@ -96,10 +106,22 @@ class Stage:
             self._cutter.add(samples, rapid_mask(samples, self._scene.rapid_moves))
             self._changed = union(self._changed, self._cutter.changed)
 
-    def picture(self, camera: str) -> Pixels:
-        """Draw what a camera sees now, shape (height, width, 3)."""
+    def picture(self, *cameras: str) -> Pixels:
+        """Draw what cameras see now, side by side in equal fields, shape (height, width, 3)."""
         self._refresh()
-        return self._drawing.draw(self.data, int(self.model.camera(camera).id))
+        width, height = self._size
+        columns = math.ceil(math.sqrt(len(cameras)))
+        rows = -(-len(cameras) // columns)
+        field = (width // columns, height // rows)
+        whole = np.full((height, width, 3), BETWEEN_FIELDS, np.uint8)
+        for number, camera in enumerate(cameras):
+            view = self._drawing.draw(self.data, int(self.model.camera(camera).id), field)
+            if len(cameras) == 1:
+                return view
+            top, left = field[1] * (number // columns), field[0] * (number % columns)
+            edge = (field[1] - (1 if rows > 1 else 0), field[0] - 1)
+            whole[top : top + edge[0], left : left + edge[1]] = view[: edge[0], : edge[1]]
+        return whole
 
     def objects(self, camera: str) -> np.ndarray[tuple[int, int], np.dtype[np.int32]]:
         """Number of the geom that every pixel shows now, -1 for none, shape (height, width)."""
@@ -145,17 +167,17 @@ def stage(scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Sta
         surface.add_to(spec)
         corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
         add_work_holding(spec, scene.stock, placement, corner)
-    points = trail_points(scene.recording, scene.rapid_moves)
+    points = trail_points(scene.recording, scene.rapid_moves, scene.error_um)
     seen = points.position if cutter is None else cutter.map.corners
     add_part_cameras(spec, placement, *framed(seen))
-    trail = Trail(points, _trail_radius(points.position))
+    trail = Trail(points, _trail_radius(points.position), scene.error_scale_um)
     trail.add_to(spec)
     model = spec.compile()
     if surface is not None:
         surface.bind(model, placement)
     trail.bind(model, placement)
     with canvas(model, size, quality) as drawing:
-        yield Stage(scene, model, placement, drawing, surface, cutter, trail)
+        yield Stage(scene, model, placement, drawing, size, surface, cutter, trail)
 
 
 def _trail_radius(points: FloatArray) -> float:
