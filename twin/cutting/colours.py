@@ -6,7 +6,7 @@ import numpy.typing as npt
 from twin.cutting.height_map import HeightMap
 from twin.nc.canonical import FloatArray
 
-RAW_RGB = (140, 147, 156)
+RAW_RGB = (150, 157, 166)
 """The blank's own skin."""
 MACHINED_RGB = (214, 219, 225)
 """Where a tool went."""

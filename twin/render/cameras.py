@@ -12,8 +12,8 @@ RIDING = "riding"
 """The same, but it turns with the part: the machine seems to turn around it."""
 PART_CAMERAS = (PART, RIDING)
 
-_DIRECTION = np.array([-0.62, -0.90, 0.80])
-"""From the part to the camera, in the part's frame."""
+_DIRECTION = np.array([-0.50, -1.0, 0.47])
+"""From the part to the camera, in the part's frame: low enough to look in below the head."""
 _FIELD_DEG = 30.0
 _MARGIN = 1.12
 """Room around the part's bounding ball."""

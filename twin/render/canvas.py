@@ -19,6 +19,9 @@ SHOWN_GROUPS = (0, 1, 2)
 HIDDEN_GROUP = 5
 """Geom group of what is hidden for a while."""
 
+FILL_SHARE = 0.45
+"""Share of a light that its shadows do not take away."""
+
 _SPARE_GEOMS = 200
 """Scene geoms beside the model's own, for lights' and frames' decoration."""
 
@@ -50,6 +53,24 @@ def prepare(spec: mujoco.MjSpec, quality: Quality, size: tuple[int, int]) -> Non
     spec.visual.global_.offwidth, spec.visual.global_.offheight = size
     spec.visual.quality.offsamples = quality.samples
     spec.visual.quality.shadowsize = quality.shadow_map
+    if quality.shadows:
+        _soften_shadows(spec)
+
+
+def _soften_shadows(spec: mujoco.MjSpec) -> None:
+    """Let a part of every light that casts shadows shine through, as from a bright workshop."""
+    for light in [light for light in spec.lights if light.castshadow]:
+        through = FILL_SHARE * np.array(light.diffuse)
+        light.diffuse = np.array(light.diffuse) - through
+        body = light.parent
+        body.add_light(
+            type=light.type,
+            pos=light.pos,
+            dir=light.dir,
+            diffuse=through,
+            specular=[0.0, 0.0, 0.0],
+            castshadow=False,
+        )
 
 
 class Canvas:
