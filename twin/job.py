@@ -181,6 +181,14 @@ class JobFile(Table):
     stock: StockTable | None = None
     tools: tuple[ToolTable, ...] = (ToolTable(number=1),)
     """The first is in the spindle at the start."""
+    offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
+    """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
+    variables: dict[str, float] = Field(default_factory=dict)
+    """Values of variables that the program reads but does not set, by their name in it."""
+    block_skip: bool = False
+    """Blocks that begin with a slash are left out."""
+    step_limit: Annotated[int, Field(gt=0)] = 50_000
+    """Blocks that may be run again through jumps and loops before the program counts as endless."""
     tolerance: ToleranceTable = ToleranceTable()
     baseline: BaselineTable = BaselineTable()
     video: VideoTable = VideoTable()

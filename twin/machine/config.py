@@ -149,6 +149,8 @@ class ControlTable(Table):
     """For moves of rotary axes alone [deg/min]."""
     recalculate_on_rapid: bool = False
     """``gost``: G102 also relabels the start of G0 blocks."""
+    module_rotary: bool = False
+    """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
 
 
 class MachineFile(Table):
