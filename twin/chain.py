@@ -81,7 +81,7 @@ class Run:
         turn_zero = 0.0 if rotary is None else float(self.part_zero[rotary])
         self.part_frame: PartFrame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
         self.clock = StageClock()
-        self.trace = Trace(machine.axes, self.part_zero)
+        self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
         self.contour_um: list[FloatArray] = []
         self._keep_contour = keep_contour
         self._motion = bytearray()

@@ -55,9 +55,7 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
-def _check_alone(
-    path: Path, check: CheckOne, context: SpawnContext
-) -> CheckOutcome:
+def _check_alone(path: Path, check: CheckOne, context: SpawnContext) -> CheckOutcome:
     with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
         try:
             return pool.submit(check, path).result()

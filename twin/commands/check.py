@@ -2,6 +2,7 @@
 
 import functools
 import os
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from twin.files import write_text
 from twin.progress import shown_progress
 
 _STYLES = {"pass": "", "fail": "bold yellow", "alarm": "bold magenta", "error": "bold red"}
+_LOG_WIDTH = 160
 CODE_QUALITY_FILE = "gl-code-quality-report.json"
 """Where GitLab's examples look for the report; written to the working folder on GitLab alone."""
 
@@ -76,7 +78,8 @@ def _print(outcomes: Sequence[CheckOutcome]) -> None:
         table.add_column(heading, justify="right")
     for outcome, row in zip(outcomes, forms.table_rows(outcomes), strict=True):
         table.add_row(*row, style=_STYLES[outcome.verdict])
-    Console().print(table)
+    # In a log nothing is gained by folding at 80 columns.
+    Console(width=None if sys.stdout.isatty() else _LOG_WIDTH).print(table)
     for outcome in outcomes:
         for finding in outcome.findings:
             typer.echo(str(finding), err=True)
