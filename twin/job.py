@@ -140,8 +140,14 @@ class VideoTable(Table):
 
     cameras: tuple[str, ...] = ("overview",)
     """Named cameras, shown one after the other."""
+    layout: Literal["sequence", "split"] = "sequence"
+    """``split``: all cameras at once, side by side."""
     seconds: Positive = 12.0
     """Length of the video; the run is sped up or slowed down to fit [s]."""
+    speed: Positive | None = None
+    """Times faster than in reality, instead of a length."""
+    quality: Literal["draft", "final"] = "draft"
+    """``final`` has shadows, smooth edges and a finer stock, and takes several times as long."""
     fps: Annotated[int, Field(ge=1, le=60)] = 25
     size: tuple[Annotated[int, Field(ge=64, le=1920)], Annotated[int, Field(ge=64, le=1080)]] = (
         1280,
@@ -170,6 +176,14 @@ class JobFile(Table):
     stock: StockTable | None = None
     tools: tuple[ToolTable, ...] = (ToolTable(number=1),)
     """The first is in the spindle at the start."""
+    offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
+    """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
+    variables: dict[str, float] = Field(default_factory=dict)
+    """Values of variables that the program reads but does not set, by their name in it."""
+    block_skip: bool = False
+    """Blocks that begin with a slash are left out."""
+    step_limit: Annotated[int, Field(gt=0)] = 50_000
+    """Blocks that may be run again through jumps and loops before the program counts as endless."""
     tolerance: ToleranceTable = ToleranceTable()
     video: VideoTable = VideoTable()
 

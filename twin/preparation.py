@@ -9,7 +9,7 @@ from twin.machine.config import Machine, read_machine
 from twin.nc.canonical import FloatArray
 from twin.nc.dialects import Dialect, dialect_named, recognise
 from twin.nc.interpreter import Interpretation
-from twin.nc.settings import ControlSettings
+from twin.nc.settings import ControlSettings, ToolData
 from twin.nc.source import Source, read_source
 from twin.placement import start_position
 from twin.resources import machine_file
@@ -86,6 +86,26 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         default_feed=job.file.default_feed or control.default_feed,
         default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
         start=machine.axes.named(start),
+        tools={
+            tool.number: ToolData(radius=tool.diameter / 2.0, length=tool.length)
+            for tool in job.file.tools
+        },
+        offsets=job.file.offsets,
+        machine_zero=_machine_zero(job, machine),
+        variables=job.file.variables,
         recalculate_on_rapid=control.recalculate_on_rapid,
+        module_rotary=control.module_rotary,
+        block_skip=job.file.block_skip,
+        step_limit=job.file.step_limit,
         strict=strict,
     )
+
+
+def _machine_zero(job: Job, machine: Machine) -> dict[str, float] | None:
+    """Part coordinates of machine zero; None where the job leaves the height of part zero open."""
+    if "Z" not in job.file.part_zero:
+        return None
+    zero = dict.fromkeys(machine.axes.names, 0.0)
+    zero["X"], zero["Y"] = machine.part_frame.center
+    zero |= job.file.part_zero
+    return {name: -value for name, value in zero.items()}

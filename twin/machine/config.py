@@ -75,6 +75,11 @@ class AxisTable(Table):
     backlash, as stiff as the servo period allows to simulate."""
     counterbalance: Share | None = None
     """Share of the weight on the axis that a counterbalance takes; none: as the model says."""
+    junction_velocity_step: NonNegative = 0.0
+    """Largest step of the axis's velocity where an exact path goes through a knee [mm/s or deg/s];
+    0: the axis stops there."""
+    junction_acceleration_step: NonNegative = 0.0
+    """The same of its acceleration where only the curvature jumps [mm/s² or deg/s²]."""
     kv: Positive
     """Position-loop gain [(m/min)/mm; rotary (1000 deg/min)/deg]: lag = velocity / gain."""
     damping_ratio: Positive = 1.0
@@ -116,6 +121,8 @@ class PathTable(Table):
     """The same for a path of rotary axes alone [deg/s²]; none: the axes decide."""
     rotary_jerk: Positive | None = None
     """[deg/s³]."""
+    corner_tolerance: Positive = 0.01
+    """How far a rounded corner may leave the path where the program does not say [mm]."""
 
 
 class TableTable(Table):
@@ -160,6 +167,8 @@ class ControlTable(Table):
     """For moves of rotary axes alone [deg/min]."""
     recalculate_on_rapid: bool = False
     """``gost``: G102 also relabels the start of G0 blocks."""
+    module_rotary: bool = False
+    """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
 
 
 class MachineFile(Table):

@@ -58,6 +58,7 @@ class Block:
         words: Its words without N, in the order of the text.
         statement: What it says besides words, or None.
         skippable: It begins with a slash.
+        name: Its label in brackets, or empty.
     """
 
     line: int
@@ -66,3 +67,4 @@ class Block:
     words: tuple[Word, ...] = ()
     statement: Statement | None = None
     skippable: bool = False
+    name: str = ""

@@ -95,7 +95,19 @@ def radius_center(
     Raises:
         ProgramError: The radius does not fit.
     """
-    value = control.length(word)
+    return center_of_radius(control, start, end, control.length(word), word, clockwise=clockwise)
+
+
+def center_of_radius(
+    control: Control,
+    start: Point,
+    end: Point,
+    value: float,
+    word: Word | None,
+    *,
+    clockwise: bool,
+) -> Point:
+    """As ``radius_center``, for a radius that is in force [mm]."""
     if distance(start, end) < SAME_POINT:
         control.fail(
             "arc-full-by-radius",

@@ -20,6 +20,9 @@ Emit = Callable[[Segment], None]
 Refuse = Callable[[Segment, str, str], NoReturn]
 """Told the segment, the code and the message; raises."""
 
+_LARGEST_SQUARE = 90.0 + 1e-9
+"""Square corners are extended up to this turn, beyond it rolled around [deg]."""
+
 _STRAIGHT_ON = 1e-4
 """Corners that turn by less pass as straight on [deg]."""
 
@@ -51,8 +54,16 @@ class Compensation:
     """
 
     def __init__(
-        self, plane: Plane, side: float, radius: float, emit: Emit, refuse: Refuse
+        self,
+        plane: Plane,
+        side: float,
+        radius: float,
+        emit: Emit,
+        refuse: Refuse,
+        *,
+        square: bool = False,
     ) -> None:
+        self._square = square
         self.plane = plane
         self._aside = side * radius
         self._emit = emit
@@ -128,6 +139,11 @@ class Compensation:
         if abs(turn) < _STRAIGHT_ON:
             self._end(held, element.start)
             return element.start
+        straight = held.contour.center is None and contour.center is None
+        if self._square and straight and turn * self._aside < 0.0 and abs(turn) <= _LARGEST_SQUARE:
+            (corner,) = crossings(held.element, element)
+            self._end(held, corner)
+            return corner
         if turn * self._aside < 0.0 or abs(turn) > 180.0 - _STRAIGHT_ON:
             self._end(held, held.element.end)
             self._roll(held, contour.start, element.start, turn)

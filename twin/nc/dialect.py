@@ -60,6 +60,8 @@ class Modal:
     feed_mode: FeedMode = FeedMode.PER_MINUTE
     corner: Corner = Corner.EXACT_PATH
     corner_tolerance: float = float("nan")
+    square_corners: bool = False
+    """Compensation extends lines at outside corners instead of rolling around them."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,12 +104,14 @@ class MCode:
         late: Takes effect when the block has moved.
         ends: Ends the program.
         action: What it does besides being reported as a function.
+        silent: It is not reported.
         ground: On what the meaning rests.
     """
 
     meaning: str
     late: bool = False
     ends: bool = False
+    silent: bool = False
     action: Action | None = None
     ground: Ground = "decision"
 
@@ -130,6 +134,7 @@ class Syntax:
         expressions: How values are computed; None where only numbers are written.
         statement: Regular expression of what begins a statement; its group 1 is the keyword.
         several_blocks: A further N begins a further block on the same line.
+        named_labels: ``[NAME]`` at its begin names a block.
         incremental_suffix: ``X20I`` makes one word incremental.
         aliases: Addresses that mean another one.
         excused: Why a line that cannot be read may be left out, given it and the line before:
@@ -141,6 +146,7 @@ class Syntax:
     expressions: ExpressionSyntax | None = None
     statement: str | None = None
     several_blocks: bool = False
+    named_labels: bool = False
     incremental_suffix: bool = False
     aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
@@ -192,6 +198,7 @@ class Dialect:
         motion_words: Addresses that make a block move, the axes among them.
         function_letters: Addresses that belong to an M function of their block.
         references: Addresses whose value names a variable and is not computed.
+        repeat_word: Address that says how often its block runs, or empty.
         signed: Addresses that are two words, one above and one below 0.
         series: Addresses that may stand several times in a block with a switch point, in order.
         words: Addresses with a modal meaning, and what they do.
@@ -207,6 +214,7 @@ class Dialect:
         read_variable: Value of a variable, given its name and index.
         place_switches: Reports the block's switch points, told the length of its move.
         prepare: Done before the first block.
+        after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
     """
 
@@ -223,6 +231,7 @@ class Dialect:
     motion_words: frozenset[str] = frozenset("XYZABCUVWIJKR")
     function_letters: str = ""
     references: str = ""
+    repeat_word: str = ""
     signed: str = ""
     series: str = ""
     words: Mapping[str, WordAction]
@@ -238,4 +247,5 @@ class Dialect:
     read_variable: Callable[["Control", str, float | None], float] | None = None
     place_switches: Callable[["Control", float], None] | None = None
     prepare: Action | None = None
+    after_motion: Action | None = None
     finish: Action | None = None

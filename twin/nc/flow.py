@@ -6,12 +6,13 @@ from collections.abc import Callable
 from typing import NamedTuple, NoReturn
 
 from twin.nc.blocks import Block
+from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.diagnostics import ProgramError
 from twin.nc.lexer import Lexer
 from twin.nc.reporter import Reporter
 from twin.nc.source import Source
 
-_LABEL = re.compile(r"N[ \t]*0*([0-9]+)", re.IGNORECASE)
+_LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
 _CACHED_LINES = 10_000
 """Lines whose blocks are remembered once a program has jumped."""
 
@@ -57,7 +58,7 @@ class Flow:
         self._step_limit = step_limit
         self._steps_left = step_limit
         self._furthest = Place(-1, 0)
-        self._labels: dict[int, list[Place]] | None = None
+        self._labels: dict[int | str, list[Place]] | None = None
         self._cache: dict[int, tuple[Block, ...]] = {}
         self._jumped = False
         self._here: tuple[Block, ...] = ()
@@ -152,22 +153,29 @@ class Flow:
         Raises:
             ProgramError: No block or more than one has it.
         """
-        places = self.labels().get(number, [])
-        if len(places) != 1:
-            self._refuse_label(number, len(places), fail_at, word)
-        self._jumped = True
-        self.place = places[0]
+        self.go(self.find_label(number, fail_at, word))
 
-    def labels(self) -> dict[int, list[Place]]:
-        """Where every N number stands."""
+    def find_label(self, label: int | str, fail_at: tuple[int, int], word: str) -> Place:
+        """Where the block with an N number or a name stands; arguments as for ``jump``.
+
+        Raises:
+            ProgramError: No block or more than one has it.
+        """
+        places = self.labels().get(label, [])
+        if len(places) != 1:
+            self._refuse_label(label, len(places), fail_at, word)
+        return places[0]
+
+    def labels(self) -> dict[int | str, list[Place]]:
+        """Where every N number and every name of a block stands."""
         if self._labels is None:
             self._labels = {}
             for line, text in enumerate(self._lines):
                 if _LABEL.search(text) is not None:
                     for block in self._readable_blocks(line):
-                        if block.number >= 0:
-                            places = self._labels.setdefault(block.number, [])
-                            places.append(Place(line, block.part))
+                        label = block.name or block.number
+                        if label != NO_BLOCK_NUMBER:
+                            self._labels.setdefault(label, []).append(Place(line, block.part))
         return self._labels
 
     def _readable_blocks(self, line: int) -> tuple[Block, ...]:
@@ -207,17 +215,22 @@ class Flow:
             )
 
     def _refuse_label(
-        self, number: int, count: int, fail_at: tuple[int, int], word: str
+        self, label: int | str, count: int, fail_at: tuple[int, int], word: str
     ) -> NoReturn:
-        known = sorted(self.labels())
-        shown = ", ".join(f"N{each}" for each in known[:_SHOWN_LABELS])
+        known = [_shown(each) for each in self.labels()]
+        shown = ", ".join(known[:_SHOWN_LABELS])
+        name = _shown(label)
         more = ", ..." if len(known) > _SHOWN_LABELS else ""
-        code, message = "unknown-label", f"{word} names N{number}, and no block has this number"
+        code, message = "unknown-label", f"{word} names {name}, and no block has it"
         if count > 1:
-            code, message = "ambiguous-label", f"{word} names N{number}, and {count} blocks have it"
+            code, message = "ambiguous-label", f"{word} names {name}, and {count} blocks have it"
         self._report.fail(
             code, message, *fail_at, hint=f"blocks here: {shown}{more}" if known else None
         )
 
 
 _SHOWN_LABELS = 12
+
+
+def _shown(label: int | str) -> str:
+    return f"[{label}]" if isinstance(label, str) else f"N{label}"

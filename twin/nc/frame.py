@@ -62,6 +62,10 @@ class Frame:
         """A direction of X, Y, Z as the part sees it."""
         return _apply(self.matrix, vector)
 
+    def unturn(self, vector: Vector) -> Vector:
+        """The inverse of ``turn``."""
+        return vector if self.plain else _apply(_inverse(self.matrix), vector)
+
     @property
     def handedness(self) -> float:
         """-1 where the matrix mirrors, else 1."""

@@ -40,7 +40,11 @@ def cancel_offset(control: Control) -> None:
     """
     zero = control.settings.machine_zero
     if zero is None:
-        control.fail("no-machine-zero", "G53 needs a machine, and none is given", None)
+        control.fail(
+            "no-machine-zero",
+            "G53 counts from machine zero, and the job does not say where that lies",
+            hint="write part_zero with its Z into the job file",
+        )
     _shift_by(control, zero)
 
 
@@ -114,7 +118,9 @@ def compensate(control: Control, side: float, radius: float) -> None:
     if radius == 0.0:
         return
     plane = control.part_plane()
-    control.path.start_compensation(plane, side * control.frame.handedness, radius)
+    control.path.start_compensation(
+        plane, side * control.frame.handedness, radius, square=control.modal.square_corners
+    )
 
 
 def _compensation_by_table(control: Control, side: float) -> None:

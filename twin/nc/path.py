@@ -70,15 +70,18 @@ class Path:
         """Compensation is in force."""
         return self._compensation is not None
 
-    def start_compensation(self, plane: Plane, side: float, radius: float) -> None:
+    def start_compensation(self, plane: Plane, side: float, radius: float, *, square: bool) -> None:
         """Compensate from the next move on.
 
         Args:
             plane: Working plane in part coordinates.
             side: +1 left of the contour, -1 right of it.
             radius: Of the tool [mm].
+            square: Outside corners between lines are extended as far as 90°.
         """
-        self._compensation = Compensation(plane, side, radius, self._emit, self._refuse)
+        self._compensation = Compensation(
+            plane, side, radius, self._emit, self._refuse, square=square
+        )
 
     def end_compensation(self) -> None:
         """The next line leads out."""

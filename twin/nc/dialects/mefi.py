@@ -70,7 +70,7 @@ def jump_with_repeat(control: Control) -> None:
     """
     target, count = control.take("L"), control.take("Q")
     if target is None:
-        numbers = ", ".join(f"N{number}" for number in sorted(control.flow.labels())[:12])
+        numbers = ", ".join(f"N{label}" for label in list(control.flow.labels())[:12])
         code = control.code_word(73)
         control.fail(
             "jump-target", "G73 needs L: the block to jump to", code, hint=f"blocks here: {numbers}"

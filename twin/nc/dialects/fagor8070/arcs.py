@@ -4,7 +4,6 @@ The rule for R in an arc block: with a coordinate of the plane R is the circle's
 one it is the polar radius.
 """
 
-import dataclasses
 import math
 
 from twin.nc.arcs import (
@@ -12,162 +11,28 @@ from twin.nc.arcs import (
     TURN,
     Point,
     angle_of,
-    direction,
+    center_tangent,
+    center_through,
     distance,
     sweep_between,
     turned,
 )
 from twin.nc.blocks import Word
-from twin.nc.circular import fitted_center, radius_center, start_and_end, take_center
+from twin.nc.circular import (
+    center_of_radius,
+    fitted_center,
+    radius_center,
+    start_and_end,
+    sweep_arc,
+    take_center,
+)
 from twin.nc.control import Control
 from twin.nc.dialect import Interpolation
+from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 
 HELIX_ANGLE = 0.1
 """A helix whose pitch misses its end point by more than this earns a warning [deg]."""
-
-
-@dataclasses.dataclass(slots=True)
-class Polar:
-    """What polar coordinates are measured from, and what was programmed last.
-
-    Attributes:
-        origin: In the working plane, from part zero [mm].
-        radius: R of the last polar move while it still holds, or None [mm].
-        angle: Its Q, or None [deg].
-        temporary: G31: this block's origin is the arc's centre.
-    """
-
-    origin: Point = (0.0, 0.0)
-    radius: float | None = None
-    angle: float | None = None
-    temporary: bool = False
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Goal:
-    """Where a block goes.
-
-    Attributes:
-        target: Programmed position, shape (k,).
-        in_plane: The block names a point of the plane.
-        polar: It does so by R and Q.
-    """
-
-    target: list[float]
-    in_plane: bool
-    polar: bool
-
-
-def polar_of(control: Control) -> Polar:
-    """The dialect's memory."""
-    assert isinstance(control.memory, Polar)
-    return control.memory
-
-
-def forget_polar(control: Control) -> None:
-    """The last polar values no longer hold: they are seen anew from where the tool stands."""
-    polar = polar_of(control)
-    polar.radius = polar.angle = None
-
-
-def reset_polar_origin(control: Control) -> None:
-    """A change of plane puts the polar origin back to part zero."""
-    polar_of(control).origin = (0.0, 0.0)
-    forget_polar(control)
-
-
-def set_polar_origin(control: Control) -> None:
-    """G30: I abscissa and J ordinate of the polar origin; neither: where the tool stands.
-
-    Raises:
-        ProgramError: Only one of both is given.
-    """
-    abscissa, ordinate = control.take("I"), control.take("J")
-    if (abscissa is None) != (ordinate is None):
-        control.fail("polar-origin", "G30 needs both I and J, or neither", abscissa or ordinate)
-    if abscissa is None:
-        origin = control.modal.plane.local(control.programmed)[:2]
-    else:
-        origin = (control.length(abscissa), control.length(ordinate))
-    polar_of(control).origin = origin
-    forget_polar(control)
-
-
-def temporary_polar_origin(control: Control) -> None:
-    """G31: for this arc the polar origin is its centre."""
-    polar_of(control).temporary = True
-
-
-def current_polar(control: Control) -> tuple[float, float]:
-    """R and Q of where the tool stands: as last programmed, else measured [mm, deg]."""
-    polar = polar_of(control)
-    here = control.modal.plane.local(control.programmed)[:2]
-    radius = distance(polar.origin, here) if polar.radius is None else polar.radius
-    angle = angle_of(here, polar.origin) if polar.angle is None else polar.angle
-    return radius, angle
-
-
-def take_goal(control: Control, *, arc: bool) -> Goal:
-    """Take the words that say where the block goes."""
-    names = control.settings.axes.names
-    abscissa, ordinate, _ = (names[index] for index in control.modal.plane.axes)
-    words = control.words
-    cartesian = (abscissa in words) + (ordinate in words)
-    if cartesian == 0 and ("R" in words or "Q" in words):
-        return Goal(_polar_target(control, arc=arc), in_plane=True, polar=True)
-    angle = control.take("Q") if cartesian == 1 else None
-    has_abscissa = abscissa in words
-    target = control.target()
-    if angle is not None:
-        _along_angle(control, target, angle, from_abscissa=has_abscissa)
-    if cartesian:
-        forget_polar(control)
-    return Goal(target, in_plane=cartesian > 0, polar=False)
-
-
-def _polar_target(control: Control, *, arc: bool) -> list[float]:
-    polar, plane = polar_of(control), control.modal.plane
-    radius, angle = current_polar(control)
-    radius_word, angle_word = control.take("R"), control.take("Q")
-    target = control.target()
-    if radius_word is not None:
-        value = control.length(radius_word)
-        incremental = control.modal.incremental or radius_word.incremental
-        radius = radius + value if incremental else value
-        if radius < 0.0 or (arc and radius == 0.0):
-            control.fail(
-                "polar-radius",
-                f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0"),
-                radius_word,
-            )
-    if angle_word is not None:
-        value = control.number(angle_word)
-        incremental = control.modal.incremental or angle_word.incremental
-        angle = angle + value if incremental else value
-    cosine, sine = direction(angle)
-    end = (polar.origin[0] + radius * cosine, polar.origin[1] + radius * sine)
-    start = plane.local(control.programmed)
-    if distance(start[:2], end) < SAME_POINT / 1000.0:
-        end = start[:2]
-    target[:3] = plane.world(*end, plane.local(target).height)
-    polar.radius, polar.angle = radius, angle
-    return target
-
-
-def _along_angle(control: Control, target: list[float], word: Word, *, from_abscissa: bool) -> None:
-    """One coordinate and Q: the chord leaves the start in the direction Q."""
-    plane = control.modal.plane
-    cosine, sine = direction(control.number(word))
-    along, across = (cosine, sine) if from_abscissa else (sine, cosine)
-    if abs(along) < 1e-9:
-        control.fail("chord-angle", "in this direction the coordinate is never reached", word)
-    start, end = plane.local(control.programmed), plane.local(target)
-    if from_abscissa:
-        other = start.ordinate + (end.abscissa - start.abscissa) * across / along
-        target[:3] = plane.world(end.abscissa, other, end.height)
-    else:
-        other = start.abscissa + (end.ordinate - start.ordinate) * across / along
-        target[:3] = plane.world(other, end.ordinate, end.height)
 
 
 def rapid_line(control: Control) -> None:
@@ -181,36 +46,106 @@ def feed_line(control: Control) -> None:
 
 
 def _arc(control: Control, *, clockwise: bool) -> None:
-    if polar_of(control).temporary:
+    if memory_of(control).temporary:
         _arc_about_own_center(control, clockwise=clockwise)
         return
     plane = control.modal.plane
     names = control.settings.axes.names
     cartesian = any(names[index] in control.words for index in plane.axes[:2])
-    circle = control.take("R") if cartesian else None
+    circle = _circle_radius(control, cartesian=cartesian)
     letters = _center_letters(control)
     pitch = control.take(letters[2]) if names[plane.axes[2]] in control.words else None
     centre = take_center(control, letters[:2])
     goal = take_goal(control, arc=True)
     start, end = start_and_end(control, goal.target)
+    memory = memory_of(control)
     if circle is not None:
         if centre.words:
             control.fail("arc-overdefined", "an arc has a centre or a radius", circle)
         center = radius_center(control, start[:2], end[:2], circle, clockwise=clockwise)
+    elif memory.circle_radius is not None and not centre.words and not goal.polar:
+        center = center_of_radius(
+            control, start[:2], end[:2], memory.circle_radius, None, clockwise=clockwise
+        )
     elif centre.words:
         center = _given_center(control, centre.words, start[:2])
     elif goal.polar:
-        center = polar_of(control).origin
+        center = memory_of(control).origin
     else:
         control.fail(
             "arc-without-center",
             "the arc has neither a centre nor a radius",
             hint=f"write {letters[0]} and {letters[1]}, or R",
         )
+    if centre.words or goal.polar:
+        memory.circle_radius = None
     if goal.in_plane or pitch is None:
         word = centre.words[0] if centre.words else None
         center = fitted_center(control, start[:2], end[:2], center, word)
     _sweep(control, goal, center, pitch, clockwise=clockwise)
+
+
+def _circle_radius(control: Control, *, cartesian: bool) -> Word | None:
+    """R beside a coordinate of the plane, or R1, which stays in force as G263 does."""
+    modal = control.take("R1")
+    if modal is not None:
+        if not cartesian:
+            control.fail("polar-radius", "a polar radius is written R, not R1", modal)
+        memory_of(control).circle_radius = control.length(modal)
+        return modal
+    return control.take("R") if cartesian else None
+
+
+def set_circle_radius(control: Control, word: Word) -> None:
+    """G263=50: the radius of the arcs that follow, until a centre or a polar move."""
+    memory_of(control).circle_radius = control.length(word)
+
+
+def tangent_arc(control: Control) -> None:
+    """G08: the arc that leaves the last move along its direction.
+
+    Raises:
+        ProgramError: Nothing has moved before, or the arc would be a straight line.
+    """
+    direction_before = control.direction
+    if direction_before is None:
+        control.fail("tangent-arc", "G08 needs a move before it")
+    goal = take_goal(control, arc=True)
+    start, end = start_and_end(control, goal.target)
+    tangent = control.modal.plane.local(direction_before)
+    if math.hypot(tangent[0], tangent[1]) < SAME_POINT:
+        control.fail("tangent-arc", "the move before G08 has no direction in the plane")
+    center = center_tangent(start[:2], end[:2], tangent[:2])
+    if center is None:
+        control.fail(
+            "tangent-arc", "the end lies straight ahead or at the start: no arc leads there"
+        )
+    side = tangent[0] * (center[1] - start[1]) - tangent[1] * (center[0] - start[0])
+    sweep_arc(control, goal.target, center, clockwise=side < 0.0)
+
+
+def three_point_arc(control: Control) -> None:
+    """G09 X Y I J: the arc through the point I J, given as coordinates by G90 or G91.
+
+    Raises:
+        ProgramError: The point is missing, or the three lie on a line.
+    """
+    letters = _center_letters(control)
+    words = [control.take(letter) for letter in letters[:2]]
+    if None in words:
+        message = f"G09 needs the point {letters[0]} {letters[1]} that the arc passes"
+        control.fail("three-point-arc", message)
+    goal = take_goal(control, arc=True)
+    start, end = start_and_end(control, goal.target)
+    abscissa, ordinate = (control.length(word) for word in words)
+    via = (abscissa, ordinate)
+    if control.modal.incremental:
+        via = (start[0] + abscissa, start[1] + ordinate)
+    center = center_through(start[:2], via, end[:2])
+    if center is None:
+        control.fail("three-point-arc", "the three points lie on a line", words[0])
+    side = (via[0] - start[0]) * (end[1] - start[1]) - (via[1] - start[1]) * (end[0] - start[0])
+    sweep_arc(control, goal.target, center, clockwise=side < 0.0)
 
 
 def _sweep(
@@ -263,7 +198,7 @@ def _given_center(control: Control, words: tuple[Word, ...], start: Point) -> Po
 
 def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
     """G31 G02/G03 Q I J: Q is seen from the arc's centre, the radius is the arc's."""
-    polar_of(control).temporary = False
+    memory_of(control).temporary = False
     radius, angle = control.take("R"), control.take("Q")
     letters = _center_letters(control)
     centre = take_center(control, letters[:2])
@@ -302,3 +237,5 @@ RAPID = Interpolation(rapid_line, rapid=True)
 FEED = Interpolation(feed_line)
 CLOCKWISE = Interpolation(clockwise_arc)
 COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+TANGENT = Interpolation(tangent_arc)
+THREE_POINTS = Interpolation(three_point_arc)

@@ -5,7 +5,7 @@ import math
 from twin.nc.blocks import Word
 from twin.nc.control import Control
 from twin.nc.dialect import WordAction
-from twin.nc.dialects.codesys_program import variables
+from twin.nc.dialects.codesys.program import variables
 from twin.nc.offsets import LEFT, RIGHT, compensate
 from twin.nc.planes import plane_with_normal
 

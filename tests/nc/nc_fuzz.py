@@ -1,0 +1,182 @@
+"""Throws nonsense at the interpreter: it must answer with moves or a diagnostic, never otherwise.
+
+``python -m tests.nc.nc_fuzz 100000`` runs as many tries and reports the first that fails.
+"""
+
+import dataclasses
+import random
+import sys
+import time
+
+import numpy as np
+
+from tests.nc.nc_running import ROOT, SETTINGS
+from twin.nc.canonical import Chunk, Shape
+from twin.nc.diagnostics import ProgramError
+from twin.nc.dialect import Dialect
+from twin.nc.dialects import DIALECTS
+from twin.nc.interpreter import Interpretation
+from twin.nc.settings import ToolData
+from twin.nc.source import source_from_bytes
+
+FUZZ_SETTINGS = dataclasses.replace(
+    SETTINGS,
+    step_limit=500,
+    tools={1: ToolData(2.0, 60.0), 2: ToolData(3.0, 50.0)},
+    offsets={"G55": {"X": 10.0}},
+    machine_zero={"Z": 300.0},
+)
+LONGEST_SECONDS = 1.0
+
+PIECES = {
+    "gost": "G102 C360|G102 C0|G9|G61|G64|G99|$ текст|C721|C-721|G83 Q2|...",
+    "codesys": "T90|T720|G16|G20 L1|K0|LET #a : LREAL := 2|#a|#a:=#a+1|$v$|G36 O#a D3|G37 D1|G6"
+    "|G8|H1|O0.5|L-1|SUBPROGRAM S{#x}|END_SUBPROGRAM|S{1}|L?4|L!4|PC360|FF5|(x)|//|E5|E-5|FX3|N2",
+    "fagor8070": "Q90|R30|Q360|G30|G31|G08|G09|G263=20|R1=30|X20I|X1=5|NR3|P1=2|P[P1]=3|[P1+2]"
+    "|$IF P1==2|$ELSE|$ENDIF|$WHILE P1<5|$ENDWHILE|$FOR P2=1,3,1|$ENDFOR|$GOTO N1|#RPT[N1,N2,2]"
+    "|%L SUB|M17|LL SUB|#PCALL SUB A1|#MCALL SUB|#MDOFF|G73 Q30|G72 S2|G11|G10|G14 X-1|G20 X1 Z2"
+    "|;|$SWITCH P1|$CASE 2|$ENDSWITCH|$BREAK|#TIME [1]|G04 1|SIN[30]|G06|G136|G158 X3|G159=2",
+    "mefi": 'G10 Z1|G09|G98|G73 L1 Q2|G73 L2|L1|Q3|"text|I100',
+}  # fmt: skip
+COMMON = (
+    "G0|G1|G2|G3|G1|G4 P1|G17|G18|G19|G40|G41|G42|G54|G55|G53|G70|G71|G80|G81 Z-2 R1|G90|G91|G92"
+    "|G94|G95|X10|Y-5|Z2.5|C90|X0|Y0|X7|Y9|I5|J-5|K2|R10|R-10|F100|F50|S500|T1|M3|M5|M6|X1e5"
+)
+JUNK = [
+    "X99999999999999999",
+    "X..5",
+    "-",
+    "+",
+    "(",
+    ")",
+    "[",
+    "]",
+    "=",
+    "%",
+    "/",
+    "\x00",
+    "\x7f",
+    "Х",
+    "é",
+    "A1",
+    "B2",
+    "G999",
+    "M99",
+    "M30",
+]
+
+
+def _texts(dialect: Dialect) -> list[bytes]:
+    paths = [*(ROOT / "programs" / dialect.name).glob("*.nc")]
+    paths += (ROOT / "tests" / "golden" / dialect.name).glob("rules/*.nc")
+    return [path.read_bytes() for path in sorted(paths)]
+
+
+REAL = {name: _texts(dialect) for name, dialect in DIALECTS.items()}
+
+
+def program(random_: random.Random, dialect: Dialect) -> bytes:
+    """Random bytes, a mutated real program, or words of the dialect in any order."""
+    kind = random_.random()
+    if kind < 0.1:
+        return random_.randbytes(random_.randrange(200))
+    if kind < 0.5:
+        of = dialect.name if random_.random() < 0.9 else random_.choice(list(REAL))
+        return mutated(random_, random_.choice(REAL[of]))
+    own, common = PIECES[dialect.name].split("|"), COMMON.split("|")
+    lines = ["G1 X1 Y2 F100"]
+    for number in range(random_.randrange(1, 12)):
+        words = [
+            random_.choice(JUNK if random_.random() < 0.01 else random_.choice([own, common]))
+            for _ in range(random_.randrange(1, 4))
+        ]
+        label = f"N{number} " if random_.random() < 0.3 else ""
+        lines.append(label + " ".join(words))
+    return "\n".join(lines).encode()
+
+
+def mutated(random_: random.Random, data: bytes) -> bytes:
+    """A program with bytes changed, removed, repeated or swapped."""
+    changed = bytearray(data)
+    for _ in range(random_.randrange(1, 6)):
+        at, size = random_.randrange(len(changed) + 1), random_.randrange(1, 12)
+        change = random_.randrange(4)
+        if change == 0:
+            changed[at : at + size] = b""
+        elif change == 1:
+            changed[at:at] = changed[at : at + size * 4]
+        elif change == 2:
+            changed[at : at + 1] = bytes([random_.randrange(256)])
+        else:
+            changed[at:at] = random_.choice(
+                [b"G", b"X", b"-", b"9" * size, b"\n", b"Q", b"$", b"["]
+            )
+    return bytes(changed)
+
+
+def check(data: bytes, dialect: Dialect) -> None:
+    """Interpret; complain of anything but consistent moves and a diagnostic."""
+    begin = time.perf_counter()
+    source = source_from_bytes(data, "fuzz.nc", dialect)
+    interpretation = Interpretation(source, dialect, FUZZ_SETTINGS)
+    before = np.zeros(len(FUZZ_SETTINGS.axes))
+    try:
+        for chunk in interpretation.chunks():
+            before = check_chunk(chunk, before)
+    except ProgramError as error:
+        line = error.diagnostic.line if str(error) else 0
+    else:
+        line = 1
+    assert 1 <= line <= max(1, len(source.lines))
+    assert time.perf_counter() - begin < LONGEST_SECONDS, "too slow"
+
+
+def check_chunk(chunk: Chunk, before: np.ndarray) -> np.ndarray:
+    moves = chunk.moves
+    for start, end in zip(moves.start, moves.end, strict=True):
+        np.testing.assert_array_equal(start, before)
+        before = end
+    assert np.isfinite(moves.end).all()
+    assert (moves.length > 0.0).all()
+    arcs = moves[moves.shape == Shape.ARC]
+    assert np.isfinite(arcs.center).all()
+    np.testing.assert_allclose(np.linalg.norm(arcs.normal, axis=1), 1.0, atol=1e-9)
+    for row in range(len(arcs)):
+        check_arc_ends_where_it_says(arcs.start[row, :3], arcs.end[row, :3], arcs.center[row],
+                                     arcs.normal[row], float(arcs.sweep[row]))  # fmt: skip
+    return before
+
+
+def check_arc_ends_where_it_says(
+    start: np.ndarray, end: np.ndarray, center: np.ndarray, normal: np.ndarray, sweep: float
+) -> None:
+    angle, spoke = np.deg2rad(sweep), start - center
+    turned = (
+        spoke * np.cos(angle)
+        + np.cross(normal, spoke) * np.sin(angle)
+        + normal * (normal @ spoke) * (1.0 - np.cos(angle))
+    )
+    advance = (end - start) @ normal
+    scale = 1.0 + float(np.abs(spoke).max())
+    np.testing.assert_allclose(center + turned + advance * normal, end, atol=2e-6 * scale)
+
+
+def main(tries: int, seed: int = 1) -> None:
+    """Run as many tries.
+
+    Raises:
+        AssertionError: A try failed; the program is printed.
+    """
+    random_ = random.Random(seed)  # noqa: S311 (nonsense needs no cryptography)
+    for _ in range(tries):
+        dialect = random_.choice(list(DIALECTS.values()))
+        data = program(random_, dialect)
+        try:
+            check(data, dialect)
+        except BaseException:
+            sys.stderr.write(f"{dialect.name}: {data!r}\n")
+            raise
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 2000)

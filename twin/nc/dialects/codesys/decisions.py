@@ -1,0 +1,83 @@
+"""Decisions where the documents of this control are silent."""
+
+from twin.nc.dialect import Decision
+
+DECISIONS = (
+    Decision(
+        "How is the centre's deviation of 10 % measured?",
+        "r_s = start to centre, r_e = end to centre: if |r_s - r_e| <= 0.1 max(r_s, r_e) the "
+        "centre is projected on the perpendicular bisector (with a warning if it moved by more "
+        "than 1 µm), else the block becomes a straight line, with a warning.",
+        "The page names 10 % and no measure; its hint says that inconsistent arcs become lines.",
+    ),
+    Decision(
+        "What does R shorter than half the chord give?",
+        "A straight line, with a warning.",
+        "The page says so.",
+    ),
+    Decision(
+        "What does R give where start and end are one point?",
+        "A program error: the centre is undefined.",
+        "The page's sentence on full circles fits the centre method alone.",
+    ),
+    Decision(
+        "What do I, J, K give where start and end are one point?",
+        "A full circle.",
+        "The page says that the system inserts a full circle.",
+    ),
+    Decision(
+        "Which opening angles are allowed?",
+        "Above 0 and up to 1080 degrees; others are a program error.",
+        "The page allows three turns at most and no negative angle.",
+    ),
+    Decision(
+        "What if T stands together with a target in the plane?",
+        "T wins, with a warning.",
+        "The page computes the target from T.",
+    ),
+    Decision(
+        "Which way do arcs turn in G18?",
+        "By ISO: seen from +Y; G18 G2 X200 R50 from X100 Z0 passes Z -50.",
+        "The page does not say.",
+    ),
+    Decision(
+        "Is the mode 2D or 3D when a program starts?",
+        "2D (G15): arcs lie in X Y and Z runs along.",
+        "The application decides; without b3DMode the decoder starts in 2D.",
+    ),
+    Decision(
+        "What is a centre coordinate that G98 leaves out?",
+        "The start's.",
+        "The centre then lies beside the start along the axis that was given.",
+    ),
+    Decision(
+        "Which unit have the angles of SIN, COS and TAN?",
+        "Radians.",
+        "They are functions of IEC 61131-3.",
+    ),
+    Decision(
+        "How do additional axes move?",
+        "Linearly with the path, A B C too.",
+        "Without slopes and smoothing a polynomial of third degree has nothing to bend for.",
+    ),
+    Decision(
+        "How fast is G0?",
+        "As fast as the machine can, unless FF limits it.",
+        "The default of FF is an input of the application.",
+    ),
+    Decision(
+        "What is a parabola's I J?",
+        "The point where the tangents of both ends meet.",
+        "It defines the parabola uniquely.",
+    ),
+    Decision(
+        "What does G56 do?",
+        "The place where the machine stands gets the given coordinates.",
+        "The manual calls it set reference.",
+    ),
+    Decision(
+        "How does a path pass its corners?",
+        "Exactly; the speed falls to 0 where the direction changes and next to G0.",
+        "The documentation's block transition speed.",
+    ),
+)

@@ -1,0 +1,122 @@
+"""Fagor CNC 8070, milling model."""
+
+from twin.nc import iso
+from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
+from twin.nc.dialects.fagor8070 import arcs, frames, statements, subroutines, variables
+from twin.nc.dialects.fagor8070.codes import CODES, auxiliary, plain_dwell
+from twin.nc.dialects.fagor8070.decisions import DECISIONS
+from twin.nc.dialects.fagor8070.memory import FagorMemory
+
+FAGOR8070 = Dialect(
+    name="fagor8070",
+    title="Fagor CNC 8070 (milling)",
+    code_page="cp1252",
+    syntax=Syntax(
+        address=(
+            r"G0*4(?=[ \t]+[0-9.])|G263[ \t]*=|G159[ \t]*=|R1[ \t]*="
+            r"|[XYZABCUVW]1?[ \t]*=|NR|[A-Z]"
+        ),
+        comments=(Comment("(", ")"), Comment(";")),
+        expressions=variables.EXPRESSIONS,
+        statement=variables.STATEMENT,
+        named_labels=True,
+        incremental_suffix=True,
+        aliases={
+            **{f"{axis}1": axis for axis in "XYZABCUVW"},
+            **{f"G{'0' * zeros}4": "G04" for zeros in range(4)},
+        },
+    ),
+    groups=(
+        "units",
+        "plane",
+        "distance",
+        "centre",
+        "feed",
+        "corner",
+        "offset",
+        "return plane",
+        "compensation corners",
+        "compensation",
+        "motion",
+        "cycle",
+    ),
+    g=CODES,
+    start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 138, 152, 197, 262, 265),
+    m={
+        **iso.M_CODES,
+        6: MCode(meaning="tool change", action=frames.change_tool, ground="manual"),
+        17: MCode(
+            meaning="end of subroutine",
+            late=True,
+            action=subroutines.return_,
+            silent=True,
+            ground="manual",
+        ),
+        19: MCode(meaning="spindle orientation", ground="manual"),
+        29: MCode(
+            meaning="end of subroutine",
+            late=True,
+            action=subroutines.return_,
+            silent=True,
+            ground="manual",
+        ),
+        **{number: MCode(meaning="spindle gear", ground="manual") for number in range(41, 45)},
+    },
+    motion_words=frozenset("XYZABCUVWIJKRQ") | {"R1"},
+    repeat_word="NR",
+    words={
+        "F": iso.set_feed,
+        "S": iso.set_spindle,
+        "T": frames.select_tool,
+        "D": frames.tool_offset,
+        "H": auxiliary,
+        "G04": plain_dwell,
+        "G159": frames.numbered_offset,
+        "G263": arcs.set_circle_radius,
+    },
+    statements=statements.STATEMENTS,
+    other_statement=statements.other_statement,
+    word_meanings={
+        "N": "block number",
+        "G": "preparatory code",
+        **{
+            axis: f"{axis} axis; {axis}1= and a trailing I (incremental) too"
+            for axis in "XYZABCUVW"
+        },
+        "I": "centre along X; abscissa of G30; depth of a cycle",
+        "J": "centre along Y; ordinate of G30; number of pecks",
+        "K": "centre along Z; pitch of a helix; seconds of G04 and of a cycle",
+        "R": "polar radius; radius of the arc where a coordinate of the plane stands beside it",
+        "R1": "radius of the arc, in force as G263=",
+        "Q": "polar angle; direction of a chord; angle of G73",
+        "F": "feed",
+        "S": "spindle speed; scale of G72",
+        "T": "tool",
+        "D": "tool offset: 1, or 0 for none",
+        "H": "auxiliary function",
+        "M": "machine function",
+        "NR": "how often the block runs",
+        "G04": "seconds of a dwell",
+        "G159": "number of a work offset",
+        "G263": "radius of the arcs that follow",
+    },
+    units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
+    decisions=DECISIONS,
+    marks=(
+        Mark(r"\bR[ \t]*[\d.]+.*\bQ[ \t]*-?[\d.]+", "polar coordinates R and Q"),
+        Mark(r"\bG0*(?:30|31|26[1-5])\b", "G30, G31, G261 to G265"),
+        Mark(r"^[^\"$]*;", "a comment after ;"),
+        Mark(r"\$(?:IF|ELSE|ENDIF|WHILE|DO|ENDDO|FOR|SWITCH|GOTO)\b(?!\$)", "$IF, $WHILE, $GOTO"),
+        Mark(r"#(?:RPT|TIME|CALL|PCALL|MCALL|RET|COMMENT)\b", "#RPT, #CALL, #TIME"),
+        Mark(r"\bP\d+[ \t]*=", "P1= (a parameter)"),
+        Mark(r"\b[XYZC]-?[\d.]+I(?![\d-])", "X20I (one word incremental)"),
+        Mark(r"\b[XYZ]1[ \t]*=", "X1="),
+    ),
+    start_state={"square_corners": True},
+    memory=FagorMemory,
+    before_motion=frames.turn_in_commanded_direction,
+    read_variable=variables.read_variable,
+    prepare=subroutines.begin,
+    after_motion=subroutines.call_after_motion,
+    finish=statements.warn_of_missing_end,
+)

@@ -1,0 +1,196 @@
+"""G codes of the Fagor CNC 8070."""
+
+from collections.abc import Mapping
+
+from twin.nc import iso_cycles, offsets
+from twin.nc.blocks import Word
+from twin.nc.canonical import Corner
+from twin.nc.control import Control
+from twin.nc.dialect import (
+    Action,
+    FeedMode,
+    GCode,
+)
+from twin.nc.dialects.fagor8070 import arcs, frames, polar
+from twin.nc.dialects.fagor8070.cycles import CYCLES
+from twin.nc.planes import XY, YZ, ZX, Plane
+
+
+def dwell(control: Control) -> None:
+    """G04 K: wait its seconds."""
+    word = control.take("K")
+    if word is None or control.number(word) < 0.0:
+        control.fail("dwell", "G04 needs its seconds", word, hint="write G04 K1.5 or G04 1.5")
+    control.dwell(control.number(word))
+
+
+def plain_dwell(control: Control, word: Word) -> None:
+    """G04 1.5: the seconds stand right behind the code."""
+    if control.words or len(control.block.words) > 1:
+        control.fail("dwell", "G04 must stand alone in its block", word)
+    control.dwell(control.number(word))
+
+
+def auxiliary(control: Control, word: Word) -> None:
+    """H: an auxiliary function of the machine."""
+    control.function(f"H{control.number(word):g}", {})
+
+
+def _compensate(side: float) -> Action:
+    def action(control: Control) -> None:
+        tool = control.tools.data(control.tools.spindle)
+        if tool is None:
+            control.fail("no-such-tool", "compensation needs a tool, and the job has none")
+        number = control.cycle_values.get("D", 1.0) if "D" not in control.words else 1.0
+        offsets.compensate(control, side, tool.radius if number else 0.0)
+
+    return action
+
+
+def forget_polar_values(action: Action | None) -> Action:
+    """Work offsets and presets: the last R and Q no longer hold."""
+
+    def both(control: Control) -> None:
+        if action is not None:
+            action(control)
+        polar.forget_polar(control)
+
+    return both
+
+
+def _g(meaning: str, group: str = "", **sets: object) -> GCode:
+    return GCode(meaning=meaning, group=group, sets=sets, ground="manual")
+
+
+def _motion(meaning: str, interpolation: object, *, seed: bool = False) -> GCode:
+    return GCode(
+        meaning=meaning,
+        group="motion",
+        sets={"interpolation": interpolation, "cycle": None},
+        ground="seed" if seed else "manual",
+    )
+
+
+def _once(meaning: str, **sets: object) -> GCode:
+    return GCode(meaning=meaning, sets=sets, once=True, ground="manual")
+
+
+def _plane(meaning: str, plane: Plane) -> GCode:
+    return GCode(
+        meaning=meaning,
+        group="plane",
+        sets={"plane": plane},
+        action=frames.change_plane,
+        ground="seed",
+    )
+
+
+def _do(meaning: str, action: Action, *, group: str = "", takes: str = "") -> GCode:
+    if takes:
+        return GCode(meaning=meaning, group=group, perform=action, takes=takes, ground="manual")
+    return GCode(meaning=meaning, group=group, action=action, ground="manual")
+
+
+def _refused(meaning: str, reason: str, numbers: Mapping[int, None] | range) -> dict[int, GCode]:
+    code = GCode(meaning=meaning, refused=reason, ground="manual")
+    return dict.fromkeys(numbers, code)
+
+
+_PROBE = "the twin has no probe to touch with"
+_BLEND = "corners are not blended by the twin; write the arc or the chamfer"
+_LIMITS = "the limits are the machine file's"
+_UNKNOWN = "its effect on the path is not documented well enough to be followed"
+
+CODES: dict[int, GCode] = {
+    0: _motion("rapid positioning", arcs.RAPID),
+    1: _motion("straight line", arcs.FEED),
+    2: _motion("arc clockwise, Cartesian or polar", arcs.CLOCKWISE, seed=True),
+    3: _motion("arc counter-clockwise, Cartesian or polar", arcs.COUNTER_CLOCKWISE, seed=True),
+    4: GCode(meaning="dwell, seconds in K or right behind", perform=dwell, ground="manual"),
+    5: _g("round corner", "corner", corner=Corner.CONTINUOUS),
+    6: _once("centre in absolute coordinates, this block", center_absolute=True),
+    7: _g("square corner", "corner", corner=Corner.EXACT_STOP),
+    8: _once("arc tangent to the last move, this block", interpolation=arcs.TANGENT, cycle=None),
+    9: _once("arc through the point I J, this block", interpolation=arcs.THREE_POINTS, cycle=None),
+    10: _do("mirror off", frames.mirror_off),
+    11: _do("mirror X", frames.mirror_x),
+    12: _do("mirror Y", frames.mirror_y),
+    13: _do("mirror Z", frames.mirror_z),
+    14: GCode(meaning="mirror the given axes: X-1", perform=frames.mirror_axes, ground="manual"),
+    17: _plane("plane X Y", XY),
+    18: _plane("plane Z X", ZX),
+    19: _plane("plane Y Z", YZ),
+    20: GCode(meaning="any plane: X1 Z2", group="plane", action=frames.any_plane, ground="manual"),
+    30: _do("polar origin: I J, or where the tool stands", polar.set_polar_origin),
+    31: _do("temporary polar origin at the arc's centre", polar.temporary_polar_origin),
+    33: GCode(meaning="threading", refused="the twin's spindle has no angle", ground="manual"),
+    **_refused("corner blend or tangential entry", _BLEND, range(36, 40)),
+    40: _do("radius compensation off", offsets.end_compensation, group="compensation"),
+    41: _do("compensation, tool left", _compensate(offsets.LEFT), group="compensation"),
+    42: _do("compensation, tool right", _compensate(offsets.RIGHT), group="compensation"),
+    **_refused("tangential control", "the twin has no axis that turns the tool", range(45, 46)),
+    50: _g("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
+    53: _do("offsets cancelled", forget_polar_values(offsets.cancel_offset), group="offset"),
+    **{
+        number: _do(
+            f"work offset G{number} of the job",
+            forget_polar_values(offsets.OFFSETS[number].action),
+            group="offset",
+        )
+        for number in range(54, 60)
+    },
+    60: _once("square corner, this block", corner=Corner.EXACT_STOP),
+    61: _once("round corner, this block", corner=Corner.CONTINUOUS),
+    63: GCode(meaning="rigid tapping", refused="the twin's spindle has no angle", ground="manual"),
+    70: _g("inches", "units", unit=25.4),
+    71: _g("millimetres", "units", unit=1.0),
+    72: _do("scale S, about part zero", frames.scale, takes="S"),
+    73: GCode(
+        meaning="rotation by Q about I J; alone: off", perform=frames.rotate, ground="manual"
+    ),
+    74: GCode(meaning="home search", refused="the twin starts homed", ground="manual"),
+    **CYCLES,
+    90: _g("absolute coordinates", "distance", incremental=False),
+    91: _g("incremental coordinates", "distance", incremental=True),
+    92: GCode(
+        meaning="preset part zero",
+        perform=forget_polar_values(offsets.preset),
+        ground="manual",
+    ),
+    93: _g("feed as seconds of the block", "feed", feed_mode=FeedMode.SECONDS_PER_BLOCK),
+    94: _g("feed per minute", "feed", feed_mode=FeedMode.PER_MINUTE),
+    95: _g("feed per revolution", "feed", feed_mode=FeedMode.PER_REVOLUTION),
+    96: GCode(
+        meaning="constant cutting speed", refused="a mill's radius is the tool's", ground="manual"
+    ),
+    97: _g("constant spindle speed", "spindle"),
+    **iso_cycles.RETURN,
+    **_refused("probing", _PROBE, range(100, 105)),
+    108: _g("feed blending at the start of the block", "feed blending"),
+    109: _g("feed blending at the end of the block", "feed blending"),
+    **_refused("change of the parameter set", _UNKNOWN, range(112, 113)),
+    **_refused("acceleration and jerk", _LIMITS, range(130, 136)),
+    136: _g("compensation rounds outside corners", "compensation corners", square_corners=False),
+    137: _g("compensation extends outside corners", "compensation corners", square_corners=True),
+    138: _g("compensation starts directly", "compensation start"),
+    151: GCode(meaning="programming in diameters", refused="a mill has none", ground="manual"),
+    152: _g("programming in radii", "diameters"),
+    157: GCode(meaning="axes without offset", refused=_UNKNOWN, ground="manual"),
+    158: GCode(meaning="incremental offset", perform=frames.incremental_offset, ground="manual"),
+    **_refused("multiple machining", "write the positions one by one", range(160, 166)),
+    **_refused("Hirth axes", _UNKNOWN, range(170, 172)),
+    174: GCode(meaning="set the machine coordinate", refused=_UNKNOWN, ground="manual"),
+    **_refused("subroutines of the machine's builder", "they are not known", range(180, 190)),
+    193: _g("feed interpolation", "feed blending"),
+    **_refused("spindle limit", _LIMITS, range(192, 193)),
+    196: GCode(meaning="constant feed of the cutting point", refused=_UNKNOWN, ground="manual"),
+    197: _g("constant feed of the tool's centre", "feed point"),
+    **_refused("axis limits", _LIMITS, range(198, 200)),
+    **_refused("manual intervention", "nobody stands at the twin", range(200, 203)),
+    **_refused("circular probing", _PROBE, range(210, 213)),
+    261: _g("centre in absolute coordinates", "centre", center_absolute=True),
+    262: _g("centre relative to the start", "centre", center_absolute=False),
+    264: _g("arc centre not corrected", "centre correction"),
+    265: _g("arc centre corrected", "centre correction"),
+    266: GCode(meaning="feed override at 100 %", refused=_UNKNOWN, ground="manual"),
+}

@@ -1,0 +1,88 @@
+"""Decisions where the documents of this control are silent."""
+
+from twin.nc.dialect import Decision
+
+DECISIONS = (
+    Decision(
+        "What do an omitted R or Q keep after a Cartesian move or a new G30?",
+        "The current point's polar value about the current origin.",
+        "It is identical where the last move was polar and the origin is unchanged.",
+    ),
+    Decision(
+        "Is R0 allowed?",
+        "For G00 and G01; for arcs it is a program error.",
+        "The manual's own example ends with R0 Q90; an arc of radius 0 is none.",
+    ),
+    Decision(
+        "What if a helix's end point and pitch disagree?",
+        "The end point and the height win, whole turns = nearest fit, with a warning.",
+        "The end point is what the next block relies on.",
+    ),
+    Decision(
+        "How does the rotary axis C read G90 targets?",
+        "As commanded (linear-like); the machine option module_rotary makes the sign the "
+        "direction, by less than one turn.",
+        "The axis type is a machine parameter.",
+    ),
+    Decision(
+        "What is R in an arc block?",
+        "Beside a coordinate of the plane the circle's radius, without one the polar radius.",
+        "The forms of the manual differ in nothing else.",
+    ),
+    Decision(
+        "When does G30 in a motion block take effect?",
+        "Before the motion.",
+        "It says where the block's R and Q are measured from.",
+    ),
+    Decision(
+        "Which sign has a helix's pitch?",
+        "None: the height gives the direction.",
+        "The manual's height -90 with K17 is legal.",
+    ),
+    Decision(
+        "What does G53 do?",
+        "Coordinates count from machine zero until the next work offset.",
+        "The quick reference calls it the cancelling of offsets.",
+    ),
+    Decision(
+        "How does G50 pass corners?",
+        "On the exact path; G05 may round them by the machine's tolerance, G07 stops.",
+        "G50 goes on when the theoretical move has ended, without waiting for the position.",
+    ),
+    Decision(
+        "How does compensation (G137) pass outside corners?",
+        "Between lines that turn by 90 degrees or less the parallels are extended until they meet; "
+        "other corners are rolled around, and with G136 all of them.",
+        "A longer extension leaves the contour without need.",
+    ),
+    Decision(
+        "How often does NR run a block?",
+        "As often as it says, the block's own run included.",
+        "A number of repetitions of 1 is a block that runs.",
+    ),
+    Decision(
+        "What if a $CASE runs into the next?",
+        "A program error that asks for $BREAK.",
+        "The manual's examples all end with $BREAK.",
+    ),
+    Decision(
+        "What if a rotation (G73) begins while another is in force?",
+        "A program error.",
+        "Adding and replacing are both known among controls.",
+    ),
+    Decision(
+        "Which way do arcs turn in G20?",
+        "G03 turns from the abscissa towards the ordinate.",
+        "It is so in G17, G18 and G19.",
+    ),
+    Decision(
+        "What if the program ends without M30?",
+        "Its last line ends it, with a warning.",
+        "Nothing else can follow.",
+    ),
+    Decision(
+        "What does D name?",
+        "D1 is the tool's own length and radius, D0 none; M06 brings D1.",
+        "The job's tools have one offset each.",
+    ),
+)

@@ -1,0 +1,57 @@
+"""What only the Fagor CNC 8070 remembers from block to block."""
+
+import dataclasses
+
+from twin.nc.arcs import Point
+from twin.nc.blocks import Statement
+from twin.nc.control import Control
+from twin.nc.dialects.fagor8070.structure import Structure
+
+ModalCall = tuple[str, dict[str, float], Statement]
+
+
+@dataclasses.dataclass(slots=True)
+class FagorMemory:
+    """Polar coordinates, parameters, subroutines, mirror, scale and rotation.
+
+    Attributes:
+        origin: Polar origin in the working plane, from part zero [mm].
+        radius: R of the last polar move while it still holds, or None [mm].
+        angle: Its Q, or None [deg].
+        temporary: G31: this block's polar origin is the arc's centre.
+        circle_radius: G263 or R1 in force, or None [mm].
+        local: P0 to P25 of the main program and of each call, the innermost last.
+        common: All other parameters and variables.
+        subroutines: First line of each local subroutine by name, from 0.
+        main: Line of the program's heading, from 0, or None.
+        structure: Which $ keywords belong together; None before it was asked for.
+        modal_call: #MCALL in force.
+        mirrored: Columns of the mirrored axes.
+        scale: General scale factor.
+        rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
+    """
+
+    origin: Point = (0.0, 0.0)
+    radius: float | None = None
+    angle: float | None = None
+    temporary: bool = False
+    circle_radius: float | None = None
+    local: list[dict[str, float]] = dataclasses.field(default_factory=lambda: [{}])
+    common: dict[str, float] = dataclasses.field(default_factory=dict)
+    subroutines: dict[str, int] = dataclasses.field(default_factory=dict)
+    main: int | None = None
+    structure: Structure | None = None
+    modal_call: ModalCall | None = None
+    mirrored: frozenset[int] = frozenset()
+    scale: float = 1.0
+    rotation: tuple[float, Point] | None = None
+
+    def forget_local(self) -> None:
+        """A call with parameters of its own has ended."""
+        self.local.pop()
+
+
+def memory_of(control: Control) -> FagorMemory:
+    """The dialect's memory."""
+    assert isinstance(control.memory, FagorMemory)
+    return control.memory

@@ -1,0 +1,137 @@
+"""Where a block of the Fagor CNC 8070 goes: Cartesian, polar, or a coordinate and an angle."""
+
+import dataclasses
+
+from twin.nc.arcs import (
+    SAME_POINT,
+    angle_of,
+    direction,
+    distance,
+)
+from twin.nc.blocks import Word
+from twin.nc.control import Control
+from twin.nc.dialects.fagor8070.memory import memory_of
+
+HELIX_ANGLE = 0.1
+"""A helix whose pitch misses its end point by more than this earns a warning [deg]."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Goal:
+    """Where a block goes.
+
+    Attributes:
+        target: Programmed position, shape (k,).
+        in_plane: The block names a point of the plane.
+        polar: It does so by R and Q.
+    """
+
+    target: list[float]
+    in_plane: bool
+    polar: bool
+
+
+def forget_polar(control: Control) -> None:
+    """The last polar values no longer hold: they are seen anew from where the tool stands."""
+    polar = memory_of(control)
+    polar.radius = polar.angle = None
+
+
+def reset_polar_origin(control: Control) -> None:
+    """A change of plane puts the polar origin back to part zero."""
+    memory_of(control).origin = (0.0, 0.0)
+    forget_polar(control)
+
+
+def set_polar_origin(control: Control) -> None:
+    """G30: I abscissa and J ordinate of the polar origin; neither: where the tool stands.
+
+    Raises:
+        ProgramError: Only one of both is given.
+    """
+    abscissa, ordinate = control.take("I"), control.take("J")
+    if (abscissa is None) != (ordinate is None):
+        control.fail("polar-origin", "G30 needs both I and J, or neither", abscissa or ordinate)
+    if abscissa is None:
+        origin = control.modal.plane.local(control.programmed)[:2]
+    else:
+        origin = (control.length(abscissa), control.length(ordinate))
+    memory_of(control).origin = origin
+    forget_polar(control)
+
+
+def temporary_polar_origin(control: Control) -> None:
+    """G31: for this arc the polar origin is its centre."""
+    memory_of(control).temporary = True
+
+
+def current_polar(control: Control) -> tuple[float, float]:
+    """R and Q of where the tool stands: as last programmed, else measured [mm, deg]."""
+    polar = memory_of(control)
+    here = control.modal.plane.local(control.programmed)[:2]
+    radius = distance(polar.origin, here) if polar.radius is None else polar.radius
+    angle = angle_of(here, polar.origin) if polar.angle is None else polar.angle
+    return radius, angle
+
+
+def take_goal(control: Control, *, arc: bool) -> Goal:
+    """Take the words that say where the block goes."""
+    names = control.settings.axes.names
+    abscissa, ordinate, _ = (names[index] for index in control.modal.plane.axes)
+    words = control.words
+    cartesian = (abscissa in words) + (ordinate in words)
+    if cartesian == 0 and ("R" in words or "Q" in words):
+        return Goal(_polar_target(control, arc=arc), in_plane=True, polar=True)
+    angle = control.take("Q") if cartesian == 1 else None
+    has_abscissa = abscissa in words
+    target = control.target()
+    if angle is not None:
+        _along_angle(control, target, angle, from_abscissa=has_abscissa)
+    if cartesian:
+        forget_polar(control)
+    return Goal(target, in_plane=cartesian > 0, polar=False)
+
+
+def _polar_target(control: Control, *, arc: bool) -> list[float]:
+    polar, plane = memory_of(control), control.modal.plane
+    radius, angle = current_polar(control)
+    radius_word, angle_word = control.take("R"), control.take("Q")
+    target = control.target()
+    if radius_word is not None:
+        value = control.length(radius_word)
+        incremental = control.modal.incremental or radius_word.incremental
+        radius = radius + value if incremental else value
+        if radius < 0.0 or (arc and radius == 0.0):
+            control.fail(
+                "polar-radius",
+                f"the polar radius {radius:g} must be positive" + ("" if arc else " or 0"),
+                radius_word,
+            )
+    if angle_word is not None:
+        value = control.number(angle_word)
+        incremental = control.modal.incremental or angle_word.incremental
+        angle = angle + value if incremental else value
+    cosine, sine = direction(angle)
+    end = (polar.origin[0] + radius * cosine, polar.origin[1] + radius * sine)
+    start = plane.local(control.programmed)
+    if distance(start[:2], end) < SAME_POINT / 1000.0:
+        end = start[:2]
+    target[:3] = plane.world(*end, plane.local(target).height)
+    polar.radius, polar.angle = radius, angle
+    return target
+
+
+def _along_angle(control: Control, target: list[float], word: Word, *, from_abscissa: bool) -> None:
+    """One coordinate and Q: the chord leaves the start in the direction Q."""
+    plane = control.modal.plane
+    cosine, sine = direction(control.number(word))
+    along, across = (cosine, sine) if from_abscissa else (sine, cosine)
+    if abs(along) < 1e-9:
+        control.fail("chord-angle", "in this direction the coordinate is never reached", word)
+    start, end = plane.local(control.programmed), plane.local(target)
+    if from_abscissa:
+        other = start.ordinate + (end.abscissa - start.abscissa) * across / along
+        target[:3] = plane.world(end.abscissa, other, end.height)
+    else:
+        other = start.abscissa + (end.ordinate - start.ordinate) * across / along
+        target[:3] = plane.world(other, end.ordinate, end.height)

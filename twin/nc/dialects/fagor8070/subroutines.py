@@ -1,0 +1,182 @@
+"""Subroutines and repeated ranges of the Fagor CNC 8070."""
+
+import re
+
+from twin.nc.blocks import Statement
+from twin.nc.control import Control
+from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.variables import refuse
+from twin.nc.expressions import (
+    ExpressionError,
+)
+from twin.nc.flow import Place, Return
+
+DEEPEST_CALL = 20
+"""Subroutines and repetitions within each other (manual, E1152)."""
+
+
+_NAME = re.compile(r"[ \t]*([A-Z_]\w*)[ \t]*", re.IGNORECASE)
+_RANGE = re.compile(
+    r"[ \t]*\[[ \t]*(N?[A-Z_0-9]+)[ \t]*,[ \t]*(N?[A-Z_0-9]+)[ \t]*(?:,(.*))?\][ \t]*",
+    re.IGNORECASE,
+)
+_ARGUMENT = re.compile(r"[ \t]*([A-Z])[ \t]*=?", re.IGNORECASE)
+_SUBROUTINE = re.compile(r"[ \t]*%[ \t]*L[ \t]+([A-Z_0-9]\w*)", re.IGNORECASE)
+
+
+def repeat_range(control: Control, statement: Statement) -> None:
+    """#RPT[N10,N20,3]: run the blocks from one label to another, 3 times."""
+    match = _RANGE.fullmatch(statement.text)
+    if match is None:
+        refuse(control, statement, "repeat-range", "the labels are missing", "#RPT[N10,N20,3]")
+    first, last = (
+        control.flow.find_label(_range_label(match[group]), _span(statement), "#RPT")
+        for group in (1, 2)
+    )
+    column = statement.text_column
+    count = (
+        1.0
+        if match[3] is None
+        else control.compute(
+            control.expression(match[3], column + match.start(3)), column + match.start(3)
+        )
+    )
+    if last < first or count < 1.0 or count != int(count):
+        refuse(control, statement, "repeat-range", "the range or the number of runs is none")
+    if first <= Place(control.block.line - 1, 0) <= last:
+        refuse(control, statement, "repeat-range", "the range must not hold its own #RPT")
+    part = Return(control.flow.place, first, None, int(count) - 1, last)
+    control.flow.call(part, DEEPEST_CALL, *_span(statement))
+
+
+def _range_label(text: str) -> int | str:
+    name = text.upper()
+    return int(name[1:]) if name[:1] == "N" and name[1:].isdigit() else name
+
+
+def _span(statement: Statement) -> tuple[int, int]:
+    return statement.column, len(statement.keyword)
+
+
+def begin(control: Control) -> None:
+    """The main program is the first heading that is no local subroutine's."""
+    memory = memory_of(control)
+    main = None
+    for line, text in enumerate(control.flow.lines):
+        if not text.lstrip().startswith("%"):
+            continue
+        match = _SUBROUTINE.match(text)
+        if match is not None:
+            memory.subroutines[match[1].upper()] = line + 1
+        elif main is None:
+            main = line
+    if memory.subroutines and main is not None:
+        control.flow.place = Place(main, 0)
+    memory.main = main
+
+
+def heading(control: Control, statement: Statement) -> None:
+    """%: the program's name; nowhere else."""
+    if control.block.line - 1 != memory_of(control).main:
+        message = "a heading can stand only before the program or a local subroutine"
+        refuse(control, statement, "heading", message, hint="end a subroutine by M17")
+
+
+def call_local(control: Control, statement: Statement) -> None:
+    """LL, #CALL: run a local subroutine with the caller's parameters."""
+    match = _NAME.fullmatch(statement.text)
+    if match is None:
+        refuse(control, statement, "call-values", "the call needs a name and no more")
+    _call(control, statement, match[1].upper(), None)
+
+
+def call_global(control: Control, statement: Statement) -> None:
+    """L: global subroutines lie in files of their own, which the twin does not have.
+
+    Raises:
+        ProgramError: Always.
+    """
+    refuse(
+        control,
+        statement,
+        "global-subroutine",
+        "global subroutines are not part of the program",
+        hint="write it as a local one (%L NAME ... M17) and call it by LL",
+    )
+
+
+def call_with_parameters(control: Control, statement: Statement) -> None:
+    """#PCALL NAME A1 B2: run a local subroutine with parameters of its own."""
+    name, values = _arguments(control, statement)
+    _call(control, statement, name, values)
+
+
+def call_modally(control: Control, statement: Statement) -> None:
+    """#MCALL NAME A1: run the subroutine after every block that moves, until #MDOFF."""
+    memory = memory_of(control)
+    memory.modal_call = (*_arguments(control, statement), statement)
+
+
+def end_modal_call(control: Control, _statement: Statement) -> None:
+    """#MDOFF."""
+    memory_of(control).modal_call = None
+
+
+def call_after_motion(control: Control) -> None:
+    """The modal subroutine, when a block has moved."""
+    memory = memory_of(control)
+    if memory.modal_call is not None and not control.flow.calls:
+        name, values, statement = memory.modal_call
+        _call(control, statement, name, dict(values))
+
+
+def _arguments(control: Control, statement: Statement) -> tuple[str, dict[str, float]]:
+    match = _NAME.match(statement.text)
+    if match is None:
+        refuse(control, statement, "call-values", "the call needs a name")
+    values: dict[str, float] = {}
+    at = match.end()
+    while at < len(statement.text.rstrip()):
+        letter = _ARGUMENT.match(statement.text, at)
+        column = statement.text_column + at
+        if letter is None:
+            control.report.fail("call-values", "a letter and its value must stand here", column)
+        try:
+            expression, at = control.flow.lexer.expressions.read(statement.text, letter.end())
+        except ExpressionError as error:
+            control.report.fail(error.code, str(error), column, 1, error.hint)
+        values[f"P{ord(letter[1].upper()) - ord('A')}"] = control.compute(expression, column)
+    return match[1].upper(), values
+
+
+def _call(
+    control: Control, statement: Statement, name: str, values: dict[str, float] | None
+) -> None:
+    memory = memory_of(control)
+    line = memory.subroutines.get(name)
+    if line is None:
+        known = ", ".join(sorted(memory.subroutines)) or "none"
+        message = f"there is no local subroutine {name}"
+        refuse(control, statement, "unknown-subprogram", message, f"subroutines here: {known}")
+    leave = None
+    if values is not None:
+        leave = memory.forget_local
+    back = Return(control.flow.place, Place(line, 0), leave)
+    control.flow.call(back, DEEPEST_CALL, *_span(statement))
+    if values is not None:
+        memory.local.append(values)
+
+
+def return_(control: Control) -> None:
+    """M17, M29, #RET: back to the caller."""
+    calls = control.flow.calls
+    if not any(call.last is None for call in calls):
+        control.fail("return-outside", "there is no subroutine to return from")
+    while calls[-1].last is not None:
+        calls.pop()
+    control.flow.end_part()
+
+
+def return_statement(control: Control, _statement: Statement) -> None:
+    """#RET."""
+    return_(control)
