@@ -5,8 +5,8 @@ from pathlib import Path
 
 import h5py
 import pytest
-from conftest import Twin
 
+from tests.conftest import Twin
 from twin.resources import resource_root
 
 FOLDER = resource_root("programs") / "alarms" / "fagor8070"
