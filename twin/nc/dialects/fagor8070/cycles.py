@@ -14,7 +14,8 @@ from twin.nc.drilling import Drilling, Retract, drill
 
 def _cycle(number: int, meaning: str, retract: Retract, *, peck: bool = False) -> GCode:
     def start(control: Control) -> None:
-        control.cycle_values = {"start": control.programmed[control.modal.plane.axes[2]]}
+        height = control.programmed[control.modal.plane.axes[2]]
+        control.cycle_values.setdefault("start", height)
         _read_words(control)
 
     def perform(control: Control) -> None:
@@ -36,7 +37,7 @@ def _read_words(control: Control) -> None:
     if reference is not None:
         base = control.programmed[axis] if incremental or reference.incremental else 0.0
         values["Z"] = control.length(reference) + base
-    values.setdefault("Z", control.programmed[axis])
+    values.setdefault("Z", values["start"])
     depth = control.take("I")
     if depth is not None:
         relative = incremental or depth.incremental
