@@ -135,13 +135,30 @@ class ToleranceTable(Table):
     """Largest following error of a rotary axis [mdeg]; none: not judged."""
 
 
+class BaselineTable(Table):
+    """How far a run may be from its baseline (``twin check --baseline``)."""
+
+    path_um: Positive = 1.0
+    """Start, end or centre of a block [µm or mdeg]."""
+    cycle_time_percent: Annotated[float, Field(ge=0)] = 1.0
+    """Change of the cycle time, either way."""
+    contour_um: Annotated[float, Field(ge=0)] = 1.0
+    """Growth of the greatest contour error [µm]."""
+
+
 class VideoTable(Table):
     """How the run is filmed."""
 
     cameras: tuple[str, ...] = ("overview",)
     """Named cameras, shown one after the other."""
+    layout: Literal["sequence", "split"] = "sequence"
+    """``split``: all cameras at once, side by side."""
     seconds: Positive = 12.0
     """Length of the video; the run is sped up or slowed down to fit [s]."""
+    speed: Positive | None = None
+    """Times faster than in reality, instead of a length."""
+    quality: Literal["draft", "final"] = "draft"
+    """``final`` has shadows, smooth edges and a finer stock, and takes several times as long."""
     fps: Annotated[int, Field(ge=1, le=60)] = 25
     size: tuple[Annotated[int, Field(ge=64, le=1920)], Annotated[int, Field(ge=64, le=1080)]] = (
         1280,
@@ -179,6 +196,7 @@ class JobFile(Table):
     step_limit: Annotated[int, Field(gt=0)] = 50_000
     """Blocks that may be run again through jumps and loops before the program counts as endless."""
     tolerance: ToleranceTable = ToleranceTable()
+    baseline: BaselineTable = BaselineTable()
     video: VideoTable = VideoTable()
 
     @pydantic.field_validator("tools")

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tests.compare.paths import AXES, line, moves_of
-from tests.compare.runs import PART_ZERO, samples, setpoints
+from tests.compare.runs import FRAME, PART_ZERO, samples, setpoints
 from twin.compare import trace as module
 from twin.compare.trace import Trace, line_changes
 
@@ -15,7 +15,7 @@ MOVES = moves_of(
 def traced(per_move: int, rows: int, error: np.ndarray) -> Trace:
     asked = setpoints(MOVES, per_move=per_move)
     run = samples(asked, asked.position - np.array([0.001, 0, 0, 0.002]))
-    trace = Trace(AXES, PART_ZERO)
+    trace = Trace(AXES, FRAME, PART_ZERO)
     for first in range(0, len(asked), rows):
         here = slice(first, first + rows)
         chunk = samples(asked[here], run.joint_position[here])
@@ -30,6 +30,8 @@ def test_a_short_run_is_kept_whole():
     assert trace.error_um == pytest.approx(error)
     assert trace.position[0] == pytest.approx([-0.001, 0, 0, -0.002])
     assert trace.lag == pytest.approx(np.tile([0.001, 0, 0, 0.002], (101, 1)))
+    # The table turns counter-clockwise under a positive C, the tool around the part with it.
+    assert trace.tool[50] == pytest.approx([9.999, 0, 0], abs=0.002)
     assert [number for _, number in line_changes(trace)] == [1, 2]
 
 
@@ -48,7 +50,7 @@ def test_a_long_run_is_thinned_and_keeps_its_peaks(monkeypatch: pytest.MonkeyPat
 
 
 def test_nothing_gives_an_empty_trace():
-    trace = Trace(AXES, PART_ZERO)
+    trace = Trace(AXES, FRAME, PART_ZERO)
     assert len(trace.time) == len(trace.line) == 0
     assert trace.position.shape == (0, 4)
     assert list(line_changes(trace)) == []

@@ -67,7 +67,7 @@ def test_an_alarm_outweighs_a_tolerance_and_is_told_first():
 
 def summary() -> RunSummary:
     return RunSummary(
-        program="ring.nc", dialect="gost", machine="mill4", wall_s=0.5,
+        program="ring.nc", dialect="gost", machine="mill4", duration_s=2.5, wall_s=0.5,
         stages={"interpret_s": 0.1, "simulate_s": 0.3}, cut={"removed_mm3": 10.0},
         commanded={"X": 1.0}, simulated={"X": float("nan")},
     )  # fmt: skip

@@ -2,15 +2,20 @@
 
 import dataclasses
 import itertools
+import math
 
+import hypothesis
 import numpy as np
 from hypothesis import strategies as st
 
 from twin.motion.limits import MotionLimits
+from twin.motion.planner import plan, plan_phases
+from twin.motion.setpoints import Setpoints, join
 from twin.nc.canonical import (
     NO_BLOCK_NUMBER,
     Axes,
     Chunk,
+    Corner,
     Dwell,
     Event,
     FloatArray,
@@ -19,6 +24,17 @@ from twin.nc.canonical import (
     Shape,
     concatenate,
 )
+
+PERIOD = 0.001
+ZERO = np.array([100.0, -50.0, 25.0, 30.0])
+SETTINGS = hypothesis.settings(
+    derandomize=True,
+    deadline=None,
+    max_examples=60,
+    # Shrinking a program of thousands of setpoints takes minutes and explains little.
+    phases=[hypothesis.Phase.explicit, hypothesis.Phase.generate],
+)
+
 
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 
@@ -35,6 +51,18 @@ def mill(**changes: float | FloatArray) -> MotionLimits:
     return MotionLimits(**(values | changes))  # pyright: ignore[reportArgumentType]
 
 
+def run(
+    program: "Program", machine: MotionLimits, *cuts: int, period_s: float = PERIOD
+) -> Setpoints:
+    start = program.start + ZERO
+    chunks = program.chunks(*cuts)
+    return join(list(plan(chunks, machine, period_s=period_s, part_zero=ZERO, start=start)))
+
+
+def duration(program: "Program", machine: MotionLimits) -> float:
+    return list(plan_phases(program.chunks(), machine, start=program.start))[-1].end_time
+
+
 def column(value: float) -> FloatArray:
     return np.array([value])
 
@@ -46,6 +74,10 @@ class Program:
         self.start = np.array(start or (0.0,) * len(AXES))
         self.parts: list[Moves] = []
         self.events: list[Event] = []
+        self.corner = Corner.EXACT_STOP
+        self.corner_tolerance = math.nan
+        self.acceleration = math.nan
+        self.deceleration = math.nan
 
     @property
     def position(self) -> FloatArray:
@@ -112,6 +144,10 @@ class Program:
             normal=np.full((1, 3), np.nan),
             radius=column(np.nan),
             sweep=column(0.0),
+            corner=np.array([self.corner], np.uint8),
+            corner_tolerance=column(self.corner_tolerance),
+            acceleration=column(self.acceleration),
+            deceleration=column(self.deceleration),
         )
         self.parts.append(dataclasses.replace(move, **arc))
         return self
@@ -144,18 +180,29 @@ def limits() -> st.SearchStrategy[MotionLimits]:
         jerk=per_axis(500.0, 1e6),
         path_acceleration=st.floats(50.0, 20000.0),
         path_jerk=st.floats(500.0, 1e6),
+        junction_velocity_step=per_axis(0.0, 20.0),
+        junction_acceleration_step=per_axis(0.0, 3000.0),
+        corner_tolerance=st.floats(1e-4, 1.0),
+        further_corner_tolerance=st.floats(1e-4, 1.0),
     )
 
 
 @st.composite
-def programs(draw: st.DrawFn, most: int = 6) -> Program:
+def programs(
+    draw: st.DrawFn, most: int = 6, corners: tuple[Corner, ...] = (Corner.EXACT_STOP,)
+) -> Program:
     """Lines, arcs, helices in any plane, turns of C alone, dwells, moves of no length."""
     place = st.floats(-40.0, 40.0)
+    programmed = st.sampled_from([math.nan, 20.0, 300.0, 5000.0])
     program = Program(*(draw(place) for _ in range(4)))
     for _ in range(draw(st.integers(1, most))):
         feed = draw(st.one_of(st.none(), st.floats(10.0, 50000.0)))
-        kind = draw(st.sampled_from(["line", "near", "arc", "turn", "nothing", "dwell"]))
+        kind = draw(st.sampled_from(["line", "near", "arc", "turn", "nothing", "dwell", "on"]))
         here = program.position
+        program.corner = draw(st.sampled_from(corners))
+        program.corner_tolerance = draw(st.sampled_from([math.nan, 0.005, 0.3]))
+        if draw(st.integers(0, 3)) == 0:
+            program.acceleration, program.deceleration = draw(programmed), draw(programmed)
         if kind == "line":
             program.line(*(draw(place) for _ in range(4)), feed=feed)
         elif kind == "near":
@@ -171,6 +218,11 @@ def programs(draw: st.DrawFn, most: int = 6) -> Program:
                 (x, y, z), normal, sweep, advance=draw(st.floats(-5.0, 5.0)),
                 turn=draw(st.floats(-90.0, 90.0)), feed=feed,
             )  # fmt: skip
+        elif kind == "on":
+            # Along the same line, or round the same bend a little further.
+            before = program.parts[-1] if program.parts else None
+            step = np.zeros(4) if before is None else (before.end[0] - before.start[0])
+            program.line(*(here + draw(st.floats(0.001, 2.0)) * step), feed=feed)
         elif kind == "turn":
             program.line(*here[:3], draw(st.floats(-400.0, 400.0)), feed=feed)
         elif kind == "nothing":

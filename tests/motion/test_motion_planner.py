@@ -1,39 +1,29 @@
 import dataclasses
 import math
 
-import hypothesis
 import numpy as np
 import pytest
 import ruckig
 from hypothesis import given
 from hypothesis import strategies as st
 from motion_checks import assert_consistent, assert_on_path, assert_within_limits
-from motion_programs import AXES, Program, limits, mill, programs
+from motion_programs import (
+    AXES,
+    PERIOD,
+    SETTINGS,
+    ZERO,
+    Program,
+    duration,
+    limits,
+    mill,
+    programs,
+    run,
+)
 
 from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan, plan_phases
-from twin.motion.setpoints import Setpoints, join
+from twin.motion.setpoints import join
 from twin.nc.canonical import Chunk, FloatArray, Function, Moves
-
-PERIOD = 0.001
-ZERO = np.array([100.0, -50.0, 25.0, 30.0])
-SETTINGS = hypothesis.settings(
-    derandomize=True,
-    deadline=None,
-    max_examples=60,
-    # Shrinking a program of thousands of setpoints takes minutes and explains little.
-    phases=[hypothesis.Phase.explicit, hypothesis.Phase.generate],
-)
-
-
-def run(program: Program, machine: MotionLimits, *cuts: int, period_s: float = PERIOD) -> Setpoints:
-    start = program.start + ZERO
-    chunks = program.chunks(*cuts)
-    return join(list(plan(chunks, machine, period_s=period_s, part_zero=ZERO, start=start)))
-
-
-def duration(program: Program, machine: MotionLimits) -> float:
-    return list(plan_phases(program.chunks(), machine, start=program.start))[-1].end_time
 
 
 def shortest_time(length: float, velocity: float, acceleration: float, jerk: float) -> float:

@@ -35,7 +35,7 @@ def moves_of(
     return Moves(
         AXES, np.ones(1, np.uint8), np.array([shape], np.uint8), np.ones(1, np.int64),
         np.ones(1, np.int64), start[None], end[None], end[None], one, np.zeros(1, np.uint8), one,
-        center[None], normal[None], radius * one, sweep * one,
+        center[None], normal[None], radius * one, sweep * one, np.zeros(1, np.uint8), one, one, one,
     )  # fmt: skip
 
 

@@ -6,7 +6,9 @@ import numpy as np
 
 from twin.nc.canonical import Axes, FloatArray, IntArray
 from twin.recording import Samples
+from twin.toolpath.part_frame import PartFrame
 
+_FIRST_AXIS_COLUMN = 6
 POINTS = 4000
 """A trace holds at least half and at most twice so many points."""
 
@@ -19,17 +21,20 @@ class Trace:
 
     Args:
         axes: Axes of the samples.
+        part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 
     Attributes:
         axes: As given.
     """
 
-    def __init__(self, axes: Axes, part_zero: FloatArray) -> None:
+    def __init__(self, axes: Axes, part_frame: PartFrame, part_zero: FloatArray) -> None:
         self.axes = axes
+        self._frame = part_frame
+        self._origin = part_zero[:3] - np.array([*part_frame.center, 0.0])
         self._part_zero = np.asarray(part_zero, np.float64)
         self._group = 1
-        self._kept = np.zeros((0, 3 + 3 * len(axes)))
+        self._kept = np.zeros((0, _FIRST_AXIS_COLUMN + 3 * len(axes)))
         self._pending: list[FloatArray] = []
         self._pending_rows = 0
 
@@ -46,6 +51,7 @@ class Trace:
                 asked.time,
                 asked.line.astype(np.float64),
                 error_um,
+                self._frame.position(samples.joint_position) - self._origin,
                 samples.joint_position - self._part_zero,
                 asked.position - samples.joint_position,
                 asked.velocity,
@@ -91,6 +97,11 @@ class Trace:
         return self._rows()[:, 2]
 
     @property
+    def tool(self) -> FloatArray:
+        """Simulated tool point on the part, program coordinates at table zero, (m, 3) [mm]."""
+        return self._rows()[:, 3:_FIRST_AXIS_COLUMN]
+
+    @property
     def position(self) -> FloatArray:
         """Simulated part coordinates of all axes, shape (m, k) [mm or deg]."""
         return self._columns(0)
@@ -107,7 +118,7 @@ class Trace:
 
     def _columns(self, block: int) -> FloatArray:
         width = len(self.axes)
-        return self._rows()[:, 3 + block * width : 3 + (block + 1) * width]
+        return self._rows()[:, _FIRST_AXIS_COLUMN + block * width :][:, :width]
 
 
 def _worst_of(rows: FloatArray, size: int) -> FloatArray:

@@ -38,10 +38,28 @@ class MotionLimits:
     rotary_path_jerk: float = math.inf
     """[deg/s³]."""
 
+    junction_velocity_step: FloatArray | float = 0.0
+    """Largest step of each axis's velocity where the path is kept through a knee, shape (k,) or one
+    for all [mm/s or deg/s]; 0: stop there."""
+
+    junction_acceleration_step: FloatArray | float = 0.0
+    """The same of its acceleration where only the curvature steps [mm/s² or deg/s²]."""
+
+    corner_tolerance: float = 0.01
+    """Of a continuous corner whose program names none: distance from the path [mm]."""
+
+    further_corner_tolerance: float = 0.01
+    """Of axes other than X Y Z in any continuous corner [mm or deg]."""
+
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):
             values = np.atleast_1d(getattr(self, field.name))
-            if not np.all(values > 0.0):
+            if field.name.startswith("junction"):
+                if not np.all(values >= 0.0):
+                    raise ConfigError(
+                        f"motion limit '{field.name}' must be zero or positive, not {values}"
+                    )
+            elif not np.all(values > 0.0):
                 raise ConfigError(f"motion limit '{field.name}' must be positive, not {values}")
         widths = {len(self.velocity), len(self.acceleration), len(self.jerk)}
         if len(widths) != 1:

@@ -1,4 +1,4 @@
-"""Moves cut into pieces along which the limits of the path may be taken as constant.
+"""Blocks cut into pieces along which the limits of the path may be taken as constant.
 
 Along a piece the path parameter x counts what the feed counts (mm, or degrees where only rotary
 axes move). With v, a, j its time derivatives and q', q'', q''' those of an axis by x, the axis has
@@ -7,7 +7,7 @@ axes move). With v, a, j its time derivatives and q', q'', q''' those of an axis
     acceleration  q'' v² + q' a
     jerk          q''' v³ + 3 q'' v a + q' j
 
-A piece is short enough for bounds of |q'|, |q''|, |q'''| to say nearly all there is to say.
+A piece is short enough for bounds of abs(q'), abs(q''), abs(q''') to say nearly all there is.
 """
 
 import dataclasses
@@ -15,16 +15,15 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from twin.motion.blocks import Blocks, Surroundings, blocks_of_chunks, with_neighbours
+from twin.motion.corners import CONTEXT, find_borders
 from twin.motion.limits import MotionLimits
-from twin.nc.canonical import Chunk, Dwell, FloatArray, IntArray, Motion, Moves
-from twin.toolpath.geometry import Geometry, geometry, joined
-from twin.units import SECONDS_PER_MINUTE
+from twin.motion.piece_kernels import bound_derivatives, cut_blocks
+from twin.nc.canonical import Chunk, FloatArray, IntArray
+from twin.toolpath.geometry import Geometry, joined
 
-PIECE_ANGLE = np.deg2rad(10.0)
-"""Longest piece of an arc: the limits of X and Y change little over it [rad]."""
-
-SHORTEST = 1e-9
-"""A shorter move takes no time [mm or deg]: a thousandth of the nanometre the path is kept to."""
+BATCH = 1024
+"""Blocks that are cut into pieces at a time."""
 
 CENTRIPETAL_SHARE = 0.8
 """Of an axis's acceleration that following a curve may use; the rest is left to change speed."""
@@ -32,13 +31,10 @@ CENTRIPETAL_SHARE = 0.8
 CURVE_JERK_SHARE = 0.5
 """Of an axis's jerk that a curve may use at constant speed, and again at constant acceleration."""
 
-JOIN_TOLERANCE = 1e-6
-"""Largest gap between consecutive moves that is rounding, not a fault [mm or deg]."""
-
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Pieces:
-    """A run of n pieces, as columns. A dwell is a piece without length.
+    """A run of n pieces over k axes, as columns. A dwell is a piece without length.
 
     Attributes:
         move: Number of the move in the whole program, -1 before the first, shape (n,).
@@ -52,6 +48,8 @@ class Pieces:
         jerk: Highest abs(j), shape (n,) [mm/s³ or deg/s³].
         entry: Highest v at the begin, shape (n,) [mm/s or deg/s].
         pause: How long a dwell waits, shape (n,) [s].
+        rounding: What is added to each axis, coefficients by powers of x from the piece's begin,
+            shape (n, k, 6) [mm or deg].
         geometry: Of each piece's whole move, n rows.
     """
 
@@ -66,6 +64,7 @@ class Pieces:
     jerk: FloatArray
     entry: FloatArray
     pause: FloatArray
+    rounding: FloatArray
     geometry: Geometry
 
     def __len__(self) -> int:
@@ -93,135 +92,6 @@ def join_pieces(parts: list[Pieces]) -> Pieces:
     return Pieces(**columns, geometry=joined([part.geometry for part in parts]))
 
 
-def pieces_of_moves(moves: Moves, first: int, limits: MotionLimits) -> Pieces:
-    """Cut moves into pieces.
-
-    Args:
-        moves: The moves.
-        first: Number of the first of them in the whole program.
-        limits: Of the axes and the path.
-    """
-    rows = np.flatnonzero(moves.length >= SHORTEST)
-    shapes = geometry(moves)[rows]
-    cuts = np.maximum(1, np.ceil(np.abs(shapes.angle) / PIECE_ANGLE)).astype(np.int64)
-    owner = np.repeat(np.arange(len(rows)), cuts)
-    place = np.arange(len(owner)) - np.repeat(np.cumsum(cuts) - cuts, cuts)
-    begin = place / cuts[owner]
-    of_move = rows[owner]
-    length = moves.length[of_move]
-    velocity, acceleration, jerk = _constant_limits(
-        moves, of_move, shapes[owner], begin, 1.0 / cuts[owner], limits
-    )
-    return Pieces(
-        move=first + of_move,
-        line=moves.line[of_move],
-        begin=begin,
-        fraction_per_length=1.0 / length,
-        length=length / cuts[owner],
-        velocity=velocity,
-        acceleration=acceleration,
-        deceleration=acceleration,
-        jerk=jerk,
-        entry=np.where(place == 0, 0.0, np.inf),
-        pause=np.zeros(len(owner)),
-        geometry=shapes[owner],
-    )
-
-
-def _constant_limits(
-    moves: Moves,
-    of_move: IntArray,
-    shapes: Geometry,
-    begin: FloatArray,
-    span: FloatArray,
-    limits: MotionLimits,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Velocity, acceleration and jerk that any instant of each piece may use, shapes (n,)."""
-    scale = 1.0 / moves.length[of_move]
-    first, second, third = (
-        _bound(shapes, begin, span, order) * scale[:, None] ** order for order in (1, 2, 3)
-    )
-    spatial = np.any(moves.start[of_move, :3] != moves.end[of_move, :3], axis=1) | (
-        shapes.angle != 0.0
-    )
-    bend = np.linalg.norm(second[:, :3], axis=1)
-    rotary_alone = ~spatial & (np.abs(shapes.drift[:, ~_rotary(moves)]).max(axis=1) == 0.0)
-    path_acceleration = np.where(
-        rotary_alone, limits.rotary_path_acceleration, limits.path_acceleration
-    )
-    path_jerk = np.where(rotary_alone, limits.rotary_path_jerk, limits.path_jerk)
-
-    rapid = moves.motion[of_move] == Motion.RAPID
-    velocity = np.where(rapid, np.inf, moves.feed[of_move] / SECONDS_PER_MINUTE)
-    with np.errstate(divide="ignore", over="ignore"):
-        velocity = np.minimum(velocity, (limits.velocity / first).min(axis=1))
-        centripetal = (CENTRIPETAL_SHARE * limits.acceleration / second).min(axis=1)
-        centripetal = np.minimum(centripetal, path_acceleration / bend)
-        velocity = np.minimum(velocity, np.sqrt(centripetal))
-        turning = (CURVE_JERK_SHARE * limits.jerk / third).min(axis=1)
-        velocity = np.minimum(velocity, np.cbrt(turning))
-
-        left = limits.acceleration - second * velocity[:, None] ** 2
-        acceleration = np.minimum(path_acceleration, (left / first).min(axis=1))
-        left = limits.jerk - third * velocity[:, None] ** 3
-        mixed = CURVE_JERK_SHARE * left / (3.0 * second * velocity[:, None])
-        acceleration = np.minimum(acceleration, mixed.min(axis=1))
-        left = left - 3.0 * second * (velocity * acceleration)[:, None]
-        jerk = np.minimum(path_jerk, (left / first).min(axis=1))
-    return velocity, acceleration, jerk
-
-
-def _rotary(moves: Moves) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    return moves.axes.rotary()
-
-
-def _bound(shapes: Geometry, begin: FloatArray, span: FloatArray, order: int) -> FloatArray:
-    """Bound of abs(d^order q / du^order) of each axis over u in [begin, begin + span], (n, k).
-
-    A curve lies within h²/8 max|f''| of its chord, h being the span; on an arc |f''| is at most
-    |angle|^(order + 2) times the axis's share of the radius.
-    """
-    rows = np.arange(len(shapes))
-    at_begin = np.abs(shapes.derivative(rows, begin, order))
-    at_end = np.abs(shapes.derivative(rows, begin + span, order))
-    bound = np.maximum(at_begin, at_end)
-    amplitude = np.hypot(shapes.cosine, shapes.sine)
-    angle = np.abs(shapes.angle)[:, None]
-    largest = amplitude * angle**order
-    sag = (angle * span[:, None]) ** 2 / 8.0 * largest
-    if order == 1:
-        largest = largest + np.abs(shapes.drift[:, :3])
-    bound[:, :3] = np.minimum(bound[:, :3] + sag, largest)
-    return bound
-
-
-def _dwell(dwell: Dwell, move: int, position: FloatArray) -> Pieces:
-    """The piece of a dwell: it stands at ``position``, the end of the move before."""
-    zero = np.zeros(1)
-    still = Geometry(
-        base=position[None],
-        drift=np.zeros_like(position)[None],
-        cosine=np.zeros((1, 3)),
-        sine=np.zeros((1, 3)),
-        angle=zero,
-        end=position[None],
-    )
-    return Pieces(
-        move=np.array([move]),
-        line=np.array([dwell.line]),
-        begin=np.array([0.0 if move < 0 else 1.0]),
-        fraction_per_length=zero,
-        length=zero,
-        velocity=zero,
-        acceleration=zero,
-        deceleration=zero,
-        jerk=zero,
-        entry=zero,
-        pause=np.array([dwell.seconds]),
-        geometry=still,
-    )
-
-
 def pieces_of_chunks(
     chunks: Iterable[Chunk], limits: MotionLimits, start: FloatArray
 ) -> Iterator[Pieces]:
@@ -235,31 +105,74 @@ def pieces_of_chunks(
     Raises:
         ValueError: A move does not begin where the one before it ended.
     """
-    first = 0
-    position = start
-    for chunk in chunks:
-        moves = chunk.moves
-        _check_joined(position, moves)
-        done = 0
-        for event in chunk.events:
-            if isinstance(event, Dwell):
-                yield pieces_of_moves(moves[done : event.before], first + done, limits)
-                done = event.before
-                if done > 0:
-                    position = moves.end[done - 1]
-                yield _dwell(event, first + done - 1, position)
-        yield pieces_of_moves(moves[done:], first + done, limits)
-        first += len(moves)
-        if len(moves) > 0:
-            position = moves.end[-1]
+    blocks = blocks_of_chunks(chunks, start)
+    for surroundings in with_neighbours(blocks, BATCH, CONTEXT):
+        yield _cut(surroundings, limits)
 
 
-def _check_joined(position: FloatArray, moves: Moves) -> None:
-    before = np.concatenate([position[None], moves.end])[: len(moves)]
-    gaps = np.abs(moves.start - before).max(axis=1, initial=0.0)
-    if np.any(gaps > JOIN_TOLERANCE):
-        row = int(np.argmax(gaps > JOIN_TOLERANCE))
-        raise ValueError(
-            f"line {moves.line[row]}: the move begins at {moves.start[row]}, "
-            f"but the axes stand at {before[row]}"
-        )
+def _cut(surroundings: Surroundings, limits: MotionLimits) -> Pieces:
+    blocks, first, last = surroundings.blocks, surroundings.first, surroundings.last
+    borders = find_borders(blocks, limits)
+    shapes = blocks.geometry
+    owner, offset, length, rounding = cut_blocks(
+        blocks.length, shapes.angle, borders.width, borders.knee, borders.bend, first, last
+    )
+    own = blocks[owner]
+    scale = np.divide(1.0, own.length, out=np.zeros(len(owner)), where=own.length > 0.0)
+    begin = np.where(own.length > 0.0, offset * scale, np.where(own.move < 0, 0.0, 1.0))
+    velocity, acceleration, deceleration, jerk = _constant_limits(
+        own, begin, scale, length, rounding, limits
+    )
+    return Pieces(
+        move=own.move,
+        line=own.line,
+        begin=begin,
+        fraction_per_length=scale,
+        length=length,
+        velocity=velocity,
+        acceleration=acceleration,
+        deceleration=deceleration,
+        jerk=jerk,
+        entry=np.where(offset == 0.0, borders.entry[owner], np.inf),
+        pause=own.pause,
+        rounding=rounding,
+        geometry=own.geometry,
+    )
+
+
+def _constant_limits(
+    own: Blocks,
+    begin: FloatArray,
+    scale: FloatArray,
+    length: FloatArray,
+    rounding: FloatArray,
+    limits: MotionLimits,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Velocity, acceleration, deceleration, jerk that any instant of a piece may use, (n,) each."""
+    shapes = own.geometry
+    bounds, bend = bound_derivatives(
+        shapes.drift, shapes.cosine, shapes.sine, shapes.angle, begin, scale, length, rounding
+    )
+    first, second, third = bounds[:, 0], bounds[:, 1], bounds[:, 2]
+    path_acceleration = own.stretch * np.where(
+        own.rotary_alone, limits.rotary_path_acceleration, limits.path_acceleration
+    )
+    path_jerk = own.stretch * np.where(own.rotary_alone, limits.rotary_path_jerk, limits.path_jerk)
+    with np.errstate(divide="ignore", over="ignore"):
+        velocity = np.minimum(own.feed * own.stretch, (limits.velocity / first).min(axis=1))
+        centripetal = (CENTRIPETAL_SHARE * limits.acceleration / second).min(axis=1)
+        centripetal = np.minimum(centripetal, path_acceleration / own.stretch / bend)
+        velocity = np.minimum(velocity, np.sqrt(centripetal))
+        turning = (CURVE_JERK_SHARE * limits.jerk / third).min(axis=1)
+        velocity = np.minimum(velocity, np.cbrt(turning))
+
+        left = limits.acceleration - second * velocity[:, None] ** 2
+        tangential = np.minimum(path_acceleration, (left / first).min(axis=1))
+        left = limits.jerk - third * velocity[:, None] ** 3
+        mixed = CURVE_JERK_SHARE * left / (3.0 * second * velocity[:, None])
+        tangential = np.minimum(tangential, mixed.min(axis=1))
+        left = left - 3.0 * second * (velocity * tangential)[:, None]
+        jerk = np.minimum(path_jerk, (left / first).min(axis=1))
+    acceleration = np.minimum(tangential, own.stretch * own.acceleration)
+    deceleration = np.minimum(tangential, own.stretch * own.deceleration)
+    return velocity, acceleration, deceleration, jerk

@@ -108,7 +108,8 @@ def plan(
     """Plan a program's setpoints.
 
     The first sample is at time 0, the last is the first tick at or after the program's end, at rest
-    exactly at its end position. Every block ends in a stop; functions take no time.
+    exactly at its end position. How a block's end is passed says its ``corner``; functions take no
+    time of their own.
 
     Args:
         chunks: The program: consecutive moves in part coordinates.
@@ -166,7 +167,7 @@ def _sample(
         shape = pieces.geometry
         sample_axes(
             shape.base, shape.drift, shape.cosine, shape.sine, shape.angle, shape.end,
-            pieces.begin, pieces.fraction_per_length, part_zero,
+            pieces.begin, pieces.fraction_per_length, pieces.rounding, part_zero,
             piece, path, fraction, position, velocity, acceleration,
         )  # fmt: skip
         yield Setpoints(

@@ -26,6 +26,9 @@ SHORTEST_PHASE = 1e-10
 ROUNDING = 1e-9
 """Relative slack for comparisons of quantities that are equal but for rounding."""
 
+REACH_PRECISION = 1e-9
+"""Of velocities at borders, relative: far finer than any loss of time."""
+
 FAILED_BRAKES = 4
 """Brakes that fit their distance but break a limit on the way before the search gives up."""
 
@@ -123,7 +126,7 @@ def _holds_on_the_way(
 @numba.njit(cache=True)
 def find_brake(
     limits: FloatArray, entry: FloatArray, reach: FloatArray,
-    i: int, x: float, v: float, a: float, slack: float,
+    i: int, x: float, v: float, a: float, slack: float, nearest: int,
 ) -> int:  # fmt: skip
     """The border to which a safe state can brake; -1 if the state is not safe.
 
@@ -136,6 +139,7 @@ def find_brake(
         v: Velocity.
         a: Acceleration, not negative.
         slack: Relative slack of all comparisons.
+        nearest: Borders before this one are not tried.
     """
     count = limits.shape[1]
     wide = 1.0 + slack
@@ -146,6 +150,7 @@ def find_brake(
     softest = math.inf
     distance = limits[0, i] - x
     own_distance = distance
+    nearer = 0.0
     failed = 0
     lowest = math.inf
     for k in range(i + 1, count + 1):
@@ -153,11 +158,14 @@ def find_brake(
             piece = k - 1
             if limits[0, piece] == 0.0:
                 return -1
+            nearer = distance
             distance += limits[0, piece]
             deceleration = min(deceleration, limits[3, piece])
             jerk = min(jerk, limits[4, piece])
             ceiling = min(ceiling, limits[1, piece], entry[piece])
             softest = min(softest, limits[2, piece])
+        if k < nearest:
+            continue
         w = reach[k]
         lift_time = a / jerk
         lift = (v + a * lift_time / 3.0) * lift_time
@@ -165,6 +173,9 @@ def find_brake(
         need = lift
         if top > w:
             need += brake_distance(top, w, deceleration, jerk)
+            if need * wide < nearer:
+                # It would end before the last border but one, lower than that border asks for.
+                continue
         if need <= distance * wide + slack * 1e-3 and w < lowest:
             if top <= ceiling * wide and (lift <= own_distance or a <= softest):
                 return k
@@ -190,26 +201,44 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
     """
     count = limits.shape[1]
     reach = np.zeros(count + 1)
+    nearest = 0
     for i in range(count - 1, -1, -1):
         if entry[i] == 0.0 or limits[0, i] == 0.0:
+            nearest = 0
             continue
-        high = min(entry[i], limits[1, i])
+        highest = min(entry[i], limits[1, i])
         if i > 0:
-            high = min(high, limits[1, i - 1])
-        if find_brake(limits, entry, reach, i, 0.0, high, 0.0, 0.0) >= 0:
-            reach[i] = high
+            highest = min(highest, limits[1, i - 1])
+        if find_brake(limits, entry, reach, i, 0.0, highest, 0.0, 0.0, 0) >= 0:
+            reach[i] = highest
+            nearest = 0
             continue
-        low = 0.0
+        # The border after this one says where to look: a little above what is safe there.
+        low, step = 0.0, highest
         if i < len(known):
             low = known[i]
+        if i + 2 <= count and reach[i + 1] > 0.0:
+            step = max(abs(reach[i + 1] - reach[i + 2]), 1e-6 * highest)
+            guess = min(reach[i + 1], highest)
+            found = find_brake(limits, entry, reach, i, 0.0, guess, 0.0, 0.0, nearest - 3)
+            if guess > low and found >= 0:
+                low = guess
+        high = min(highest, low + step)
+        while high < highest:
+            if find_brake(limits, entry, reach, i, 0.0, high, 0.0, 0.0, nearest - 3) < 0:
+                break
+            low = high
+            step *= 4.0
+            high = min(highest, low + step)
         for _ in range(BISECTIONS):
+            if high - low <= REACH_PRECISION * high:
+                break
             middle = 0.5 * (low + high)
-            if find_brake(limits, entry, reach, i, 0.0, middle, 0.0, 0.0) >= 0:
-                low = middle
+            found = find_brake(limits, entry, reach, i, 0.0, middle, 0.0, 0.0, nearest - 3)
+            if found >= 0:
+                low, nearest = middle, found
             else:
                 high = middle
-            if high - low <= 1e-13 * high:
-                break
         reach[i] = low
     return reach
 
@@ -224,12 +253,12 @@ def _can_last(
     new_v = v + (0.5 * j * t + a) * t
     new_a = a + j * t
     if not to_border:
-        return find_brake(limits, entry, reach, i, new_x, new_v, new_a, 0.0) >= 0
+        return find_brake(limits, entry, reach, i, new_x, new_v, new_a, 0.0, 0) >= 0
     if new_v > min(limits[1, i], entry[i + 1]) or i + 1 >= limits.shape[1]:
         return False
     if limits[0, i + 1] == 0.0:
         return False
-    return find_brake(limits, entry, reach, i + 1, 0.0, new_v, new_a, 0.0) >= 0
+    return find_brake(limits, entry, reach, i + 1, 0.0, new_v, new_a, 0.0, 0) >= 0
 
 
 @numba.njit(cache=True)
@@ -327,7 +356,7 @@ def find_phases(
                 i, x = i + 1, 0.0
             continue
 
-        k = find_brake(limits, entry, reach, i, x, v, a, ROUNDING)
+        k = find_brake(limits, entry, reach, i, x, v, a, ROUNDING, 0)
         if k < 0:
             raise RuntimeError("motion: no way to brake from a state that was safe")
         deceleration = limits[3, i]

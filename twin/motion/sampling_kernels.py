@@ -55,7 +55,8 @@ def sample_path(
 def sample_axes(
     base: FloatArray, drift: FloatArray, cosine: FloatArray, sine: FloatArray,
     angle: FloatArray, end: FloatArray,
-    begin: FloatArray, fraction_per_length: FloatArray, origin: FloatArray,
+    begin: FloatArray, fraction_per_length: FloatArray, rounding: FloatArray,
+    origin: FloatArray,
     piece: IntArray, path: FloatArray,
     fraction: FloatArray, position: FloatArray, velocity: FloatArray, acceleration: FloatArray,
 ) -> None:  # fmt: skip
@@ -70,6 +71,7 @@ def sample_axes(
         end: See above.
         begin: Columns of ``Pieces``.
         fraction_per_length: See above.
+        rounding: See above.
         origin: Machine coordinates of program zero, shape (k,).
         piece: From ``sample_path``, shape (m,).
         path: From ``sample_path``, shape (m, 3).
@@ -99,7 +101,15 @@ def sample_axes(
                 position[row, axis] += across
                 velocity[row, axis] += along * turn_v
                 acceleration[row, axis] += along * turn_a - across * turn_v * turn_v
+        x, v, a = path[row, 0], path[row, 1], path[row, 2]
         for axis in range(width):
             if u >= 1.0:
                 position[row, axis] = end[i, axis]
-            position[row, axis] += origin[axis]
+            added, slope, bend = 0.0, 0.0, 0.0
+            for power in range(5, -1, -1):
+                bend = bend * x + 2.0 * slope
+                slope = slope * x + added
+                added = added * x + rounding[i, axis, power]
+            position[row, axis] += added + origin[axis]
+            velocity[row, axis] += slope * v
+            acceleration[row, axis] += bend * v * v + slope * a

@@ -1,0 +1,155 @@
+"""Rounding polynomials of borders, and how wide they may be.
+
+With t = y / width from -1 to 1, y being the distance from the border, the rounding of a knee is
+``knee width (smooth_ramp(t) - max(t, 0))``: the kink of a ramp, smoothed by the parabolic kernel
+3/4 (1 - t²). It is largest at the border, 3/16, and convex on either side. The rounding of a bend
+is ``bend width² (smooth_square(t) - max(t, 0)²/2)``, ``smooth_square`` being the quintic that
+meets 0 and t²/2 with two derivatives.
+"""
+
+import numba
+import numpy as np
+
+from twin.nc.canonical import FloatArray
+
+MOST_NEIGHBOURS = 32
+"""Borders to either side that a rounding may reach over."""
+
+NARROWEST = 1e-4
+"""A rounding narrower than this is none [mm or deg]."""
+
+KNEE_PEAK = 3.0 / 16.0
+BEND_PEAK = 0.01074
+"""Largest value of ``smooth_square(t) - max(t, 0)²/2`` (0.010736)."""
+
+SMOOTH_RAMP = np.array([3.0, 8.0, 6.0, 0.0, -1.0, 0.0]) / 16.0
+"""Coefficients by powers of t."""
+
+SMOOTH_SQUARE = np.array([0.0, 3.0, 8.0, 6.0, 0.0, -1.0]) / 32.0
+"""The same: -1/8 (1 + t)³ + 5/32 (1 + t)⁴ - 1/32 (1 + t)⁵."""
+
+
+@numba.njit(cache=True)
+def _share(away: float, width: float, per_width: float, per_square: float) -> float:
+    """Share of the tolerance that a rounding uses ``away`` from its border."""
+    t = abs(away) / width
+    if t >= 1.0:
+        return 0.0
+    ramp = (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 16.0
+    return width * (per_width * ramp + per_square * width * BEND_PEAK)
+
+
+@numba.njit(cache=True)
+def find_widths(
+    place: FloatArray, rounded: FloatArray, per_width: FloatArray, per_square: FloatArray
+) -> FloatArray:
+    """How far the rounding of each border reaches.
+
+    Each border first takes the width that would use the tolerance if all its neighbours took the
+    same. Where the sum of what they then take passes the tolerance, those that reach there are
+    narrowed by that factor, which is enough because a narrower rounding is also a flatter one.
+
+    Args:
+        place: Where each block begins and, last, where the last one ends, shape (n + 1,).
+        rounded: Whether the border before each block is rounded, shape (n,).
+        per_width: Share of the tolerance per width, shape (n,).
+        per_square: Share of the tolerance per width², shape (n,).
+
+    Returns:
+        Shape (n,) [mm or deg]; 0 where there is nothing to round or no room.
+    """
+    count = len(rounded)
+    first = np.zeros(count)
+    before = np.zeros(count, np.int64)
+    after = np.zeros(count, np.int64)
+    wall = 0
+    for i in range(count):
+        if not rounded[i]:
+            wall = i
+        before[i] = max(wall, i - MOST_NEIGHBOURS)
+    wall = count
+    for i in range(count - 1, -1, -1):
+        if not rounded[i]:
+            wall = i
+        after[i] = min(wall, i + MOST_NEIGHBOURS)
+    for i in range(count):
+        if not rounded[i] or (per_width[i] == 0.0 and per_square[i] == 0.0):
+            continue
+        low = 0.0
+        high = min(place[i] - place[before[i]], place[after[i]] - place[i])
+        for step in range(40):
+            middle = high if step == 0 else 0.5 * (low + high)
+            if middle <= 0.0:
+                break
+            used = 0.0
+            for other in range(before[i] + 1, after[i]):
+                used += _share(place[other] - place[i], middle, per_width[other], per_square[other])
+            if used <= 1.0:
+                low = middle
+            else:
+                high = middle
+            if high - low < 1e-6 * high:
+                break
+        first[i] = low
+    excess = np.ones(count)
+    for i in range(count):
+        if not rounded[i]:
+            continue
+        used = 0.0
+        for other in range(before[i] + 1, after[i]):
+            if first[other] > 0.0:
+                used += _share(
+                    place[other] - place[i], first[other], per_width[other], per_square[other]
+                )
+        excess[i] = max(1.0, used)
+    width = np.zeros(count)
+    for i in range(count):
+        if first[i] == 0.0:
+            continue
+        most = 1.0
+        for other in range(before[i] + 1, after[i]):
+            if abs(place[other] - place[i]) < first[i]:
+                most = max(most, excess[other])
+        if first[i] / most >= NARROWEST:
+            width[i] = first[i] / most
+    return width
+
+
+@numba.njit(cache=True)
+def add_rounding(
+    coefficients: FloatArray, away: float, width: float, knee: FloatArray, bend: FloatArray
+) -> None:
+    """Add a border's rounding to the polynomials of a piece.
+
+    Args:
+        coefficients: Of each axis by powers of x from the piece's begin, shape (k, 6).
+        away: From the border to the piece's begin, negative before the border [mm or deg]; the
+            piece lies on one side of the border.
+        width: Of the rounding [mm or deg].
+        knee: Step of dq/dx, shape (k,).
+        bend: Step of d²q/dx², shape (k,).
+    """
+    beyond = away >= 0.0
+    t = away / width
+    for power in range(6):
+        # Taylor's coefficients about the piece's begin, in t; then in x.
+        ramp, square = 0.0, 0.0
+        choose = 1.0
+        raised = 1.0
+        for n in range(power, 6):
+            ramp += choose * raised * SMOOTH_RAMP[n]
+            square += choose * raised * SMOOTH_SQUARE[n]
+            choose *= (n + 1.0) / (n + 1.0 - power)
+            raised *= t
+        if beyond:
+            if power == 0:
+                ramp -= t
+                square -= 0.5 * t * t
+            elif power == 1:
+                ramp -= 1.0
+                square -= t
+            elif power == 2:
+                square -= 0.5
+        scale = width ** (1 - power)
+        for axis in range(len(knee)):
+            coefficients[axis, power] += scale * (knee[axis] * ramp + bend[axis] * width * square)
