@@ -48,7 +48,7 @@ def write_circle_plot(result: CircularTest, path: Path) -> None:
         x, y = _drawn(result.angle_deg, deviation, scale)
         axes.plot(x, y, color=colour, lw=1.6, label=label, zorder=3)
     _name_peaks(axes, result)
-    axes.set_title(
+    figure.suptitle(
         f"{result.machine}: circle {result.plane}, R {result.radius_mm:g} mm, F {result.feed:g} mm/min\n"
         f"{scale:g} µm per division",
         fontsize=13,

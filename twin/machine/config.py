@@ -133,6 +133,13 @@ class FixtureTable(Table):
     """Centre of its lower face over the middle of the surface [mm], all axes at zero."""
 
 
+class SpindleTable(Table):
+    """What holds the tool."""
+
+    flange_diameter: Positive = 63.0
+    """Of the holder's flange [mm]; 63 is a BT40 taper's (JIS B 6339)."""
+
+
 class CollisionTable(Table):
     """What the control watches between the tool's side and the part's."""
 
@@ -166,6 +173,7 @@ class MachineFile(Table):
     """By axis name; must hold X, Y and Z."""
     path: PathTable
     table: TableTable | None = None
+    spindle: SpindleTable = SpindleTable()
     fixtures: tuple[FixtureTable, ...] = ()
     collision: CollisionTable = CollisionTable()
     control: ControlTable = ControlTable()

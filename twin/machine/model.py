@@ -5,7 +5,7 @@ import numpy as np
 
 from twin.errors import ConfigError
 from twin.machine.config import Machine
-from twin.machine.drives import Drive, feedforward_name, integral_name, tune
+from twin.machine.drives import Drive, feedforward_name, integral_name, reflected_inertia, tune
 from twin.machine.tool_shape import (
     COLLISION_GROUP,
     FRAME_SIDE,
@@ -29,6 +29,8 @@ ROTARY_TABLE = "rotary_table"
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
 
 
+_FASTEST_LOOP = 2.0
+"""Velocity gain over inertia, times the step."""
 _POSITION_INPUT = 1
 """What MuJoCo calls ``input="pos"``."""
 
@@ -57,7 +59,7 @@ def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec
     _set_inertia(spec, machine)
     _set_drives(spec, machine)
     _add_fixtures(spec, machine)
-    add_tool(spec, tool or DefaultTool())
+    add_tool(spec, tool or DefaultTool(), machine.file.spindle.flange_diameter)
     return spec
 
 
@@ -94,6 +96,7 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
     found = drives(machine, _compile(spec, machine))
     for name, drive in zip(machine.axes.names, found, strict=True):
         axis = machine.axis(name)
+        _refuse_too_fast_a_loop(machine, name, drive)
         servo = spec.actuator(name)
         servo.target = axis.joint
         servo.trntype = mujoco.mjtTrn.mjTRN_JOINT
@@ -116,6 +119,21 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
     if any(has_give(machine.axis(name)) for name in machine.axes.names):
         for key in list(spec.keys):
             spec.delete(key)
+
+
+def _refuse_too_fast_a_loop(machine: Machine, name: str, drive: Drive) -> None:
+    """A loop that reacts within a step is no loop: RK4 diverges from 2.78 on."""
+    axis = machine.axis(name)
+    felt = reflected_inertia(axis) if has_give(axis) else drive.moved
+    rate = drive.velocity_gain / felt * machine.file.servo_period_s
+    if rate > _FASTEST_LOOP:
+        reason = " behind the backlash or spring, where it moves no more than itself" * has_give(
+            axis
+        )
+        raise ConfigError(
+            f"{machine.path}: axes.{name}: with kv = {axis.kv:g} the motor{reason} reacts faster "
+            f"than the servo period; kv up to {axis.kv * _FASTEST_LOOP / rate:.3g} works"
+        )
 
 
 def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:

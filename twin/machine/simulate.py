@@ -139,6 +139,9 @@ class _Servo:
         give = [model.joint(give_name(axes[index])) for index in self._gives]
         self._give_qpos = np.array([int(joint.qposadr[0]) for joint in give], np.int64)
         self._give_dof = np.array([int(joint.dofadr[0]) for joint in give], np.int64)
+        walls = [model.tendon(give_name(axes[index])).id for index in self._gives]
+        self._stiffness = model.tendon_stiffness[walls]
+        self._half_gap = model.tendon_lengthspring[walls, 1]
         self._to_si = np.array([to_si(axis.kind) for axis in axes])
         self._velocity_share = np.array([axis.velocity_feedforward for axis in axes])
         self._limit = np.array([axis.force_limit or np.inf for axis in axes])
@@ -162,13 +165,28 @@ class _Servo:
         return self._samples(chunk, states)
 
     def _begin(self, chunk: Setpoints) -> None:
-        """Put the machine at rest at the first setpoint."""
-        data = self._data
-        mujoco.mj_resetData(self._model, data)
-        data.qpos[self._qpos] = chunk.position[0] * self._to_si
+        """Put the machine at rest at the first setpoint, every axis carrying its load.
+
+        A drive that integrates has settled at its setpoint; another stands off it by load/kp, and a
+        transmission that gives is strained by the load.
+        """
+        model, data = self._model, self._data
+        mujoco.mj_resetData(model, data)
+        rest = chunk.position[0] * self._to_si
+        data.qpos[self._qpos] = rest
         data.act[self._setpoint_state] = polyline_nodes(chunk[:1], self._period)[0] * self._to_si
-        self._state = np.zeros(mujoco.mj_stateSize(self._model, _STATE))
-        mujoco.mj_getState(self._model, data, self._state, _STATE)
+        mujoco.mj_forward(model, data)
+        load = data.qfrc_bias - data.qfrc_passive
+        settled = self._integral_gain > 0
+        data.act[self._integral_state] = (
+            load[self._dof[self._integrates]] / self._integral_gain[self._integrates]
+        )
+        sag = np.where(settled, 0.0, load[self._dof] / self._position_gain)
+        data.qpos[self._qpos] = rest - sag
+        carried = load[self._give_dof]
+        data.qpos[self._give_qpos] = -carried / self._stiffness - np.sign(carried) * self._half_gap
+        self._state = np.zeros(mujoco.mj_stateSize(model, _STATE))
+        mujoco.mj_getState(model, data, self._state, _STATE)
 
     def _roll(self, setpoints: Setpoints) -> FloatArray:
         steps = len(setpoints) - 1
@@ -237,5 +255,9 @@ class _Servo:
         )
         first = 1 + self._model.nq + self._model.nv
         left_behind = states[:, first + self._integral_state]
+        # Within a step the axis passes under the held input: the integral bulges by V h²/12.
+        left_behind = (
+            left_behind + self._period**2 / 12 * (velocity * self._to_si)[:, self._integrates]
+        )
         force[:, self._integrates] += self._integral_gain[self._integrates] * left_behind
         return np.clip(force, -self._limit, self._limit)

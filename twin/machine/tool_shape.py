@@ -85,11 +85,11 @@ _FLANGE_HEIGHT = 0.3
 _COLLET_RADIUS = 4.0
 _HOLDER_SHARE = 0.55
 """Share of the length above the flutes that the holder takes; the rest is free shank."""
-_FLANGE_RADIUS = 31.5
-"""Of a BT40 flange [mm] (JIS B 6339: 63 mm diameter)."""
+_NUT_SHARE = 0.5
+"""Of the flange's radius: what the collet nut has at least."""
 
 
-def tool_cylinders(tool: ToolShape) -> tuple[Cylinder, ...]:
+def tool_cylinders(tool: ToolShape, flange_diameter: float) -> tuple[Cylinder, ...]:
     """Flange, collet nut, shank and cutter, from the spindle nose down.
 
     The cutter's bottom is the tip, ``tool.length`` below the nose.
@@ -98,27 +98,28 @@ def tool_cylinders(tool: ToolShape) -> tuple[Cylinder, ...]:
     above = tool.length - flute
     flange = _FLANGE_HEIGHT * above
     nut = _HOLDER_SHARE * above + 0.25 * flange
-    shank = tool.diameter / 2.0
+    shank, rim = tool.diameter / 2.0, flange_diameter / 2.0
     return (
-        Cylinder("tool_flange", max(_FLANGE_RADIUS, shank), 0.0, -flange),
-        Cylinder("tool_nut", max(shank + _COLLET_RADIUS, 16.0), -flange, -nut),
+        Cylinder("tool_flange", max(rim, shank), 0.0, -flange),
+        Cylinder("tool_nut", max(shank + _COLLET_RADIUS, _NUT_SHARE * rim), -flange, -nut),
         Cylinder("tool_shank", shank * 0.98, -nut, -above),
         Cylinder("tool_cutter", shank, -above, -tool.length),
     )
 
 
-def add_tool(spec: mujoco.MjSpec, tool: ToolShape) -> None:
+def add_tool(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) -> None:
     """Put the tool into the spindle: geoms on the body that carries the site ``spindle_nose``.
 
     Args:
         spec: The machine; gains geoms and the site ``tool_tip``. All but the cutting part may
             collide.
         tool: The tool.
+        flange_diameter: Of the holder [mm].
     """
     nose = spec.site("spindle_nose")
     body = nose.parent
     x, y, z = (float(value) for value in nose.pos)
-    for piece in tool_cylinders(tool):
+    for piece in tool_cylinders(tool, flange_diameter):
         bottom = piece.bottom
         is_ball = piece.name == "tool_cutter" and tool.kind == "ball"
         if is_ball:

@@ -25,8 +25,7 @@ STIFF_SPRING_STEP = 0.5
 """Natural frequency times step of a gap's walls where no stiffness is given: RK4 follows a spring
 of 0.5 rad per step with an error of frequency below 0.1 %, and of 2.8 not at all."""
 GIVE_DAMPING_RATIO = 0.1
-"""Of the spring between motor and axis: ball screws are damped by a few to some ten percent
-(Altintas et al., CIRP Annals 60/2 (2011), table 2)."""
+"""Of the spring between motor and axis. Assumed: screws ring, but not for long."""
 _NO_INPUT = 16
 """What MuJoCo calls ``input="none"``: an actuator without controls, here a passive friction."""
 _SOLREF_FRICTION = (0.002, 1.0)

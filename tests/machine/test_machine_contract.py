@@ -1,0 +1,80 @@
+"""Every shipped machine keeps the contract of a model folder, and the check sees when one does not."""
+
+import shutil
+
+import pytest
+
+from twin.machine.check import check_machine
+from twin.machine.config import read_machine
+from twin.machine.describe import describe, shipped_machines
+from twin.resources import machine_file, machine_names
+
+POINTS = (
+    "the folder is complete",
+    "the README derives its numbers step by step",
+    "the MJCF file is in order",
+    "the model compiles with what other rooms need",
+    "gains and inertias in the MJCF file are those that follow",
+    "the machine holds still at home",
+    "the machine survives pseudo-random commands",
+)
+
+
+@pytest.mark.parametrize("name", machine_names())
+def test_shipped_machines_keep_the_contract(name):
+    findings = check_machine(read_machine(machine_file(name)))
+    assert tuple(finding.point for finding in findings) == POINTS
+    assert [fault for finding in findings for fault in finding.faults] == []
+
+
+def broken(tmp_path, file: str, old: str, new: str) -> dict[str, tuple[str, ...]]:
+    folder = tmp_path / "mill4"
+    shutil.copytree(machine_file("mill4").parent, folder)
+    path = folder / file
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+    findings = check_machine(read_machine(folder / "machine.toml"))
+    return {finding.point: finding.faults for finding in findings if finding.faults}
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "point", "fault"),
+    [
+        ("machine.toml", "kv = 7.5", "kv = 6.0", POINTS[4], "X: kp is written as"),
+        ("machine.toml", 'name = "mill4"', 'name = "mill5"', POINTS[0], "mill5.xml is missing"),
+        ("mill4.xml", '<key name="home"', '<key name="zero"', POINTS[2], "no keyframe 'home'"),
+        ("mill4.xml", '<camera name="tool"', '<camera name="nose"', POINTS[3], "camera 'tool' is missing"),
+        ("mill4.xml", 'group="2" mass="0"', 'group="2" mass="5"', POINTS[3], "geoms add to the masses"),
+        ("mill4.xml", "</worldbody>", "</worldbody><custom/>", POINTS[2], "unknown section 'custom'"),
+        ("README.md", "## Quality", "## Grade", POINTS[1], "no section 'Quality'"),
+    ],
+)  # fmt: skip
+def test_a_broken_contract_is_seen(tmp_path, file, old, new, point, fault):
+    faults = broken(tmp_path, file, old, new)
+    assert any(fault in found for found in faults.get(point, ())), faults
+
+
+def test_a_missing_file_is_named(tmp_path):
+    folder = tmp_path / "mill4"
+    shutil.copytree(machine_file("mill4").parent, folder)
+    (folder / "LICENSE").unlink()
+    findings = check_machine(read_machine(folder / "machine.toml"))
+    assert findings[0].faults == ("LICENSE is missing",)
+
+
+def test_a_model_that_does_not_compile_is_a_finding_and_no_traceback(tmp_path):
+    faults = broken(tmp_path, "mill4.xml", 'mass="485"', 'mass="-485"')
+    assert "mass" in " ".join(faults[POINTS[3]])
+
+
+def test_the_figures_of_mill4():
+    facts = describe(read_machine(machine_file("mill4")), feed=3000.0)
+    x = facts.axes[0]
+    assert 4.7 <= x.kv <= 8.0
+    assert len({(axis.kv, axis.natural_frequency_hz) for axis in facts.axes}) == 1
+    assert x.lag == pytest.approx(50.0 / (x.kv * 1000 / 60))
+    assert x.moved > x.reflected > 0
+    assert facts.spindle_over_table_mm == pytest.approx(620.0)
+    assert facts.as_contract()["name"] == "mill4"
+    assert [machine.file.name for machine in shipped_machines()] == list(machine_names())

@@ -1,0 +1,195 @@
+"""Whether a machine keeps the contract of a model folder: ``twin machine check``.
+
+The contract follows MuJoCo Menagerie: what a folder holds, how its MJCF is laid out, that the model
+compiles, holds still at home and survives pseudo-random commands without a warning of MuJoCo.
+"""
+
+import dataclasses
+import re
+from collections.abc import Callable
+from xml.etree import ElementTree as ET
+
+import mujoco
+import numpy as np
+
+from twin.errors import TwinError
+from twin.machine.alarms import SimulationError
+from twin.machine.config import Machine
+from twin.machine.drives import reflected_inertia
+from twin.machine.model import build_spec, drives, physics_model
+from twin.machine.simulate import simulate
+from twin.motion.setpoints import Setpoints
+from twin.nc.canonical import FloatArray
+
+SECTIONS = ("compiler", "option", "default", "asset", "worldbody", "actuator", "sensor", "keyframe")
+"""Order of the parts of an MJCF file."""
+CAMERAS = ("overview", "tool", "table", "top")
+"""Cameras that jobs may name on any machine."""
+_ASSET_LIMIT = 2_000_000
+"""Size of all assets [bytes]."""
+_PICTURE_LIMIT = 300_000
+"""Size of the picture [bytes]."""
+_STILL = 1e-3
+"""Drift that counts as holding still [mm or deg]."""
+_ROUNDED = 0.01
+"""Share by which a gain written in the MJCF file may differ from the derived one."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Finding:
+    """One point of the contract.
+
+    Attributes:
+        point: What was checked.
+        faults: What is wrong; empty where the point is kept.
+    """
+
+    point: str
+    faults: tuple[str, ...]
+
+
+def check_machine(machine: Machine) -> tuple[Finding, ...]:
+    """Check every point of the contract.
+
+    Args:
+        machine: The machine, its folder that of its machine file.
+
+    Returns:
+        One finding per point, faults or none.
+    """
+    points: tuple[tuple[str, Callable[[Machine], list[str]]], ...] = (
+        ("the folder is complete", _folder),
+        ("the README derives its numbers step by step", _readme),
+        ("the MJCF file is in order", _layout),
+        ("the model compiles with what other rooms need", _compiles),
+        ("gains and inertias in the MJCF file are those that follow", _gains),
+        ("the machine holds still at home", _holds_still),
+        ("the machine survives pseudo-random commands", _survives_shaking),
+    )
+    findings = []
+    for point, look in points:
+        try:
+            faults = look(machine)
+        except (TwinError, OSError, ET.ParseError) as error:
+            faults = [str(error)]
+        findings.append(Finding(point, tuple(faults)))
+    return tuple(findings)
+
+
+def _folder(machine: Machine) -> list[str]:
+    folder, name = machine.path.parent, machine.file.name
+    wanted = ("README.md", "CHANGELOG.md", "LICENSE", f"{name}.xml", "scene.xml", f"{name}.png")
+    faults = [f"{file} is missing" for file in wanted if not (folder / file).is_file()]
+    if folder.name != name:
+        faults.append(f"the folder is called '{folder.name}', the machine '{name}'")
+    assets = sum(path.stat().st_size for path in (folder / "assets").glob("*"))
+    if assets > _ASSET_LIMIT:
+        faults.append(f"assets take {assets / 1e6:.1f} MB, more than {_ASSET_LIMIT / 1e6:g}")
+    picture = folder / f"{name}.png"
+    if picture.is_file() and picture.stat().st_size > _PICTURE_LIMIT:
+        faults.append(f"{picture.name} takes more than {_PICTURE_LIMIT // 1000} kB")
+    return faults
+
+
+def _readme(machine: Machine) -> list[str]:
+    text = (machine.path.parent / "README.md").read_text(encoding="utf-8")
+    faults = []
+    if len(re.findall(r"^\d+\. ", text, re.MULTILINE)) < 5:
+        faults.append("no numbered derivation steps")
+    return faults + [
+        f"no section '{heading}'"
+        for heading in ("Derivation", "Quality", "Sources")
+        if not re.search(rf"^#+ {heading}", text, re.MULTILINE)
+    ]
+
+
+def _layout(machine: Machine) -> list[str]:
+    root = ET.parse(machine.path.parent / f"{machine.file.name}.xml").getroot()  # noqa: S314 (a model that is about to be run)
+    order = [SECTIONS.index(child.tag) for child in root if child.tag in SECTIONS]
+    faults = [f"unknown section '{child.tag}'" for child in root if child.tag not in SECTIONS]
+    if order != sorted(order):
+        faults.append(f"sections are not in the order {', '.join(SECTIONS)}")
+    for body in root.iter("body"):
+        moves = any(child.tag in ("joint", "freejoint") for child in body)
+        if moves and body.find("inertial") is None:
+            faults.append(f"moving body '{body.get('name')}' has no inertial of its own")
+    if root.find("./keyframe/key[@name='home']") is None:
+        faults.append("no keyframe 'home'")
+    return faults
+
+
+def _compiles(machine: Machine) -> list[str]:
+    spec = build_spec(machine)
+    cameras = [camera.name for camera in spec.cameras]
+    faults = [f"camera '{name}' is missing" for name in CAMERAS if name not in cameras]
+    seen, lean = spec.compile(), physics_model(machine, spec)
+    if not np.array_equal(seen.body_mass, lean.body_mass):
+        faults.append('geoms add to the masses of the bodies; give them mass="0"')
+    return faults
+
+
+def _gains(machine: Machine) -> list[str]:
+    written = mujoco.MjSpec.from_file(str(machine.model_path))
+    loops = drives(machine, physics_model(machine, build_spec(machine)))
+    faults = []
+    for name, loop in zip(machine.axes.names, loops, strict=True):
+        axis, actuator = machine.axis(name), written.actuator(name)
+        pairs = (
+            ("kp", -float(actuator.biasprm[1]), loop.position_gain),
+            ("kv", -float(actuator.biasprm[2]), loop.velocity_gain),
+            ("armature", float(written.joint(axis.joint).armature), reflected_inertia(axis)),
+        )
+        faults += [
+            f"{name}: {what} is written as {there:g}, but {follows:g} follows"
+            for what, there, follows in pairs
+            if abs(there - follows) > _ROUNDED * abs(follows)
+        ]
+    return faults
+
+
+def _holds_still(machine: Machine) -> list[str]:
+    joints = _run(machine, np.zeros((2000, len(machine.axes))))
+    drift = np.ptp(joints, axis=0)
+    return [
+        f"{name} drifts by {value:.4f}"
+        for name, value in zip(machine.axes.names, drift, strict=True)
+        if value > _STILL
+    ]
+
+
+def _survives_shaking(machine: Machine) -> list[str]:
+    """Sums of sines with pseudo-random phases about mid travel, rising from rest.
+
+    Their speeds and accelerations together stay below half of what the axes can do.
+    """
+    period = machine.file.servo_period_s
+    time = period * np.arange(3000)[:, None]
+    rise = np.sin(np.pi / 2 * np.minimum(time[:, 0] / 0.5, 1.0)) ** 4
+    generator = np.random.default_rng(20230411)
+    columns = []
+    for name in machine.axes.names:
+        axis = machine.axis(name)
+        low, high = axis.travel or (-90.0, 90.0)
+        rates = 2.0 * np.pi * generator.uniform(0.5, 6.0, 5)
+        reach = np.minimum(axis.velocity / rates, axis.acceleration / rates**2) / (2.0 * len(rates))
+        waves = np.minimum(reach, (high - low) / 20.0) * np.sin(
+            rates * time + generator.uniform(0.0, 2.0 * np.pi, 5)
+        )
+        columns.append((low + high) / 2.0 + waves.sum(axis=1) * rise)
+    joints = _run(machine, np.stack(columns, axis=1))
+    return [] if np.isfinite(joints).all() else ["the joints left the numbers"]
+
+
+def _run(machine: Machine, position: FloatArray) -> FloatArray:
+    period = machine.file.servo_period_s
+    count = len(position)
+    velocity = np.gradient(position, period, axis=0)
+    acceleration = np.gradient(velocity, period, axis=0)
+    none = np.zeros(count, np.int64)
+    time = period * np.arange(count, dtype=np.float64)
+    points = Setpoints(time, none, none, np.zeros(count), position, velocity, acceleration)
+    run = simulate(machine, build_spec(machine), [points])
+    joints = np.concatenate([samples.joint_position for samples in run])
+    if run.alarm is not None:
+        raise SimulationError(str(run.alarm))
+    return joints
