@@ -177,8 +177,14 @@ class VideoTable(Table):
 
     cameras: tuple[str, ...] = ("overview",)
     """Named cameras, shown one after the other."""
+    layout: Literal["sequence", "split"] = "sequence"
+    """``split``: all cameras at once, side by side."""
     seconds: Positive = 12.0
     """Length of the video; the run is sped up or slowed down to fit [s]."""
+    speed: Positive | None = None
+    """Times faster than in reality, instead of a length."""
+    quality: Literal["draft", "final"] = "draft"
+    """``final`` has shadows, smooth edges and a finer stock, and takes several times as long."""
     fps: Annotated[int, Field(ge=1, le=60)] = 25
     size: tuple[Annotated[int, Field(ge=64, le=1920)], Annotated[int, Field(ge=64, le=1080)]] = (
         1280,

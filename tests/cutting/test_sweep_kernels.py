@@ -39,7 +39,16 @@ def swept(
     heights = np.zeros(shape)
     removed, depth = np.zeros(len(points) - 1), np.zeros(len(points) - 1)
     profile = dataclasses.astuple(cutter)
-    changed = sweep(heights, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth)
+    marks = np.zeros(shape)
+    mark = np.arange(1.0, len(removed) + 1.0, dtype=np.float64)
+    changed = sweep(
+        heights, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, marks, mark
+    )
+    np.testing.assert_array_equal(marks > 0, heights < 0)
+    unmarked = np.zeros(shape)
+    none = np.zeros((0, 0))
+    sweep(unmarked, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, none, mark)
+    np.testing.assert_array_equal(unmarked, heights)
     return heights, removed, depth, changed
 
 

@@ -97,6 +97,7 @@ def test_a_run_without_stock_is_filmed_too(options: Options, tmp_path: Path) -> 
         ({"video": VIDEO.model_copy(update={"cameras": ("side",)})}, "has overview, top"),
         ({"video": VIDEO.model_copy(update={"cameras": ()})}, "no camera is named"),
         ({"quality": "best"}, "there are draft, final"),
+        ({"video": VIDEO.model_copy(update={"cameras": ("ride",)})}, "part, riding"),
     ],
 )
 def test_what_cannot_be_filmed_is_refused(
@@ -106,6 +107,38 @@ def test_what_cannot_be_filmed_is_refused(
     with pytest.raises(RenderError, match=message):
         film(**{**options, "video": VIDEO, "out": tmp_path / "run.mp4", **change})
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".webp"])
+def test_moving_pictures_for_a_page(options: Options, tmp_path: Path, suffix: str) -> None:
+    out = film(**options, video=VIDEO, out=tmp_path / f"run{suffix}")
+    with Image.open(out) as pictures:
+        assert getattr(pictures, "n_frames", 1) == 20
+        assert pictures.size == (320, 180)
+        assert pictures.info["loop"] == 0
+        first = np.asarray(pictures.convert("RGB")).astype(int)
+        pictures.seek(19)
+        last = np.asarray(pictures.convert("RGB")).astype(int)
+    assert first.std() > 20
+    assert np.abs(last - first).mean() > 5
+
+
+def test_unknown_format_names_the_known(options: Options, tmp_path: Path) -> None:
+    with pytest.raises(RenderError, match=r"\.mp4, \.gif, \.webp"):
+        film(**options, video=VIDEO, out=tmp_path / "run.avi")
+
+
+def test_split_picture_shows_all_cameras_at_once(options: Options, tmp_path: Path) -> None:
+    video = VIDEO.model_copy(update={"layout": "split", "speed": 1.0})
+    out = film(**options, video=video, out=tmp_path / "run.mp4")
+    with av.open(str(out)) as container:
+        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
+    assert len(frames) == 10, "a run of a second at its own speed"
+    left, right = frames[5][40:120, :158].astype(int), frames[5][40:120, 162:].astype(int)
+    assert left.std() > 20
+    assert right.std() > 20
+    assert np.abs(left - right).mean() > 5
+    assert frames[5][60:120, 159].mean() > 180, "a line parts the fields"
 
 
 def test_unwritable_place_is_said(options: Options, tmp_path: Path) -> None:

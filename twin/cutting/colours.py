@@ -6,9 +6,9 @@ import numpy.typing as npt
 from twin.cutting.height_map import HeightMap
 from twin.nc.canonical import FloatArray
 
-RAW_RGB = (142, 148, 156)
+RAW_RGB = (150, 157, 166)
 """The blank's own skin."""
-MACHINED_RGB = (222, 227, 233)
+MACHINED_RGB = (214, 219, 225)
 """Where a tool went."""
 UNMEASURED_RGB = (170, 170, 170)
 

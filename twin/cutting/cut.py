@@ -72,6 +72,8 @@ class Cutter:
         changed: Cells that changed in the last ``add``: row, row end, column, column end; none
             when the rows end before they begin.
         tool: What is in the spindle after the last ``add``.
+        marks: Way of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
+            the marks that a cutter leaves. Of no size unless asked for.
     """
 
     def __init__(
@@ -82,6 +84,7 @@ class Cutter:
         part_zero: FloatArray,
         *,
         along: Literal["joints", "setpoints"] = "joints",
+        keep_marks: bool = False,
     ) -> None:
         """Lay the uncut stock on the table.
 
@@ -91,6 +94,7 @@ class Cutter:
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             along: Whether the simulated motion cuts or the commanded one.
+            keep_marks: Whether to note the cutter's marks, for pictures.
 
         Raises:
             ConfigError: The stock is too large for its grid, its file cannot be read, or its
@@ -101,6 +105,8 @@ class Cutter:
         corner = np.asarray(part_zero[:3]) - np.array([*part_frame.center, 0.0])
         self.map = blank(stock, corner, stock.cell or default_cell(self._plan.tools))
         self.changed = (0, 0, 0, 0)
+        self.marks = np.zeros(self.map.heights.shape if keep_marks else (0, 0))
+        self._travelled = 0.0
         self._material = kienzle(stock)
         self._along = along
         self._part_frame = part_frame
@@ -169,6 +175,8 @@ class Cutter:
         points, sample = points[chosen], chosen[1:] - 1
         overlaps = self._overlaps(points)
         removed, depth = np.zeros(len(sample)), np.zeros(len(sample))
+        travelled = self._travelled + np.append(0.0, np.cumsum(_lengths(points)))
+        self._travelled = float(travelled[-1])
         changed = sweep(
             self.map.heights,
             self.map.origin,
@@ -178,6 +186,8 @@ class Cutter:
             dataclasses.astuple(edge),
             removed,
             depth,
+            self.marks,
+            travelled[1:],
         )
         self.changed = union(self.changed, changed)
         self._removed += float(removed.sum())
@@ -224,6 +234,10 @@ class Cutter:
             self._force = max(self._force or 0.0, float(force.max()))
             self._power = max(self._power or 0.0, float(load.power.max()))
         self._ledger.add(stretches, cutting_width(stretches, self.tool.diameter), force)
+
+
+def _lengths(points: FloatArray) -> FloatArray:
+    return np.linalg.norm(np.diff(points, axis=0), axis=1)
 
 
 Rectangle = tuple[int, int, int, int]

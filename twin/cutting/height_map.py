@@ -56,6 +56,12 @@ class HeightMap:
         """Y of the middles of the rows of cells, shape (ny,) [mm]."""
         return self.origin[1] + self.cell * np.arange(self.heights.shape[0])
 
+    @property
+    def corners(self) -> FloatArray:
+        """Two opposite corners of the box around the blank, shape (2, 3) [mm]."""
+        center, half = np.array(self.outline.center), np.array(self.outline.half)
+        return np.array([[*(center - half), self.bottom], [*(center + half), self.top]])
+
     def solid(self) -> BoolArray:
         """Cells that hold any material, shape (ny, nx)."""
         return self.heights > self.bottom

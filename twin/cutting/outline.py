@@ -27,6 +27,11 @@ class Outline:
     round: bool
     bore: float = 0.0
 
+    @property
+    def convex(self) -> bool:
+        """Whether every point of it can be seen from its middle."""
+        return not self.bore
+
     def contains(self, x: FloatArray, y: FloatArray) -> BoolArray:
         """Which points lie inside or on the edge."""
         across, along = np.abs(x - self.center[0]), np.abs(y - self.center[1])

@@ -45,16 +45,22 @@ def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> trimesh.
             np.stack([end, start + below, end + below], 1),
         ]
     )
-    faces = np.concatenate([top_faces, top_faces[:, ::-1] + below, walls])
+    if np.array_equal(patches, surface.patches) and height_map.outline.convex:
+        apex = np.full(len(start), 2 * below)
+        underside = np.stack([end + below, start + below, apex], 1)
+    else:
+        underside = top_faces[:, ::-1] + below
+    faces = np.concatenate([top_faces, underside, walls])
     plan = np.stack([surface.x.ravel(), surface.y.ravel()], 1)
     top = np.column_stack([plan, heights.ravel()])
     bottom = np.column_stack([plan, np.full(below, height_map.bottom)])
     used, renumbered = np.unique(faces, return_inverse=True)
-    vertices = np.concatenate([top, bottom])[used]
+    middle = [*height_map.outline.center, height_map.bottom]
+    vertices = np.concatenate([top, bottom, [middle]])[used]
     painted = None
     if colours is not None:
         skin = np.where(surface.cell.ravel() < 0, 0, surface.cell.ravel())
-        raw = np.tile(np.array(RAW_RGB, np.uint8), (below, 1))
+        raw = np.tile(np.array(RAW_RGB, np.uint8), (below + 1, 1))
         painted = np.concatenate([colours.reshape(-1, 3)[skin], raw])[used]
     faces = renumbered.reshape(faces.shape)
     return trimesh.Trimesh(vertices, faces, vertex_colors=painted, process=False)

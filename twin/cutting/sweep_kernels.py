@@ -78,6 +78,8 @@ def sweep(
     profile: tuple[float, float, float, float],
     removed: FloatArray,
     depth: FloatArray,
+    marks: FloatArray,
+    mark: FloatArray,
 ) -> tuple[int, int, int, int]:
     """Cut the material that the tool meets on its way from point to point.
 
@@ -93,6 +95,8 @@ def sweep(
         profile: Radius, flat, corner, slope of ``twin.cutting.tools.Profile``.
         removed: Set to the material removed by each line, shape (n - 1,) [mm³].
         depth: Set to the greatest depth of material removed by each line, shape (n - 1,) [mm].
+        marks: Set to the line's ``mark`` where it cut, shape (ny, nx); of no size, if nobody asks.
+        mark: What each line leaves in ``marks``, shape (n - 1,).
 
     Returns:
         First and last-but-one row, first and last-but-one column of the cells that changed.
@@ -114,12 +118,17 @@ def sweep(
                 continue
             line = heights[row, first:end]
             x, y = origin[0] + first * cell, origin[1] + row * cell
+            before = line.copy() if marks.size else line
             cut, most = _cut_row(line, x, y, cell, bottom, points[i], points[i + 1], profile)
             if cut > 0.0:
                 volume += cut
                 deepest = max(deepest, most)
                 row_first, row_end = min(row_first, row), max(row_end, row + 1)
                 column_first, column_end = min(column_first, first), max(column_end, end)
+                if marks.size:
+                    for k in range(len(line)):
+                        if line[k] < before[k]:
+                            marks[row, first + k] = mark[i]
         removed[i] = volume * cell * cell
         depth[i] = deepest
     return row_first, row_end, column_first, column_end

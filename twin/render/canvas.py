@@ -19,6 +19,9 @@ SHOWN_GROUPS = (0, 1, 2)
 HIDDEN_GROUP = 5
 """Geom group of what is hidden for a while."""
 
+FILL_SHARE = 0.45
+"""Share of a light that its shadows do not take away."""
+
 _SPARE_GEOMS = 200
 """Scene geoms beside the model's own, for lights' and frames' decoration."""
 
@@ -37,7 +40,7 @@ class Quality:
     shadows: bool
     samples: int
     drawn_cells: int
-    shadow_map: int = 2048
+    shadow_map: int = 4096
 
 
 DRAFT = Quality(shadows=False, samples=0, drawn_cells=160)
@@ -50,6 +53,24 @@ def prepare(spec: mujoco.MjSpec, quality: Quality, size: tuple[int, int]) -> Non
     spec.visual.global_.offwidth, spec.visual.global_.offheight = size
     spec.visual.quality.offsamples = quality.samples
     spec.visual.quality.shadowsize = quality.shadow_map
+    if quality.shadows:
+        _soften_shadows(spec)
+
+
+def _soften_shadows(spec: mujoco.MjSpec) -> None:
+    """Let a part of every light that casts shadows shine through, as from a bright workshop."""
+    for light in [light for light in spec.lights if light.castshadow]:
+        through = FILL_SHARE * np.array(light.diffuse)
+        light.diffuse = np.array(light.diffuse) - through
+        body = light.parent
+        body.add_light(
+            type=light.type,
+            pos=light.pos,
+            dir=light.dir,
+            diffuse=through,
+            specular=[0.0, 0.0, 0.0],
+            castshadow=False,
+        )
 
 
 class Canvas:
@@ -68,21 +89,22 @@ class Canvas:
         self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self.context)
         self._view = mujoco.MjrRect(0, 0, *size)
-        self._shape = (size[1], size[0], 3)
 
-    def draw(self, data: mujoco.MjData, camera: int) -> Pixels:
+    def draw(self, data: mujoco.MjData, camera: int, size: tuple[int, int] | None = None) -> Pixels:
         """Draw one frame, top row first.
 
         Args:
             data: Positions of everything (after ``mj_forward`` or the like).
             camera: Number of the camera in the model.
+            size: Width and height, at most those of the canvas [px]; None: all of it.
 
         Returns:
             Shape (height, width, 3).
         """
         self._update(data, camera)
-        mujoco.mjr_render(self._view, self._scene, self.context)
-        return self._read()
+        view = self._view if size is None else mujoco.MjrRect(0, 0, *size)
+        mujoco.mjr_render(view, self._scene, self.context)
+        return self._read(view)
 
     def draw_objects(self, data: mujoco.MjData, camera: int) -> npt.NDArray[np.int32]:
         """Which geom every pixel shows: its number in the model, -1 for none.
@@ -96,7 +118,7 @@ class Canvas:
         self._scene.flags[mujoco.mjtRndFlag.mjRND_IDCOLOR] = True
         mujoco.mjr_render(self._view, self._scene, self.context)
         self._scene.flags[:] = flags
-        red, green, blue = np.moveaxis(self._read().astype(np.int64), 2, 0)
+        red, green, blue = np.moveaxis(self._read(self._view).astype(np.int64), 2, 0)
         number = red + 256 * green + 65536 * blue
         geoms = np.full(self._scene.ngeom + 1, -1, np.int32)
         for geom in self._scene.geoms[: self._scene.ngeom]:
@@ -116,9 +138,9 @@ class Canvas:
             self._scene,
         )
 
-    def _read(self) -> Pixels:
-        pixels = np.zeros(self._shape, np.uint8)
-        mujoco.mjr_readPixels(pixels, None, self._view, self.context)
+    def _read(self, view: mujoco.MjrRect) -> Pixels:
+        pixels = np.zeros((view.height, view.width, 3), np.uint8)
+        mujoco.mjr_readPixels(pixels, None, view, self.context)
         return pixels[::-1]
 
     def upload_mesh(self, mesh: int) -> None:

@@ -1,23 +1,52 @@
-"""Frames into an MP4 file: H.264 in yuv420p, which every player and browser shows."""
+"""Frames into a video file: MP4 (H.264 in yuv420p plays everywhere), or GIF or WebP for a page."""
 
 import collections
 import concurrent.futures
 import contextlib
-from collections.abc import Callable, Iterator
+import dataclasses
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
 from pathlib import Path
 
 import av
 import numpy as np
 from av.codec.codec import UnknownCodecError
 from av.error import FFmpegError
+from av.filter import Graph
 
 from twin.errors import RenderError
 from twin.files import complete_or_absent
 from twin.render.canvas import Pixels
 from twin.render.doctor import H264_ENCODER, missing_encoder
 
-QUALITY_CRF = "19"
-"""Constant rate factor: 0 is lossless, 23 the encoder's default, 18 looks lossless."""
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Format:
+    """How a kind of file is encoded.
+
+    Attributes:
+        encoder: FFmpeg's name of the encoder.
+        pixels: What it takes.
+        encoder_options: For the encoder.
+        file_options: For the file.
+        palette: Whether it shows 256 colours at a time.
+    """
+
+    encoder: str
+    pixels: str
+    encoder_options: Mapping[str, str]
+    file_options: Mapping[str, str]
+    palette: bool = False
+
+
+FORMATS = {
+    # Rate factor 0 is lossless, 23 the encoder's default, 18 looks lossless.
+    ".mp4": Format(
+        H264_ENCODER, "yuv420p", {"crf": "19", "preset": "veryfast"}, {"movflags": "+faststart"}
+    ),
+    ".gif": Format("gif", "pal8", {}, {"loop": "0"}, palette=True),
+    ".webp": Format("libwebp_anim", "yuv420p", {"quality": "70"}, {"loop": "0"}),
+}
 
 _WAITING = 6
 """Frames that may wait for the encoder; the drawing waits for it beyond that."""
@@ -30,11 +59,17 @@ class VideoWriter:
     """Encodes frames in a thread of its own; open it with ``video_writer``."""
 
     def __init__(self, path: Path, size: tuple[int, int], fps: int) -> None:
-        self._container = av.open(str(path), "w", options={"movflags": "+faststart"})
-        self._stream = self._container.add_stream(H264_ENCODER, rate=fps)
-        self._stream.width, self._stream.height = size
-        self._stream.pix_fmt = "yuv420p"
-        self._stream.options = {"crf": QUALITY_CRF, "preset": "veryfast"}
+        kind = FORMATS[path.suffix.lower()]
+        self._container = av.open(str(path), "w", options=dict(kind.file_options))
+        stream = self._container.add_stream(kind.encoder, rate=fps)
+        assert isinstance(stream, av.VideoStream)
+        stream.width, stream.height = size
+        stream.pix_fmt = kind.pixels
+        stream.options = dict(kind.encoder_options)
+        self._stream = stream
+        self._time_base = Fraction(1, fps)
+        self._palettes = _palettes(size, self._time_base) if kind.palette else None
+        self._frames = 0
         self._thread = concurrent.futures.ThreadPoolExecutor(1, "encoder")
         self._waiting: collections.deque[concurrent.futures.Future[None]] = collections.deque()
 
@@ -66,8 +101,32 @@ class VideoWriter:
             self._container.close()
 
     def _encode(self, frame: Frame) -> None:
-        pixels = np.ascontiguousarray(frame())
-        self._container.mux(self._stream.encode(av.VideoFrame.from_ndarray(pixels, "rgb24")))
+        picture = av.VideoFrame.from_ndarray(np.ascontiguousarray(frame()), "rgb24")
+        picture.pts, picture.time_base = self._frames, self._time_base
+        self._frames += 1
+        if self._palettes is not None:
+            self._palettes.vpush(picture)
+            picture = self._palettes.vpull()
+        self._container.mux(self._stream.encode(picture))
+
+
+def _palettes(size: tuple[int, int], time_base: Fraction) -> Graph:
+    """A filter that chooses 256 colours anew for every frame."""
+    graph = Graph()
+    source = graph.add_buffer(
+        width=size[0], height=size[1], format=av.VideoFormat("rgb24"), time_base=time_base
+    )
+    split = graph.add("split")
+    choose = graph.add("palettegen", "stats_mode=single")
+    use = graph.add("paletteuse", "new=1:dither=bayer")
+    sink = graph.add("buffersink")
+    source.link_to(split)
+    split.link_to(choose, 0, 0)
+    split.link_to(use, 1, 0)
+    choose.link_to(use, 0, 1)
+    use.link_to(sink)
+    graph.configure()
+    return graph
 
 
 @contextlib.contextmanager
@@ -75,13 +134,15 @@ def video_writer(path: Path, size: tuple[int, int], fps: int) -> Iterator[VideoW
     """Open a video; it appears under ``path`` when the block ends without error.
 
     Args:
-        path: An ``.mp4`` file.
+        path: The file; its suffix is one of ``FORMATS``.
         size: Width and height, both even [px].
         fps: Frames per second.
 
     Raises:
-        RenderError: There is no encoder, or the file cannot be written.
+        RenderError: There is no encoder or no such format, or the file cannot be written.
     """
+    if path.suffix.lower() not in FORMATS:
+        raise RenderError(f"{path}: films are written as {', '.join(FORMATS)}")
     try:
         with complete_or_absent(path) as temporary:
             writer = VideoWriter(temporary, size, fps)

@@ -35,12 +35,13 @@ def film(
     source: Sequence[str],
     video: VideoTable,
     out: Path,
-    quality: str = "draft",
+    quality: str | None = None,
     rapid_moves: BoolArray | None = None,
     contour_um: FloatArray | None = None,
+    error_scale_um: float | None = None,
     progress: Progress | None = None,
 ) -> Path:
-    """Film a recorded run: MP4, one camera after the other.
+    """Film a recorded run as MP4, GIF or WebP: one camera after the other, or all side by side.
 
     Args:
         recording: What to replay; the simulated joints are shown.
@@ -50,10 +51,12 @@ def film(
         tool: What is in the spindle.
         source: Lines of the program.
         video: Cameras, length, frame rate and size; odd sizes are made even.
-        out: The film, complete or not at all.
-        quality: ``draft`` or ``final``.
+        out: The film, complete or not at all; ``.mp4``, ``.gif`` or ``.webp``.
+        quality: ``draft`` or ``final``; None: what ``video`` says.
         rapid_moves: Whether each move of the program is a rapid; None: none is.
-        contour_um: Contour error of every sample, shape (n,) [µm]; None: the lag is shown.
+        contour_um: Contour error of every sample, shape (n,) [µm], which colours the trail; None:
+            the lag is shown.
+        error_scale_um: Error that has the trail's last colour [µm]; None: the greatest.
         progress: Called after every frame.
 
     Returns:
@@ -71,12 +74,16 @@ def film(
         tool=tool,
         stock=stock,
         rapid_moves=rapid_moves,
+        error_um=contour_um,
+        error_scale_um=error_scale_um,
     )
+    quality = quality or video.quality
     _require(scene, video.cameras, quality)
     size = (video.size[0] // 2 * 2, video.size[1] // 2 * 2)
-    frames = max(1, round(video.seconds * video.fps))
-    ends = frame_ends(len(recording), frames)
     duration = len(recording) * recording.header.period_s
+    seconds = video.seconds if video.speed is None else duration / video.speed
+    frames = max(1, round(seconds * video.fps))
+    ends = frame_ends(len(recording), frames)
     gauge = Gauge(recording, contour_um)
     display = gauge.display(source, size, duration * video.fps / frames)
     with stage(scene, size, QUALITIES[quality]) as play, video_writer(out, size, video.fps) as film:
@@ -86,8 +93,10 @@ def film(
             gauge.add(samples)
             if not due:
                 continue
-            camera = video.cameras[done * len(video.cameras) // frames]
-            pixels, reading = play.picture(camera), gauge.reading()
+            cameras = video.cameras
+            if video.layout == "sequence":
+                cameras = (cameras[done * len(cameras) // frames],)
+            pixels, reading = play.picture(*cameras), gauge.reading()
             film.write(lambda pixels=pixels, reading=reading: display.draw(pixels, reading))
             done += 1
             if progress is not None:
@@ -111,6 +120,7 @@ def still(
     quality: str = "final",
     rapid_moves: BoolArray | None = None,
     contour_um: FloatArray | None = None,
+    error_scale_um: float | None = None,
     display: bool = True,
 ) -> Path:
     """Draw one moment of a recorded run as a PNG.
@@ -130,6 +140,7 @@ def still(
         quality: See ``film``.
         rapid_moves: See ``film``.
         contour_um: See ``film``.
+        error_scale_um: See ``film``.
         display: Whether the head-up display is on the picture.
 
     Returns:
@@ -146,6 +157,8 @@ def still(
         tool=tool,
         stock=stock,
         rapid_moves=rapid_moves,
+        error_um=contour_um,
+        error_scale_um=error_scale_um,
     )
     _require(scene, (camera,), quality)
     end = moment(recording, time_s=time_s, line=line)

@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -214,9 +215,9 @@ def _paste(frame: Pixels, panel: Image.Image, left: int, top: int) -> None:
 
 
 def _printable(line: str) -> str:
-    return "".join(
-        character if character.isprintable() else " " for character in line.rstrip().expandtabs(4)
-    )
+    """A source line for the panel: wide gaps before comments are closed."""
+    shown = "".join(character if character.isprintable() else " " for character in line)
+    return re.sub(r" {3,}", "  ", shown.strip())
 
 
 def _clock(seconds: float) -> str:

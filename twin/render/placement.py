@@ -16,8 +16,8 @@ SPINDLE_NOSE = "spindle_nose"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Placement:
-    """The part's frame, seen from the body that carries the part.
+class Frame:
+    """The part's frame, seen from a body of the machine.
 
     Attributes:
         origin: Where the part frame's origin lies in the body's frame, shape (3,) [m].
@@ -37,6 +37,18 @@ class Placement:
         result = np.zeros(4)
         mujoco.mju_mat2Quat(result, self.rotation.ravel())
         return result
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Placement(Frame):
+    """The part's frame, seen from the body that carries the part and turns with it.
+
+    Attributes:
+        at_rest: The same, seen from the body that carries the turning one, while the part's frame
+            is parallel to the machine's.
+    """
+
+    at_rest: Frame
 
 
 class Joints:
@@ -70,18 +82,21 @@ def place(
     if machine.part_frame.rotary is not None:
         zero[machine.part_frame.rotary] = turn_zero
 
-    def tip_from_body(offset: FloatArray) -> FloatArray:
+    def tip_from(body: int, offset: FloatArray) -> FloatArray:
         position = zero.copy()
         position[:3] += offset
         joints.set(data, position)
         mujoco.mj_kinematics(model, data)
-        body = data.body(ROTARY_TABLE)
         tip = tip_position(model, data, tool_length)
-        return body.xmat.reshape(3, 3).T @ (tip - body.xpos)
+        return data.xmat[body].reshape(3, 3).T @ (tip - data.xpos[body])
 
-    origin = tip_from_body(np.zeros(3))
-    ways = [(tip_from_body(direction) - origin) / MM for direction in np.eye(3)]
-    return Placement(origin, np.stack(ways, axis=1))
+    def frame(body: int) -> tuple[FloatArray, FloatArray]:
+        origin = tip_from(body, np.zeros(3))
+        ways = [(tip_from(body, direction) - origin) / MM for direction in np.eye(3)]
+        return origin, np.stack(ways, axis=1)
+
+    table = int(model.body(ROTARY_TABLE).id)
+    return Placement(*frame(table), Frame(*frame(int(model.body_parentid[table]))))
 
 
 def tip_position(model: mujoco.MjModel, data: mujoco.MjData, tool_length: float) -> FloatArray:

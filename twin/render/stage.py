@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import math
 from collections.abc import Iterator
 
 import mujoco
@@ -14,12 +15,17 @@ from twin.job import StockTable, ToolTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.recording import Recording, Samples
+from twin.render.cameras import PART_CAMERAS, add_part_cameras, framed
 from twin.render.canvas import Canvas, Pixels, Quality, canvas, prepare
 from twin.render.placement import Joints, Placement, place
 from twin.render.replay import rapid_mask
+from twin.render.skin import Skin
 from twin.render.stock_surface import StockSurface
 from twin.render.trail import Trail, trail_points
 from twin.render.work_holding import add_work_holding
+
+BETWEEN_FIELDS = 255
+"""Grey of the line between the fields of a split picture."""
 
 TRAIL_SHARE = 0.003
 """Radius of the trail's tube, as a share of the trail's extent."""
@@ -40,10 +46,15 @@ class Scene:
     stock: StockTable | None = None
     rapid_moves: BoolArray | None = None
     """Whether each move of the program is a rapid; none: none is."""
+    error_um: FloatArray | None = None
+    """Error of every sample that colours the trail, shape (n,) [µm]; none: one colour."""
+    error_scale_um: float | None = None
+    """Error that has the last colour [µm]; none: the greatest."""
 
     def camera_names(self) -> list[str]:
         """Names of the cameras that can be asked for."""
-        return [camera.name for camera in self.spec.cameras if camera.name]
+        own = [camera.name for camera in self.spec.cameras if camera.name]
+        return own + [name for name in PART_CAMERAS if name not in own]
 
     def require_camera(self, name: str) -> None:
         """Refuse a camera that the machine does not have.
@@ -65,6 +76,7 @@ class Stage:
         model: mujoco.MjModel,
         placement: Placement,
         drawing: Canvas,
+        size: tuple[int, int],
         surface: StockSurface | None,
         cutter: Cutter | None,
         trail: Trail,
@@ -74,6 +86,7 @@ class Stage:
         self.placement = placement
         self._scene = scene
         self._drawing = drawing
+        self._size = size
         self._surface = surface
         self._cutter = cutter
         self._trail = trail
@@ -93,10 +106,22 @@ class Stage:
             self._cutter.add(samples, rapid_mask(samples, self._scene.rapid_moves))
             self._changed = union(self._changed, self._cutter.changed)
 
-    def picture(self, camera: str) -> Pixels:
-        """Draw what a camera sees now, shape (height, width, 3)."""
+    def picture(self, *cameras: str) -> Pixels:
+        """Draw what cameras see now, side by side in equal fields, shape (height, width, 3)."""
         self._refresh()
-        return self._drawing.draw(self.data, int(self.model.camera(camera).id))
+        width, height = self._size
+        columns = math.ceil(math.sqrt(len(cameras)))
+        rows = -(-len(cameras) // columns)
+        field = (width // columns, height // rows)
+        whole = np.full((height, width, 3), BETWEEN_FIELDS, np.uint8)
+        for number, camera in enumerate(cameras):
+            view = self._drawing.draw(self.data, int(self.model.camera(camera).id), field)
+            if len(cameras) == 1:
+                return view
+            top, left = field[1] * (number // columns), field[0] * (number % columns)
+            edge = (field[1] - (1 if rows > 1 else 0), field[0] - 1)
+            whole[top : top + edge[0], left : left + edge[1]] = view[: edge[0], : edge[1]]
+        return whole
 
     def objects(self, camera: str) -> np.ndarray[tuple[int, int], np.dtype[np.int32]]:
         """Number of the geom that every pixel shows now, -1 for none, shape (height, width)."""
@@ -134,20 +159,25 @@ def stage(scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Sta
     placement = place(scene.machine, spec.compile(), scene.tool.length, turn_zero)
     cutter = surface = None
     if scene.stock is not None:
-        cutter = Cutter(scene.stock, scene.tool, header.part_frame, header.part_zero)
-        surface = StockSurface(cutter.map, quality.drawn_cells)
+        cutter = Cutter(
+            scene.stock, scene.tool, header.part_frame, header.part_zero, keep_marks=True
+        )
+        skin = Skin(cutter.map, cutter.marks)
+        surface = StockSurface(cutter.map, skin, quality.drawn_cells)
         surface.add_to(spec)
         corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
         add_work_holding(spec, scene.stock, placement, corner)
-    points = trail_points(scene.recording, scene.rapid_moves)
-    trail = Trail(points, _trail_radius(points.position))
+    points = trail_points(scene.recording, scene.rapid_moves, scene.error_um)
+    seen = points.position if cutter is None else cutter.map.corners
+    add_part_cameras(spec, placement, *framed(seen))
+    trail = Trail(points, _trail_radius(points.position), scene.error_scale_um)
     trail.add_to(spec)
     model = spec.compile()
     if surface is not None:
         surface.bind(model, placement)
     trail.bind(model, placement)
     with canvas(model, size, quality) as drawing:
-        yield Stage(scene, model, placement, drawing, surface, cutter, trail)
+        yield Stage(scene, model, placement, drawing, size, surface, cutter, trail)
 
 
 def _trail_radius(points: FloatArray) -> float:

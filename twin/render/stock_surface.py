@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from twin.cutting.colours import RAW_RGB
 from twin.cutting.cut import Rectangle
 from twin.cutting.height_map import HeightMap
 from twin.cutting.net import Net, net, open_edges
@@ -18,19 +19,12 @@ from twin.nc.canonical import FloatArray, IntArray
 from twin.render.canvas import Canvas
 from twin.render.live_mesh import LiveMesh, add_live_mesh
 from twin.render.placement import Placement
+from twin.render.shading import corner_normals
+from twin.render.skin import MATERIAL, Skin
 
 TILE = 24
 """Squares along a tile's side."""
 
-SMOOTH_COSINE = 0.8
-"""Faces whose normal differs more than this from a vertex's keep their own, so that steps look
-like steps."""
-
-RAW_RGB = (148, 154, 162)
-"""Colour of the blank's own skin."""
-MACHINED_RGB = (226, 230, 235)
-"""Colour where a tool went."""
-MATERIAL = "stock"
 SIDE = "stock_side"
 FLAT_FACES = np.array([[0, 1, 2], [0, 2, 3]])
 
@@ -73,14 +67,16 @@ class StockSurface:
     before every picture.
     """
 
-    def __init__(self, height_map: HeightMap, drawn_cells: int) -> None:
+    def __init__(self, height_map: HeightMap, skin: Skin, drawn_cells: int) -> None:
         """Choose the drawn net.
 
         Args:
             height_map: The stock before it is cut.
+            skin: What paints it.
             drawn_cells: Most vertices along the longer side.
         """
         self._map = height_map
+        self._skin = skin
         step = max(1, -(-max(height_map.heights.shape) // drawn_cells))
         self._step = step
         self._net = net(height_map, step)
@@ -92,20 +88,10 @@ class StockSurface:
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add the stock's meshes, geoms and texture to a machine's specification."""
-        rows, columns = self._z.shape
-        spec.add_texture(
-            name=MATERIAL,
-            type=mujoco.mjtTexture.mjTEXTURE_2D,
-            width=columns,
-            height=rows,
-            builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
-        )
-        material = spec.add_material(name=MATERIAL, specular=0.5, shininess=0.6)
-        material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = MATERIAL
+        self._skin.add_to(spec)
         raw = [value / 255 for value in (*RAW_RGB, 255)]
-        spec.add_material(name=SIDE, rgba=raw, specular=0.5, shininess=0.6)
-        row, column = np.indices((rows, columns))
-        texels = np.stack([(column + 0.5) / columns, (row + 0.5) / rows], -1)
+        spec.add_material(name=SIDE, rgba=raw, specular=0.45, shininess=0.55)
+        texels = self._skin.texels(self._net.x, self._net.y)
         for tile in self._tiles:
             block = texels[tile.rows, tile.columns].reshape(-1, 2)
             add_live_mesh(spec, tile.name, MATERIAL, block, tile.corners)
@@ -121,10 +107,7 @@ class StockSurface:
         names = [SIDE, *(tile.name for tile in self._tiles)]
         names += [tile.flat_name for tile in self._tiles if tile.whole]
         self._meshes = {name: LiveMesh(model, name, placement) for name in names}
-        self._texture = int(model.texture(MATERIAL).id)
-        first = int(model.tex_adr[self._texture])
-        self._texels = model.tex_data[first : first + 3 * self._z.size]
-        self._set_texture()
+        self._skin.bind(model)
         for tile in self._tiles:
             self._set_tile(tile)
         self._set_side()
@@ -153,8 +136,7 @@ class StockSurface:
                 canvas.upload_mesh(self._set_tile(tile))
         if not np.array_equal(self._z.ravel()[self._edges], before):
             canvas.upload_mesh(self._set_side())
-        self._set_texture()
-        canvas.upload_texture(self._texture)
+        self._skin.update(canvas, changed)
 
     def _vertices(self, tile: _Tile) -> FloatArray:
         block = (tile.rows, tile.columns)
@@ -174,22 +156,13 @@ class StockSurface:
             flat.put(vertices[tile.ends], np.tile([0.0, 0.0, 1.0], (6, 1)))
             return flat.id
         corner = vertices[tile.corners]
-        normals = _face_normals(corner)
-        smooth = self._vertex_normals(tile)[tile.corners]
-        cosine = (normals[:, None] * smooth).sum(axis=2, keepdims=True)
         solid = np.any(corner[..., 2] > self._map.bottom, axis=1)
         fine.put_faces(np.where(solid[:, None], tile.corners, 0))
-        fine.put(vertices, np.where(cosine > SMOOTH_COSINE, smooth, normals[:, None]))
+        normals = corner_normals(
+            self._z, tile.rows, tile.columns, self._net.spacing, corner, tile.corners
+        )
+        fine.put(vertices, normals)
         return fine.id
-
-    def _vertex_normals(self, tile: _Tile) -> FloatArray:
-        """Normals by the gentler of the slopes on either side, shape (n, 3)."""
-        slope_x = _gentler(np.diff(self._z[tile.rows], axis=1), 1)[:, tile.columns]
-        slope_y = _gentler(np.diff(self._z[:, tile.columns], axis=0), 0)[tile.rows]
-        normals = np.stack(
-            [-slope_x / self._net.spacing, -slope_y / self._net.spacing, np.ones_like(slope_x)], -1
-        ).reshape(-1, 3)
-        return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
     def _side_vertices(self) -> FloatArray:
         start, end = self._edges.T
@@ -207,11 +180,6 @@ class StockSurface:
         normals = np.repeat(np.concatenate([self._side_normals] * 2), 3, axis=0)
         self._meshes[SIDE].put(self._side_vertices(), normals)
         return self._meshes[SIDE].id
-
-    def _set_texture(self) -> None:
-        machined = self._z < self._map.top
-        colours = np.where(machined[..., None], MACHINED_RGB, RAW_RGB)
-        self._texels[:] = colours.ravel()
 
 
 def _tiles(grid: Net) -> list[_Tile]:
@@ -237,24 +205,6 @@ def _tiles(grid: Net) -> list[_Tile]:
                 )
             )
     return tiles
-
-
-def _face_normals(corner: FloatArray) -> FloatArray:
-    """Unit normals of faces with corners of shape (n, 3, 3); upwards where a face has no area."""
-    normals = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.where(length > 0, normals / np.maximum(length, 1e-30), [0.0, 0.0, 1.0])
-
-
-def _gentler(steps: FloatArray, axis: int) -> FloatArray:
-    """Per vertex the smaller of the height steps before and after it; 0 where they differ in sign."""
-    edge = [(0, 0), (0, 0)]
-    edge[axis] = (1, 0)
-    before = np.pad(steps, edge, mode="edge")
-    edge[axis] = (0, 1)
-    after = np.pad(steps, edge, mode="edge")
-    smaller = np.where(np.abs(before) < np.abs(after), before, after)
-    return np.where(before * after > 0, smaller, 0.0)
 
 
 def _side_normals(grid: Net, edges: IntArray) -> npt.NDArray[np.float64]:

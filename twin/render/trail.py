@@ -27,7 +27,12 @@ MOST_JOINED = 200
 """Samples that one stretch of the trail may stand for."""
 
 FEED_RGB = (235, 94, 30)
-RAPID_RGB = (38, 150, 92)
+RAPID_RGB = (60, 130, 200)
+ERROR_STOPS = ((0.0, (40, 170, 90)), (0.5, (245, 200, 40)), (1.0, (205, 25, 25)))
+"""From no error to that of the scale."""
+ERROR_COLOURS = 30
+"""Steps of error that the trail can show; feed and rapid follow them in the palette."""
+_PALETTE = ERROR_COLOURS + 2
 SIDES = 3
 """Faces around the tube."""
 MATERIAL = "trail"
@@ -41,15 +46,19 @@ class TrailPoints:
         position: Shape (n, 3) [mm].
         sample: Number of the sample that each point is, shape (n,).
         rapid: Whether the stretch that ends here is a rapid, shape (n,).
+        error: Greatest error of the stretch that ends here, shape (n,) [µm]; NaN where unknown.
     """
 
     position: FloatArray
     sample: IntArray
     rapid: BoolArray
+    error: FloatArray
 
     def __getitem__(self, kept: IntArray) -> "TrailPoints":
-        """A selection of the points."""
-        return TrailPoints(self.position[kept], self.sample[kept], self.rapid[kept])
+        """A selection of the points; errors of those left out go to the next."""
+        starts = np.append(0, kept[:-1] + 1)
+        error = np.maximum.reduceat(self.error, starts) if len(kept) else self.error[:0]
+        return TrailPoints(self.position[kept], self.sample[kept], self.rapid[kept], error)
 
     def thinned(self, tolerance: float) -> "TrailPoints":
         """Fewer points, none of those left out farther than ``tolerance`` [mm] from the trail."""
@@ -59,22 +68,34 @@ class TrailPoints:
         return self[thin(self.position, group, tolerance, np.inf, MOST_JOINED)]
 
 
-def trail_points(recording: Recording, rapid_moves: BoolArray | None) -> TrailPoints:
-    """The trail of a whole recording, with few enough points to be drawn."""
+def trail_points(
+    recording: Recording, rapid_moves: BoolArray | None, error_um: FloatArray | None = None
+) -> TrailPoints:
+    """The trail of a whole recording, with few enough points to be drawn.
+
+    Args:
+        recording: Of n samples.
+        rapid_moves: Whether each move of the program is a rapid; None: none is.
+        error_um: Error of every sample, shape (n,) [µm]; None: unknown.
+    """
     parts = []
     first = 0
     for chunk in recording.chunks():
         position = recording.header.part_frame.position(chunk.joint_position)
         sample = first + np.arange(len(chunk))
-        parts.append(TrailPoints(position, sample, rapid_mask(chunk, rapid_moves)))
+        error = np.full(len(chunk), np.nan) if error_um is None else error_um[sample]
+        parts.append(TrailPoints(position, sample, rapid_mask(chunk, rapid_moves), error))
         parts[-1] = parts[-1].thinned(FINEST_MM)
         first += len(chunk)
     if not parts:
-        return TrailPoints(np.zeros((0, 3)), np.zeros(0, np.int64), np.zeros(0, np.bool_))
+        return TrailPoints(
+            np.zeros((0, 3)), np.zeros(0, np.int64), np.zeros(0, np.bool_), np.zeros(0)
+        )
     points = TrailPoints(
         np.concatenate([part.position for part in parts]),
         np.concatenate([part.sample for part in parts]),
         np.concatenate([part.rapid for part in parts]),
+        np.concatenate([part.error for part in parts]),
     )
     extent = float(np.ptp(points.position, axis=0).max())
     tolerance = FINEST_MM
@@ -93,13 +114,17 @@ class Trail:
     before every picture.
     """
 
-    def __init__(self, points: TrailPoints, radius: float) -> None:
+    def __init__(
+        self, points: TrailPoints, radius: float, error_scale_um: float | None = None
+    ) -> None:
         """Take the points.
 
         Args:
             points: The whole trail.
             radius: Of the tube [mm]; it lies on the trail, so that a floor does not hide it.
+            error_scale_um: Error that has the last colour [µm]; None: the greatest.
         """
+        self._scale = error_scale_um
         self._lift = np.array([0.0, 0.0, radius])
         self._points = points = dataclasses.replace(points, position=points.position + self._lift)
         self._radius = radius
@@ -113,24 +138,41 @@ class Trail:
         spec.add_texture(
             name=MATERIAL,
             type=mujoco.mjtTexture.mjTEXTURE_2D,
-            width=2,
+            width=_PALETTE,
             height=2,
             builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
         )
         material = spec.add_material(name=MATERIAL, emission=0.6, specular=0.0, shininess=0.0)
+        material.rgba = np.array(
+            [1.0, 1.0, 1.0, 0.99], np.float32
+        )  # what is not quite opaque casts no shadow
         material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = MATERIAL
-        palette = np.where(self._points.rapid[1:], 0.25, 0.75)
+        places = (self._colours() + 0.5) / _PALETTE
         for first in self._pieces:
-            across = np.repeat(palette[first : first + POINTS_PER_MESH], 2 * SIDES)
+            across = np.repeat(places[first : first + POINTS_PER_MESH], 2 * SIDES)
             texels = np.stack([across, np.full(len(across), 0.5)], 1)
             faces = _tube_faces(len(across) // (2 * SIDES))
             add_live_mesh(spec, f"{MATERIAL}_{first}", MATERIAL, texels, faces)
+
+    def _colours(self) -> IntArray:
+        """Each stretch's column of the palette, shape (n - 1,)."""
+        error, rapid = self._points.error[1:], self._points.rapid[1:]
+        known = np.isfinite(error)
+        scale = self._scale or max(float(error[known].max(initial=0.0)), 1e-9)
+        share = np.clip(np.nan_to_num(error) / scale, 0.0, 1.0)
+        column = np.round(share * (ERROR_COLOURS - 1)).astype(np.int64)
+        column = np.where(known, column, ERROR_COLOURS)
+        return np.where(rapid, ERROR_COLOURS + 1, column)
 
     def bind(self, model: mujoco.MjModel, placement: Placement) -> None:
         """Take over the compiled meshes; nothing is shown yet."""
         texture = int(model.texture(MATERIAL).id)
         first = int(model.tex_adr[texture])
-        colours = np.array([RAPID_RGB, FEED_RGB] * 2, np.uint8).ravel()
+        share = np.linspace(0.0, 1.0, ERROR_COLOURS)
+        stops = [stop for stop, _ in ERROR_STOPS]
+        error = [np.interp(share, stops, [rgb[i] for _, rgb in ERROR_STOPS]) for i in range(3)]
+        row = np.concatenate([np.stack(error, axis=1), [FEED_RGB, RAPID_RGB]])
+        colours = np.tile(row.round().astype(np.uint8).ravel(), 2)
         model.tex_data[first : first + len(colours)] = colours
         self._meshes = [LiveMesh(model, f"{MATERIAL}_{first}", placement) for first in self._pieces]
         for piece in range(len(self._meshes)):

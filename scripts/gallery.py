@@ -1,0 +1,97 @@
+"""Draw the pictures that README shows: ``python scripts/gallery.py [NAME ...]``.
+
+Every picture is a moment of a shipped program's run, in final quality, made small enough for a
+repository.
+"""
+
+import dataclasses
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from twin.chain import Run
+from twin.preparation import prepare
+from twin.progress import no_progress
+from twin.recording import open_recording
+from twin.render.film import still
+from twin.resources import resource_root
+
+RENDERS = Path(__file__).resolve().parent.parent / "renders"
+LARGEST_BYTES = 300_000
+COLOURS = (256, 192, 128, 96, 64)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Picture:
+    """A moment of a program: at a share of the run's time, seen by a camera."""
+
+    program: str
+    camera: str
+    share: float = 1.0
+    display: bool = True
+
+
+PICTURES = {
+    "mill": Picture(program="mefi/helix", camera="overview", share=0.03),
+    "helix": Picture(program="mefi/helix", camera="part", share=0.045),
+    "scroll": Picture(program="fagor8070/scroll", camera="part", share=0.8),
+    "bolt_hole_ring": Picture(program="fagor8070/bolt_hole_ring", camera="part", share=0.8),
+    "turning": Picture(program="gost/recalculation_3", camera="table", share=0.5),
+    "arc_in_xz": Picture(program="codesys/arc_in_xz_then_xy", camera="part", share=0.75),
+}
+
+
+def draw(picture: Picture, out: Path) -> None:
+    """Run the picture's program and draw its moment."""
+    run = Run(prepare(resource_root("programs") / f"{picture.program}.toml"), keep_contour=True)
+    job = run.preparation.job.file
+    with tempfile.TemporaryDirectory() as folder:
+        run.execute(run.survey(), Path(folder), no_progress)
+        with open_recording(Path(folder) / "recording.h5") as recording:
+            still(
+                recording,
+                spec=run.spec,
+                machine=run.preparation.machine,
+                stock=job.stock,
+                tool=job.tools[0],
+                source=run.preparation.source.lines,
+                out=out,
+                camera=picture.camera,
+                time_s=picture.share * (len(recording) - 1) * recording.header.period_s,
+                rapid_moves=run.rapid_moves,
+                contour_um=np.concatenate(run.contour_um),
+                error_scale_um=job.tolerance.contour_um,
+                display=picture.display,
+            )
+    shrink(out)
+
+
+def shrink(path: Path) -> None:
+    """Take colours out of a PNG until it is small enough."""
+    with Image.open(path) as picture:
+        full = picture.convert("RGB")
+    for colours in COLOURS:
+        full.quantize(colours, dither=Image.Dither.FLOYDSTEINBERG).save(path, optimize=True)
+        if path.stat().st_size <= LARGEST_BYTES:
+            return
+    raise SystemExit(f"{path}: is still larger than {LARGEST_BYTES} bytes")
+
+
+def main() -> None:
+    """Draw the pictures named on the command line, or all."""
+    names = sys.argv[1:] or list(PICTURES)
+    unknown = [name for name in names if name not in PICTURES]
+    if unknown:
+        raise SystemExit(f"no picture {', '.join(unknown)}: there are {', '.join(PICTURES)}")
+    RENDERS.mkdir(exist_ok=True)
+    for name in names:
+        out = RENDERS / f"{name}.png"
+        draw(PICTURES[name], out)
+        print(f"{out}: {out.stat().st_size / 1000:.0f} kB")
+
+
+if __name__ == "__main__":
+    main()
