@@ -95,8 +95,10 @@ def test_a_joint_that_the_model_lacks_is_named_with_those_it_has(tmp_path):
 
 
 def test_a_joint_of_the_wrong_kind_is_refused(tmp_path):
-    text = machine_file("mill4").read_text().replace('joint = "C"', 'joint = "X"')
-    with pytest.raises(ConfigError, match="axis C, which is rotary"):
+    text = machine_file("mill4").read_text()
+    text = text.replace('joint = "X"', 'joint = "?"').replace('joint = "C"', 'joint = "X"')
+    text = text.replace('joint = "?"', 'joint = "C"')
+    with pytest.raises(ConfigError, match="joint 'C' does not move as axis X, which is linear"):
         build_spec(read_machine(write_machine(tmp_path, text)))
 
 

@@ -203,6 +203,14 @@ class MachineFile(Table):
                 raise ValueError(f"axes.{name} is periodic but not rotary")
         if self.table is not None and self.table.axis not in self.axes:
             raise ValueError(f"table.axis '{self.table.axis}' is not an axis")
+        if self.table is not None and self.axes[self.table.axis].kind != "rotary":
+            raise ValueError(f"table.axis '{self.table.axis}' is not rotary")
+        joints = [axis.joint for axis in self.axes.values()]
+        fixtures = [fixture.name for fixture in self.fixtures]
+        for what, names in (("joint", joints), ("fixture", fixtures)):
+            twice = sorted({name for name in names if names.count(name) > 1})
+            if twice:
+                raise ValueError(f"{what} '{twice[0]}' is named twice")
         return self
 
 
