@@ -33,6 +33,11 @@ def test_no_words_of_its_own_ask() -> None:
         assert f"{name}: {dialect.marks[0].shown}" in message
 
 
+def test_comments_in_brackets_decide_nothing() -> None:
+    with pytest.raises(UsageError, match="could be any"):
+        recognise(source_from_text("G0 X1 (from N10 to N20, G102 C360)"))
+
+
 def test_words_of_two_dialects_ask() -> None:
     with pytest.raises(UsageError, match=r"gost: .*mefi: .*--dialect"):
         recognise(source_from_text('G102 C360\nG0 X1 "text'))

@@ -3,6 +3,7 @@
 from twin.nc import iso, offsets
 from twin.nc.canonical import Corner
 from twin.nc.dialect import (
+    HEADING,
     Comment,
     Dialect,
     FeedMode,
@@ -55,7 +56,7 @@ CODESYS = Dialect(
     code_page="cp1252",
     syntax=Syntax(
         address=r"FF|EF|[FE][XYZABCPQUVW](?![A-Z])|P[ABCPQUVW](?![A-Z])|L[?!]|[A-Z]",
-        comments=(Comment("(*", "*)"), Comment("(", ")"), Comment("//"), Comment("%")),
+        comments=(Comment("(*", "*)"), Comment("(", ")"), Comment("//"), HEADING),
         expressions=program.EXPRESSIONS,
         statement=program.STATEMENT,
         several_blocks=True,
