@@ -118,8 +118,7 @@ def sweep(
                 continue
             line = heights[row, first:end]
             x, y = origin[0] + first * cell, origin[1] + row * cell
-            if marks.size:
-                before = line.copy()
+            before = line.copy() if marks.size else line
             cut, most = _cut_row(line, x, y, cell, bottom, points[i], points[i + 1], profile)
             if cut > 0.0:
                 volume += cut

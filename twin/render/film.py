@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image
 
 from twin.cutting.outline import BoolArray
+from twin.cutting.tools import ToolPlan
 from twin.errors import RenderError
 from twin.files import complete_or_absent
 from twin.job import StockTable, ToolTable, VideoTable
@@ -31,7 +32,7 @@ def film(
     spec: mujoco.MjSpec,
     machine: Machine,
     stock: StockTable | None,
-    tool: ToolTable,
+    tool: ToolTable | ToolPlan,
     source: Sequence[str],
     video: VideoTable,
     out: Path,
@@ -48,7 +49,7 @@ def film(
         spec: Machine, tool and named cameras (``twin.machine.model.build_spec``).
         machine: The machine file.
         stock: The blank, which is cut as the film goes on; None for none.
-        tool: What is in the spindle.
+        tool: What is in the spindle, or what is in it when.
         source: Lines of the program.
         video: Cameras, length, frame rate and size; odd sizes are made even.
         out: The film, complete or not at all; ``.mp4``, ``.gif`` or ``.webp``.
@@ -110,7 +111,7 @@ def still(
     spec: mujoco.MjSpec,
     machine: Machine,
     stock: StockTable | None,
-    tool: ToolTable,
+    tool: ToolTable | ToolPlan,
     source: Sequence[str],
     out: Path,
     camera: str = "overview",
