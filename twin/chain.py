@@ -106,7 +106,7 @@ class Run:
         track = _Track(self.part_zero, preparation.start)
         alarm = survey.alarm
         if alarm is None:
-            with record(out / "recording.h5", self._header()) as writer:
+            with record(out / "recording.h5", self.header()) as writer:
                 simulation = self._simulation(comparison)
                 for samples in self.clock.watch("simulate", simulation):
                     track.add(samples)
@@ -199,7 +199,8 @@ class Run:
             write_stl(cutter.map, out / "part.stl")
             return cutter.result()
 
-    def _header(self) -> RecordingHeader:
+    def header(self) -> RecordingHeader:
+        """What the recording says about itself."""
         preparation = self.preparation
         return RecordingHeader(
             axes=preparation.machine.axes,
@@ -253,6 +254,9 @@ def motion_limits(machine: Machine) -> MotionLimits:
         velocity=np.array([axis.velocity for axis in axes]),
         acceleration=np.array([axis.acceleration for axis in axes]),
         jerk=np.array([axis.jerk for axis in axes]),
+        junction_velocity_step=np.array([axis.junction_velocity_step for axis in axes]),
+        junction_acceleration_step=np.array([axis.junction_acceleration_step for axis in axes]),
+        corner_tolerance=path.corner_tolerance,
         path_acceleration=path.acceleration,
         path_jerk=path.jerk,
         rotary_path_acceleration=path.rotary_acceleration or math.inf,

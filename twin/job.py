@@ -135,6 +135,17 @@ class ToleranceTable(Table):
     """Largest following error of a rotary axis [mdeg]; none: not judged."""
 
 
+class BaselineTable(Table):
+    """How far a run may be from its baseline (``twin check --baseline``)."""
+
+    path_um: Positive = 1.0
+    """Start, end or centre of a block [µm or mdeg]."""
+    cycle_time_percent: Annotated[float, Field(ge=0)] = 1.0
+    """Change of the cycle time, either way."""
+    contour_um: Annotated[float, Field(ge=0)] = 1.0
+    """Growth of the greatest contour error [µm]."""
+
+
 class VideoTable(Table):
     """How the run is filmed."""
 
@@ -185,6 +196,7 @@ class JobFile(Table):
     step_limit: Annotated[int, Field(gt=0)] = 50_000
     """Blocks that may be run again through jumps and loops before the program counts as endless."""
     tolerance: ToleranceTable = ToleranceTable()
+    baseline: BaselineTable = BaselineTable()
     video: VideoTable = VideoTable()
 
     @pydantic.field_validator("tools")

@@ -2,6 +2,7 @@
 
 import difflib
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -22,29 +23,47 @@ class Table(pydantic.BaseModel):
 TableT = TypeVar("TableT", bound=Table)
 
 
-def read_toml(path: Path, table: type[TableT]) -> TableT:
+Data = dict[str, Any]
+"""A TOML file as it was read."""
+
+
+def read_toml(
+    path: Path, table: type[TableT], *, prepare: Callable[[Data], Data] | None = None
+) -> TableT:
     """Read a TOML file into a table model.
 
     Args:
         path: The file.
         table: The model that names its keys.
+        prepare: Changes the file's content before the model checks it.
 
     Raises:
         ConfigError: The file is missing, is not TOML, or has a wrong key or value.
     """
+    data = load_toml(path)
+    if prepare is not None:
+        data = prepare(data)
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        return table.model_validate(data)
+    except pydantic.ValidationError as error:
+        lines = "\n".join(f"{path}: {_explain(detail, table)}" for detail in error.errors())
+        raise ConfigError(lines) from error
+
+
+def load_toml(path: Path) -> Data:
+    """Read a TOML file without checking its keys.
+
+    Raises:
+        ConfigError: The file is missing or is not TOML.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise ConfigError(f"{path}: is not UTF-8 text") from error
     except tomllib.TOMLDecodeError as error:
         raise ConfigError(f"{path}: is not TOML: {error}") from error
-    try:
-        return table.model_validate(data)
-    except pydantic.ValidationError as error:
-        lines = "\n".join(f"{path}: {_explain(detail, table)}" for detail in error.errors())
-        raise ConfigError(lines) from error
 
 
 def _explain(detail: ErrorDetails, table: type[pydantic.BaseModel]) -> str:

@@ -48,7 +48,7 @@ def report_of(
         twin_version="0.1.0", mujoco_version="4.0.0",
     )  # fmt: skip
     summary = RunSummary(
-        program="часть.nc", dialect="gost", machine="mill4", duration_s=1.0, wall_s=1.0, stages={},
+        program="часть.nc", dialect="gost", machine="mill4", duration_s=2.8, wall_s=1.0, stages={},
         cut={"removed_mm3": 12.5, "gouges": []}, commanded={}, simulated={},
     )  # fmt: skip
     content = result(summary, figures, table, verdict)

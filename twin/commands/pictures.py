@@ -8,6 +8,8 @@ from twin.chain import Run
 from twin.progress import Progress
 from twin.recording import open_recording
 
+STILL_NAME = "still.png"
+
 
 def film_run(run: Run, folder: Path, progress: Progress) -> None:
     """Film a run that was recorded, and draw its end as a still.
@@ -40,4 +42,4 @@ def film_run(run: Run, folder: Path, progress: Progress) -> None:
             progress=lambda done, frames: progress("film", done / frames),
             **shared,
         )
-        still(recording, camera=job.video.cameras[0], out=folder / "still.png", **shared)
+        still(recording, camera=job.video.cameras[0], out=folder / STILL_NAME, **shared)

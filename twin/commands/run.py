@@ -7,7 +7,7 @@ import typer
 from twin.alarm_text import alarm_diagnostic
 from twin.chain import Run
 from twin.commands.pictures import film_run
-from twin.compare.result import RunSummary, result, write_result
+from twin.commands.results import write_results
 from twin.errors import ExitCode
 from twin.outcome import Outcome
 from twin.preparation import prepare
@@ -49,7 +49,7 @@ def run_and_print(
         if video and outcome.samples:
             with run.clock.stage("render"):
                 film_run(run, folder, progress)
-    _write_result(run, outcome, folder)
+    write_results(run, outcome, folder)
     _print_findings(run, outcome)
     typer.echo(_summary(run, outcome, folder))
     return outcome.verdict.exit_code
@@ -77,22 +77,3 @@ def _summary(run: Run, outcome: Outcome, folder: Path) -> str:
         f"(line {contour.worst_line}), {outcome.duration_s:.3f} s of machine time "
         f"in {run.clock.wall_s:.1f} s; results in {folder}"
     )
-
-
-def _write_result(run: Run, outcome: Outcome, folder: Path) -> None:
-    preparation = run.preparation
-    named = preparation.machine.axes.named
-    summary = RunSummary(
-        program=preparation.source.name,
-        dialect=preparation.dialect.name,
-        machine=preparation.machine.file.name,
-        duration_s=outcome.duration_s,
-        wall_s=run.clock.wall_s,
-        stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
-        cut=None if outcome.cut is None else outcome.cut.as_json(),
-        commanded=named(outcome.final_commanded),
-        simulated=named(outcome.final_simulated),
-    )
-    tolerance = preparation.job.file.tolerance
-    content = result(summary, outcome.figures, tolerance, outcome.verdict, outcome.alarms)
-    write_result(folder / "result.json", content)

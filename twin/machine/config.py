@@ -7,6 +7,7 @@ import pydantic
 from pydantic import Field
 
 from twin.errors import ConfigError
+from twin.machine.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes
 from twin.toml_file import Table, read_toml
 from twin.toolpath.part_frame import PartFrame
@@ -44,8 +45,8 @@ class AxisTable(Table):
     """Rotary only: turns without end and may be declared periodic to the control."""
     travel: tuple[float, float] | None = None
     """Lowest and highest machine coordinate [mm or deg]; none: endless."""
-    overtravel: NonNegative = 2.0
-    """How far beyond its travel the axis meets its limit switch [mm or deg]."""
+    limit_switches: tuple[float, float] | None = None
+    """Where the axis runs onto its limit switches [mm or deg]; none: 2 beyond its travel."""
     velocity: Positive
     """Rapid velocity, never exceeded [mm/s or deg/s]."""
     acceleration: Positive
@@ -71,6 +72,11 @@ class AxisTable(Table):
     backlash, as stiff as the servo period allows to simulate."""
     counterbalance: Share | None = None
     """Share of the weight on the axis that a counterbalance takes; none: as the model says."""
+    junction_velocity_step: NonNegative = 0.0
+    """Largest step of the axis's velocity where an exact path goes through a knee [mm/s or deg/s];
+    0: the axis stops there."""
+    junction_acceleration_step: NonNegative = 0.0
+    """The same of its acceleration where only the curvature jumps [mm/s² or deg/s²]."""
     kv: Positive
     """Position-loop gain [(m/min)/mm; rotary (1000 deg/min)/deg]: lag = velocity / gain."""
     damping_ratio: Positive = 1.0
@@ -112,6 +118,8 @@ class PathTable(Table):
     """The same for a path of rotary axes alone [deg/s²]; none: the axes decide."""
     rotary_jerk: Positive | None = None
     """[deg/s³]."""
+    corner_tolerance: Positive = 0.01
+    """How far a rounded corner may leave the path where the program does not say [mm]."""
 
 
 class TableTable(Table):
@@ -166,7 +174,7 @@ class MachineFile(Table):
     schema_: Literal[1] = Field(alias="schema")
     name: str
     model: str
-    """MJCF file, relative to the machine file."""
+    """MJCF file, relative to the machine file (to that of ``base``, where it comes from there)."""
     servo_period_s: Positive = 0.001
     """Clock of setpoints, drives and recording [s]."""
     axes: dict[str, AxisTable]
@@ -186,6 +194,8 @@ class MachineFile(Table):
         for name, axis in self.axes.items():
             if axis.travel is not None and axis.travel[0] >= axis.travel[1]:
                 raise ValueError(f"axes.{name}.travel must rise from lowest to highest")
+            if axis.limit_switches is not None and axis.limit_switches[0] >= axis.limit_switches[1]:
+                raise ValueError(f"axes.{name}.limit_switches must rise from lowest to highest")
             if axis.periodic and axis.kind != "rotary":
                 raise ValueError(f"axes.{name} is periodic but not rotary")
         if self.table is not None and self.table.axis not in self.axes:
@@ -224,12 +234,12 @@ class Machine:
 
 
 def read_machine(path: Path) -> Machine:
-    """Read a machine file.
+    """Read a machine file, over the one that its key ``base`` names, if any.
 
     Raises:
         ConfigError: The file or the model that it names is missing or wrong.
     """
-    machine = Machine(path, read_toml(path, MachineFile))
+    machine = Machine(path, read_toml(path, MachineFile, prepare=lambda data: on_base(data, path)))
     if not machine.model_path.is_file():
         raise ConfigError(f"{path}: model '{machine.file.model}' does not exist")
     return machine

@@ -6,10 +6,12 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.machine.alarms import Alarm, AlarmCode
-from twin.machine.config import Machine
+from twin.machine.config import AxisTable, Machine
 from twin.nc.canonical import FloatArray
 from twin.recording import Samples
 
+OVERTRAVEL = 2.0
+"""How far beyond its travel an axis meets its limit switch where none is given [mm or deg]."""
 _AT_LIMIT = 1.0 - 1e-9
 """Share of the force limit from which a drive counts as being at it: rounding, not slack."""
 
@@ -28,9 +30,7 @@ class Watch:
             [round(axis.saturation_time_s / machine.file.servo_period_s) for axis in axes]
         )
         self._saturated = np.zeros(len(axes), np.int64)
-        travel = [axis.travel or (-np.inf, np.inf) for axis in axes]
-        over = np.array([axis.overtravel for axis in axes])
-        self._lowest, self._highest = np.array(travel).T + np.stack([-over, over])
+        self._lowest, self._highest = np.array([_switches(axis) for axis in axes]).T
 
     def look(self, samples: Samples) -> Alarm | None:
         """Return the alarm of the first sample that raises one."""
@@ -74,6 +74,15 @@ class Watch:
             f"the drive of {self._names[axis]} has been at its limit of "
             f"{self._force_limit[axis]:g} {self._forces[axis]} for longer than it may"
         )
+
+
+def _switches(axis: AxisTable) -> tuple[float, float]:
+    """Where the limit switches of an axis lie [mm or deg]."""
+    if axis.limit_switches is not None:
+        return axis.limit_switches
+    if axis.travel is None:
+        return (-np.inf, np.inf)
+    return (axis.travel[0] - OVERTRAVEL, axis.travel[1] + OVERTRAVEL)
 
 
 def _first(

@@ -26,6 +26,13 @@ from twin.render.tool_body import ToolBodies
 from twin.render.trail import Trail, trail_points
 from twin.render.work_holding import add_work_holding
 
+WARNINGS = {
+    "rapid": "rapid into stock",
+    "flute": "deeper than the flutes",
+    "shank": "shank in the material",
+    "holder": "holder in the material",
+}
+
 BETWEEN_FIELDS = 255
 """Grey of the line between the fields of a split picture."""
 
@@ -116,6 +123,14 @@ class Stage:
         if self._cutter is not None:
             self._cutter.add(samples, rapid_mask(samples, self._scene.rapid_moves))
             self._changed = union(self._changed, self._cutter.changed)
+
+    def warning(self, line: int) -> str:
+        """What the running block does to the part that it must not; empty for nothing."""
+        if self._cutter is not None:
+            for event in self._cutter.events():
+                if event.line == line:
+                    return f"{WARNINGS[event.what]}: {event.depth_mm:.2f} mm"
+        return ""
 
     def picture(self, *cameras: str) -> Pixels:
         """Draw what cameras see now, side by side in equal fields, shape (height, width, 3)."""

@@ -1,0 +1,129 @@
+"""Small programs through the whole chain: what a build server sees."""
+
+import functools
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from twin.check.outcome import CheckOutcome
+from twin.check.program import CheckSettings, baseline_file, check_program
+from twin.check.runner import check_all
+from twin.commands.check import CODE_QUALITY_FILE, check_and_print
+from twin.errors import ExitCode, UsageError
+
+PROGRAM = """N10 X0 Y0 Z0 G00
+N20 G01 X10.5 F3000
+N30 G02 X20.5 Y0 I5 J0
+N40 G01 Y-4.25
+N50 M30
+"""
+JOB = 'program = "{name}.nc"\ndialect = "mefi"\n[tolerance]\ncontour_um = {tolerance}\n'
+
+
+def write_job(folder: Path, name: str, text: str = PROGRAM, tolerance: float = 50.0) -> Path:
+    (folder / f"{name}.nc").write_text(text, encoding="utf-8")
+    job = folder / f"{name}.toml"
+    job.write_text(JOB.format(name=name, tolerance=tolerance), encoding="utf-8")
+    return job
+
+
+def test_programs_pass_fail_and_break_beside_each_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.chdir(tmp_path)
+    for name, changes in {
+        "good": {}, "tight": {"tolerance": 0.001}, "wrong": {"text": "N10 X1 QQ5"},
+    }.items():  # fmt: skip
+        write_job(tmp_path, name, **changes)
+    (tmp_path / "nokey.toml").write_text('program = "good.nc"\ntolerence = 1\n')
+    summary = tmp_path / "summary.md"
+    environment = {
+        "GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(summary), "GITLAB_CI": "true",
+    }  # fmt: skip
+    code = check_and_print(
+        ["."], settings=CheckSettings(), junit=tmp_path / "junit.xml",
+        json_file=tmp_path / "check.json", jobs=1, environment=environment,
+    )  # fmt: skip
+    assert code is ExitCode.FAILED
+    programs = json.loads((tmp_path / "check.json").read_text(encoding="utf-8"))["programs"]
+    assert {p["program"]: (p["verdict"], p["exit_code"]) for p in programs} == {
+        "good.toml": ("pass", 0),
+        "nokey.toml": ("error", 2),
+        "tight.toml": ("fail", 1),
+        "wrong.toml": ("error", 3),
+    }
+    shown = capsys.readouterr()
+    assert "4 programs: 1 pass, 1 fail, 2 error" in shown.out
+    assert "::error file=" in shown.out
+    assert "did you mean 'tolerance'?" in shown.err
+    assert "^" in shown.err
+    assert "tight.toml" in summary.read_text(encoding="utf-8")
+    assert len(json.loads((tmp_path / CODE_QUALITY_FILE).read_text(encoding="utf-8"))) == 3
+    assert (tmp_path / "junit.xml").is_file()
+
+
+MISTAKES = {
+    "shifted by 0.02 mm": (PROGRAM.replace("Y-4.25", "Y-4.27"), 4),
+    "G02 for G03": (PROGRAM.replace("G02", "G03"), 3),
+    "sign dropped": (PROGRAM.replace("Y-4.25", "Y4.25"), 4),
+    "decimal lost": (PROGRAM.replace("Y-4.25", "Y-42.5"), 4),
+}
+
+
+def test_a_broken_post_processor_is_caught_at_its_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.chdir(tmp_path)
+    held = CheckSettings(baseline=Path("baselines"))
+    job = write_job(tmp_path, "part")
+    assert check_program(job, held).findings[0].code == "baseline-missing"
+    assert check_program(job, CheckSettings(baseline=held.baseline, update_baseline=True)).passed
+    assert check_program(job, held).passed
+    for what, (text, line_number) in MISTAKES.items():
+        assert text != PROGRAM
+        outcome = check_program(write_job(tmp_path, "part", text), held)
+        assert outcome.verdict == "fail", what
+        found = outcome.findings[0]
+        assert (found.code, found.line) == ("baseline-path", line_number), what
+
+
+def test_a_baseline_lies_under_the_programs_own_path(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.chdir(tmp_path)
+    folder = Path("stored")
+    assert baseline_file(folder, Path("a/part.toml")) == Path("stored/a/part.baseline")
+    assert baseline_file(folder, tmp_path / "a" / "part.nc") == Path("stored/a/part.baseline")
+    outside = baseline_file(folder, Path("/elsewhere/part.nc"))
+    assert outside == Path("stored/elsewhere/part.baseline")
+
+
+def test_updating_needs_a_folder(tmp_path: Path):
+    with pytest.raises(UsageError, match="--baseline DIR"):
+        check_and_print([str(tmp_path)], settings=CheckSettings(update_baseline=True))
+
+
+def mark(path: Path, folder: Path) -> CheckOutcome:
+    (folder / path.name).write_text(str(os.getpid()))
+    return CheckOutcome(program=str(path), verdict="pass", exit_code=ExitCode.OK)
+
+
+def die_if_bad(path: Path) -> CheckOutcome:
+    if path.name == "bad":
+        os._exit(9)
+    return CheckOutcome(program=str(path), verdict="pass", exit_code=ExitCode.OK)
+
+
+def test_programs_are_spread_over_processes(tmp_path: Path):
+    paths = [Path(f"program{index}") for index in range(4)]
+    outcomes = list(check_all(paths, functools.partial(mark, folder=tmp_path), jobs=2))
+    assert {outcome.program for outcome in outcomes} == {str(path) for path in paths}
+    assert str(os.getpid()) not in {path.read_text() for path in tmp_path.iterdir()}
+
+
+def test_a_process_that_dies_takes_no_other_program_with_it():
+    outcomes = list(check_all([Path("bad"), Path("one"), Path("two")], die_if_bad, jobs=2))
+    verdicts = {outcome.program: outcome.verdict for outcome in outcomes}
+    assert verdicts == {"bad": "error", "one": "pass", "two": "pass"}

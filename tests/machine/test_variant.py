@@ -1,0 +1,77 @@
+import re
+
+import pytest
+
+from twin.errors import UsageError
+from twin.machine.config import read_machine
+from twin.machine.model import build_spec
+from twin.resources import machine_file
+
+
+def write(folder, text: str, name: str = "machine.toml"):
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def test_a_variant_changes_what_it_says_and_nothing_else(tmp_path):
+    path = write(
+        tmp_path, 'base = "mill4"\nname = "soft"\n[axes.Y]\nkv = 3.0\ntravel = [-10.0, 20.0]\n'
+    )
+    variant, base = read_machine(path), read_machine(machine_file("mill4"))
+    assert variant.file.name == "soft"
+    assert (variant.axis("Y").kv, variant.axis("Y").travel) == (3.0, (-10.0, 20.0))
+    assert variant.axis("Y").model_copy(update={"kv": 7.5, "travel": (-300.0, 300.0)}) == base.axis(
+        "Y"
+    )
+    assert variant.axis("X") == base.axis("X")
+    assert variant.file.path == base.file.path
+    assert variant.model_path.samefile(base.model_path)
+    build_spec(variant).compile()
+
+
+def test_variants_stand_on_variants(tmp_path):
+    write(tmp_path, 'base = "mill4_light"\n[axes.X]\nkv = 2.0\n', "one.toml")
+    path = write(tmp_path, 'base = "one.toml"\n[axes.X]\nbacklash = 0.0\n', "two.toml")
+    axis = read_machine(path).axis("X")
+    assert (axis.kv, axis.backlash, axis.stiffness) == (2.0, 0.0, 300.0)
+
+
+def test_a_fourth_axis_under_another_letter_and_a_fifth(tmp_path):
+    """Axes are data: any letters, as many as the model has joints."""
+    text = machine_file("mill4").read_text()
+    folder = machine_file("mill4").parent
+    model = (
+        (folder / "mill4.xml").read_text().replace('meshdir="assets"', f'meshdir="{folder}/assets"')
+    )
+    model = model.replace('name="C"', 'name="B"').replace('joint="C"', 'joint="B"')
+    write(tmp_path, model, "mill4.xml")
+    text = text.replace("scene.xml", "mill4.xml").replace("[axes.C]", "[axes.B]")
+    text = text.replace('joint = "C"', 'joint = "B"').replace('axis = "C"', 'axis = "B"')
+    machine = read_machine(write(tmp_path, text))
+    assert machine.axes.names == ("X", "Y", "Z", "B")
+    assert build_spec(machine).compile().nu == 8
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('base = "mill9"\n', "no machine 'mill9': shipped machines are mill4, mill4_light"),
+        ("base = 4\n", "'base' must be a machine's name or a path"),
+        ('base = "machine.toml"\n', "leads in a circle"),
+        ('base = "mill4"\n[axes.X]\nspeed = 3\n', "unknown key 'axes.X.speed'"),
+        ('base = "mill4"\naxes = 3\n', "axes"),
+        ('base = "mill4"\nmodel = 7\n', "model"),
+        ('base = "mill4"\nmodel = "none.xml"\n', "model 'none.xml' does not exist"),
+        (
+            'base = "mill4"\n[axes.X.lugre]\nstiffness = 1.0\n',
+            "lugre refines dry_friction, which is 0",
+        ),
+        ('base = "mill4"\n[axes.X]\nlimit_switches = [3.0, 1.0]\n', "must rise"),
+        ('base = "mill4"\n[axes.X]\nkv = -1.0\n', "axes.X.kv"),
+        ('base = "mill4"\n[axes.X]\nkv = inf\n', "axes.X.kv"),
+    ],
+)
+def test_wrong_machine_files_are_refused_with_what_is_wrong(tmp_path, text, message):
+    with pytest.raises(UsageError, match=re.escape(message)):
+        read_machine(write(tmp_path, text))

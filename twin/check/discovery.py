@@ -1,0 +1,88 @@
+"""Which programs are meant by paths, folders and globs."""
+
+import glob
+import os
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+
+from twin.errors import UsageError
+
+NC_SUFFIXES = frozenset(
+    {".nc", ".cnc", ".ngc", ".tap", ".mpf", ".spf", ".iso", ".gcode", ".eia", ".min"}
+)
+"""What a file must end in to be taken for an NC program when a folder is searched."""
+
+
+def find_programs(paths: Iterable[str | Path]) -> list[Path]:
+    """Find job files and NC programs.
+
+    A file is taken as it is named. A folder is searched with all its subfolders, hidden ones left
+    out: its job files, and its NC programs that no job file there runs. A glob (``*``, ``?``,
+    ``[``, ``**``) is expanded, its matches treated like paths.
+
+    Args:
+        paths: What the user gave.
+
+    Returns:
+        Job files and programs, each once, in the order given and sorted within a folder.
+
+    Raises:
+        UsageError: A path does not exist, or nothing at all was found.
+    """
+    found: dict[Path, None] = {}
+    paths = list(paths)
+    for path in _expanded(paths):
+        if path.is_dir():
+            found.update(dict.fromkeys(_programs_in(path)))
+        else:
+            found[path] = None
+    if not found:
+        given = ", ".join(str(path) for path in paths) or "nothing"
+        raise UsageError(
+            f"no programs in {given}: looked for job files (.toml with a key 'program') and files "
+            f"ending in {', '.join(sorted(NC_SUFFIXES))}"
+        )
+    return list(found)
+
+
+def _expanded(paths: Iterable[str | Path]) -> Iterable[Path]:
+    for path in map(str, paths):
+        if Path(path).exists():
+            yield Path(path)
+        elif glob.has_magic(path):
+            # glob, not Path.glob: the pattern may be absolute.
+            yield from map(Path, sorted(glob.glob(path, recursive=True)))  # noqa: PTH207
+        else:
+            raise UsageError(f"{path}: no such file or folder")
+
+
+def _programs_in(folder: Path) -> list[Path]:
+    jobs: list[Path] = []
+    programs: list[Path] = []
+    for root, folders, files in os.walk(folder):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        for name in files:
+            path = Path(root) / name
+            if path.suffix == ".toml":
+                jobs.append(path)
+            elif path.suffix.lower() in NC_SUFFIXES:
+                programs.append(path)
+    run_by = {job: _program_of(job) for job in jobs}
+    taken = {program for program in run_by.values() if program is not None}
+    jobs = [job for job in jobs if run_by[job] is not None]
+    return sorted([*jobs, *(path for path in programs if path.resolve() not in taken)])
+
+
+def _program_of(path: Path) -> Path | None:
+    """The program that a job file runs; None for a TOML file that is no job.
+
+    A file that cannot be read is left to the run, which says what is wrong with it, as long as a
+    program of its name lies beside it.
+    """
+    try:
+        program = tomllib.loads(path.read_text(encoding="utf-8")).get("program")
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError):
+        beside = [path.with_suffix(suffix) for suffix in sorted(NC_SUFFIXES)]
+        return next((found.resolve() for found in beside if found.is_file()), None)
+    return (path.parent / program).resolve() if isinstance(program, str) else None

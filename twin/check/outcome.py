@@ -1,0 +1,73 @@
+"""What became of one program of many."""
+
+import dataclasses
+from typing import Any, Literal
+
+from twin.errors import ExitCode
+
+CheckVerdict = Literal["pass", "fail", "alarm", "error"]
+"""``error``: the program, its job or its machine is wrong, and nothing was run to its end."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing to tell about a program.
+
+    Attributes:
+        code: The diagnostic's, alarm's or tolerance's stable name.
+        message: One sentence.
+        file: The program or file that it is about.
+        line: Source line, or 0.
+        column: Column, or 0.
+        text: The whole diagnostic, with source line, caret and hint where there is one.
+    """
+
+    code: str
+    message: str
+    file: str
+    line: int = 0
+    column: int = 0
+    text: str = ""
+
+    def __str__(self) -> str:
+        if self.text:
+            return self.text
+        place = f"{self.file}:{self.line}" if self.line else self.file
+        return f"{place}: {self.message}"
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class CheckOutcome:
+    """How one program came out.
+
+    Attributes:
+        program: Path of the job file or program, as it was found.
+        verdict: How it came out.
+        exit_code: What ``twin run`` would have returned for it.
+        contour_um: Greatest contour error [µm]; None when it was not run.
+        worst_line: Where that was; 0 when it was not run.
+        cycle_time_s: Machine time of the program [s]; None when it was not run.
+        wall_s: How long the check took [s].
+        findings: Why it does not pass; empty when it does.
+    """
+
+    program: str
+    verdict: CheckVerdict
+    exit_code: ExitCode
+    contour_um: float | None = None
+    worst_line: int = 0
+    cycle_time_s: float | None = None
+    wall_s: float = 0.0
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether it falls short of nothing."""
+        return self.verdict == "pass"
+
+    def as_json(self) -> dict[str, Any]:
+        """The outcome as plain values."""
+        content = dataclasses.asdict(self)
+        content["exit_code"] = int(self.exit_code)
+        content["findings"] = [dataclasses.asdict(finding) for finding in self.findings]
+        return content

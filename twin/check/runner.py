@@ -1,0 +1,69 @@
+"""Many programs over the cores; one that breaks does not stop the others."""
+
+import concurrent.futures
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.context import SpawnContext
+from pathlib import Path
+
+from twin.check.outcome import CheckOutcome, Finding
+from twin.errors import ExitCode
+
+CheckOne = Callable[[Path], CheckOutcome]
+"""Runs one program; sent to other processes, so it must be a module's function or a partial."""
+
+
+def check_all(
+    programs: Sequence[Path], check: CheckOne, *, jobs: int | None = None
+) -> Iterator[CheckOutcome]:
+    """Check programs, several at a time.
+
+    Args:
+        programs: What to check.
+        check: How one is checked.
+        jobs: How many processes; one for each core by default.
+
+    Yields:
+        The outcomes as they become known, in any order.
+    """
+    workers = min(jobs or available_cores(), len(programs))
+    if workers <= 1:
+        yield from map(check, programs)
+        return
+    # Fresh processes: a fork of one that has run threads or OpenGL may hang.
+    context = SpawnContext()
+    waiting = list(programs)
+    with concurrent.futures.ProcessPoolExecutor(workers, mp_context=context) as pool:
+        futures = {pool.submit(check, path): path for path in waiting}
+        crashed = []
+        for future in concurrent.futures.as_completed(futures):
+            path = futures[future]
+            try:
+                yield future.result()
+            except BrokenProcessPool:
+                crashed.append(path)
+    # A process that died took every waiting program with it: each gets a process of its own.
+    for path in crashed:
+        yield _check_alone(path, check, context)
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _check_alone(path: Path, check: CheckOne, context: SpawnContext) -> CheckOutcome:
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
+        try:
+            return pool.submit(check, path).result()
+        except BrokenProcessPool:
+            message = "the process that ran it died; out of memory?"
+            return CheckOutcome(
+                program=str(path),
+                verdict="error",
+                exit_code=ExitCode.FAILED,
+                findings=(Finding("process-died", message, str(path)),),
+            )
