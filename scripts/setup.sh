@@ -43,8 +43,9 @@ setup_environment() {
     if [ "$(cat .venv/stamp 2>/dev/null)" != "$stamp" ]; then
         echo "setting up .venv"
         [ -x .venv/bin/python ] || "$python" -m venv .venv
-        .venv/bin/python -m pip install --quiet --disable-pip-version-check \
-            --constraint constraints.txt --editable '.[dev]'
+        # By the environment, so that the isolated build keeps to the same versions.
+        PIP_CONSTRAINT="$PWD/constraints.txt" .venv/bin/python -m pip install --quiet \
+            --disable-pip-version-check --editable '.[dev]'
         echo "$stamp" >.venv/stamp
     fi
     PATH="$PWD/.venv/bin:$PATH"
