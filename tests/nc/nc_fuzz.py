@@ -1,6 +1,7 @@
 """Throws nonsense at the interpreter: it must answer with moves or a diagnostic, never otherwise.
 
-``python -m tests.nc.nc_fuzz 100000`` runs as many tries and reports the first that fails.
+``python -m tests.nc.nc_fuzz 100000 7`` runs as many tries with that seed and reports the first that
+fails.
 """
 
 import dataclasses
@@ -179,4 +180,4 @@ def main(tries: int, seed: int = 1) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 2000)
+    main(*(int(argument) for argument in sys.argv[1:3] or ["2000"]))

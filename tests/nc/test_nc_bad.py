@@ -3,6 +3,7 @@
 ``python -m tests.nc.test_nc_bad`` writes the expected diagnostics anew; look at the difference.
 """
 
+import dataclasses
 from pathlib import Path
 
 import pytest
@@ -11,8 +12,10 @@ from tests.nc.nc_running import ROOT, SETTINGS
 from twin.nc.diagnostics import ProgramError
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
+from twin.nc.settings import ToolData
 from twin.nc.source import source_from_bytes
 
+WITH_TOOL = dataclasses.replace(SETTINGS, tools={1: ToolData(5.0, 60.0)})
 BAD = sorted((ROOT / "tests" / "bad").glob("*/*.nc"))
 
 
@@ -20,7 +23,7 @@ def diagnostic_of(path: Path) -> str:
     dialect = dialect_named(path.parent.name)
     source = source_from_bytes(path.read_bytes(), path.name, dialect)
     with pytest.raises(ProgramError) as raised:
-        for _ in Interpretation(source, dialect, SETTINGS).chunks():
+        for _ in Interpretation(source, dialect, WITH_TOOL).chunks():
             pass
     return f"{raised.value}\n"
 

@@ -103,6 +103,18 @@ def middle(moves: Moves, row: int) -> np.ndarray:
     return moves.center[row] + math.copysign(1.0, moves.sweep[row]) * np.cross(normal, spoke)
 
 
+def test_mefi_program_as_the_page_prints_it() -> None:
+    text = (
+        '    N5  X0 Y0 Z0 G00\n    N10 Z1.05 G10                    "введение подъема 1.05 мм\n'
+        "     ....\n     ....\n"
+        '    N50 G09 G02 X0 Y0 I100 G73 L50 Q20  "начало винтовой линии\n'
+        '    N60 X200. Y0 I100\n    N70 G98                             "конец винтовой линии\n'
+    )
+    outcome = good(text, "mefi")
+    assert outcome.position == pytest.approx({"X": 200.0, "Y": 0.0, "Z": 22.575, "C": 0.0})
+    assert outcome.codes == ["ellipsis", "ellipsis", "no-feed"]
+
+
 def test_mefi_helix_ends_where_the_page_says() -> None:
     interpretation = shipped(PROGRAMS / "mefi" / "helix.nc")
     moves = moves_of(interpretation)

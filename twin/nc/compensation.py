@@ -93,15 +93,17 @@ class Compensation:
         else:
             self._held.waiting.append(event)
 
-    def finish(self) -> None:
-        """G40: what is held ends square to itself; the next move leads out."""
-        held = self._held
-        if held is not None:
-            if held.element is None:
-                self._end(held, held.contour.end)
-            else:
-                self._end(held, held.element.end)
-            self._held = None
+    def finish(self) -> bool:
+        """G40: what is held ends square to itself.
+
+        Returns:
+            Whether the path now stands beside the contour, so that a line must lead out.
+        """
+        held, self._held = self._held, None
+        if held is None:
+            return False
+        self._end(held, held.contour.end if held.element is None else held.element.end)
+        return held.element is not None
 
     def _pass(self, move: Segment) -> None:
         if self._held is None:

@@ -122,6 +122,8 @@ class Control(ControlMotion):
             elif word.address == "M":
                 functions.append((word, self._m_code(word)))
             elif word.address in self.dialect.series and self._has_switch(block):
+                if isinstance(word.value, Expression):
+                    word = word._replace(value=self.evaluate(word.value, word))
                 self.series.append(word)
             elif word.address in self.words:
                 self.fail("duplicate-word", f"'{word.address}' stands twice in the block", word)

@@ -62,6 +62,7 @@ def _comments(dialect: Dialect) -> str:
         f"`{comment.opening} {comment.closing}`"
         if comment.closing
         else f"`{comment.opening}` to the end of the line"
+        + (", where it begins one" if comment.whole_line else "")
         for comment in dialect.syntax.comments
     )
 

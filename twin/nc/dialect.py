@@ -118,10 +118,21 @@ class MCode:
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Comment:
-    """A kind of comment; an empty ``closing`` lets it run to the end of the line."""
+    """A kind of comment.
+
+    Attributes:
+        opening: What begins it.
+        closing: What ends it; empty: the end of the line.
+        whole_line: It can only begin its line, such as a program's heading.
+    """
 
     opening: str
     closing: str = ""
+    whole_line: bool = False
+
+
+HEADING = Comment("%", whole_line=True)
+"""The start of a program and its name: without effect where a dialect does not say otherwise."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,5 +1,7 @@
 """The ISO 6983-1 base that several dialects share: codes, words and what they do."""
 
+import re
+
 from twin.nc.blocks import Word
 from twin.nc.circular import clockwise_arc, counter_clockwise_arc
 from twin.nc.control import Control
@@ -13,6 +15,19 @@ RAPID = Interpolation(rapid_line, rapid=True)
 FEED = Interpolation(feed_line)
 CLOCKWISE = Interpolation(clockwise_arc)
 COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+
+
+_ELLIPSIS = re.compile(r"[ \t]*\.{3,}[ \t]*")
+
+
+def is_ellipsis(line: str) -> bool:
+    """A line of dots, by which documents show blocks that they leave out."""
+    return _ELLIPSIS.fullmatch(line) is not None
+
+
+def excuse_ellipsis(line: str, _previous: str) -> str | None:
+    """Why a line that is no block may be left out: it is an ellipsis."""
+    return "ellipsis" if is_ellipsis(line) else None
 
 
 def set_feed(control: Control, word: Word) -> None:

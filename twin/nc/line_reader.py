@@ -76,7 +76,9 @@ class LineReader:
         if self._at == len(self._line):
             return False
         for comment in self._syntax.comments:
-            if self._line.startswith(comment.opening, self._at):
+            if self._line.startswith(comment.opening, self._at) and (
+                not comment.whole_line or not self._line[: self._at].strip()
+            ):
                 return self._comment(comment.opening, comment.closing)
         if not (self._block_skip() or self._named_label() or self._computed_word()):
             self._refuse(self._at)

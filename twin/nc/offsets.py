@@ -115,6 +115,12 @@ def compensate(control: Control, side: float, radius: float) -> None:
             "compensation is in force already",
             hint="end it by G40 before it starts on another side or with another radius",
         )
+    if control.path.leading_out:
+        control.fail(
+            "compensation-end",
+            "compensation has ended, and no line has led out of it yet",
+            hint="write a straight move in the plane before it starts anew",
+        )
     if radius == 0.0:
         return
     plane = control.part_plane()

@@ -66,6 +66,11 @@ class Path:
             self._compensation.event(lambda: happen(self._columns))
 
     @property
+    def leading_out(self) -> bool:
+        """Compensation has ended, and no line has led out yet."""
+        return self._leading_out is not None
+
+    @property
     def compensating(self) -> bool:
         """Compensation is in force."""
         return self._compensation is not None
@@ -86,6 +91,6 @@ class Path:
     def end_compensation(self) -> None:
         """The next line leads out."""
         if self._compensation is not None:
-            self._compensation.finish()
-            self._leading_out = self._compensation.plane
+            if self._compensation.finish():
+                self._leading_out = self._compensation.plane
             self._compensation = None

@@ -56,11 +56,16 @@ def recognise(source: Source) -> Dialect:
 
 
 def _marks_in(source: Source, dialect: Dialect) -> list[str]:
+    lines = [_BRACKETS.sub(" ", line) for line in source.lines]
     return [
         mark.shown
         for mark in dialect.marks
-        if any(_mark(mark.pattern).search(line) for line in source.lines)
+        if any(_mark(mark.pattern).search(line) for line in lines)
     ]
+
+
+_BRACKETS = re.compile(r"\([^()]*\)")
+"""A comment in every dialect: what it says decides nothing."""
 
 
 def _mark(pattern: str) -> re.Pattern[str]:

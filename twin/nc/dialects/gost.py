@@ -10,7 +10,7 @@ import re
 from twin.nc import iso, iso_cycles
 from twin.nc.canonical import Corner
 from twin.nc.control import Control
-from twin.nc.dialect import Comment, Decision, Dialect, GCode, Mark, Syntax
+from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
 
 RESOLUTION = 9
 """Decimals of a degree that a start point is rounded to before the remainder is taken.
@@ -80,7 +80,6 @@ def recalculate_start(control: Control, rapid: bool) -> None:
 
 _CYRILLIC_WORD = re.compile("[А-Яа-яЁё]{2}")
 _READABLE_WORD = re.compile(r"[ \t]*[A-Z][ \t]*[+-]?[0-9.]", re.IGNORECASE)
-_ELLIPSIS = re.compile(r"[ \t]*\.{3,}[ \t]*(?:\$.*)?")
 
 
 def excuse(line: str, previous: str) -> str | None:
@@ -90,7 +89,7 @@ def excuse(line: str, previous: str) -> str | None:
     dots; programs copied from it hold both. Decision: a line of Cyrillic prose right after a line
     with a comment is that comment's tail, as long as it does not begin with a readable word.
     """
-    if _ELLIPSIS.fullmatch(line):
+    if iso.is_ellipsis(line):
         return "ellipsis"
     prose = _CYRILLIC_WORD.search(line) and not _READABLE_WORD.match(line)
     if prose and "$" in previous:
@@ -135,7 +134,7 @@ GOST = Dialect(
     name="gost",
     title="Russian control with G102 (ISO 6983-1, GOST 20999-83)",
     code_page="cp1251",
-    syntax=Syntax(comments=(Comment("$"), Comment("(", ")"), Comment("%")), excused=excuse),
+    syntax=Syntax(comments=(Comment("$"), Comment("(", ")"), HEADING), excused=excuse),
     groups=iso.GROUPS,
     g={
         **iso.BASE,

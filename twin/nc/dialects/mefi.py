@@ -9,7 +9,7 @@ from twin.nc import iso
 from twin.nc.arcs import sweep_between
 from twin.nc.circular import iso_arc_center, start_and_end
 from twin.nc.control import Control
-from twin.nc.dialect import Comment, Decision, Dialect, GCode, Interpolation, Mark, Syntax
+from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Interpolation, Mark, Syntax
 
 
 @dataclasses.dataclass(slots=True)
@@ -178,7 +178,7 @@ MEFI = Dialect(
     name="mefi",
     title="MEFI CNC8x6",
     code_page="cp1250",
-    syntax=Syntax(comments=(Comment('"'), Comment("%"))),
+    syntax=Syntax(comments=(Comment('"'), HEADING), excused=iso.excuse_ellipsis),
     groups=(*iso.GROUPS, "helix"),
     g={
         **iso.BASE,

@@ -3,6 +3,7 @@
 from twin.nc import iso, offsets
 from twin.nc.canonical import Corner
 from twin.nc.dialect import (
+    HEADING,
     Comment,
     Dialect,
     FeedMode,
@@ -55,7 +56,7 @@ CODESYS = Dialect(
     code_page="cp1252",
     syntax=Syntax(
         address=r"FF|EF|[FE][XYZABCPQUVW](?![A-Z])|P[ABCPQUVW](?![A-Z])|L[?!]|[A-Z]",
-        comments=(Comment("(*", "*)"), Comment("(", ")"), Comment("//"), Comment("%")),
+        comments=(Comment("(*", "*)"), Comment("(", ")"), Comment("//"), HEADING),
         expressions=program.EXPRESSIONS,
         statement=program.STATEMENT,
         several_blocks=True,
@@ -263,7 +264,7 @@ CODESYS = Dialect(
     units="mm, degrees; F in units per second, E in units per second squared",
     decisions=DECISIONS,
     marks=(
-        Mark(r"^[^\"$;]*\bN[ \t]*\d+\b[^\"$;]*\bN[ \t]*\d+\b", "several N blocks on one line"),
+        Mark(r"^[^\"$;\[]*\bN[ \t]*\d+\b[^\"$;\[]*\bN[ \t]*\d+\b", "several N blocks on one line"),
         Mark(r"\bG0?[23]\b.*[IJK].*\bT[ \t]*\d", "an arc with the opening angle T"),
         Mark(r"\bG0?4[ \t]*T", "G4 T"),
         Mark(r"\bE[ \t]*[-+]?\d", "E, the acceleration"),

@@ -1,0 +1,6 @@
+%L SUB
+LL SUB
+M17
+%MAIN
+LL SUB
+M30

@@ -1,0 +1,4 @@
+%MAIN
+G0 X1
+%OTHER
+M30
