@@ -33,6 +33,10 @@ DialectOption = Annotated[
 MachineOption = Annotated[
     str | None, typer.Option("--machine", help="A shipped machine's name, or a machine.toml.")
 ]
+MachineArgument = Annotated[
+    str, typer.Argument(help="A shipped machine's name, or a machine.toml.", show_default=False)
+]
+FormatOption = Annotated[str, typer.Option("--format", help="text or json.")]
 StrictOption = Annotated[bool, typer.Option("--strict", help="Turn warnings into errors.")]
 
 
@@ -87,11 +91,145 @@ def run(
 
 
 @app.command()
+def check(
+    paths: Annotated[list[str], typer.Argument(help="Programs, job files, folders, globs.")],
+    junit: Annotated[Path | None, typer.Option("--junit", help="Write JUnit XML there.")] = None,
+    json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    baseline: Annotated[
+        Path | None, typer.Option("--baseline", help="Hold runs to the baselines in this folder.")
+    ] = None,
+    update_baseline: Annotated[
+        bool, typer.Option("--update-baseline", help="Store baselines instead.")
+    ] = False,
+    jobs: Annotated[
+        int | None, typer.Option("--jobs", min=1, help="How many at a time; default: all cores.")
+    ] = None,
+    machine: MachineOption = None,
+    strict: StrictOption = False,
+) -> None:
+    """Run many programs without pictures; one table, exit 1 if any falls short."""
+    from twin.check.program import CheckSettings
+    from twin.commands.check import check_and_print
+
+    settings = CheckSettings(
+        machine=machine, strict=strict, baseline=baseline, update_baseline=update_baseline
+    )
+    code = check_and_print(paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs)
+    raise typer.Exit(code)
+
+
+@app.command()
+def compare(
+    first: Annotated[Path, typer.Argument(help="Recording, or CSV log.", show_default=False)],
+    second: Annotated[Path, typer.Argument(help="The same.", show_default=False)],
+    form: FormatOption = "text",
+    period: Annotated[
+        float | None, typer.Option("--period", help="Sample period of logs without time [s].")
+    ] = None,
+    offset: Annotated[
+        float | None, typer.Option("--offset", help="Known offset in time [s]; default: found.")
+    ] = None,
+    tolerance: Annotated[
+        float | None, typer.Option("--tolerance", help="Largest actual difference [mm or deg].")
+    ] = None,
+) -> None:
+    """Compare two recordings, or a recording with a log of the real machine."""
+    from twin.commands.compare import compare_and_print
+
+    code = compare_and_print(
+        first, second, form=form, period_s=period, offset_s=offset, tolerance=tolerance
+    )
+    raise typer.Exit(code)
+
+
+@app.command()
+def export(
+    recording: Annotated[Path, typer.Argument(help="recording.h5", show_default=False)],
+    out: Annotated[Path | None, typer.Option("--out", help="Default: beside it, .csv.")] = None,
+    every: Annotated[int, typer.Option("--every", help="Write one of so many samples.")] = 1,
+) -> None:
+    """Write a recording as CSV, units in the header."""
+    from twin.commands.export import export_and_print
+
+    raise typer.Exit(export_and_print(recording, out, every=every))
+
+
+@app.command()
+def dialects(
+    name: Annotated[str | None, typer.Argument(help="One of them.", show_default=False)] = None,
+) -> None:
+    """Print the dialects, or what one of them understands, refuses and decided."""
+    from twin.nc.describe import describe, overview
+    from twin.nc.dialects import dialect_named
+
+    typer.echo(overview() if name is None else describe(dialect_named(name)))
+
+
+@app.command()
+def explain(
+    code: Annotated[str, typer.Argument(help="Code of a diagnostic.", show_default=False)],
+) -> None:
+    """Explain a diagnostic's code, with an example."""
+    from twin.nc import explain as explanations
+
+    typer.echo(explanations.explain(code))
+
+
+@app.command()
 def doctor() -> None:
-    """Say what this machine can do: libraries, off-screen pictures, video."""
+    """Say what this computer can do: libraries, off-screen pictures, video."""
     from twin.commands.doctor import print_doctor
 
     raise typer.Exit(print_doctor())
+
+
+machine_app = typer.Typer(no_args_is_help=True, help="Look at machines, check them, run circles.")
+app.add_typer(machine_app, name="machine")
+
+
+@machine_app.command("list")
+def machine_list(form: FormatOption = "text") -> None:
+    """List the shipped machines."""
+    from twin.commands.machine import print_machines
+
+    print_machines(form)
+
+
+@machine_app.command("show")
+def machine_show(
+    name: MachineArgument,
+    feed: Annotated[
+        float, typer.Option("--feed", help="For the lag [mm/min or deg/min].")
+    ] = 3000.0,
+    form: FormatOption = "text",
+) -> None:
+    """Show travel, limits, loop gain, inertia, natural frequency, expected lag."""
+    from twin.commands.machine import print_machine
+
+    print_machine(name, feed=feed, form=form)
+
+
+@machine_app.command("check")
+def machine_check(name: MachineArgument) -> None:
+    """Check a machine's folder: files, model, hold still at home, shake."""
+    from twin.commands.machine import print_check
+
+    raise typer.Exit(print_check(name))
+
+
+@machine_app.command("circle")
+def machine_circle(
+    machine: Annotated[str, typer.Option("--machine", help="Name or machine.toml.")] = "mill4",
+    radius: Annotated[float, typer.Option("--radius", help="[mm]")] = 50.0,
+    feed: Annotated[float, typer.Option("--feed", help="[mm/min]")] = 3000.0,
+    plane: Annotated[str, typer.Option("--plane", help="XY, ZX, YZ or XYC.")] = "XY",
+    form: FormatOption = "text",
+    plot: Annotated[Path, typer.Option("--plot", help="SVG, PNG or PDF.")] = Path("circle.svg"),
+) -> None:
+    """Run the circular test of ISO 230-4 in both directions and draw it."""
+    from twin.commands.machine import print_circle
+
+    print_circle(machine, radius=radius, feed=feed, plane=plane, form=form, plot=plot)
 
 
 def main() -> None:
