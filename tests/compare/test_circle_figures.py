@@ -3,7 +3,7 @@ import pytest
 
 from tests.compare.paths import UP, arc, line, moves_of
 from tests.compare.runs import compare, setpoints
-from twin.compare.arcs import POLAR_ARCS
+from twin.compare.arcs import POLAR_ARCS, plane_axes
 from twin.compare.circle import CirclePath, circle_figures, hysteresis_um
 from twin.nc.canonical import FloatArray
 
@@ -130,3 +130,35 @@ def test_an_arc_with_the_table_in_step_is_no_circle_on_the_part():
     moves = moves_of(arc(START, CENTER, UP, 360.0, turn=45.0), line(START, START))
     asked = setpoints(moves)
     assert compare(moves, asked, asked.position)[0].arcs == ()
+
+
+def test_a_circle_run_both_ways_has_bidirectional_figures():
+    """Counter-clockwise 2 µm outside, clockwise 6 µm inside, whatever the start points."""
+    other_start = np.array([0.0, RADIUS, 0.0, 0.0])
+    moves = moves_of(
+        arc(START, CENTER, UP, 360.0),
+        line(START, other_start),
+        arc(other_start, CENTER, -UP, 360.0),
+    )
+    asked = setpoints(moves, per_move=8000)
+    center = asked.position[0] - START
+    grown = np.select([asked.move == 0, asked.move == 2], [0.002, -0.006], 0.0)
+    joint = center + (asked.position - center) * (1.0 + grown / RADIUS)[:, None]
+    (pair,) = compare(moves, asked, joint)[0].bidirectional
+    assert (pair.counter_clockwise_line, pair.clockwise_line) == (1, 3)
+    assert pair.circular_deviation_um == pytest.approx(8.0, abs=0.05)
+    assert pair.mean_radial_deviation_um == pytest.approx(-2.0, abs=0.05)
+    assert pair.hysteresis_um == pytest.approx(8.0, abs=0.05)
+
+
+@pytest.mark.parametrize("normal", [UP, -UP, np.array([0, 1.0, 0]), np.array([0.6, 0.0, 0.8])])
+def test_angles_are_the_planes_own(normal: FloatArray):
+    first, second = (axes[0] for axes in plane_axes(normal[None]))
+    assert first @ second == pytest.approx(0.0, abs=1e-15)
+    assert abs(np.cross(first, second) @ normal) == pytest.approx(1.0)
+    if abs(normal[2]) == 1.0:
+        assert first == pytest.approx([1, 0, 0])
+        assert second == pytest.approx([0, 1, 0])
+    if normal[1] == 1.0:
+        assert first == pytest.approx([0, 0, 1])
+        assert second == pytest.approx([1, 0, 0])

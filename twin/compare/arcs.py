@@ -5,8 +5,9 @@ import dataclasses
 import numpy as np
 import numpy.typing as npt
 
+from twin.compare.bidirectional import DirectedCircle, PairCollector, directed_circle
 from twin.compare.circle import CirclePath, circle_figures
-from twin.compare.figures import ArcFigures
+from twin.compare.figures import ArcFigures, BidirectionalFigures
 from twin.nc.canonical import FloatArray, IntArray, Moves, Shape
 
 BoolArray = npt.NDArray[np.bool_]
@@ -20,12 +21,38 @@ ARCS_KEPT = 10_000
 _POLAR_POINTS = 720
 
 
+def plane_axes(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Directions of 0 and 90 degrees in the planes of arcs, whichever way their normals point.
+
+    X and Y in XY, Z and X in ZX, Y and Z in YZ, as ISO 230-4 names the planes; in an oblique plane
+    the projection of the first axis of the nearest of these.
+
+    Args:
+        normal: Unit normals, shape (n, 3).
+    """
+    upright = np.abs(normal).argmax(axis=1)
+    rows = np.arange(len(normal))
+    upward = normal * np.where(normal[rows, upright] < 0.0, -1.0, 1.0)[:, None]
+    first = np.zeros(normal.shape)
+    first[rows, (upright + 1) % 3] = 1.0
+    first -= np.einsum("ij,ij->i", first, upward)[:, None] * upward
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    return first, np.asarray(np.cross(upward, first), np.float64)
+
+
 @dataclasses.dataclass(slots=True)
 class _OpenArc:
-    line: int
     time_s: float
     sweep_deg: float
-    path: CirclePath
+    directed: DirectedCircle
+
+    @property
+    def line(self) -> int:
+        return self.directed.line
+
+    @property
+    def path(self) -> CirclePath:
+        return self.directed.path
 
 
 class ArcCollector:
@@ -34,6 +61,7 @@ class ArcCollector:
     def __init__(self) -> None:
         self._open: dict[int, _OpenArc] = {}
         self._done: list[tuple[int, ArcFigures]] = []
+        self._pairs = PairCollector()
 
     def add(
         self, moves: Moves, circular: BoolArray, first: int, place: IntArray, fraction: FloatArray,
@@ -47,8 +75,8 @@ class ArcCollector:
             first: Number of the first of them in the program.
             place: Index in ``moves`` of each sample's nearest place, shape (n,).
             fraction: Fraction of that place, shape (n,).
-            offset: Tool relative to ``center`` along the start radius and a quarter turn on,
-                shape (n, 2) [mm]; unused where the nearest move is no arc.
+            offset: Tool relative to the arc's centre along the ``plane_axes``, shape (n, 2) [mm];
+                unused where the nearest move is no arc.
             time: Shape (n,) [s].
         """
         wanted = (moves.shape == Shape.ARC) & (np.abs(moves.sweep) >= SMALLEST_SWEEP)
@@ -62,18 +90,28 @@ class ArcCollector:
             arc = self._open.get(first + int(move))
             if arc is None:
                 arc = _OpenArc(
-                    int(moves.line[move]), float(time[here[0]]), float(moves.sweep[move]),
-                    CirclePath(float(moves.radius[move])),
-                )  # fmt: skip
+                    float(time[here[0]]),
+                    float(moves.sweep[move]),
+                    directed_circle(moves, int(move)),
+                )
                 self._open[first + int(move)] = arc
             arc.path.add(offset[here, 0], offset[here, 1])
 
     def finish(self, before: int) -> None:
         """Evaluate the arcs whose number in the program is below ``before``."""
         for number in sorted(number for number in self._open if number < before):
-            self._done.append((number, _evaluate(self._open.pop(number))))
+            arc = self._open.pop(number)
+            self._done.append((number, _evaluate(arc)))
+            self._pairs.add(arc.directed)
         if len(self._done) > 2 * POLAR_ARCS:
             self._done = _trimmed(self._done)
+
+    def bidirectional(self) -> tuple[BidirectionalFigures, ...]:
+        """Circles that were run both ways, by line; open arcs as far as they got."""
+        pairs = self._pairs.copy()
+        for _, arc in sorted(self._open.items()):
+            pairs.add(arc.directed)
+        return pairs.figures()
 
     def figures(self) -> tuple[ArcFigures, ...]:
         """All arcs so far, in program order; those still open are evaluated as far as they got."""

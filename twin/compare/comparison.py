@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.compare.arcs import ArcCollector
+from twin.compare.arcs import ArcCollector, plane_axes
 from twin.compare.blocks import BlockCollector
 from twin.compare.contour_kernels import follow
 from twin.compare.corners import CornerCollector
@@ -20,6 +20,8 @@ REACH_S = 0.5
 """A tool that is later than this has left the place on the path that it is held against [s]. The
 slowest position loop in use, 1 (m/min)/mm, lags by 0.06 s."""
 WORST_PLACES = 10
+_NO_NORMAL = 1.0 / np.sqrt(3.0)
+"""Stands in for the normal of lines, whose offsets nobody reads."""
 _ROWS = 4096
 """Samples that are worked on at once: bounds how many arcs are open at a time."""
 
@@ -175,10 +177,13 @@ class Comparison:
         back[:, 0] = cosine * point[:, 0] + sine * point[:, 1]
         back[:, 1] = cosine * point[:, 1] - sine * point[:, 0]
         back -= path.origin[place]
-        radius = np.maximum(np.linalg.norm(path.first[place], axis=1), np.finfo(float).tiny)
-        along = np.einsum("ij,ij->i", back, path.first[place]) / radius
-        across = np.einsum("ij,ij->i", back, path.second[place]) / radius
-        return np.column_stack([along, across])
+        across, up = plane_axes(np.nan_to_num(self._moves.normal, nan=_NO_NORMAL))
+        return np.column_stack(
+            [
+                np.einsum("ij,ij->i", back, across[place]),
+                np.einsum("ij,ij->i", back, up[place]),
+            ]
+        )
 
     def _keep_worst(
         self, error: FloatArray, line: IntArray, time: FloatArray, position: FloatArray
@@ -210,7 +215,7 @@ class Comparison:
             self._first = reached
 
     def result(self) -> Figures:
-        """The figures of everything added so far."""
+        """The figures of everything added so far; more may be added."""
         worst = tuple(self._worst.values())
         tracking = {
             name: AxisTracking(kind, size.greatest, size.rms, *place, size.percentile(99.0))
@@ -230,6 +235,7 @@ class Comparison:
                 worst_time_s=worst[0].time_s if worst else 0.0,
             ),
             arcs=self._arcs.figures(),
+            bidirectional=self._arcs.bidirectional(),
             worst=worst,
             blocks=self._blocks.figures(),
             features=self._features.figures(),

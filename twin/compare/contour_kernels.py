@@ -50,7 +50,6 @@ def follow(path, point, command, back, state, distance, place_move, place_fracti
         else:
             high_move, high_u = move, u
         low_move, low_u = walk(path, low_move, low_u, -margin)
-        high_move, high_u = walk(path, high_move, high_u, margin)
         back_move = int(back[i, 0])
         if low_move < back_move or (low_move == back_move and low_u < back[i, 1]):
             low_move, low_u = back_move, back[i, 1]
@@ -58,6 +57,7 @@ def follow(path, point, command, back, state, distance, place_move, place_fracti
         # Within the margin ahead of the command nothing is nearer than the command less the margin.
         asked = distance_at(path, now_move, now_u, x, y, z)
         if was_ahead or asked - margin < error:
+            high_move, high_u = walk(path, high_move, high_u, margin)
             ahead, ahead_move, ahead_u = nearest_between(
                 path, now_move, now_u, high_move, high_u, x, y, z, _TIE_MM
             )

@@ -78,8 +78,8 @@ class ArcFigures:
         circular_deviation_um: ISO 230-4 circular deviation G (see ``twin.compare.circle``) [µm].
         radial_max_um: Greatest radial deviation, positive outside the commanded circle [µm].
         radial_min_um: Least radial deviation [µm].
-        polar: Angle [deg] and radial deviation [µm] by row for a polar plot, shape (m, 2); empty
-            for all but the worst arcs.
+        polar: Angle [deg] in the arc's plane (``twin.compare.arcs.plane_axes``) and radial
+            deviation [µm] by row for a polar plot, shape (m, 2); empty for all but the worst arcs.
     """
 
     line: int
@@ -95,6 +95,27 @@ class ArcFigures:
     def radial_deviation_um(self) -> float:
         """The radial deviation that is farthest from zero, with its sign [µm]."""
         return max(self.radial_max_um, self.radial_min_um, key=abs)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class BidirectionalFigures:
+    """Figures of a full circle that was run both ways, after ISO 230-4.
+
+    Attributes:
+        counter_clockwise_line: Source line of the one.
+        clockwise_line: Source line of the other.
+        radius_mm: Commanded radius [mm].
+        circular_deviation_um: G(b), about the least-squares circle of both [µm].
+        mean_radial_deviation_um: D: radius of that circle minus the commanded one [µm].
+        hysteresis_um: H: greatest difference of the radial deviations at one angle [µm].
+    """
+
+    counter_clockwise_line: int
+    clockwise_line: int
+    radius_mm: float
+    circular_deviation_um: float
+    mean_radial_deviation_um: float
+    hysteresis_um: float
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -130,6 +151,7 @@ class Figures:
         blocks: By source line, feeds and rapids apart.
         features: Contour error of ``line`` and ``arc`` blocks; those that the program has.
         corners: Where the path turns sharply.
+        bidirectional: Full circles that were run both ways, by line.
     """
 
     samples: int
@@ -141,3 +163,4 @@ class Figures:
     blocks: BlockFigures = NO_BLOCKS
     features: Mapping[str, FeatureFigures] = dataclasses.field(default_factory=dict)
     corners: CornerFigures = NO_CORNERS
+    bidirectional: tuple[BidirectionalFigures, ...] = ()

@@ -88,6 +88,7 @@ def result(
         "corners": dataclasses.asdict(figures.corners),
         "blocks": _worst_blocks(figures.blocks),
         "arcs": [_arc(arc) for arc in figures.arcs],
+        "bidirectional_arcs": [dataclasses.asdict(pair) for pair in figures.bidirectional],
         "tolerance": tolerance.model_dump(exclude_none=True),
         "alarms": [
             {"code": a.code, "line": a.line, "time_s": a.time_s, "message": a.message}

@@ -1,0 +1,33 @@
+"""A circle on the whole chain against the formula of the position loop."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.check.test_check_runs import write_job
+from twin import api
+from twin.machine.config import read_machine
+from twin.resources import machine_file
+from twin.units import kv_per_second
+
+
+@pytest.mark.parametrize(("radius", "feed"), [(20.0, 3000.0), (50.0, 6000.0)])
+def test_a_circle_shrinks_as_the_loop_gains_say(tmp_path: Path, radius: float, feed: float):
+    """The gain and phase of a second-order loop without feed-forward, at the circle's frequency.
+
+    With natural frequency w, damping z and r = v / (R w) the radius changes by
+    R (1 / sqrt((1 - r^2)^2 + (2 z r)^2) - 1), and the lag along the path is v / Kv.
+    """
+    text = f"N10 X0 Y0 Z0 G00\nN20 G01 F{feed:g}\nN30 G02 X0 Y0 I{radius:g} J0\nN40 M30\n"
+    outcome = api.run(write_job(tmp_path, "circle", text), out=tmp_path / "out").outcome
+    axis = read_machine(machine_file("mill4")).axis("X")
+    gain = kv_per_second(axis.kv)
+    frequency = 2.0 * axis.damping_ratio * gain
+    ratio = feed / 60.0 / radius / frequency
+    shrinking = 1.0 / np.hypot(1.0 - ratio**2, 2.0 * axis.damping_ratio * ratio) - 1.0
+    (arc,) = outcome.figures.arcs
+    assert arc.radius_mm == radius
+    assert arc.radial_deviation_um == pytest.approx(shrinking * radius * 1e3, abs=0.1)
+    assert outcome.figures.features["arc"].max == pytest.approx(-shrinking * radius * 1e3, abs=0.1)
+    assert outcome.figures.tracking["Y"].max == pytest.approx(feed / 60.0 / gain * 1e3, rel=0.01)
