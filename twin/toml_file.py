@@ -71,7 +71,9 @@ def _explain(detail: ErrorDetails, table: type[pydantic.BaseModel]) -> str:
     if detail["type"] == "missing":
         return f"'{key}' is missing"
     if detail["type"] != "extra_forbidden":
-        return f"'{key}': {detail['msg'].removeprefix('Value error, ')} (got {detail['input']!r})"
+        message = detail["msg"].removeprefix("Value error, ")
+        whole_table = isinstance(detail["input"], dict)
+        return f"'{key}': {message}" + ("" if whole_table else f" (got {detail['input']!r})")
     known = _known_keys(table, detail["loc"][:-1])
     nearest = difflib.get_close_matches(str(detail["loc"][-1]), known, n=1)
     hint = f"did you mean '{nearest[0]}'?" if nearest else f"known keys: {', '.join(sorted(known))}"

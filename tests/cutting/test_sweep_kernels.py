@@ -40,10 +40,8 @@ def swept(
     removed, depth = np.zeros(len(points) - 1), np.zeros(len(points) - 1)
     profile = dataclasses.astuple(cutter)
     marks = np.zeros(shape)
-    mark = np.arange(1.0, len(removed) + 1.0, dtype=np.float64)
-    changed = sweep(
-        heights, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, marks, mark
-    )
+    mark = np.arange(1, len(removed) + 1, dtype=np.float64)
+    changed = sweep(heights, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, marks, mark)
     np.testing.assert_array_equal(marks > 0, heights < 0)
     unmarked = np.zeros(shape)
     none = np.zeros((0, 0))

@@ -6,10 +6,12 @@ import pytest
 from machine_fixtures import circle, line, shipped_machine
 
 from twin.machine.alarms import SimulationError
+from twin.machine.config import read_machine
 from twin.machine.model import build_spec, physics_model
 from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.simulate import simulate
 from twin.motion.setpoints import Setpoints, join
+from twin.resources import machine_file
 from twin.units import DEGREE, MM
 
 
@@ -37,6 +39,36 @@ def test_how_setpoints_are_cut_into_chunks_changes_no_bit(sizes):
     assert np.array_equal(np.concatenate([p.joint_velocity for p in parts]), whole.joint_velocity)
     assert np.array_equal(np.concatenate([p.drive_force for p in parts]), whole.drive_force)
     assert np.array_equal(join([p.setpoint for p in parts]).time, points.time)
+
+
+IMPERFECT = {
+    "mill4_light": {},
+    "lugre": {
+        "dry_friction": 300.0,
+        "lugre": {"stiffness": 20000.0, "damping": 100.0, "static_friction": 400.0},
+        "reset_time_s": 0.02,
+    },
+    "all": {
+        "dry_friction": 200.0, "viscous_friction": 1.0, "backlash": 0.02, "stiffness": 40000.0,
+        "counterbalance": 0.5, "reset_time_s": 0.05, "velocity_feedforward": 0.5,
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", sorted(IMPERFECT))
+def test_imperfect_drives_do_not_see_the_chunks_either(name):
+    if name == "mill4_light":
+        machine = read_machine(machine_file(name))
+    else:
+        machine = shipped_machine(**IMPERFECT[name])
+    model = physics_model(machine, build_spec(machine))
+    points = circle(10.0, 2000.0, 0.8)
+    points.position[:, 2] -= 50.0
+    (whole,) = simulate(machine, model, [points])
+    parts = list(simulate(machine, model, [points[i : i + 37] for i in range(0, len(points), 37)]))
+    assert np.array_equal(np.concatenate([p.joint_position for p in parts]), whole.joint_position)
+    assert np.array_equal(np.concatenate([p.drive_force for p in parts]), whole.drive_force)
+    assert np.abs(whole.joint_position - whole.setpoint.position)[:, :3].max() < 0.5
 
 
 def test_rollout_equals_stepping_in_python_bit_for_bit():

@@ -1,10 +1,13 @@
 import re
 
+import numpy as np
 import pytest
+from machine_fixtures import circle, shipped_machine
 
 from twin.errors import UsageError
 from twin.machine.config import read_machine
 from twin.machine.model import build_spec
+from twin.machine.simulate import simulate
 from twin.resources import machine_file
 
 
@@ -53,6 +56,24 @@ def test_a_fourth_axis_under_another_letter_and_a_fifth(tmp_path):
     assert build_spec(machine).compile().nu == 8
 
 
+def test_a_joint_that_counts_the_other_way_is_turned_round_by_its_direction(tmp_path):
+    """X of the model reversed, and told so: the same motion, the same forces."""
+    folder = machine_file("mill4").parent
+    model = (
+        (folder / "mill4.xml").read_text().replace('meshdir="assets"', f'meshdir="{folder}/assets"')
+    )
+    write(tmp_path, model.replace('axis="-1 0 0"', 'axis="1 0 0"'), "mill4.xml")
+    text = machine_file("mill4").read_text().replace("scene.xml", "mill4.xml")
+    turned = read_machine(
+        write(tmp_path, text.replace('joint = "X"', 'joint = "X"\ndirection = -1'))
+    )
+    points = circle(20.0, 3000.0, 1.0)
+    (same,) = simulate(shipped_machine(), build_spec(shipped_machine()), [points])
+    (other,) = simulate(turned, build_spec(turned), [points])
+    assert np.array_equal(same.joint_position, other.joint_position)
+    assert np.array_equal(same.drive_force, other.drive_force)
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -70,8 +91,36 @@ def test_a_fourth_axis_under_another_letter_and_a_fifth(tmp_path):
         ('base = "mill4"\n[axes.X]\nlimit_switches = [3.0, 1.0]\n', "must rise"),
         ('base = "mill4"\n[axes.X]\nkv = -1.0\n', "axes.X.kv"),
         ('base = "mill4"\n[axes.X]\nkv = inf\n', "axes.X.kv"),
+        ('base = "mill4"\n[axes.Y]\njoint = "X"\n', "joint 'X' is named twice"),
+        ('base = "mill4"\n[table]\naxis = "X"\n', "table.axis 'X' is not rotary"),
+        (
+            'base = "mill4"\n' + 2 * '[[fixtures]]\nname = "jaw"\nsize = [1, 1, 1]\n',
+            "fixture 'jaw' is named twice",
+        ),
+        ('base = "mill4"\n[axes.X]\nmotor_inertia = 0.1\nlead = 0.0\n', "axes.X.lead"),
     ],
 )
 def test_wrong_machine_files_are_refused_with_what_is_wrong(tmp_path, text, message):
     with pytest.raises(UsageError, match=re.escape(message)):
         read_machine(write(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            '[[fixtures]]\nname = "faceplate"\nsize = [1, 1, 1]\n',
+            "has the name of a part of the machine",
+        ),
+        ("[axes.Z]\nstiffness = 1e9\n", "axes.Z.stiffness = 1e+09 swings faster"),
+        (
+            "[axes.X]\ndry_friction = 9.0\n[axes.X.lugre]\nstiffness = 1e8\n",
+            "axes.X.lugre.stiffness = 1e+08 swings faster",
+        ),
+        ("servo_period_s = 0.02\n", "axes.X: with kv = 7.5 the motor reacts faster"),
+    ],
+)
+def test_machines_that_cannot_be_simulated_are_refused_with_what_can(tmp_path, text, message):
+    machine = read_machine(write(tmp_path, f'base = "mill4"\n{text}'))
+    with pytest.raises(UsageError, match=re.escape(message)):
+        build_spec(machine)

@@ -42,7 +42,7 @@ MODEL = """
     <body name="head" pos="0 0 0.3">
       <joint name="Z" type="slide" axis="0 0 1"/>
       <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
-      <geom name="tool" type="cylinder" size="0.005 0.025" pos="0 0 -0.025" rgba="0.9 0.1 0.1 1"/>
+      <geom name="tool_cutter" type="cylinder" size="0.005 0.025" pos="0 0 -0.025" rgba="0.9 0.1 0.1 1"/>
       <site name="spindle_nose"/>
     </body>
   </worldbody>

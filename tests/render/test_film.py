@@ -1,3 +1,4 @@
+import errno
 import itertools
 import subprocess
 import sys
@@ -183,6 +184,33 @@ def test_contour_error_is_shown_where_it_is_known(
     assert lag.line == 3
     assert lag.feed == pytest.approx(80.0 / 0.25 * 60.0, rel=1e-6)
     np.testing.assert_allclose(lag.position, [-40 + 80 * 100 / 250, 0, -5, 0], atol=0.01)
+
+
+def test_alarms_and_warnings_are_shown_while_they_hold(options: Options, tmp_path: Path) -> None:
+    def red(name: str, **more: object) -> int:
+        out = still(**{**options, "out": tmp_path / name, "quality": "draft", **more})
+        chip = np.asarray(Image.open(out))[18:56, 400:880].astype(int)
+        return int(np.all(np.abs(chip - [196, 40, 27]) < 10, axis=2).sum())
+
+    alarms = [(0.5, "following error of X")]
+    assert red("before.png", time_s=0.4, alarms=alarms) == 0
+    assert red("after.png", time_s=0.6, alarms=alarms) > 1000
+    options["rapid_moves"] = np.ones(4, np.bool_)
+    assert red("warned.png", time_s=0.6) > 1000
+    assert red("air.png", time_s=0.1) == 0
+
+
+def test_full_disk_is_said_and_leaves_nothing(
+    options: Options, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("twin.render.encoder.VideoWriter._encode", full)
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(RenderError, match=r"run\.mp4: .*No space left on device"):
+        film(**options, video=VIDEO, out=tmp_path / "run.mp4")
+    assert sorted(tmp_path.iterdir()) == before
 
 
 def test_osmesa_draws_the_same_scene(tmp_path: Path) -> None:

@@ -5,10 +5,12 @@ import dataclasses
 import mujoco
 import numpy as np
 import pytest
+import trimesh
 
 from tests.render.conftest import RAPID_MOVES, STOCK, TOOL
+from twin.cutting.tools import ToolPlan, profile
 from twin.errors import RenderError
-from twin.job import StockTable
+from twin.job import StockTable, ToolTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.recording import Recording
@@ -17,6 +19,7 @@ from twin.render.film import moment
 from twin.render.placement import tip_position
 from twin.render.replay import deal
 from twin.render.stage import Scene, Stage, stage
+from twin.render.tool_body import fluted
 
 SIZE = (320, 240)
 
@@ -51,12 +54,54 @@ def projected(play: Stage, camera: str, point: FloatArray) -> tuple[float, float
 def test_tool_tip_is_where_the_recording_says(scene: Scene, line: int) -> None:
     with stage(scene, SIZE, DRAFT) as play:
         play_to(play, scene.recording, moment(scene.recording, line=line) - 60)
-        tool = play.objects("overview") == int(play.model.geom("tool").id)
+        tool = play.objects("overview") == int(play.model.geom("cutter_1").id)
         tip = tip_position(play.model, play.data, TOOL.length)
         column, row = projected(play, "overview", tip)
     rows, columns = np.nonzero(tool)
     assert rows.max() == pytest.approx(row, abs=4)
     assert columns[rows > rows.max() - 5].mean() == pytest.approx(column, abs=2)
+
+
+def test_a_change_of_tool_is_seen(scene: Scene) -> None:
+    long = ToolTable(number=2, kind="drill", diameter=8.0, length=80.0)
+    changed = dataclasses.replace(scene, tool=ToolPlan((TOOL, long), (0, 2)))
+    with stage(changed, SIZE, DRAFT) as play:
+        for line, number in ((2, 1), (3, 2)):
+            rest = [s for s, _ in deal(scene.recording, np.array([300, 600]))][number - 1]
+            play.advance(rest)
+            seen = set(np.unique(play.objects("overview")).tolist())
+            assert int(play.model.geom(f"cutter_{number}").id) in seen, line
+            assert int(play.model.geom(f"cutter_{3 - number}").id) not in seen
+            length = (TOOL, long)[number - 1].length
+            tip = tip_position(play.model, play.data, length)
+            part = scene.recording.header.part_frame.position(rest.joint_position[-1:])
+            body = play.data.body("rotary_table")
+            point = body.xpos + body.xmat.reshape(3, 3) @ play.placement.points(part)[0]
+            np.testing.assert_allclose(tip, point, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "tool",
+    [
+        TOOL,
+        ToolTable(number=1, kind="ball"),
+        ToolTable(number=1, kind="bull", corner=2.0),
+        ToolTable(number=1, kind="drill"),
+        ToolTable(number=1, kind="chamfer", tip=1.0, teeth=5),
+    ],
+    ids=lambda tool: tool.kind,
+)
+def test_drawn_cutter_lies_within_its_profile(tool: ToolTable) -> None:
+    vertices, faces = fluted(tool)
+    radius = np.hypot(vertices[:, 0], vertices[:, 1])
+    assert np.all(
+        vertices[:, 2] >= profile(tool).height(np.minimum(radius, tool.diameter / 2)) - 1e-6
+    )
+    assert radius.max() == pytest.approx(tool.diameter / 2, rel=1e-3)
+    assert vertices[:, 2].min() == 0.0
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    assert mesh.is_watertight
+    assert mesh.volume > 0
 
 
 def stock_pixels(play: Stage, camera: str) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]:

@@ -4,7 +4,7 @@ import math
 
 import numba
 
-from twin.toolpath.nearest_kernels import nearest_between, walk
+from twin.toolpath.nearest_kernels import distance_at, nearest_between, walk
 
 _TIE_MM = 1e-7
 """Of places equally near within this, the last up to the command is taken: a path that goes back
@@ -44,7 +44,8 @@ def follow(path, point, command, back, state, distance, place_move, place_fracti
         now_move, now_u = int(command[i, 0]), command[i, 1]
         low_move, low_u = now_move, now_u
         high_move, high_u = now_move, now_u
-        if move < now_move or (move == now_move and u < now_u):
+        was_ahead = move > now_move or (move == now_move and u > now_u)
+        if not was_ahead:
             low_move, low_u = move, u
         else:
             high_move, high_u = move, u
@@ -54,11 +55,14 @@ def follow(path, point, command, back, state, distance, place_move, place_fracti
         if low_move < back_move or (low_move == back_move and low_u < back[i, 1]):
             low_move, low_u = back_move, back[i, 1]
         error, move, u = nearest_between(path, low_move, low_u, now_move, now_u, x, y, z, _TIE_MM)
-        ahead, ahead_move, ahead_u = nearest_between(
-            path, now_move, now_u, high_move, high_u, x, y, z, _TIE_MM
-        )
-        if ahead < error - _TIE_MM:
-            error, move, u = ahead, ahead_move, ahead_u
+        # Within the margin ahead of the command nothing is nearer than the command less the margin.
+        asked = distance_at(path, now_move, now_u, x, y, z)
+        if was_ahead or asked - margin < error:
+            ahead, ahead_move, ahead_u = nearest_between(
+                path, now_move, now_u, high_move, high_u, x, y, z, _TIE_MM
+            )
+            if ahead < error - _TIE_MM:
+                error, move, u = ahead, ahead_move, ahead_u
         distance[i] = error
         place_move[i], place_fraction[i] = move, u
         x0, y0, z0 = x, y, z

@@ -143,6 +143,10 @@ class Cutter:
             self._cut(points[run], setpoint.time[run], setpoint.line[run], np.asarray(rapid)[run])
         return self._removed - before
 
+    def events(self) -> tuple[CutEvent, ...]:
+        """Gouges and rapids into stock so far."""
+        return (*self._gouges.events(), *self._rapids.events())
+
     def result(self) -> CutResult:
         """What was cut so far."""
         bin_s, over_time = self._ledger.over_time

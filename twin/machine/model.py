@@ -16,8 +16,14 @@ from twin.machine.tool_shape import (
     ToolShape,
     add_tool,
 )
-from twin.machine.transmission import add_friction_and_give, add_inertia, has_give
-from twin.units import MM
+from twin.machine.transmission import (
+    FASTEST,
+    add_friction_and_give,
+    add_inertia,
+    has_give,
+    swinging,
+)
+from twin.units import MM, to_si
 
 SPINDLE_NOSE = "spindle_nose"
 """Site on the head at the lower end of the spindle, on its axis."""
@@ -29,8 +35,6 @@ ROTARY_TABLE = "rotary_table"
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
 
 
-_FASTEST_LOOP = 2.0
-"""Velocity gain over inertia, times the step."""
 _POSITION_INPUT = 1
 """What MuJoCo calls ``input="pos"``."""
 
@@ -96,7 +100,7 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
     found = drives(machine, _compile(spec, machine))
     for name, drive in zip(machine.axes.names, found, strict=True):
         axis = machine.axis(name)
-        _refuse_too_fast_a_loop(machine, name, drive)
+        _refuse_what_outruns_the_clock(machine, name, drive)
         servo = spec.actuator(name)
         servo.target = axis.joint
         servo.trntype = mujoco.mjtTrn.mjTRN_JOINT
@@ -121,24 +125,40 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
             spec.delete(key)
 
 
-def _refuse_too_fast_a_loop(machine: Machine, name: str, drive: Drive) -> None:
-    """A loop that reacts within a step is no loop: RK4 diverges from 2.78 on."""
+def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) -> None:
+    """A loop or a spring that swings within a step cannot be simulated with it."""
     axis = machine.axis(name)
+    period = machine.file.servo_period_s
     felt = reflected_inertia(axis) if has_give(axis) else drive.moved
-    rate = drive.velocity_gain / felt * machine.file.servo_period_s
-    if rate > _FASTEST_LOOP:
+    rate = drive.velocity_gain / felt * period
+    if rate > FASTEST:
         reason = " behind the backlash or spring, where it moves no more than itself" * has_give(
             axis
         )
         raise ConfigError(
             f"{machine.path}: axes.{name}: with kv = {axis.kv:g} the motor{reason} reacts faster "
-            f"than the servo period; kv up to {axis.kv * _FASTEST_LOOP / rate:.3g} works"
+            f"than the servo period; kv up to {axis.kv * FASTEST / rate:.3g} works"
         )
+    springs = [("stiffness", axis.stiffness, swinging(axis, drive.moved), "0 is rigid")]
+    if axis.lugre is not None:
+        springs.append(("lugre.stiffness", axis.lugre.stiffness, drive.moved, "none is Coulomb"))
+    for key, stiffness, swings, otherwise in springs:
+        most = swings * (FASTEST / period) ** 2 * to_si(axis.kind)
+        if stiffness > most:
+            raise ConfigError(
+                f"{machine.path}: axes.{name}.{key} = {stiffness:g} swings faster than the servo "
+                f"period; up to {most:.3g} works, and {otherwise}"
+            )
 
 
 def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
     top = spec.site(TABLE_TOP)
+    taken = [geom.name for geom in spec.geoms]
     for fixture in machine.file.fixtures:
+        if fixture.name in taken:
+            raise ConfigError(
+                f"{machine.path}: fixture '{fixture.name}' has the name of a part of the machine"
+            )
         half = np.array(fixture.size) / 2 * MM
         center = top.pos + np.array(fixture.position) * MM + [0.0, 0.0, half[2]]
         for name, group, material in (
@@ -210,8 +230,9 @@ def _without(spec: mujoco.MjSpec, machine: Machine, *groups: int) -> mujoco.MjMo
     for geom in list(lean.geoms):
         if geom.group in groups:
             lean.delete(geom)
-    for mesh in list(lean.meshes):
-        lean.delete(mesh)
+    for unseen in [*lean.meshes, *lean.cameras, *lean.lights]:
+        lean.delete(unseen)
+    lean.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     return _compile(lean, machine)
 
 

@@ -22,6 +22,9 @@ HIDDEN_GROUP = 5
 FILL_SHARE = 0.45
 """Share of a light that its shadows do not take away."""
 
+SHADOWLESS = "trail"
+"""What the names of geoms that cast no shadow begin with."""
+
 _SPARE_GEOMS = 200
 """Scene geoms beside the model's own, for lights' and frames' decoration."""
 
@@ -89,6 +92,11 @@ class Canvas:
         self.context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, self.context)
         self._view = mujoco.MjrRect(0, 0, *size)
+        self._shadowless = {
+            number
+            for number in range(model.ngeom)
+            if quality.shadows and model.geom(number).name.startswith(SHADOWLESS)
+        }
 
     def draw(self, data: mujoco.MjData, camera: int, size: tuple[int, int] | None = None) -> Pixels:
         """Draw one frame, top row first.
@@ -137,6 +145,9 @@ class Canvas:
             mujoco.mjtCatBit.mjCAT_ALL,
             self._scene,
         )
+        for geom in self._scene.geoms[: self._scene.ngeom]:
+            if geom.objid in self._shadowless and geom.objtype == mujoco.mjtObj.mjOBJ_GEOM:
+                geom.category = mujoco.mjtCatBit.mjCAT_DECOR
 
     def _read(self, view: mujoco.MjrRect) -> Pixels:
         pixels = np.zeros((view.height, view.width, 3), np.uint8)

@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image
 
 from twin.cutting.outline import BoolArray
+from twin.cutting.tools import ToolPlan
 from twin.errors import RenderError
 from twin.files import complete_or_absent
 from twin.job import StockTable, ToolTable, VideoTable
@@ -31,7 +32,7 @@ def film(
     spec: mujoco.MjSpec,
     machine: Machine,
     stock: StockTable | None,
-    tool: ToolTable,
+    tool: ToolTable | ToolPlan,
     source: Sequence[str],
     video: VideoTable,
     out: Path,
@@ -39,6 +40,7 @@ def film(
     rapid_moves: BoolArray | None = None,
     contour_um: FloatArray | None = None,
     error_scale_um: float | None = None,
+    alarms: Sequence[tuple[float, str]] = (),
     progress: Progress | None = None,
 ) -> Path:
     """Film a recorded run as MP4, GIF or WebP: one camera after the other, or all side by side.
@@ -48,7 +50,7 @@ def film(
         spec: Machine, tool and named cameras (``twin.machine.model.build_spec``).
         machine: The machine file.
         stock: The blank, which is cut as the film goes on; None for none.
-        tool: What is in the spindle.
+        tool: What is in the spindle, or what is in it when.
         source: Lines of the program.
         video: Cameras, length, frame rate and size; odd sizes are made even.
         out: The film, complete or not at all; ``.mp4``, ``.gif`` or ``.webp``.
@@ -57,6 +59,7 @@ def film(
         contour_um: Contour error of every sample, shape (n,) [µm], which colours the trail; None:
             the lag is shown.
         error_scale_um: Error that has the trail's last colour [µm]; None: the greatest.
+        alarms: When the machine raised which alarm [s, text]; shown from then on.
         progress: Called after every frame.
 
     Returns:
@@ -84,7 +87,7 @@ def film(
     seconds = video.seconds if video.speed is None else duration / video.speed
     frames = max(1, round(seconds * video.fps))
     ends = frame_ends(len(recording), frames)
-    gauge = Gauge(recording, contour_um)
+    gauge = Gauge(recording, contour_um, alarms)
     display = gauge.display(source, size, duration * video.fps / frames)
     with stage(scene, size, QUALITIES[quality]) as play, video_writer(out, size, video.fps) as film:
         done = 0
@@ -96,7 +99,7 @@ def film(
             cameras = video.cameras
             if video.layout == "sequence":
                 cameras = (cameras[done * len(cameras) // frames],)
-            pixels, reading = play.picture(*cameras), gauge.reading()
+            pixels, reading = play.picture(*cameras), gauge.reading(play.warning)
             film.write(lambda pixels=pixels, reading=reading: display.draw(pixels, reading))
             done += 1
             if progress is not None:
@@ -110,7 +113,7 @@ def still(
     spec: mujoco.MjSpec,
     machine: Machine,
     stock: StockTable | None,
-    tool: ToolTable,
+    tool: ToolTable | ToolPlan,
     source: Sequence[str],
     out: Path,
     camera: str = "overview",
@@ -121,6 +124,7 @@ def still(
     rapid_moves: BoolArray | None = None,
     contour_um: FloatArray | None = None,
     error_scale_um: float | None = None,
+    alarms: Sequence[tuple[float, str]] = (),
     display: bool = True,
 ) -> Path:
     """Draw one moment of a recorded run as a PNG.
@@ -141,6 +145,7 @@ def still(
         rapid_moves: See ``film``.
         contour_um: See ``film``.
         error_scale_um: See ``film``.
+        alarms: See ``film``.
         display: Whether the head-up display is on the picture.
 
     Returns:
@@ -162,14 +167,14 @@ def still(
     )
     _require(scene, (camera,), quality)
     end = moment(recording, time_s=time_s, line=line)
-    gauge = Gauge(recording, contour_um)
+    gauge = Gauge(recording, contour_um, alarms)
     with stage(scene, size, QUALITIES[quality]) as play:
         for samples, _ in deal(recording, np.array([end])):
             play.advance(samples)
             gauge.add(samples)
-        pixels = play.picture(camera)
+        pixels, reading = play.picture(camera), gauge.reading(play.warning)
     if display:
-        pixels = gauge.display(source, size, None).draw(pixels, gauge.reading())
+        pixels = gauge.display(source, size, None).draw(pixels, reading)
     try:
         with complete_or_absent(out) as temporary:
             Image.fromarray(np.ascontiguousarray(pixels)).save(temporary, "PNG", optimize=True)
@@ -219,13 +224,20 @@ def _require(scene: Scene, cameras: Sequence[str], quality: str) -> None:
 class Gauge:
     """Reads off a recording what the display shows."""
 
-    def __init__(self, recording: Recording, contour_um: FloatArray | None) -> None:
+    def __init__(
+        self,
+        recording: Recording,
+        contour_um: FloatArray | None,
+        alarms: Sequence[tuple[float, str]] = (),
+    ) -> None:
         """Take what the figures come from.
 
         Args:
             recording: The run.
             contour_um: Contour error of every sample [µm]; None: the lag is read.
+            alarms: When the machine raised which alarm [s, text].
         """
+        self._alarms = sorted(alarms)
         self._header = recording.header
         self._contour = contour_um
         self._last: Samples | None = None
@@ -249,8 +261,12 @@ class Gauge:
             self._last = samples[-1:]
             self._count += len(samples)
 
-    def reading(self) -> Reading:
-        """What there is to read after the last sample."""
+    def reading(self, warning: Callable[[int], str]) -> Reading:
+        """What there is to read after the last sample.
+
+        Args:
+            warning: What to warn of while a program line runs, where there is no alarm.
+        """
         assert self._last is not None
         header, last = self._header, self._last
         joints, setpoint = last.joint_position, last.setpoint
@@ -265,11 +281,14 @@ class Gauge:
         rotary = header.axes.rotary()
         turning = float(np.linalg.norm(velocity[rotary]))
         only_turns = feed < 1.0 < turning
+        line, time = int(setpoint.line[0]), float(setpoint.time[0])
+        raised = [text for since, text in self._alarms if since <= time]
         return Reading(
-            line=int(setpoint.line[0]),
+            line=line,
             position=joints[0] - header.part_zero,
             feed=turning if only_turns else feed,
             feed_unit="°/min" if only_turns else "mm/min",
             error_um=error,
-            time_s=float(setpoint.time[0]),
+            time_s=time,
+            alarm=raised[-1] if raised else warning(line),
         )

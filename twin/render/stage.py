@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.cutting.cut import Cutter, Rectangle, union
 from twin.cutting.outline import BoolArray
+from twin.cutting.tools import ToolPlan
 from twin.errors import RenderError
 from twin.job import StockTable, ToolTable
 from twin.machine.config import Machine
@@ -21,8 +22,16 @@ from twin.render.placement import Joints, Placement, place
 from twin.render.replay import rapid_mask
 from twin.render.skin import Skin
 from twin.render.stock_surface import StockSurface
+from twin.render.tool_body import ToolBodies
 from twin.render.trail import Trail, trail_points
 from twin.render.work_holding import add_work_holding
+
+WARNINGS = {
+    "rapid": "rapid into stock",
+    "flute": "deeper than the flutes",
+    "shank": "shank in the material",
+    "holder": "holder in the material",
+}
 
 BETWEEN_FIELDS = 255
 """Grey of the line between the fields of a split picture."""
@@ -41,8 +50,8 @@ class Scene:
     spec: mujoco.MjSpec
     """Machine, tool and named cameras, as the machine room builds it; it is not changed."""
     machine: Machine
-    tool: ToolTable
-    """What is in the spindle."""
+    tool: ToolTable | ToolPlan
+    """What is in the spindle, or what is in it when."""
     stock: StockTable | None = None
     rapid_moves: BoolArray | None = None
     """Whether each move of the program is a rapid; none: none is."""
@@ -50,6 +59,11 @@ class Scene:
     """Error of every sample that colours the trail, shape (n,) [µm]; none: one colour."""
     error_scale_um: float | None = None
     """Error that has the last colour [µm]; none: the greatest."""
+
+    @property
+    def plan(self) -> ToolPlan:
+        """What is in the spindle when."""
+        return self.tool if isinstance(self.tool, ToolPlan) else ToolPlan((self.tool,))
 
     def camera_names(self) -> list[str]:
         """Names of the cameras that can be asked for."""
@@ -80,6 +94,7 @@ class Stage:
         surface: StockSurface | None,
         cutter: Cutter | None,
         trail: Trail,
+        tools: ToolBodies,
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
@@ -90,6 +105,8 @@ class Stage:
         self._surface = surface
         self._cutter = cutter
         self._trail = trail
+        self._tools = tools
+        self._tool = scene.plan.tools[0]
         self._joints = Joints(scene.machine, model)
         self._samples = 0
         self._changed: Rectangle = (0, 0, 0, 0)
@@ -102,9 +119,18 @@ class Stage:
             return
         self._samples += len(samples)
         self._position = samples.joint_position[-1]
+        self._tool = self._scene.plan.runs(samples.setpoint.move[-1:])[0][1]
         if self._cutter is not None:
             self._cutter.add(samples, rapid_mask(samples, self._scene.rapid_moves))
             self._changed = union(self._changed, self._cutter.changed)
+
+    def warning(self, line: int) -> str:
+        """What the running block does to the part that it must not; empty for nothing."""
+        if self._cutter is not None:
+            for event in self._cutter.events():
+                if event.line == line:
+                    return f"{WARNINGS[event.what]}: {event.depth_mm:.2f} mm"
+        return ""
 
     def picture(self, *cameras: str) -> Pixels:
         """Draw what cameras see now, side by side in equal fields, shape (height, width, 3)."""
@@ -129,7 +155,12 @@ class Stage:
         return self._drawing.draw_objects(self.data, int(self.model.camera(camera).id))
 
     def _refresh(self) -> None:
-        self._joints.set(self.data, self._position)
+        self._tools.show(self._tool)
+        # Positions are the tool point's: with a longer tool the head stands higher.
+        longer = self._tool.length - self._scene.plan.tools[0].length
+        drawn = self._position.copy()
+        drawn[2] += longer
+        self._joints.set(self.data, drawn)
         mujoco.mj_forward(self.model, self.data)
         if self._surface is not None:
             self._surface.update(self._drawing, self._changed)
@@ -156,7 +187,7 @@ def stage(scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Sta
     spec = scene.spec.copy()
     prepare(spec, quality, size)
     turn_zero = header.part_frame.turn_zero
-    placement = place(scene.machine, spec.compile(), scene.tool.length, turn_zero)
+    placement = place(scene.machine, spec.compile(), scene.plan.tools[0].length, turn_zero)
     cutter = surface = None
     if scene.stock is not None:
         cutter = Cutter(
@@ -172,12 +203,15 @@ def stage(scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Sta
     add_part_cameras(spec, placement, *framed(seen))
     trail = Trail(points, _trail_radius(points.position), scene.error_scale_um)
     trail.add_to(spec)
+    tools = ToolBodies(scene.plan)
+    tools.add_to(spec)
     model = spec.compile()
     if surface is not None:
         surface.bind(model, placement)
     trail.bind(model, placement)
+    tools.bind(model)
     with canvas(model, size, quality) as drawing:
-        yield Stage(scene, model, placement, drawing, size, surface, cutter, trail)
+        yield Stage(scene, model, placement, drawing, size, surface, cutter, trail, tools)
 
 
 def _trail_radius(points: FloatArray) -> float:

@@ -143,9 +143,6 @@ class Trail:
             builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
         )
         material = spec.add_material(name=MATERIAL, emission=0.6, specular=0.0, shininess=0.0)
-        material.rgba = np.array(
-            [1.0, 1.0, 1.0, 0.99], np.float32
-        )  # what is not quite opaque casts no shadow
         material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = MATERIAL
         places = (self._colours() + 0.5) / _PALETTE
         for first in self._pieces:

@@ -138,20 +138,25 @@ def _project_on_circle(path, move, low, high, rx, ry, rz):
 
 
 @numba.njit(cache=True)
-def _slope(path, move, u, x, y, z):
-    """First and second derivative of half the squared distance."""
+def _look(path, move, u, x, y, z):
+    """From one place: distance, slope and curvature of half its square, and the place's speed."""
     px, py, pz, dx, dy, dz, wx, wy, wz = derivatives(path, move, u)
     rx, ry, rz = px - x, py - y, pz - z
-    slope = rx * dx + ry * dy + rz * dz
-    return slope, dx * dx + dy * dy + dz * dz + rx * wx + ry * wy + rz * wz
+    squared_speed = dx * dx + dy * dy + dz * dz
+    return (
+        math.sqrt(rx * rx + ry * ry + rz * rz),
+        rx * dx + ry * dy + rz * dz,
+        squared_speed + rx * wx + ry * wy + rz * wz,
+        math.sqrt(squared_speed),
+    )
 
 
 @numba.njit(cache=True)
-def _root_between(path, move, low, high, x, y, z):
-    """The minimum of a convex piece."""
+def _minimum_between(path, move, low, high, x, y, z):
+    """Distance and place of the minimum of a convex piece."""
     u = 0.5 * (low + high)
+    here, slope, curvature, speed = _look(path, move, u, x, y, z)
     for _ in range(_ITERATIONS):
-        slope, curvature = _slope(path, move, u, x, y, z)
         if slope > 0.0:
             high = u
         else:
@@ -159,11 +164,12 @@ def _root_between(path, move, low, high, x, y, z):
         new = u - slope / curvature if curvature > 0.0 else low
         if not low < new < high:
             new = 0.5 * (low + high)
-        moved = abs(new - u) * speed_at(path, move, u)
+        moved = abs(new - u) * speed
         u = new
+        here, slope, curvature, speed = _look(path, move, u, x, y, z)
         if moved < _STEP_MM:
             break
-    return u
+    return here, u
 
 
 @numba.njit(cache=True)
@@ -202,13 +208,11 @@ def _nearest_on_curve(path, move, low, high, x, y, z):
         end = min(start + step, high)
         half = 0.5 * (end - start)
         middle = start + half
-        here = distance_at(path, move, middle, x, y, z)
-        speed = speed_at(path, move, middle)
+        here, slope, curvature, speed = _look(path, move, middle, x, y, z)
         if here < best:
             best, best_u = here, middle
         across = (speed + 0.5 * second * half) * half
         if here - across < best - _RESOLUTION_MM and across > _RESOLUTION_MM:
-            slope, curvature = _slope(path, move, middle, x, y, z)
             bend = (3.0 * (speed + second * half) * second + (here + across) * third) * half
             # Taylor's bound on half the squared distance: of circles about the point, and of all
             # that is nearly so, it leaves out far longer pieces than the speed alone.
@@ -218,8 +222,7 @@ def _nearest_on_curve(path, move, low, high, x, y, z):
                 if curvature <= bend and step > smallest:
                     step = half
                     continue
-                u = _root_between(path, move, start, end, x, y, z)
-                here = distance_at(path, move, u, x, y, z)
+                here, u = _minimum_between(path, move, start, end, x, y, z)
                 if here < best:
                     best, best_u = here, u
         start, step = end, 4.0 * half
