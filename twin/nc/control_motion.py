@@ -14,6 +14,10 @@ _LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 
 
+_SMALLEST_MOVE = 1e-9
+"""A block that goes less far than this moves nothing [mm or deg]: far below any resolution."""
+
+
 class ControlMotion(ControlWords):
     """The verbs of motion; positions are programmed ones."""
 
@@ -54,12 +58,12 @@ class ControlMotion(ControlWords):
         sweep: float = 0.0,
     ) -> None:
         end = self.frame.to_part(target)
-        if center is None and end == self.part:
+        length = self._length(end, center, normal, sweep)
+        if length < _SMALLEST_MOVE:
             self.programmed = target
             return
         modal = self.modal
         is_arc = center is not None
-        length = self._length(end, center, normal, sweep)
         if self.series:
             self.place_switches(length)
         feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc, length)

@@ -7,7 +7,7 @@ import dataclasses
 import math
 import re
 
-from twin.nc import iso, iso_cycles
+from twin.nc import iso, iso_cycles, iso_decisions
 from twin.nc.canonical import Corner
 from twin.nc.control import Control
 from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
@@ -124,10 +124,17 @@ DECISIONS = (
         "Nothing in the page allows the tool to leave the programmed path.",
     ),
     Decision(
+        "What is a line of prose behind a line with a comment?",
+        "The comment's tail, left out with a warning, unless it begins with a readable word; a line "
+        "of dots is left out with a warning too.",
+        "The control's document breaks long comments and shows omitted blocks by dots.",
+    ),
+    Decision(
         "What does F count?",
         "mm/min along the path of X, Y, Z; deg/min where only rotary axes move.",
         "1200 degrees per minute is the only sensible reading of the page's G1 C359.999 F1200.",
     ),
+    *iso_decisions.DECISIONS,
 )
 
 GOST = Dialect(

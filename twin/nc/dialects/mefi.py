@@ -5,7 +5,7 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 
 import dataclasses
 
-from twin.nc import iso
+from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
 from twin.nc.circular import iso_arc_center, start_and_end
 from twin.nc.control import Control
@@ -172,6 +172,7 @@ DECISIONS = (
         "Exactly: the speed falls as far as the corner demands, and no more.",
         "Nothing in the page allows the tool to leave the programmed path.",
     ),
+    *iso_decisions.DECISIONS,
 )
 
 MEFI = Dialect(

@@ -167,6 +167,8 @@ def _sweep(
                     pitch,
                 )
         else:
+            if wanted == 0.0:
+                control.fail("helix-height", "a helix by its pitch alone needs a height", pitch)
             sweep = wanted
             around = turned(start[:2], center, sweep)
             goal.target[:3] = plane.world(*around, end.height)
