@@ -1,24 +1,11 @@
 """Run the command line inside the test's own process, as a shell would see it."""
 
-import dataclasses
 import sys
-from collections.abc import Callable
 
 import pytest
+from command_line import Finished, Twin
 
 from twin import cli
-
-
-@dataclasses.dataclass(frozen=True)
-class Finished:
-    """What a command left behind."""
-
-    code: int
-    stdout: str
-    stderr: str
-
-
-Twin = Callable[..., Finished]
 
 
 @pytest.fixture

@@ -7,9 +7,9 @@ from pathlib import Path
 import h5py
 import pytest
 import trimesh
-from conftest import Twin
+from command_line import Twin, machine_with_gain
 
-from twin.resources import machine_file, resource_root
+from twin.resources import resource_root
 
 PROGRAMS = resource_root("programs")
 
@@ -19,20 +19,6 @@ def program(folder: Path, text: str, job: str = "") -> Path:
     path.write_text(text, encoding="utf-8")
     if job:
         (folder / "part.toml").write_text(f'program = "part.nc"\n{job}', encoding="utf-8")
-    return path
-
-
-def machine_with_gain(folder: Path, factor: float) -> Path:
-    """A copy of mill4 whose position loops are turned up or down."""
-    shipped = machine_file("mill4")
-    text = shipped.read_text(encoding="utf-8")
-    model = shipped.parent / re.search(r'^model = "(.*)"', text, re.MULTILINE)[1]  # pyright: ignore[reportOptionalSubscript]
-    text = text.replace(f'model = "{model.name}"', f'model = "{model}"')
-    text = re.sub(
-        r"^kv = (.*)$", lambda m: f"kv = {factor * float(m[1])}", text, flags=re.MULTILINE
-    )
-    path = folder / "machine.toml"
-    path.write_text(text, encoding="utf-8")
     return path
 
 

@@ -124,15 +124,41 @@ class ToolTable(Table):
         return flute + 0.375 * (self.length - flute)
 
 
+class BlocksToleranceTable(Table):
+    """A tolerance for a range of program lines; of several that hold one line, the last counts."""
+
+    lines: tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
+    """First and last source line, both included."""
+    contour_um: Positive
+    """Largest contour error there, rapids included [µm]."""
+
+    @pydantic.field_validator("lines")
+    @classmethod
+    def _in_order(cls, lines: tuple[int, int]) -> tuple[int, int]:
+        if lines[0] > lines[1]:
+            raise ValueError("lines must be [first, last]")
+        return lines
+
+
 class ToleranceTable(Table):
     """What the verdict holds the run to."""
 
     contour_um: Positive = DEFAULT_CONTOUR_UM
     """Largest distance from the commanded path, seen from the part [µm]."""
+    rapid_contour_um: Positive | None = None
+    """The same during rapids [µm]; none: they are held to ``contour_um`` too."""
+    blocks: tuple[BlocksToleranceTable, ...] = ()
+    """Other contour tolerances for ranges of lines."""
+    corner_um: Positive | None = None
+    """How far a corner may be rounded: nearest the tool comes to it [µm]; none: not judged."""
+    circular_deviation_um: Positive | None = None
+    """Of every arc of at least 90 degrees [µm]; none: not judged."""
     following_um: Positive | None = None
     """Largest following error of a linear axis [µm]; none: not judged."""
     following_mdeg: Positive | None = None
     """Largest following error of a rotary axis [mdeg]; none: not judged."""
+    cycle_time_s: Positive | None = None
+    """Longest machine time of the program [s]; none: not judged."""
 
 
 class BaselineTable(Table):

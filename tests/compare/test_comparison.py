@@ -9,7 +9,7 @@ from tests.compare.paths import AXES, UP, Row, arc, line, moves_of
 from tests.compare.runs import FRAME, PART_ZERO, compare, late, samples, setpoints
 from twin.compare.comparison import REACH_S, Comparison
 from twin.errors import RecordingError
-from twin.nc.canonical import Moves
+from twin.nc.canonical import Motion, Moves
 from twin.toolpath.part_frame import PartFrame
 
 ZERO = np.zeros(4)
@@ -224,3 +224,57 @@ def test_what_cannot_be_compared_is_refused():
     asked.move[-1] = 1
     with pytest.raises(RecordingError, match="only 1 moves"):
         compare(moves, asked, asked.position)
+
+
+def test_blocks_features_and_axes_have_figures_of_their_own():
+    corner = at(50, 0)
+    moves = moves_of(
+        line(ZERO, corner, motion=Motion.RAPID),
+        arc(corner, np.array([50.0, 20.0, 0]), UP, 360.0),
+        line(corner, at(50, -30)),
+    )
+    asked = setpoints(moves)
+    joint = asked.position.copy()
+    joint[100:200, 2] += 0.005
+    joint[700:800, 2] -= 0.007
+    joint[1300, 2] += 0.002
+    figures, errors = compare(moves, asked, joint)
+    blocks = figures.blocks
+    assert blocks.line.tolist() == [1, 2, 3]
+    assert blocks.rapid.tolist() == [True, False, False]
+    assert blocks.arc.tolist() == [False, True, False]
+    assert blocks.max_um == pytest.approx([5.0, 7.0, 2.0])
+    assert blocks.time_s == pytest.approx([0.1, 0.7, 1.3], abs=0.1)
+    assert blocks.samples.sum() == len(errors)
+    assert blocks.rms_um[0] == pytest.approx(5.0 * np.sqrt(100 / blocks.samples[0]), rel=1e-6)
+    straight, circle = figures.features["line"], figures.features["arc"]
+    assert (straight.max, straight.worst_line) == pytest.approx((5.0, 1))
+    assert (circle.max, circle.p99, circle.worst_line) == pytest.approx((7.0, 7.0, 2), rel=1e-3)
+    assert figures.tracking["Z"].p99 == pytest.approx(7.0, rel=1e-3)
+    assert figures.tracking["X"].p99 == 0.0
+
+
+@pytest.mark.parametrize("rows", [90, 100_000])
+def test_a_rounded_corner_is_measured_from_its_point(rows: int):
+    """A chord across a right angle, 2 mm before to 2 mm behind, passes it at sqrt(2) mm."""
+    moves = square()
+    asked = setpoints(moves)
+    joint = asked.position.copy()
+    a, b = asked.position[980], asked.position[1020]
+    joint[980:1021] = a + np.linspace(0, 1, 41)[:, None] * (b - a)
+    corners = compare(moves, asked, joint, rows=rows)[0].corners
+    assert corners.count == 3
+    assert corners.rounding_um == pytest.approx(np.sqrt(2.0) * 1e3, abs=0.1)
+    assert (corners.line, corners.time_s) == (2, pytest.approx(1.0, abs=0.002))
+
+
+def test_smooth_joints_are_no_corners_and_sharp_ones_on_the_table_are():
+    half = arc(at(50, 0), np.array([50.0, 20.0, 0]), UP, 180.0)
+    moves = moves_of(line(ZERO, at(50, 0)), half, line(half["end"], at(0, 40)))
+    asked = setpoints(moves)
+    assert compare(moves, asked, asked.position)[0].corners.count == 0
+    turning = moves_of(line(ZERO, at(50, 0)), line(at(50, 0), at(50, 0, 0, 90)))
+    asked = setpoints(turning)
+    corners = compare(turning, asked, late(turning, asked, 0.01))[0].corners
+    assert corners.count == 1
+    assert corners.rounding_um < 1e-6

@@ -5,11 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from twin.compare.blocks import BlockFigures
+from twin.compare.corners import CornerFigures
 from twin.compare.figures import ArcFigures, AxisTracking, ContourFigures, Figures
 from twin.compare.result import RunSummary, result, write_result
 from twin.compare.verdict import judge
 from twin.errors import ExitCode
-from twin.job import ToleranceTable
+from twin.job import BlocksToleranceTable, ToleranceTable
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,6 +33,16 @@ def figures(contour: float = 12.0, lag: float = 150.0, turn: float = 30.0) -> Fi
         contour=ContourFigures(max=contour, rms=4.0, p99=11.0, worst_line=9, worst_time_s=1.25),
         arcs=(ArcFigures(5, 0.2, 25.0, -360.0, 3.0, 1.0, -2.0, np.zeros((0, 2))),),
         worst=(),
+        blocks=BlockFigures(
+            line=np.array([2, 5, 9]),
+            rapid=np.array([True, False, False]),
+            arc=np.array([False, True, False]),
+            samples=np.array([10, 20, 30]),
+            max_um=np.array([0.9, 0.5, 1.0]) * contour,
+            rms_um=np.array([4.0, 4.0, 4.0]),
+            time_s=np.array([0.1, 0.7, 1.25]),
+        ),
+        corners=CornerFigures(count=3, rounding_um=6.0, line=8, time_s=1.1),
     )
 
 
@@ -47,6 +59,45 @@ def test_a_contour_error_fails_with_value_limit_line_and_time():
     (reason,) = verdict.reasons
     assert (reason.what, reason.line, reason.time_s) == ("contour_um", 9, 1.25)
     assert str(reason) == "line 9, 1.250 s: contour error 12.0 µm exceeds contour_um = 11.9"
+
+
+def ranges(*parts: tuple[int, int, float]) -> tuple[BlocksToleranceTable, ...]:
+    return tuple(BlocksToleranceTable(lines=(a, b), contour_um=um) for a, b, um in parts)
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "told"),
+    [
+        ({"contour_um": 12, "rapid_contour_um": 10}, [("rapid_contour_um", 2)]),
+        ({"contour_um": 10.7, "rapid_contour_um": 50}, [("contour_um", 9)]),
+        ({"contour_um": 10.7, "blocks": ranges((9, 9, 13))}, [("contour_um", 2)]),
+        ({"contour_um": 12, "blocks": ranges((4, 6, 5))}, [("blocks[0].contour_um", 5)]),
+        ({"contour_um": 12, "blocks": ranges((1, 9, 5), (1, 9, 50))}, []),
+        (
+            {"contour_um": 5, "blocks": ranges((5, 9, 11), (9, 9, 11.5))},
+            [("contour_um", 2), ("blocks[1].contour_um", 9)],
+        ),
+        ({"corner_um": 5.9}, [("corner_um", 8)]),
+        ({"corner_um": 6}, []),
+        ({"circular_deviation_um": 2.9}, [("circular_deviation_um", 5)]),
+        ({"circular_deviation_um": 3}, []),
+        ({"cycle_time_s": 2.4}, [("cycle_time_s", 0)]),
+        ({"cycle_time_s": 2.5}, []),
+    ],
+)
+def test_each_tolerance_gives_its_worst_place(tolerance: dict, told: list[tuple[str, int]]):
+    verdict = judge(figures(), ToleranceTable(**tolerance))
+    assert [(reason.what, reason.line) for reason in verdict.reasons] == told
+
+
+def test_the_cycle_time_may_leave_the_settling_out():
+    tolerance = ToleranceTable(cycle_time_s=2.4)
+    assert judge(figures(), tolerance, cycle_time_s=2.3).outcome == "pass"
+
+
+def test_a_range_that_ends_before_it_begins_is_refused():
+    with pytest.raises(ValueError, match="first, last"):
+        BlocksToleranceTable(lines=(9, 2), contour_um=1.0)
 
 
 def test_following_error_is_judged_by_the_kind_of_axis_when_asked_for():

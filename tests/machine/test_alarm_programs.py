@@ -5,7 +5,7 @@ from pathlib import Path
 
 import h5py
 import pytest
-from conftest import Twin
+from command_line import Twin
 
 from twin.resources import resource_root
 

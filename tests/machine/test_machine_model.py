@@ -7,7 +7,7 @@ from twin.errors import ConfigError
 from twin.machine.config import read_machine
 from twin.machine.model import build_spec, drives, physics_model, spindle_over_table_mm
 from twin.machine.tool_shape import DefaultTool
-from twin.resources import machine_file
+from twin.resources import machine_file, machine_names
 from twin.toolpath.part_frame import PartFrame
 from twin.units import DEGREE, MM
 
@@ -28,12 +28,13 @@ def tip_seen_from_table(data: mujoco.MjData) -> np.ndarray:
     return top.xmat.reshape(3, 3).T @ (data.site("tool_tip").xpos - top.xpos) / MM
 
 
+@pytest.mark.parametrize("name", machine_names())
 @pytest.mark.parametrize(
     "at",
-    [(0, 0, 0, 0), (120, -45, -300, 0), (100, 0, -10, 90), (-30, 70, -200, 400), (10, 20, -5, -77)],
+    [(0, 0, 0, 0), (120, -45, -100, 0), (100, 0, -10, 90), (-30, 70, -90, 400), (10, 20, -5, -77)],
 )
-def test_the_tool_stands_where_machine_coordinates_and_part_frame_say(at):
-    machine = shipped_machine()
+def test_the_tool_stands_where_machine_coordinates_and_part_frame_say(name, at):
+    machine = read_machine(machine_file(name))
     _, data = pose(machine, **dict(zip("XYZC", at, strict=True)))
     over = spindle_over_table_mm(machine) - DefaultTool().length
     expected = machine.part_frame.position(np.array([at], float))[0] + [0.0, 0.0, over]

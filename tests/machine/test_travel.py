@@ -126,3 +126,9 @@ def test_an_endless_axis_has_no_limit_and_no_moves_no_alarm():
     machine = shipped_machine()
     assert soft_limit_alarm(machine, move([0] * 4, [0, 0, 0, 1e6]), np.zeros(4)) is None
     assert soft_limit_alarm(machine, Moves.empty(AXES), np.zeros(4)) is None
+
+
+def test_an_arc_of_no_sweep_is_its_point():
+    one, _ = arc((10.0, 0.0, 0.0), (0.0, 0.0, 1.0), (5.0, 0.0, 0.0), 0.0, 0.0)
+    low, high = move_bounds(one)
+    assert low[0, :3].tolist() == high[0, :3].tolist() == [15.0, 0.0, 0.0]

@@ -1,10 +1,13 @@
 import re
 
+import numpy as np
 import pytest
+from machine_fixtures import circle, shipped_machine
 
 from twin.errors import UsageError
 from twin.machine.config import read_machine
 from twin.machine.model import build_spec
+from twin.machine.simulate import simulate
 from twin.resources import machine_file
 
 
@@ -51,6 +54,24 @@ def test_a_fourth_axis_under_another_letter_and_a_fifth(tmp_path):
     machine = read_machine(write(tmp_path, text))
     assert machine.axes.names == ("X", "Y", "Z", "B")
     assert build_spec(machine).compile().nu == 8
+
+
+def test_a_joint_that_counts_the_other_way_is_turned_round_by_its_direction(tmp_path):
+    """X of the model reversed, and told so: the same motion, the same forces."""
+    folder = machine_file("mill4").parent
+    model = (
+        (folder / "mill4.xml").read_text().replace('meshdir="assets"', f'meshdir="{folder}/assets"')
+    )
+    write(tmp_path, model.replace('axis="-1 0 0"', 'axis="1 0 0"'), "mill4.xml")
+    text = machine_file("mill4").read_text().replace("scene.xml", "mill4.xml")
+    turned = read_machine(
+        write(tmp_path, text.replace('joint = "X"', 'joint = "X"\ndirection = -1'))
+    )
+    points = circle(20.0, 3000.0, 1.0)
+    (same,) = simulate(shipped_machine(), build_spec(shipped_machine()), [points])
+    (other,) = simulate(turned, build_spec(turned), [points])
+    assert np.array_equal(same.joint_position, other.joint_position)
+    assert np.array_equal(same.drive_force, other.drive_force)
 
 
 @pytest.mark.parametrize(

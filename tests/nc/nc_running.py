@@ -10,12 +10,19 @@ from twin.nc.diagnostics import Diagnostic, ProgramError
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.jsonl import records
-from twin.nc.settings import ControlSettings
+from twin.nc.settings import ControlSettings, ToolData
 from twin.nc.source import read_source, source_from_text
 
 ROOT = Path(__file__).resolve().parents[2]
 MILL = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 SETTINGS = ControlSettings(axes=MILL, periodic=frozenset({"C"}))
+WITH_TABLES = dataclasses.replace(
+    SETTINGS,
+    tools={1: ToolData(2.0, 60.0), 2: ToolData(3.0, 72.5)},
+    offsets={f"G{number}": {"X": 10.0 * (number - 53)} for number in range(54, 60)},
+    machine_zero={"Z": 300.0},
+)
+"""With tools, work offsets and machine zero."""
 
 
 @dataclasses.dataclass(frozen=True)

@@ -5,12 +5,13 @@
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.nc.nc_running import ROOT, SETTINGS, all_records, shipped
+from tests.nc.nc_running import ROOT, WITH_TABLES, all_records, shipped
 from twin.nc.dialects import DIALECTS, dialect_named, recognise
 from twin.nc.interpreter import Interpretation
 from twin.nc.source import read_source
@@ -24,7 +25,7 @@ def interpretation_of(path: Path) -> Interpretation:
     if path in PROGRAMS:
         return shipped(path)
     dialect = dialect_named(path.parent.parent.name)
-    return Interpretation(read_source(path, dialect), dialect, SETTINGS)
+    return Interpretation(read_source(path, dialect), dialect, WITH_TABLES)
 
 
 def golden_of(path: Path) -> Path:
@@ -66,6 +67,15 @@ def test_every_golden_file_has_its_program() -> None:
     known = {golden_of(path) for path in [*PROGRAMS, *RULES]}
     assert known == set(GOLDEN.glob("*/*/*.jsonl"))
     assert {path.parent.name for path in PROGRAMS} == set(DIALECTS)
+
+
+@pytest.mark.parametrize("name", DIALECTS)
+def test_every_followed_code_stands_in_a_golden_program(name: str) -> None:
+    paths = [path for path in [*PROGRAMS, *RULES] if name in path.parts]
+    text = "\n".join(path.read_text(encoding="utf-8") for path in paths).upper()
+    written = {int(number) for number in re.findall(r"G[ ]?([0-9]+)", text)}
+    followed = {number for number, code in DIALECTS[name].g.items() if not code.refused}
+    assert followed - written <= set(DIALECTS[name].start)
 
 
 def write_all() -> None:

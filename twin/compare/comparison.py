@@ -3,9 +3,12 @@
 import numpy as np
 
 from twin.compare.arcs import ArcCollector
+from twin.compare.blocks import BlockCollector
 from twin.compare.contour_kernels import follow
+from twin.compare.corners import CornerCollector
+from twin.compare.features import FeatureCollector
 from twin.compare.figures import AxisTracking, ContourFigures, Figures, WorstPlace
-from twin.compare.statistics import Distribution, Extent
+from twin.compare.statistics import Distribution
 from twin.errors import RecordingError
 from twin.nc.canonical import Axes, FloatArray, IntArray, Moves, concatenate
 from twin.recording import Samples
@@ -46,10 +49,13 @@ class Comparison:
         self._state = np.full(6, np.nan)
         self._late = (np.zeros(0), np.zeros((0, 2)))
         self._duration = 0.0
-        self._axis_extent = [Extent() for _ in axes.names]
+        self._axis_errors = [Distribution() for _ in axes.names]
         self._axis_worst = [(0, 0.0) for _ in axes.names]
         self._contour = Distribution()
         self._arcs = ArcCollector()
+        self._blocks = BlockCollector()
+        self._features = FeatureCollector()
+        self._corners = CornerCollector()
         self._worst: dict[int, WorstPlace] = {}
 
     def expect(self, moves: Moves) -> None:
@@ -110,8 +116,11 @@ class Comparison:
         self._contour.add(error)
         line = setpoint.line if place is None else self._moves.line[place]
         self._keep_worst(error, line, setpoint.time, setpoint.position)
+        self._blocks.add(self._moves, place, line, error, setpoint.time)
         if place is not None:
             offset = self._offsets(point, place)
+            self._features.add(self._moves, place, error, setpoint.time)
+            self._corners.add(self._path, point, place, setpoint.time)
             circular = self._path.turn_rate == 0.0
             self._arcs.add(
                 self._moves, circular, self._first, place, fraction, offset, setpoint.time
@@ -123,9 +132,9 @@ class Comparison:
         difference = samples.setpoint.position - samples.joint_position
         for column, kind in enumerate(self.axes.kinds):
             error = difference[:, column] * (UM_PER_MM if kind == "linear" else MDEG_PER_DEGREE)
-            before = self._axis_extent[column].greatest
-            self._axis_extent[column].add(error)
-            if self._axis_extent[column].greatest > before:
+            before = self._axis_errors[column].greatest
+            self._axis_errors[column].add(error)
+            if self._axis_errors[column].greatest > before:
                 row = int(np.abs(error).argmax())
                 self._axis_worst[column] = (
                     int(samples.setpoint.line[row]), float(samples.setpoint.time[row])
@@ -195,6 +204,7 @@ class Comparison:
         self._arcs.finish(reached)
         passed = reached - self._first
         if passed > 0 and 2 * passed >= len(self._moves):
+            self._corners.drop(self._moves, self._path, passed)
             self._moves = concatenate([self._moves[passed:]], self.axes)
             self._path = drop_moves(self._path, passed)
             self._first = reached
@@ -203,9 +213,9 @@ class Comparison:
         """The figures of everything added so far."""
         worst = tuple(self._worst.values())
         tracking = {
-            name: AxisTracking(kind, extent.greatest, extent.rms, *place)
-            for name, kind, extent, place in zip(
-                self.axes.names, self.axes.kinds, self._axis_extent, self._axis_worst, strict=True
+            name: AxisTracking(kind, size.greatest, size.rms, *place, size.percentile(99.0))
+            for name, kind, size, place in zip(
+                self.axes.names, self.axes.kinds, self._axis_errors, self._axis_worst, strict=True
             )
         }
         return Figures(
@@ -221,6 +231,9 @@ class Comparison:
             ),
             arcs=self._arcs.figures(),
             worst=worst,
+            blocks=self._blocks.figures(),
+            features=self._features.figures(),
+            corners=self._corners.figures(self._moves, self._path),
         )
 
 

@@ -3,6 +3,8 @@
 import dataclasses
 from collections.abc import Mapping
 
+from twin.compare.blocks import NO_BLOCKS, BlockFigures
+from twin.compare.corners import NO_CORNERS, CornerFigures
 from twin.nc.canonical import FloatArray
 from twin.units import AxisKind
 
@@ -17,6 +19,7 @@ class AxisTracking:
         rms: Root mean square over all samples [µm or mdeg].
         line: Program line commanded at the greatest.
         time_s: When that was [s].
+        p99: What 99 % of the samples do not exceed [µm or mdeg], to 0.1 %.
     """
 
     kind: AxisKind
@@ -24,6 +27,7 @@ class AxisTracking:
     rms: float
     line: int
     time_s: float
+    p99: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -94,6 +98,25 @@ class ArcFigures:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
+class FeatureFigures:
+    """Contour error of all blocks of one shape.
+
+    Attributes:
+        max: Greatest [µm].
+        rms: Root mean square [µm].
+        p99: What 99 % of the samples do not exceed [µm], to 0.1 %.
+        worst_line: Source line of the greatest.
+        worst_time_s: When it was reached [s].
+    """
+
+    max: float
+    rms: float
+    p99: float
+    worst_line: int
+    worst_time_s: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class Figures:
     """Everything the comparison found.
 
@@ -104,6 +127,9 @@ class Figures:
         contour: Over the whole program.
         arcs: In program order.
         worst: The lines with the greatest contour errors, greatest first.
+        blocks: By source line, feeds and rapids apart.
+        features: Contour error of ``line`` and ``arc`` blocks; those that the program has.
+        corners: Where the path turns sharply.
     """
 
     samples: int
@@ -112,3 +138,6 @@ class Figures:
     contour: ContourFigures
     arcs: tuple[ArcFigures, ...]
     worst: tuple[WorstPlace, ...]
+    blocks: BlockFigures = NO_BLOCKS
+    features: Mapping[str, FeatureFigures] = dataclasses.field(default_factory=dict)
+    corners: CornerFigures = NO_CORNERS

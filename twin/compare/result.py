@@ -7,6 +7,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from twin.compare.blocks import BlockFigures
 from twin.compare.figures import ArcFigures, AxisTracking, Figures
 from twin.compare.verdict import AlarmLike, Verdict
 from twin.files import write_text
@@ -14,6 +17,8 @@ from twin.job import ToleranceTable
 from twin.units import AxisKind
 
 SCHEMA = 1
+BLOCKS_KEPT = 1000
+"""``blocks`` holds so many blocks at most, those with the greatest contour errors."""
 _DIGITS = 6
 """Figures are written to the picometre or microdegree; more digits would be noise."""
 
@@ -77,6 +82,11 @@ def result(
         "tracking_um": _tracking(figures, "linear"),
         "tracking_mdeg": _tracking(figures, "rotary"),
         "contour_um": dataclasses.asdict(contour),
+        "features_um": {
+            name: dataclasses.asdict(feature) for name, feature in figures.features.items()
+        },
+        "corners": dataclasses.asdict(figures.corners),
+        "blocks": _worst_blocks(figures.blocks),
         "arcs": [_arc(arc) for arc in figures.arcs],
         "tolerance": tolerance.model_dump(exclude_none=True),
         "alarms": [
@@ -99,7 +109,29 @@ def _tracking(figures: Figures, kind: AxisKind) -> dict[str, dict[str, float]]:
 
 
 def _axis(axis: AxisTracking) -> dict[str, float]:
-    return {"max": axis.max, "rms": axis.rms, "worst_line": axis.line, "worst_time_s": axis.time_s}
+    return {
+        "max": axis.max,
+        "rms": axis.rms,
+        "p99": axis.p99,
+        "worst_line": axis.line,
+        "worst_time_s": axis.time_s,
+    }
+
+
+def _worst_blocks(blocks: BlockFigures) -> list[dict[str, Any]]:
+    """The blocks with the greatest contour errors, in program order."""
+    rows = np.sort(np.argsort(-blocks.max_um, kind="stable")[:BLOCKS_KEPT])
+    return [
+        {
+            "line": int(blocks.line[row]),
+            "motion": "rapid" if blocks.rapid[row] else "feed",
+            "shape": "arc" if blocks.arc[row] else "line",
+            "max": float(blocks.max_um[row]),
+            "rms": float(blocks.rms_um[row]),
+            "time_s": float(blocks.time_s[row]),
+        }
+        for row in rows
+    ]
 
 
 def _arc(arc: ArcFigures) -> dict[str, float]:

@@ -1,4 +1,15 @@
-"""Alarms: what a control raises when a program asks for more than the machine can give."""
+"""Alarms: what a control raises when a program asks for more than the machine can give.
+
+| code | raised when |
+|---|---|
+| ``soft-limit`` | a move would leave an axis's travel; seen before anything moves |
+| ``hard-limit`` | an axis ran onto its limit switch |
+| ``following-error`` | an axis trails its setpoint by more than its limit |
+| ``drive-saturation`` | a drive was at its force limit for longer than it may |
+| ``collision`` | head, spindle or holder met table, fixture or column, or the table the column |
+| ``rapid-into-stock`` | a rapid move cut into the stock |
+| ``spindle-off`` | a move cut into the stock with the spindle standing |
+"""
 
 import dataclasses
 from typing import Literal

@@ -18,7 +18,7 @@ from twin.machine.config import Machine
 from twin.machine.tool_shape import COLLISION_GROUP
 from twin.nc.canonical import FloatArray
 from twin.recording import Samples
-from twin.units import MM, to_si
+from twin.units import MM
 
 RESOLUTION = 0.1
 """Shortest way between two looks [mm]."""
@@ -39,7 +39,7 @@ class Clearance:
         self._data = mujoco.MjData(model)
         self._worth_reporting = machine.file.collision.near_miss
         axes = [machine.axis(name) for name in machine.axes.names]
-        self._to_si = np.array([to_si(axis.kind) for axis in axes])
+        self._scale = machine.joint_scale
         self._qpos = np.array([int(model.joint(axis.joint).qposadr[0]) for axis in axes])
         self._pairs = _pairs(model)
         self._reach = self._reaches(machine)
@@ -87,7 +87,7 @@ class Clearance:
 
     def _measure(self, position: FloatArray) -> tuple[float, tuple[str, str]]:
         """Smallest clearance [mm] at a position of the axes, and between what."""
-        self._data.qpos[self._qpos] = position * self._to_si
+        self._data.qpos[self._qpos] = position * self._scale
         mujoco.mj_kinematics(self._model, self._data)
         distance = [
             mujoco.mj_geomDistance(self._model, self._data, one, two, _FAR, None)

@@ -3,15 +3,16 @@
 from pathlib import Path
 from typing import Annotated, Literal
 
+import numpy as np
 import pydantic
 from pydantic import Field
 
 from twin.errors import ConfigError
 from twin.machine.variant import on_base
-from twin.nc.canonical import SPATIAL_AXES, Axes
+from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
 from twin.toml_file import Table, read_toml
 from twin.toolpath.part_frame import PartFrame
-from twin.units import AxisKind
+from twin.units import AxisKind, to_si
 
 Positive = Annotated[float, Field(gt=0)]
 NonNegative = Annotated[float, Field(ge=0)]
@@ -41,6 +42,8 @@ class AxisTable(Table):
     """Joint in the MJCF model; the actuator has the axis's name."""
     kind: AxisKind
     """``linear`` [mm] or ``rotary`` [deg]."""
+    direction: Literal[1, -1] = 1
+    """Sign of the joint against the machine coordinate."""
     periodic: bool = False
     """Rotary only: turns without end and may be declared periodic to the control."""
     travel: tuple[float, float] | None = None
@@ -227,6 +230,12 @@ class Machine:
     def model_path(self) -> Path:
         """The MJCF file."""
         return self.path.parent / self.file.model
+
+    @property
+    def joint_scale(self) -> FloatArray:
+        """What a joint moves per machine coordinate, shape (k,) [m/mm or rad/deg], with its sign."""
+        axes = [self.file.axes[name] for name in self.axes.names]
+        return np.array([axis.direction * to_si(axis.kind) for axis in axes])
 
     def axis(self, name: str) -> AxisTable:
         """The table of one axis."""

@@ -210,8 +210,9 @@ def _without(spec: mujoco.MjSpec, machine: Machine, *groups: int) -> mujoco.MjMo
     for geom in list(lean.geoms):
         if geom.group in groups:
             lean.delete(geom)
-    for mesh in list(lean.meshes):
-        lean.delete(mesh)
+    for unseen in [*lean.meshes, *lean.cameras, *lean.lights]:
+        lean.delete(unseen)
+    lean.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     return _compile(lean, machine)
 
 

@@ -17,7 +17,7 @@ from twin.machine.watch import Watch
 from twin.motion.setpoints import Setpoints, join
 from twin.nc.canonical import FloatArray
 from twin.recording import Samples
-from twin.units import kv_per_second, to_si
+from twin.units import kv_per_second
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 
@@ -142,7 +142,7 @@ class _Servo:
         walls = [model.tendon(give_name(axes[index])).id for index in self._gives]
         self._stiffness = model.tendon_stiffness[walls]
         self._half_gap = model.tendon_lengthspring[walls, 1]
-        self._to_si = np.array([to_si(axis.kind) for axis in axes])
+        self._scale = machine.joint_scale
         self._velocity_share = np.array([axis.velocity_feedforward for axis in axes])
         self._limit = np.array([axis.force_limit or np.inf for axis in axes])
         self._acceleration_share = np.array([axis.acceleration_feedforward for axis in axes])
@@ -172,9 +172,9 @@ class _Servo:
         """
         model, data = self._model, self._data
         mujoco.mj_resetData(model, data)
-        rest = chunk.position[0] * self._to_si
+        rest = chunk.position[0] * self._scale
         data.qpos[self._qpos] = rest
-        data.act[self._setpoint_state] = polyline_nodes(chunk[:1], self._period)[0] * self._to_si
+        data.act[self._setpoint_state] = polyline_nodes(chunk[:1], self._period)[0] * self._scale
         mujoco.mj_forward(model, data)
         load = data.qfrc_bias - data.qfrc_passive
         settled = self._integral_gain > 0
@@ -213,29 +213,29 @@ class _Servo:
         """Controls to hold between consecutive setpoints, shape (n - 1, nu), SI."""
         velocity, acceleration = held_commands(setpoints, self._period)
         controls = np.zeros((len(velocity), self._model.nu))
-        controls[:, self._velocity_input] = velocity * self._to_si
+        controls[:, self._velocity_input] = velocity * self._scale
         controls[:, self._force_input] = self._told(velocity, acceleration)
         if len(self._integrates):
             nodes = polyline_nodes(setpoints, self._period)
-            meant = ((nodes[1:] + nodes[:-1]) / 2 - self._trail * velocity) * self._to_si
+            meant = ((nodes[1:] + nodes[:-1]) / 2 - self._trail * velocity) * self._scale
             controls[:, self._position_input] = meant[:, self._integrates]
         return controls
 
     def _told(self, velocity: FloatArray, acceleration: FloatArray) -> FloatArray:
         """Force that the drives add in advance [N or N m]."""
-        return self._to_si * (
+        return self._scale * (
             self._velocity_share * self._velocity_gain * velocity
             + self._acceleration_share * self._moved * acceleration
         )
 
     def _samples(self, setpoint: Setpoints, states: FloatArray) -> Samples:
-        motor = states[:, 1 + self._qpos] / self._to_si
-        speed = states[:, 1 + self._model.nq + self._dof] / self._to_si
+        motor = states[:, 1 + self._qpos] / self._scale
+        speed = states[:, 1 + self._model.nq + self._dof] / self._scale
         force = self._force(setpoint, motor, speed, states)
         position, velocity = motor.copy(), speed.copy()
-        position[:, self._gives] += states[:, 1 + self._give_qpos] / self._to_si[self._gives]
+        position[:, self._gives] += states[:, 1 + self._give_qpos] / self._scale[self._gives]
         velocity[:, self._gives] += (
-            states[:, 1 + self._model.nq + self._give_dof] / self._to_si[self._gives]
+            states[:, 1 + self._model.nq + self._give_dof] / self._scale[self._gives]
         )
         return Samples(setpoint, position, velocity, force)
 
@@ -247,17 +247,17 @@ class _Servo:
         Taken from the setpoint itself: at a corner of the polyline that is drawn through it the
         push is off by kp h²/12 a for a part of the step.
         """
-        lag = (setpoint.position - position) * self._to_si
+        lag = (setpoint.position - position) * self._scale
         force = (
             self._position_gain * lag
-            - self._velocity_gain * velocity * self._to_si
+            - self._velocity_gain * velocity * self._scale
             + self._told(setpoint.velocity, setpoint.acceleration)
         )
         first = 1 + self._model.nq + self._model.nv
         left_behind = states[:, first + self._integral_state]
         # Within a step the axis passes under the held input: the integral bulges by V h²/12.
         left_behind = (
-            left_behind + self._period**2 / 12 * (velocity * self._to_si)[:, self._integrates]
+            left_behind + self._period**2 / 12 * (velocity * self._scale)[:, self._integrates]
         )
         force[:, self._integrates] += self._integral_gain[self._integrates] * left_behind
-        return np.clip(force, -self._limit, self._limit)
+        return np.clip(force * np.sign(self._scale), -self._limit, self._limit)

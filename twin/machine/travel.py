@@ -48,9 +48,9 @@ def _extreme_points(arcs: Moves) -> FloatArray:
     arm = arcs.start[:, :3] - arcs.center
     across = np.cross(arcs.normal, arm)
     advance = np.sum((arcs.end[:, :3] - arcs.start[:, :3]) * arcs.normal, axis=1, keepdims=True)
-    slope = advance * arcs.normal / sweep
     reach = np.hypot(arm, across)
     with np.errstate(divide="ignore", invalid="ignore"):
+        slope = advance * arcs.normal / sweep
         lean = np.arcsin(slope / reach)
     peak = np.arctan2(across, arm)
     first, last = np.minimum(sweep, 0.0), np.maximum(sweep, 0.0)

@@ -83,6 +83,8 @@ class ControlState:
         """Apply a modal code."""
         for name, value in code.sets.items():
             setattr(self.modal, name, value)
+        if self.modal.cycle is None and self.cycle_values:
+            self.cycle_values = {}
         if code.group:
             self.active[code.group] = number
 

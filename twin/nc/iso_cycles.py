@@ -15,7 +15,7 @@ from twin.nc.drilling import Drilling, Retract, drill
 def _cycle(name: str, *, dwell: bool = False, peck: bool = False, retract: Retract) -> GCode:
     def start(control: Control) -> None:
         axis = control.modal.plane.axes[2]
-        control.cycle_values = {"start": control.programmed[axis]}
+        control.cycle_values.setdefault("start", control.programmed[axis])
 
     def perform(control: Control) -> None:
         drill_hole(control, name, dwell=dwell, peck=peck, retract=retract)

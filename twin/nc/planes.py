@@ -20,7 +20,7 @@ class Plane:
     """A right-handed frame of unit vectors: abscissa x ordinate = normal.
 
     Attributes:
-        name: As the programmer calls it.
+        name: As the programmer calls it: ``G20`` for a plane whose axes the program chose.
         abscissa: Direction of angle 0.
         ordinate: Direction of angle 90.
         normal: Axis that positive arcs turn about counter-clockwise.

@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
-from twin.units import MM, to_si
+from twin.units import MM
 
 ROTARY_TABLE = "rotary_table"
 """Body of the model that carries the part."""
@@ -57,7 +57,7 @@ class Joints:
     def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
         names = machine.axes.names
         self._address = [int(model.joint(machine.axis(name).joint).qposadr[0]) for name in names]
-        self._factor = np.array([to_si(kind) for kind in machine.axes.kinds])
+        self._factor = machine.joint_scale
 
     def set(self, data: mujoco.MjData, position: FloatArray) -> None:
         """Put the axes to ``position``, shape (k,) [mm or deg]."""

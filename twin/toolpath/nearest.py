@@ -107,3 +107,47 @@ def drop_moves(path: PathColumns, count: int) -> PathColumns:
         turn=path.turn[count:].copy(),
         turn_rate=path.turn_rate[count:].copy(),
     )
+
+
+class PathEnds(NamedTuple):
+    """The ends of n moves in the part's frame.
+
+    Attributes:
+        point: Where each move ends, shape (n, 3) [mm].
+        arriving: Unit direction at its start, shape (n, 3); 0 where the tool stands still.
+        leaving: Unit direction at its end, shape (n, 3).
+    """
+
+    point: FloatArray
+    arriving: FloatArray
+    leaving: FloatArray
+
+
+def ends_of(path: PathColumns) -> PathEnds:
+    """End points and end directions of every move."""
+    _, arriving = _point_and_direction(path, 0.0)
+    point, leaving = _point_and_direction(path, 1.0)
+    return PathEnds(point, arriving, leaving)
+
+
+def _point_and_direction(path: PathColumns, u: float) -> tuple[FloatArray, FloatArray]:
+    cosine, sine = np.cos(u * path.sweep)[:, None], np.sin(u * path.sweep)[:, None]
+    point = path.origin + u * path.along + cosine * path.first + sine * path.second
+    slope = path.along + path.sweep[:, None] * (cosine * path.second - sine * path.first)
+    slope[:, 0] -= path.turn_rate * point[:, 1]
+    slope[:, 1] += path.turn_rate * point[:, 0]
+    angle = path.turn + u * path.turn_rate
+    speed = np.linalg.norm(slope, axis=1, keepdims=True)
+    unit = np.divide(slope, speed, out=np.zeros_like(slope), where=speed > 0.0)
+    return _turned(point, angle), _turned(unit, angle)
+
+
+def _turned(vector: FloatArray, angle: FloatArray) -> FloatArray:
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.column_stack(
+        [
+            cosine * vector[:, 0] - sine * vector[:, 1],
+            sine * vector[:, 0] + cosine * vector[:, 1],
+            vector[:, 2],
+        ]
+    )

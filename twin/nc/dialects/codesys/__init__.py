@@ -263,7 +263,7 @@ CODESYS = Dialect(
     units="mm, degrees; F in units per second, E in units per second squared",
     decisions=DECISIONS,
     marks=(
-        Mark(r"^[^\"$;]*\bN[ \t]*\d+\b[^\"$;]*\bN[ \t]*\d+\b", "several N blocks on one line"),
+        Mark(r"^[^\"$;\[]*\bN[ \t]*\d+\b[^\"$;\[]*\bN[ \t]*\d+\b", "several N blocks on one line"),
         Mark(r"\bG0?[23]\b.*[IJK].*\bT[ \t]*\d", "an arc with the opening angle T"),
         Mark(r"\bG0?4[ \t]*T", "G4 T"),
         Mark(r"\bE[ \t]*[-+]?\d", "E, the acceleration"),

@@ -51,8 +51,8 @@ def right_of_contour(control: Control) -> None:
 def _compensate(control: Control, side: float) -> None:
     word = control.take("D")
     if word is not None:
-        control.cycle_values["D"] = control.length(word)
-    compensate(control, side, control.cycle_values.get("D", 0.0))
+        variables(control).tool_radius = control.length(word)
+    compensate(control, side, variables(control).tool_radius)
 
 
 def length_vector(control: Control) -> None:

@@ -61,7 +61,7 @@ EXPRESSIONS = ExpressionSyntax(
 
 STATEMENT = (
     r"LET\b|END_SUBPROGRAM\b|SUBPROGRAM\b|RETURN\b"
-    r"|#[A-Z_]\w*[ \t]*(?=:=)|[A-Z_]\w+(?=[ \t]*\{)|[A-Z_]{3,}\w*(?=[ \t]*\()"
+    r"|#[A-Z_]\w*[ \t]*(?=:=)|[A-Z_]\w*(?=[ \t]*\{)|[A-Z_]{3,}\w*(?=[ \t]*\()"
 )
 
 _LET = re.compile(r"[ \t]*(#[A-Z_]\w*)[ \t]*(?::[ \t]*L?REAL)?[ \t]*(:=)?", re.IGNORECASE)
@@ -94,6 +94,7 @@ class Variables:
         plc: Variables of the application, ``$name$``.
         local: ``#name`` of the main program and of each call, the innermost last.
         counter: The decoder's internal variable.
+        tool_radius: The last D of G41 or G42 [mm].
         periods: Modulo periods of additional axes by column [mm or deg].
         subprograms: By name; None before the program was searched for them.
     """
@@ -101,6 +102,7 @@ class Variables:
     plc: dict[str, float] = dataclasses.field(default_factory=dict)
     local: list[dict[str, float]] = dataclasses.field(default_factory=lambda: [{}])
     counter: float = COUNTER_AT_START
+    tool_radius: float = 0.0
     periods: dict[int, float] = dataclasses.field(default_factory=dict)
     subprograms: dict[str, Subprogram] | None = None
 

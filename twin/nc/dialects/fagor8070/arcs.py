@@ -184,7 +184,8 @@ def _helix_sweep(control: Control, height: float, pitch: Word, *, clockwise: boo
 
 def _center_letters(control: Control) -> str:
     """Centre words along abscissa, ordinate and normal of the working plane."""
-    return "".join("IJK"[index] for index in control.modal.plane.axes)
+    plane = control.modal.plane
+    return "IJK" if plane.name == "G20" else "".join("IJK"[index] for index in plane.axes)
 
 
 def _given_center(control: Control, words: tuple[Word, ...], start: Point) -> Point:

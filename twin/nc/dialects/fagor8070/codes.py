@@ -13,6 +13,7 @@ from twin.nc.dialect import (
 )
 from twin.nc.dialects.fagor8070 import arcs, frames, polar
 from twin.nc.dialects.fagor8070.cycles import CYCLES
+from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.planes import XY, YZ, ZX, Plane
 
 
@@ -41,8 +42,7 @@ def _compensate(side: float) -> Action:
         tool = control.tools.data(control.tools.spindle)
         if tool is None:
             control.fail("no-such-tool", "compensation needs a tool, and the job has none")
-        number = control.cycle_values.get("D", 1.0) if "D" not in control.words else 1.0
-        offsets.compensate(control, side, tool.radius if number else 0.0)
+        offsets.compensate(control, side, tool.radius if memory_of(control).offset_on else 0.0)
 
     return action
 

@@ -14,7 +14,8 @@ from twin.nc.drilling import Drilling, Retract, drill
 
 def _cycle(number: int, meaning: str, retract: Retract, *, peck: bool = False) -> GCode:
     def start(control: Control) -> None:
-        control.cycle_values = {"start": control.programmed[control.modal.plane.axes[2]]}
+        height = control.programmed[control.modal.plane.axes[2]]
+        control.cycle_values.setdefault("start", height)
         _read_words(control)
 
     def perform(control: Control) -> None:
@@ -36,10 +37,15 @@ def _read_words(control: Control) -> None:
     if reference is not None:
         base = control.programmed[axis] if incremental or reference.incremental else 0.0
         values["Z"] = control.length(reference) + base
-    values.setdefault("Z", control.programmed[axis])
-    for address in "IJK":
+    values.setdefault("Z", values["start"])
+    depth = control.take("I")
+    if depth is not None:
+        relative = incremental or depth.incremental
+        values["I"] = control.length(depth)
+        values["bottom"] = control.length(depth) + (values["Z"] if relative else 0.0)
+    for address in "JK":
         if (word := control.take(address)) is not None:
-            values[address] = control.length(word) if address == "I" else control.number(word)
+            values[address] = control.number(word)
 
 
 def _perform(control: Control, name: str, retract: Retract, *, peck: bool) -> None:
@@ -49,9 +55,7 @@ def _perform(control: Control, name: str, retract: Retract, *, peck: bool) -> No
     if missing:
         control.fail("cycle-word", f"{name} needs {' and '.join(missing)}")
     depth, reference = values["I"], values["Z"]
-    bottom = reference - abs(depth) * values["J"] if peck else depth
-    if not peck and control.modal.incremental:
-        bottom = reference + depth
+    bottom = reference - abs(depth) * values["J"] if peck else values["bottom"]
     if bottom >= reference or values.get("K", 0.0) < 0.0:
         message = f"{name} must drill downwards, from Z{reference:g} to {bottom:g}"
         control.fail("cycle-depth", message)

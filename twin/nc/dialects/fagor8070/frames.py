@@ -182,7 +182,7 @@ def tool_offset(control: Control, word: Word) -> None:
         control.fail("tool-offset", message, word)
     tool = control.tools.data(control.tools.spindle)
     longer = 0.0 if number == 0.0 or tool is None else control.tools.longer(tool)
-    control.cycle_values["D"] = number
+    memory_of(control).offset_on = number == 1.0
     set_length(control, longer)
 
 
@@ -196,6 +196,7 @@ def select_tool(control: Control, word: Word) -> None:
 def change_tool(control: Control) -> None:
     """M06: the tool goes into the spindle with its offset D1."""
     control.tools.change()
+    memory_of(control).offset_on = True
     tool = control.tools.data(control.tools.spindle)
     if tool is not None:
         set_length(control, control.tools.longer(tool))

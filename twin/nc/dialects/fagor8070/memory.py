@@ -28,6 +28,7 @@ class FagorMemory:
         modal_call: #MCALL in force.
         mirrored: Columns of the mirrored axes.
         scale: General scale factor.
+        offset_on: D1 is in force, not D0.
         rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
     """
 
@@ -44,6 +45,7 @@ class FagorMemory:
     modal_call: ModalCall | None = None
     mirrored: frozenset[int] = frozenset()
     scale: float = 1.0
+    offset_on: bool = True
     rotation: tuple[float, Point] | None = None
 
     def forget_local(self) -> None:

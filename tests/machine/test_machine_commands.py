@@ -1,0 +1,58 @@
+import json
+
+import pytest
+
+from twin.commands.machine import print_check, print_circle, print_machine, print_machines
+from twin.errors import ExitCode, UsageError
+
+
+def test_the_list_names_every_machine_with_its_axes(capsys):
+    print_machines("text")
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[:5] for line in lines] == [
+        ["mill4", "X", "Y", "Z", "C"],
+        ["mill4_light", "X", "Y", "Z", "C"],
+    ]
+    print_machines("json")
+    assert json.loads(capsys.readouterr().out)[0] == {"name": "mill4", "axes": ["X", "Y", "Z", "C"]}
+
+
+def test_show_prints_the_lag_at_the_feed(capsys):
+    print_machine("mill4", feed=3000.0, form="text")
+    out = capsys.readouterr().out
+    assert "1849.2" in out
+    assert "0.4000" in out
+    assert "endless" in out
+    print_machine("mill4", feed=3000.0, form="json")
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["axes"][0]["lag"] == pytest.approx(0.4)
+
+
+def test_check_tells_point_by_point(capsys):
+    assert print_check("mill4_light") == ExitCode.OK
+    assert capsys.readouterr().out.count("ok ") == 7
+
+
+def test_circle_writes_its_plot_and_prints_its_figures(capsys, tmp_path):
+    plot = tmp_path / "circle.svg"
+    print_circle("mill4", radius=20.0, feed=3000.0, plane="xy", form="json", plot=plot)
+    told = json.loads(capsys.readouterr().out)
+    assert told["plot"] == str(plot)
+    assert told["mean_radius_error_um"] == pytest.approx(-2.0, abs=0.01)
+    assert plot.stat().st_size > 10_000
+    print_circle(
+        "mill4", radius=20.0, feed=3000.0, plane="ZX", form="text", plot=tmp_path / "c.png"
+    )
+    assert "circular deviation   0.00 µm" in capsys.readouterr().out
+
+
+def test_wrong_arguments_are_refused(tmp_path):
+    with pytest.raises(UsageError, match="known formats are text, json"):
+        print_machines("xml")
+    with pytest.raises(UsageError, match="feed must be positive"):
+        print_machine("mill4", feed=-1.0, form="text")
+    with pytest.raises(UsageError, match="shipped machines are mill4, mill4_light"):
+        print_check("mill9")
+    with pytest.raises(UsageError, match=r"no plot of kind '\.txt'"):
+        print_circle("mill4", radius=20, feed=100, plane="XY", form="text", plot=tmp_path / "a.txt")
+    assert list(tmp_path.iterdir()) == []
