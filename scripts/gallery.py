@@ -31,7 +31,7 @@ class Picture:
     program: str
     camera: str
     share: float = 1.0
-    display: bool = True
+    machine: str | None = None
 
 
 PICTURES = {
@@ -40,13 +40,17 @@ PICTURES = {
     "scroll": Picture(program="fagor8070/scroll", camera="part", share=0.8),
     "bolt_hole_ring": Picture(program="fagor8070/bolt_hole_ring", camera="part", share=0.8),
     "turning": Picture(program="gost/recalculation_3", camera="table", share=0.5),
+    "light_mill": Picture(
+        program="fagor8070/bolt_hole_ring", camera="overview", share=0.8, machine="mill4_light"
+    ),
     "arc_in_xz": Picture(program="codesys/arc_in_xz_then_xy", camera="part", share=0.75),
 }
 
 
 def draw(picture: Picture, out: Path) -> None:
     """Run the picture's program and draw its moment."""
-    run = Run(prepare(resource_root("programs") / f"{picture.program}.toml"), keep_contour=True)
+    job_file = resource_root("programs") / f"{picture.program}.toml"
+    run = Run(prepare(job_file, machine=picture.machine), keep_contour=True)
     job = run.preparation.job.file
     with tempfile.TemporaryDirectory() as folder:
         run.execute(run.survey(), Path(folder), no_progress)
@@ -64,7 +68,6 @@ def draw(picture: Picture, out: Path) -> None:
                 rapid_moves=run.rapid_moves,
                 contour_um=np.concatenate(run.contour_um),
                 error_scale_um=job.tolerance.contour_um,
-                display=picture.display,
             )
     shrink(out)
 

@@ -18,7 +18,9 @@ from twin.recording import Samples
 from twin.toolpath.part_frame import PartFrame
 
 STRAIGHT_SHARE = 0.01
-"""Samples this share of a cell off a straight line count as on it."""
+STRAIGHT_MM = 5e-4
+"""Samples that are off a straight line by no more than this share of a cell, and by no more than
+this, count as on it [mm]."""
 
 LONGEST_SHARE = 0.5
 """Longest stretch that is swept at once, as a share of the tool's radius: it is also how finely
@@ -172,7 +174,7 @@ class Cutter:
         chosen = thin(
             points,
             np.concatenate([line[:1] * 2 + rapid[:1], line * 2 + rapid]),
-            STRAIGHT_SHARE * self.map.cell,
+            min(STRAIGHT_SHARE * self.map.cell, STRAIGHT_MM),
             LONGEST_SHARE * edge.radius,
             MOST_JOINED,
         )

@@ -22,7 +22,7 @@ class Inspection:
 
     deviation_mm: FloatArray
     """Distance of the part's surface from the nominal one over each cell, shape (ny, nx) [mm];
-    NaN where either is steep or there is no part."""
+    NaN where either is steep, where there is no part, and on the blank's own skin."""
     tolerance_um: float
     """What ``within_share`` counts [µm]."""
 
@@ -68,9 +68,12 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
         raise ConfigError("the two parts do not lie at the same place")
     steepness = np.maximum(_steepness(part), _steepness(nominal))
     gentle = (steepness <= STEEPEST) & part.solid() & nominal.solid()
+    touched = (part.heights < part.top) | (nominal.heights < nominal.top)
     cosine = 1.0 / np.sqrt(1.0 + _steepness(nominal) ** 2)
     deviation = (part.heights - nominal.heights) * cosine
-    return Inspection(deviation_mm=np.where(gentle, deviation, np.nan), tolerance_um=tolerance_um)
+    return Inspection(
+        deviation_mm=np.where(gentle & touched, deviation, np.nan), tolerance_um=tolerance_um
+    )
 
 
 def _steepness(height_map: HeightMap) -> FloatArray:

@@ -48,7 +48,7 @@ class Reading:
 
 
 @functools.cache
-def _font(name: str, size: int) -> Font:
+def font(name: str, size: int) -> Font:
     """A DejaVu font, which has Cyrillic and Czech letters; matplotlib brings it along."""
     folder = Path(mpl.get_data_path()) / "fonts" / "ttf"
     return ImageFont.truetype(str(folder / f"{name}.ttf"), size)
@@ -86,10 +86,10 @@ class Display:
         self._scale = min(size[1] / BASE_HEIGHT, size[0] / 1280)
         self._title = title if speed is None else f"{title}   ×{speed:.3g}"
         self._error_name = error_name
-        self._mono = _font("DejaVuSansMono", self._px(17))
-        self._bold = _font("DejaVuSansMono-Bold", self._px(23))
-        self._small = _font("DejaVuSans", self._px(14))
-        self._heading = _font("DejaVuSans-Bold", self._px(17))
+        self._mono = font("DejaVuSansMono", self._px(17))
+        self._bold = font("DejaVuSansMono-Bold", self._px(23))
+        self._small = font("DejaVuSans", self._px(14))
+        self._heading = font("DejaVuSans-Bold", self._px(17))
 
     def _px(self, value: float) -> int:
         return max(1, round(value * self._scale))
@@ -105,15 +105,15 @@ class Display:
         margin = self._px(18)
         width, height = self._size
         title = self._title_panel()
-        _paste(result, title, margin, margin)
+        lay_over(result, title, margin, margin)
         if reading.alarm:
             alarm = self._chip(reading.alarm, ALERT, WHITE)
-            _paste(result, alarm, (width - alarm.width) // 2, margin)
+            lay_over(result, alarm, (width - alarm.width) // 2, margin)
         axes = self._axes_panel(reading)
-        _paste(result, axes, width - margin - axes.width, height - margin - axes.height)
+        lay_over(result, axes, width - margin - axes.width, height - margin - axes.height)
         if self._source:
             program = self._program_panel(reading.line)
-            _paste(result, program, margin, height - margin - program.height)
+            lay_over(result, program, margin, height - margin - program.height)
         return result
 
     @functools.lru_cache(maxsize=1)  # noqa: B019 (a display lives as long as its film)
@@ -205,7 +205,7 @@ class Display:
         return text
 
 
-def _paste(frame: Pixels, panel: Image.Image, left: int, top: int) -> None:
+def lay_over(frame: Pixels, panel: Image.Image, left: int, top: int) -> None:
     """Lay a panel over a frame, as much of it as fits."""
     left, top = max(0, left), max(0, top)
     part = frame[top : top + panel.height, left : left + panel.width]

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
+from twin.cutting.colours import Colours
 from twin.cutting.cut import Cutter, Rectangle, union
 from twin.cutting.outline import BoolArray
 from twin.cutting.tools import ToolPlan
@@ -171,13 +172,16 @@ class Stage:
 
 
 @contextlib.contextmanager
-def stage(scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Stage]:
+def stage(
+    scene: Scene, size: tuple[int, int], quality: Quality, paint: Colours | None = None
+) -> Iterator[Stage]:
     """Build the drawn machine and open the canvas.
 
     Args:
         scene: What is to be seen.
         size: Width and height of the pictures [px].
         quality: What a picture may cost.
+        paint: Colours of the stock's cells, shape (ny, nx, 3); None: as metal looks.
 
     Raises:
         RenderError: No OpenGL works here.
@@ -193,7 +197,7 @@ def stage(scene: Scene, size: tuple[int, int], quality: Quality) -> Iterator[Sta
         cutter = Cutter(
             scene.stock, scene.tool, header.part_frame, header.part_zero, keep_marks=True
         )
-        skin = Skin(cutter.map, cutter.marks)
+        skin = Skin(cutter.map, cutter.marks, paint)
         surface = StockSurface(cutter.map, skin, quality.drawn_cells)
         surface.add_to(spec)
         corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
