@@ -16,7 +16,7 @@ _need_packages() {
     fi
 }
 
-_has_library() { ldconfig -p | grep -q "$1"; }
+_has_library() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p | grep -q "$1"; }
 
 _find_python() {
     local candidate
