@@ -29,6 +29,12 @@ ROUNDING = 1e-9
 REACH_PRECISION = 1e-9
 """Of velocities at borders, relative: far finer than any loss of time."""
 
+SLOWEST = 1e-6
+"""A border that must be passed more slowly than this is passed from a stop [mm/s or deg/s]."""
+
+MOST_PHASES = 4096
+"""Of one piece; more would mean that rounding keeps the path from going on."""
+
 FAILED_BRAKES = 4
 """Brakes that fit their distance but break a limit on the way before the search gives up."""
 
@@ -185,7 +191,7 @@ def find_brake(
             failed += 1
             if failed >= FAILED_BRAKES:
                 return -1
-        if entry[k] == 0.0:
+        if entry[k] < SLOWEST:
             return -1
     return -1
 
@@ -203,7 +209,7 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
     reach = np.zeros(count + 1)
     nearest = 0
     for i in range(count - 1, -1, -1):
-        if entry[i] == 0.0 or limits[0, i] == 0.0:
+        if entry[i] < SLOWEST or limits[0, i] == 0.0:
             nearest = 0
             continue
         highest = min(entry[i], limits[1, i])
@@ -239,7 +245,7 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
                 low, nearest = middle, found
             else:
                 high = middle
-        reach[i] = low
+        reach[i] = low if low >= SLOWEST else 0.0
     return reach
 
 
@@ -322,7 +328,13 @@ def find_phases(
     pieces = np.zeros((256, 2), np.int64)
     used = 0
     i, x, v, a, now = int(state[0]), state[1], state[2], state[3], state[4]
+    phases_here = 0
+    last_i = i
     while i < stop and i < count:
+        phases_here = phases_here + 1 if i == last_i else 0
+        last_i = i
+        if phases_here > MOST_PHASES:
+            raise RuntimeError("motion: the path does not go on")
         if used + 8 > len(pieces):
             phases = np.concatenate((phases, np.zeros_like(phases)))
             pieces = np.concatenate((pieces, np.zeros_like(pieces)))
@@ -331,6 +343,11 @@ def find_phases(
             used += 1
             now += pause[i]
             i += 1
+            continue
+
+        if v < SLOWEST and limits[0, i] - x <= ROUNDING * limits[0, i]:
+            # All but arrived; what is left is too little to speed up for.
+            i, x, v, a = i + 1, 0.0, min(v, reach[i + 1]), 0.0
             continue
 
         highest_v, highest_a, jerk = limits[1, i], limits[2, i], limits[4, i]
