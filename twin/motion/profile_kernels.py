@@ -35,6 +35,9 @@ SLOWEST = 1e-6
 MOST_PHASES = 4096
 """Of one piece; more would mean that rounding keeps the path from going on."""
 
+SHORTEST_HOLD = 1e-7
+"""Of an acceleration that is held: shorter ones only creep up to a limit [s]."""
+
 FAILED_BRAKES = 4
 """Brakes that fit their distance but break a limit on the way before the search gives up."""
 
@@ -440,10 +443,13 @@ def find_phases(
             j = jerk
             latest = (highest_a - a) / jerk
             duration, at_border = _longest(limits, entry, reach, i, x, v, a, j, latest)
-        if extend and duration < SHORTEST_PHASE and v > 0.0:
+        holds = a == 0.0 or gap > ROUNDING * highest_v
+        if extend and holds and duration < SHORTEST_PHASE and v > 0.0:
             j = 0.0
             latest = 2.0 * (limits[0, i] - x) / v
             duration, at_border = _longest(limits, entry, reach, i, x, v, a, j, latest)
+            if a > 0.0 and duration < SHORTEST_HOLD and not at_border:
+                duration = 0.0
         if SHORTEST_PHASE <= duration < latest and not at_border and compared_in != i:
             sooner = _better_to_brake(limits, entry, reach, i, x, v, a, j, duration)
             if sooner < duration:
@@ -491,7 +497,7 @@ def find_phases(
 
         w = reach[k]
         if v <= w and brake_in == i:
-            brake_in, compared_in = -1, -1
+            brake_in = -1
             continue
         if v <= w:
             # Only rounding has kept the state from going on as it is.
@@ -525,7 +531,7 @@ def find_phases(
                     x -= limits[0, i]
                     i += 1
         v, a = w, 0.0
-        brake_in, compared_in = -1, -1
+        brake_in = -1
         if to_border:
             i, x = k, 0.0
     state[0], state[1], state[2], state[3], state[4] = i, x, v, a, now
