@@ -213,11 +213,13 @@ class Surroundings:
         blocks: All of them.
         first: Row of the first block to work on.
         last: Row after the last block to work on.
+        to_the_end: Whether the program ends with the last of ``blocks``.
     """
 
     blocks: Blocks
     first: int
     last: int
+    to_the_end: bool
 
 
 def with_neighbours(parts: Iterable[Blocks], batch: int, context: int) -> Iterator[Surroundings]:
@@ -235,8 +237,8 @@ def with_neighbours(parts: Iterable[Blocks], batch: int, context: int) -> Iterat
         while count - first >= batch + context:
             window = join_blocks(waiting)
             last = first + batch
-            yield Surroundings(window[: last + context], first, last)
+            yield Surroundings(window[: last + context], first, last, to_the_end=False)
             kept = max(0, last - context)
             waiting, count, first = [window[kept:]], count - kept, last - kept
     if count > first:
-        yield Surroundings(join_blocks(waiting), first, count)
+        yield Surroundings(join_blocks(waiting), first, count, to_the_end=True)

@@ -18,14 +18,14 @@ import numpy as np
 from twin.motion.blocks import Blocks, Surroundings, blocks_of_chunks, with_neighbours
 from twin.motion.corners import CONTEXT, find_borders
 from twin.motion.limits import MotionLimits
-from twin.motion.piece_kernels import bound_derivatives, cut_blocks
+from twin.motion.piece_kernels import bound_derivatives, cut_blocks, reachable_velocities
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 from twin.toolpath.geometry import Geometry, joined
 
 BATCH = 1024
 """Blocks that are cut into pieces at a time."""
 
-CENTRIPETAL_SHARE = 0.8
+CENTRIPETAL_SHARE = 0.95
 """Of an axis's acceleration that following a curve may use; the rest is left to change speed."""
 
 CURVE_JERK_SHARE = 0.5
@@ -113,17 +113,18 @@ def pieces_of_chunks(
 def _cut(surroundings: Surroundings, limits: MotionLimits) -> Pieces:
     blocks, first, last = surroundings.blocks, surroundings.first, surroundings.last
     borders = find_borders(blocks, limits)
-    shapes = blocks.geometry
+    # The neighbours are cut as well: they tell how fast a piece can be reached and left.
     owner, offset, length, rounding = cut_blocks(
-        blocks.length, shapes.angle, borders.width, borders.knee, borders.bend, first, last
+        blocks.length, blocks.geometry.angle, borders.width, borders.knee, borders.bend
     )
     own = blocks[owner]
     scale = np.divide(1.0, own.length, out=np.zeros(len(owner)), where=own.length > 0.0)
     begin = np.where(own.length > 0.0, offset * scale, np.where(own.move < 0, 0.0, 1.0))
+    entry = np.where(offset == 0.0, borders.entry[owner], np.inf)
     velocity, acceleration, deceleration, jerk = _constant_limits(
-        own, begin, scale, length, rounding, limits
+        own, begin, scale, length, rounding, _ceilings(surroundings, entry), limits
     )
-    return Pieces(
+    pieces = Pieces(
         move=own.move,
         line=own.line,
         begin=begin,
@@ -133,11 +134,20 @@ def _cut(surroundings: Surroundings, limits: MotionLimits) -> Pieces:
         acceleration=acceleration,
         deceleration=deceleration,
         jerk=jerk,
-        entry=np.where(offset == 0.0, borders.entry[owner], np.inf),
+        entry=entry,
         pause=own.pause,
         rounding=rounding,
         geometry=own.geometry,
     )
+    return pieces[np.flatnonzero((owner >= first) & (owner < last))]
+
+
+def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:
+    """Highest velocities at the borders of pieces; any where the program goes on unseen."""
+    ceilings = np.append(entry, 0.0 if surroundings.to_the_end else np.inf)
+    if surroundings.first > 0:
+        ceilings[0] = np.inf
+    return ceilings
 
 
 def _constant_limits(
@@ -146,14 +156,18 @@ def _constant_limits(
     scale: FloatArray,
     length: FloatArray,
     rounding: FloatArray,
+    ceilings: FloatArray,
     limits: MotionLimits,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Velocity, acceleration, deceleration, jerk that any instant of a piece may use, (n,) each."""
     shapes = own.geometry
-    bounds, bend = bound_derivatives(
+    bounds, bend, product = bound_derivatives(
         shapes.drift, shapes.cosine, shapes.sine, shapes.angle, begin, scale, length, rounding
     )
     first, second, third = bounds[:, 0], bounds[:, 1], bounds[:, 2]
+    # Where q' and q'' have opposite signs, following the curve helps to speed up, not to brake.
+    against_speeding = np.where(product[:, 1] <= 0.0, 0.0, second)
+    against_braking = np.where(product[:, 0] >= 0.0, 0.0, second)
     path_acceleration = own.stretch * np.where(
         own.rotary_alone, limits.rotary_path_acceleration, limits.path_acceleration
     )
@@ -166,13 +180,33 @@ def _constant_limits(
         turning = (CURVE_JERK_SHARE * limits.jerk / third).min(axis=1)
         velocity = np.minimum(velocity, np.cbrt(turning))
 
-        left = limits.acceleration - second * velocity[:, None] ** 2
-        tangential = np.minimum(path_acceleration, (left / first).min(axis=1))
+        straight = np.minimum(path_acceleration, (limits.acceleration / first).min(axis=1))
+        ramp_jerk = np.minimum(path_jerk, (limits.jerk / first).min(axis=1))
+        # A ramp to v takes v / a without a jerk limit and a / j longer with it.
+        readiness = 1.0 / (1.0 + straight**2 / (ramp_jerk * velocity))
+        velocity = reachable_velocities(
+            first, against_speeding, against_braking, bend + second.max(axis=1) > 0.0,
+            length, velocity, ceilings, limits.acceleration,
+            np.minimum(path_acceleration, own.stretch * own.acceleration),
+            np.minimum(path_acceleration, own.stretch * own.deceleration),
+            readiness,
+        )  # fmt: skip
+        speeding, braking = (
+            np.minimum(
+                path_acceleration,
+                ((limits.acceleration - against * velocity[:, None] ** 2) / first).min(axis=1),
+            )
+            for against in (against_speeding, against_braking)
+        )
         left = limits.jerk - third * velocity[:, None] ** 3
         mixed = CURVE_JERK_SHARE * left / (3.0 * second * velocity[:, None])
-        tangential = np.minimum(tangential, mixed.min(axis=1))
-        left = left - 3.0 * second * (velocity * tangential)[:, None]
+        acceleration = np.minimum(
+            np.minimum(speeding, mixed.min(axis=1)), own.stretch * own.acceleration
+        )
+        deceleration = np.minimum(
+            np.minimum(braking, mixed.min(axis=1)), own.stretch * own.deceleration
+        )
+        hardest = np.maximum(acceleration, deceleration)
+        left = left - 3.0 * second * (velocity * hardest)[:, None]
         jerk = np.minimum(path_jerk, (left / first).min(axis=1))
-    acceleration = np.minimum(tangential, own.stretch * own.acceleration)
-    deceleration = np.minimum(tangential, own.stretch * own.deceleration)
     return velocity, acceleration, deceleration, jerk

@@ -29,6 +29,15 @@ ROUNDING = 1e-9
 REACH_PRECISION = 1e-9
 """Of velocities at borders, relative: far finer than any loss of time."""
 
+SLOWEST = 1e-6
+"""A border that must be passed more slowly than this is passed from a stop [mm/s or deg/s]."""
+
+MOST_PHASES = 4096
+"""Of one piece; more would mean that rounding keeps the path from going on."""
+
+SHORTEST_HOLD = 1e-7
+"""Of an acceleration that is held: shorter ones only creep up to a limit [s]."""
+
 FAILED_BRAKES = 4
 """Brakes that fit their distance but break a limit on the way before the search gives up."""
 
@@ -185,7 +194,7 @@ def find_brake(
             failed += 1
             if failed >= FAILED_BRAKES:
                 return -1
-        if entry[k] == 0.0:
+        if entry[k] < SLOWEST:
             return -1
     return -1
 
@@ -203,7 +212,7 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
     reach = np.zeros(count + 1)
     nearest = 0
     for i in range(count - 1, -1, -1):
-        if entry[i] == 0.0 or limits[0, i] == 0.0:
+        if entry[i] < SLOWEST or limits[0, i] == 0.0:
             nearest = 0
             continue
         highest = min(entry[i], limits[1, i])
@@ -239,7 +248,7 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
                 low, nearest = middle, found
             else:
                 high = middle
-        reach[i] = low
+        reach[i] = low if low >= SLOWEST else 0.0
     return reach
 
 
@@ -285,6 +294,87 @@ def _longest(
 
 
 @numba.njit(cache=True)
+def brake_time(v: float, w: float, deceleration: float, jerk: float) -> float:
+    """Time of ``brake_distance`` [s]."""
+    drop = v - w
+    if drop * jerk <= deceleration * deceleration:
+        return 2.0 * math.sqrt(drop / jerk)
+    return drop / deceleration + deceleration / jerk
+
+
+@numba.njit(cache=True)
+def _need(v: float, a: float, w: float, deceleration: float, jerk: float) -> float:
+    """Way from (v, a >= 0) to the first a = 0 at which the velocity is w or less."""
+    lift_time = a / jerk
+    top = v + 0.5 * a * lift_time
+    lift = (v + a * lift_time / 3.0) * lift_time
+    return lift + brake_distance(top, w, deceleration, jerk) if top > w else lift
+
+
+@numba.njit(cache=True)
+def _better_to_brake(
+    limits: FloatArray, entry: FloatArray, reach: FloatArray,
+    i: int, x: float, v: float, a: float, j: float, latest: float,
+) -> float:  # fmt: skip
+    """Whether to end a phase early so as to brake to the next border, rather than later and longer.
+
+    The latest brake may be a long one across pieces that brake badly. Going to the next border at
+    its ``reach`` first may then be faster; the two are compared by their times to the border where
+    the long brake ends.
+
+    Returns:
+        When to end the phase, or ``latest`` [s].
+    """
+    count = limits.shape[1]
+    deceleration, jerk = limits[3, i], limits[4, i]
+    w = reach[i + 1]
+    rest = limits[0, i] - x
+    if i + 2 > count or w <= 0.0 or v <= 0.0 or _need(v, a, w, deceleration, jerk) > rest:
+        return latest
+    low, high = 0.0, latest
+    for step in range(BISECTIONS):
+        t = latest if step == 0 else 0.5 * (low + high)
+        gone = ((j / 6.0 * t + 0.5 * a) * t + v) * t
+        new_v, new_a = v + (0.5 * j * t + a) * t, a + j * t
+        if gone + _need(new_v, new_a, w, deceleration, jerk) <= rest:
+            low = t
+            if step == 0:
+                return latest
+        else:
+            high = t
+    t = latest
+    x_then = x + ((j / 6.0 * t + 0.5 * a) * t + v) * t
+    v_then, a_then = v + (0.5 * j * t + a) * t, a + j * t
+    k = find_brake(limits, entry, reach, i, x_then, v_then, a_then, ROUNDING, i + 2)
+    if k < i + 2:
+        return latest
+    t = low
+    x += ((j / 6.0 * t + 0.5 * a) * t + v) * t
+    v, a = v + (0.5 * j * t + a) * t, a + j * t
+    top = v + 0.5 * a * a / jerk
+    if top <= w:
+        return latest
+    early = a / jerk + brake_time(top, w, deceleration, jerk)
+    between, soft, smooth = 0.0, math.inf, math.inf
+    for piece in range(i + 1, k):
+        between += limits[0, piece]
+        soft = min(soft, limits[3, piece])
+        smooth = min(smooth, limits[4, piece])
+    spare = between
+    if w > reach[k]:
+        spare -= brake_distance(w, reach[k], soft, smooth)
+        early += brake_time(w, reach[k], soft, smooth)
+    if spare < 0.0:
+        return latest
+    early += spare / w
+    soft, smooth = min(soft, deceleration), min(smooth, jerk)
+    top = v + 0.5 * a * a / smooth
+    late = a / smooth + (brake_time(top, reach[k], soft, smooth) if top > reach[k] else 0.0)
+    late += max(0.0, limits[0, i] - x + between - _need(v, a, reach[k], soft, smooth)) / top
+    return low if early < late * (1.0 - ROUNDING) else latest
+
+
+@numba.njit(cache=True)
 def _put(
     phases: FloatArray, pieces: IntArray, row: int,
     first: int, last: int, begin: float, duration: float, x: float, v: float, a: float, j: float,
@@ -322,7 +412,14 @@ def find_phases(
     pieces = np.zeros((256, 2), np.int64)
     used = 0
     i, x, v, a, now = int(state[0]), state[1], state[2], state[3], state[4]
+    phases_here = 0
+    brake_in, compared_in = -1, -1
+    last_i = i
     while i < stop and i < count:
+        phases_here = phases_here + 1 if i == last_i else 0
+        last_i = i
+        if phases_here > MOST_PHASES:
+            raise RuntimeError("motion: the path does not go on")
         if used + 8 > len(pieces):
             phases = np.concatenate((phases, np.zeros_like(phases)))
             pieces = np.concatenate((pieces, np.zeros_like(pieces)))
@@ -333,19 +430,33 @@ def find_phases(
             i += 1
             continue
 
+        if v < SLOWEST and limits[0, i] - x <= ROUNDING * limits[0, i]:
+            # All but arrived; what is left is too little to speed up for.
+            i, x, v, a = i + 1, 0.0, min(v, reach[i + 1]), 0.0
+            continue
+
         highest_v, highest_a, jerk = limits[1, i], limits[2, i], limits[4, i]
-        j, duration, at_border = 0.0, 0.0, False
+        j, duration, latest, at_border = 0.0, 0.0, 0.0, False
         gap = highest_v - (v + a * a / (2.0 * jerk))
-        if a < highest_a * (1.0 - ROUNDING) and gap > ROUNDING * highest_v:
+        extend = brake_in != i or v <= 0.0
+        if extend and a < highest_a * (1.0 - ROUNDING) and gap > ROUNDING * highest_v:
             j = jerk
-            duration, at_border = _longest(
-                limits, entry, reach, i, x, v, a, j, (highest_a - a) / jerk
-            )
-        if duration < SHORTEST_PHASE and v > 0.0:
+            latest = (highest_a - a) / jerk
+            duration, at_border = _longest(limits, entry, reach, i, x, v, a, j, latest)
+        holds = a == 0.0 or gap > ROUNDING * highest_v
+        if extend and holds and duration < SHORTEST_PHASE and v > 0.0:
             j = 0.0
             latest = 2.0 * (limits[0, i] - x) / v
             duration, at_border = _longest(limits, entry, reach, i, x, v, a, j, latest)
-        if duration >= SHORTEST_PHASE or (at_border and duration >= 0.0):
+            if a > 0.0 and duration < SHORTEST_HOLD and not at_border:
+                duration = 0.0
+        if SHORTEST_PHASE <= duration < latest and not at_border and compared_in != i:
+            sooner = _better_to_brake(limits, entry, reach, i, x, v, a, j, duration)
+            if sooner < duration:
+                duration, brake_in = sooner, i
+                # Once per piece: what rounding leaves over must not be weighed again.
+                compared_in = i
+        if duration > 0.0 and (duration >= SHORTEST_PHASE or at_border):
             _put(phases, pieces, used, i, i, now, duration, x, v, a, j)
             used += 1
             now += duration
@@ -385,6 +496,9 @@ def find_phases(
             continue
 
         w = reach[k]
+        if v <= w and brake_in == i:
+            brake_in = -1
+            continue
         if v <= w:
             # Only rounding has kept the state from going on as it is.
             duration = (limits[0, i] - x) / v
@@ -417,6 +531,7 @@ def find_phases(
                     x -= limits[0, i]
                     i += 1
         v, a = w, 0.0
+        brake_in = -1
         if to_border:
             i, x = k, 0.0
     state[0], state[1], state[2], state[3], state[4] = i, x, v, a, now
