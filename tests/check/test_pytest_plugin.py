@@ -13,7 +13,9 @@ def pytest_in(folder: Path, *arguments: str) -> tuple[int, str]:
             sys.executable, "-m", "pytest", "-p", "twin.pytest_plugin", "-p", "no:cacheprovider",
             "-c", "/dev/null", "--rootdir", str(folder), str(folder), *arguments,
         ],
-        capture_output=True, text=True, check=False, cwd=folder, env={"PYTHONPATH": str(ROOT)},
+        capture_output=True, text=True, check=False, cwd=folder,
+        # Named by -p, for an installed package's entry point would register the module again.
+        env={"PYTHONPATH": str(ROOT), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
     )  # fmt: skip
     return done.returncode, done.stdout
 
