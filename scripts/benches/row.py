@@ -1,0 +1,41 @@
+"""One line of the bench's table, and how a figure is taken."""
+
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+REPEATS = 5
+"""The median of so many runs is quoted: these machines are noisy."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A figure of this project beside that of a peer, taken in the same run.
+
+    Attributes:
+        room: The room that is measured.
+        task: What was done.
+        figure: This project's figure.
+        unit: Its unit; a rate is better when higher, a time or a share when lower.
+        peer: The peer's name and version; empty where there is none.
+        peer_figure: The peer's figure in the same unit; None where it is not installed.
+    """
+
+    room: str
+    task: str
+    figure: float
+    unit: str
+    peer: str = ""
+    peer_figure: float | None = None
+
+
+def median_seconds(task: Callable[[], object], repeats: int = REPEATS) -> float:
+    """The median time that ``task`` takes, after one run that is not counted [s]."""
+    task()
+    times: list[float] = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        task()
+        times.append(time.perf_counter() - start)
+    return statistics.median(times)
