@@ -1,0 +1,133 @@
+"""A session: a room, what was done in it and when; it can be frozen, wound back and lived again.
+
+The log is the session: given the scene, the commands at their ticks make the same motion again. So
+going back is living it again up to an earlier tick, and a replay is the same up to the present one.
+"""
+
+import dataclasses
+from typing import Any, Literal
+
+from twin.errors import TwinError
+from twin.training.actions import carry_out
+from twin.training.commands import TRAINERS, Command, Finish, command_data, command_from
+from twin.training.room import Room
+from twin.training.scene import Scene
+from twin.training.snapshot import Snapshot, take_snapshot
+
+Who = Literal["operator", "trainer"]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Entry:
+    """A line of the log.
+
+    Attributes:
+        tick: Servo periods since the beginning.
+        who: Who did it.
+        command: What, as plain data.
+        refusal: Why the machine did not do it; empty when it did.
+    """
+
+    tick: int
+    who: Who
+    command: dict[str, Any]
+    refusal: str = ""
+
+
+class Session:
+    """A scene that is being played.
+
+    Attributes:
+        scene: The scene.
+        room: Its machine.
+        log: Every action, in order.
+        frozen: Time stands still.
+        refusal: Why the last command was refused, empty when it was not.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        """Begin.
+
+        Raises:
+            ConfigError: The scene does not fit its machine.
+        """
+        self.scene = scene
+        self.room = Room(scene)
+        self.log: list[Entry] = []
+        self.frozen = False
+        self.refusal = ""
+
+    def submit(self, data: Any, who: Who = "operator") -> bool:
+        """Give a command, from anywhere: what is malformed is refused and leaves no other trace.
+
+        Args:
+            data: A mapping with ``do`` and what belongs to it, or a command.
+            who: Who gives it.
+
+        Returns:
+            Whether the machine did it.
+        """
+        plain: dict[str, Any] = {}
+        try:
+            command: Command = command_from(data)
+            plain = command_data(command)
+            self._require_allowed(command, who)
+            carry_out(self.room, command)
+            self.refusal = ""
+        except TwinError as error:
+            self.refusal = str(error)
+        if plain:
+            self.log.append(Entry(self.room.tick, who, plain, self.refusal))
+        return not self.refusal
+
+    def _require_allowed(self, command: Command, who: Who) -> None:
+        if isinstance(command, TRAINERS) and who != "trainer":
+            raise TwinError("only the trainer can do that")
+        if self.room.judge.over and who != "trainer" and isinstance(command, Finish):
+            raise TwinError("the scene has been handed in already")
+
+    def advance(self, ticks: int) -> None:
+        """Let time go on, unless it is frozen."""
+        if not self.frozen:
+            self.room.advance(ticks)
+
+    def rewind(self, seconds: float) -> None:
+        """Go back; what was done after that is forgotten.
+
+        Args:
+            seconds: How far, in machine time [s].
+        """
+        period = self.room.machine.machine.file.servo_period_s
+        tick = max(0, self.room.tick - round(seconds / period))
+        kept = [entry for entry in self.log if entry.tick <= tick]
+        self.room = relive(self.scene, kept, tick)
+        self.log = kept
+        self.refusal = ""
+
+    def snapshot(self) -> Snapshot:
+        """Look at the machine."""
+        return dataclasses.replace(
+            take_snapshot(self.room), frozen=self.frozen, refusal=self.refusal
+        )
+
+
+def relive(scene: Scene, log: list[Entry], tick: int) -> Room:
+    """Live a session again.
+
+    Args:
+        scene: Its scene.
+        log: What was done.
+        tick: How far to go.
+
+    Returns:
+        The room as it was at that tick.
+    """
+    room = Room(scene)
+    for entry in log:
+        if entry.tick > tick:
+            break
+        room.advance(entry.tick - room.tick)
+        if not entry.refusal:
+            carry_out(room, command_from(entry.command))
+    room.advance(tick - room.tick)
+    return room
