@@ -75,7 +75,7 @@ def test_blocks_are_what_their_samples_are(stays: list[tuple[int, int]], rows: i
     moves = moves_of(*(line(a, b) for a, b in itertools.pairwise(corners)))
     place = np.repeat([move for move, _ in stays], [count for _, count in stays])
     error = 10.0 ** np.random.default_rng(seed).uniform(-2, 4, len(place))
-    time = 0.001 * np.arange(len(place))
+    time = np.float64(0.001) * np.arange(len(place))
     collector = BlockCollector()
     for first in range(0, len(place), rows):
         here = slice(first, first + rows)
