@@ -132,15 +132,17 @@ class Run:
         cut = self._finish_part(cutter, out) if cutter is not None and len(track) else None
         figures = comparison.result()
         alarms = () if alarm is None else (alarm,)
+        duration_s = min(self._planned_s, track.time_s)
+        tolerance = preparation.job.file.tolerance
         return Outcome(
-            verdict=judge(figures, preparation.job.file.tolerance, alarms),
+            verdict=judge(figures, tolerance, alarms, cycle_time_s=duration_s),
             figures=figures,
             cut=cut,
             alarms=alarms,
             near_miss=near_miss,
             warnings=survey.warnings,
             samples=len(track),
-            duration_s=min(self._planned_s, track.time_s),
+            duration_s=duration_s,
             final_commanded=track.commanded,
             final_simulated=track.simulated,
         )
