@@ -4,7 +4,7 @@ from pathlib import Path
 
 import typer
 
-from twin.alarm_text import alarm_diagnostic
+from twin.alarm_text import alarm_diagnostic, near_miss_diagnostic
 from twin.chain import Run
 from twin.commands.pictures import film_run
 from twin.commands.results import write_results
@@ -63,6 +63,9 @@ def _clear(folder: Path) -> None:
 def _print_findings(run: Run, outcome: Outcome) -> None:
     for warning in outcome.warnings:
         typer.echo(str(warning), err=True)
+    if outcome.near_miss is not None:
+        miss = near_miss_diagnostic(outcome.near_miss, run.preparation.source)
+        typer.echo(str(miss), err=True)
     for alarm in outcome.alarms:
         typer.echo(str(alarm_diagnostic(alarm, run.preparation.source)), err=True)
     if not outcome.alarms:
@@ -72,8 +75,14 @@ def _print_findings(run: Run, outcome: Outcome) -> None:
 
 def _summary(run: Run, outcome: Outcome, folder: Path) -> str:
     contour = outcome.figures.contour
+    if outcome.alarms:
+        first = outcome.alarms[0]
+        finding = f"{first.code} at line {first.line}"
+    elif outcome.duration_s == 0.0:
+        finding = "nothing moves"
+    else:
+        finding = f"contour error at most {contour.max:.1f} µm (line {contour.worst_line})"
     return (
-        f"{outcome.verdict.outcome}: contour error at most {contour.max:.1f} µm "
-        f"(line {contour.worst_line}), {outcome.duration_s:.3f} s of machine time "
+        f"{outcome.verdict.outcome}: {finding}, {outcome.duration_s:.3f} s of machine time "
         f"in {run.clock.wall_s:.1f} s; results in {folder}"
     )
