@@ -20,29 +20,13 @@ from twin.machine.config import Machine
 from twin.recording import Recording
 from twin.render.film import film, still
 
-Options = dict[str, Any]
-
-
-@pytest.fixture
-def options(recording: Recording, spec: mujoco.MjSpec, machine: Machine) -> Options:
-    return {
-        "recording": recording,
-        "spec": spec,
-        "machine": machine,
-        "stock": STOCK,
-        "tool": TOOL,
-        "source": SOURCE,
-        "rapid_moves": RAPID_MOVES,
-    }
-
-
 VIDEO = VideoTable(cameras=("overview", "top"), seconds=2.0, fps=10, size=(321, 181))
 
 
-def test_film_plays_everywhere_and_has_the_asked_length(options: Options, tmp_path: Path) -> None:
+def test_film_plays_everywhere_and_has_the_asked_length(scene: Scene, tmp_path: Path) -> None:
     seen = []
     out = film(
-        **options,
+        scene,
         video=VIDEO,
         out=tmp_path / "run.mp4",
         progress=lambda done, of: seen.append((done, of)),
@@ -65,7 +49,7 @@ def test_film_plays_everywhere_and_has_the_asked_length(options: Options, tmp_pa
     assert all(frame.std() > 20 for frame in frames)
 
 
-def test_still_shows_the_running_block(options: Options, tmp_path: Path) -> None:
+def test_still_shows_the_running_block(scene: Scene, tmp_path: Path) -> None:
     pictures = [
         np.asarray(Image.open(still(**options, out=tmp_path / f"{line}.png", line=line)))
         for line in (2, 3)
@@ -79,17 +63,17 @@ def test_still_shows_the_running_block(options: Options, tmp_path: Path) -> None
     assert np.abs(without[560:, 20:300].astype(int) - pictures[1][560:, 20:300]).mean() > 20
 
 
-def test_tiny_pictures_and_long_programs_do_not_fail(options: Options, tmp_path: Path) -> None:
+def test_tiny_pictures_and_long_programs_do_not_fail(scene: Scene, tmp_path: Path) -> None:
     options["source"] = ["\tG1 X1\x07 " + "Ž" * 500] * 5000
     small = VideoTable(seconds=0.1, fps=10, size=(64, 64))
-    assert film(**options, video=small, out=tmp_path / "tiny.mp4").is_file()
+    assert film(scene, video=small, out=tmp_path / "tiny.mp4").is_file()
     options["source"] = ()
     assert still(**options, out=tmp_path / "s.png", size=(65, 67), quality="draft").is_file()
 
 
-def test_a_run_without_stock_is_filmed_too(options: Options, tmp_path: Path) -> None:
+def test_a_run_without_stock_is_filmed_too(scene: Scene, tmp_path: Path) -> None:
     options["stock"] = None
-    assert film(**options, video=VIDEO, out=tmp_path / "air.mp4").is_file()
+    assert film(scene, video=VIDEO, out=tmp_path / "air.mp4").is_file()
 
 
 @pytest.mark.parametrize(
@@ -102,7 +86,7 @@ def test_a_run_without_stock_is_filmed_too(options: Options, tmp_path: Path) -> 
     ],
 )
 def test_what_cannot_be_filmed_is_refused(
-    options: Options, tmp_path: Path, change: Options, message: str
+    scene: Scene, tmp_path: Path, change: Options, message: str
 ) -> None:
     before = sorted(tmp_path.iterdir())
     with pytest.raises(RenderError, match=message):
@@ -111,8 +95,8 @@ def test_what_cannot_be_filmed_is_refused(
 
 
 @pytest.mark.parametrize("suffix", [".gif", ".webp"])
-def test_moving_pictures_for_a_page(options: Options, tmp_path: Path, suffix: str) -> None:
-    out = film(**options, video=VIDEO, out=tmp_path / f"run{suffix}")
+def test_moving_pictures_for_a_page(scene: Scene, tmp_path: Path, suffix: str) -> None:
+    out = film(scene, video=VIDEO, out=tmp_path / f"run{suffix}")
     with Image.open(out) as pictures:
         assert getattr(pictures, "n_frames", 1) == 20
         assert pictures.size == (320, 180)
@@ -124,14 +108,14 @@ def test_moving_pictures_for_a_page(options: Options, tmp_path: Path, suffix: st
     assert np.abs(last - first).mean() > 5
 
 
-def test_unknown_format_names_the_known(options: Options, tmp_path: Path) -> None:
+def test_unknown_format_names_the_known(scene: Scene, tmp_path: Path) -> None:
     with pytest.raises(RenderError, match=r"\.mp4, \.gif, \.webp"):
-        film(**options, video=VIDEO, out=tmp_path / "run.avi")
+        film(scene, video=VIDEO, out=tmp_path / "run.avi")
 
 
-def test_split_picture_shows_all_cameras_at_once(options: Options, tmp_path: Path) -> None:
+def test_split_picture_shows_all_cameras_at_once(scene: Scene, tmp_path: Path) -> None:
     video = VIDEO.model_copy(update={"layout": "split", "speed": 1.0})
-    out = film(**options, video=video, out=tmp_path / "run.mp4")
+    out = film(scene, video=video, out=tmp_path / "run.mp4")
     with av.open(str(out)) as container:
         frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
     assert len(frames) == 10, "a run of a second at its own speed"
@@ -142,10 +126,10 @@ def test_split_picture_shows_all_cameras_at_once(options: Options, tmp_path: Pat
     assert frames[5][60:120, 159].mean() > 180, "a line parts the fields"
 
 
-def test_unwritable_place_is_said(options: Options, tmp_path: Path) -> None:
+def test_unwritable_place_is_said(scene: Scene, tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("a file")
     for make in (
-        lambda: film(**options, video=VIDEO, out=tmp_path / "taken" / "run.mp4"),
+        lambda: film(scene, video=VIDEO, out=tmp_path / "taken" / "run.mp4"),
         lambda: still(**options, out=tmp_path / "taken" / "run.png", size=(64, 64)),
     ):
         with pytest.raises(RenderError, match=r"cannot be written"):
@@ -157,15 +141,15 @@ def interrupt(done: int, _: int) -> None:
         raise KeyboardInterrupt
 
 
-def test_interrupted_film_leaves_nothing(options: Options, tmp_path: Path) -> None:
+def test_interrupted_film_leaves_nothing(scene: Scene, tmp_path: Path) -> None:
     before = sorted(tmp_path.iterdir())
     with pytest.raises(KeyboardInterrupt):
-        film(**options, video=VIDEO, out=tmp_path / "run.mp4", progress=interrupt)
+        film(scene, video=VIDEO, out=tmp_path / "run.mp4", progress=interrupt)
     assert sorted(tmp_path.iterdir()) == before
 
 
 def test_contour_error_is_shown_where_it_is_known(
-    options: Options, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     readings = []
     draw: Callable[..., Any] = __import__("twin.render.hud").render.hud.Display.draw
@@ -186,7 +170,7 @@ def test_contour_error_is_shown_where_it_is_known(
     np.testing.assert_allclose(lag.position, [-40 + 80 * 100 / 250, 0, -5, 0], atol=0.01)
 
 
-def test_alarms_and_warnings_are_shown_while_they_hold(options: Options, tmp_path: Path) -> None:
+def test_alarms_and_warnings_are_shown_while_they_hold(scene: Scene, tmp_path: Path) -> None:
     def red(name: str, **more: object) -> int:
         out = still(**{**options, "out": tmp_path / name, "quality": "draft", **more})
         chip = np.asarray(Image.open(out))[18:56, 400:880].astype(int)
@@ -201,7 +185,7 @@ def test_alarms_and_warnings_are_shown_while_they_hold(options: Options, tmp_pat
 
 
 def test_full_disk_is_said_and_leaves_nothing(
-    options: Options, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -209,7 +193,7 @@ def test_full_disk_is_said_and_leaves_nothing(
     monkeypatch.setattr("twin.render.encoder.VideoWriter._encode", full)
     before = sorted(tmp_path.iterdir())
     with pytest.raises(RenderError, match=r"run\.mp4: .*No space left on device"):
-        film(**options, video=VIDEO, out=tmp_path / "run.mp4")
+        film(scene, video=VIDEO, out=tmp_path / "run.mp4")
     assert sorted(tmp_path.iterdir()) == before
 
 

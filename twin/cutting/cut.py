@@ -140,9 +140,11 @@ class Cutter:
         joints = samples.joint_position if self._along == "joints" else setpoint.position
         points = self._part_frame.position(joints)
         for run, tool in self._plan.runs(setpoint.move):
-            if tool is not self.tool:
-                self.tool, self._last = tool, None
-            self._cut(points[run], setpoint.time[run], setpoint.line[run], np.asarray(rapid)[run])
+            if tool.number != self.tool.number:
+                self._last = None
+            self.tool = tool
+            tip = points[run] - [0.0, 0.0, self._plan.longer(tool)]
+            self._cut(tip, setpoint.time[run], setpoint.line[run], np.asarray(rapid)[run])
         return self._removed - before
 
     def events(self) -> tuple[CutEvent, ...]:
