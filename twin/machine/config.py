@@ -1,7 +1,7 @@
 """The machine file ``machine.toml``: axes, drives, feeds, as data."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import pydantic
@@ -11,7 +11,7 @@ from twin.errors import ConfigError
 from twin.fixture import FixtureTable
 from twin.machine.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
-from twin.toml_file import Table, read_toml
+from twin.toml_file import Table, checked, read_toml
 from twin.toolpath.part_frame import PartFrame
 from twin.units import AxisKind, to_si
 
@@ -252,6 +252,22 @@ class Machine:
     def axis(self, name: str) -> AxisTable:
         """The table of one axis."""
         return self.file.axes[name]
+
+    def changed(self, axis: str, **fields: Any) -> "Machine":
+        """The same machine with some fields of one axis changed.
+
+        Args:
+            axis: Its name.
+            fields: Keys of ``AxisTable`` and their values.
+
+        Raises:
+            ConfigError: The machine lacks the axis, or a key or a value is wrong.
+        """
+        if axis not in self.axes.names:
+            raise ConfigError(f"{self.file.name} has the axes {', '.join(self.axes.names)}")
+        data = self.file.model_dump(by_alias=True)
+        data["axes"][axis].update(fields)
+        return Machine(self.path, checked(data, MachineFile, self.file.name))
 
 
 def read_machine(path: Path) -> Machine:

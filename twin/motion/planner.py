@@ -13,7 +13,8 @@ import numpy as np
 
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces import Pieces, join_pieces, pieces_of_chunks
-from twin.motion.profile_kernels import find_phases, find_reach
+from twin.motion.profile_kernels import find_phases
+from twin.motion.reach_kernels import find_reach
 from twin.motion.sampling_kernels import sample_axes, sample_path
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray, IntArray

@@ -1,0 +1,92 @@
+"""Braking along the path: the quickest way from (v, a >= 0) to a lower velocity at a = 0.
+
+The acceleration falls by the full jerk, stays at the full deceleration while it must, and comes
+back to zero by the full jerk.
+"""
+
+import math
+
+import numba
+
+
+@numba.njit(cache=True)
+def time_to(distance: float, v: float, a: float, j: float, latest: float) -> float:
+    """When x = v t + a t²/2 + j t³/6 reaches ``distance``, within [0, latest], x rising [s]."""
+    low, high = 0.0, latest
+    t = latest
+    if v > 0.0:
+        t = min(latest, distance / v)
+    for _ in range(100):
+        miss = ((j / 6.0 * t + 0.5 * a) * t + v) * t - distance
+        if miss > 0.0:
+            high = t
+        else:
+            low = t
+        slope = (0.5 * j * t + a) * t + v
+        new = t - miss / slope if slope > 0.0 else 0.5 * (low + high)
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        if abs(new - t) <= 1e-16 * latest:
+            return new
+        t = new
+    return t
+
+
+@numba.njit(cache=True)
+def brake_distance(v: float, w: float, deceleration: float, jerk: float) -> float:
+    """Shortest way from v to w <= v, a = 0 at both ends [mm or deg]."""
+    drop = v - w
+    if drop * jerk <= deceleration * deceleration:
+        duration = 2.0 * math.sqrt(drop / jerk)
+    else:
+        duration = drop / deceleration + deceleration / jerk
+    return 0.5 * (v + w) * duration
+
+
+@numba.njit(cache=True)
+def brake_time(v: float, w: float, deceleration: float, jerk: float) -> float:
+    """Time of ``brake_distance`` [s]."""
+    drop = v - w
+    if drop * jerk <= deceleration * deceleration:
+        return 2.0 * math.sqrt(drop / jerk)
+    return drop / deceleration + deceleration / jerk
+
+
+@numba.njit(cache=True)
+def brake_need(v: float, a: float, w: float, deceleration: float, jerk: float) -> float:
+    """Way from (v, a >= 0) to the first a = 0 at which the velocity is w or less."""
+    lift_time = a / jerk
+    top = v + 0.5 * a * lift_time
+    lift = (v + a * lift_time / 3.0) * lift_time
+    return lift + brake_distance(top, w, deceleration, jerk) if top > w else lift
+
+
+@numba.njit(cache=True)
+def brake_state(
+    x: float, v: float, a: float, w: float, deceleration: float, jerk: float
+) -> tuple[float, float]:
+    """Velocity and acceleration after x on the brake from (v, a >= 0) to (w, 0)."""
+    top = v + a * a / (2.0 * jerk)
+    drop = top - w
+    hardest = min(deceleration, math.sqrt(drop * jerk)) if drop > 0.0 else 0.0
+    duration = (a + hardest) / jerk
+    length = ((-jerk / 6.0 * duration + 0.5 * a) * duration + v) * duration
+    if x < length:
+        t = time_to(x, v, a, -jerk, duration)
+        return v + (a - 0.5 * jerk * t) * t, a - jerk * t
+    x -= length
+    v += (a - 0.5 * jerk * duration) * duration
+    ease = hardest / jerk
+    low = w + 0.5 * hardest * ease
+    if hardest > 0.0:
+        duration = max(0.0, (v - low) / hardest)
+        length = (v - 0.5 * hardest * duration) * duration
+        if x < length:
+            v = math.sqrt(max(0.0, v * v - 2.0 * hardest * x))
+            return v, -hardest
+        x -= length
+        length = ((jerk / 6.0 * ease - 0.5 * hardest) * ease + low) * ease
+        if x < length:
+            t = time_to(x, low, -hardest, jerk, ease)
+            return low + (-hardest + 0.5 * jerk * t) * t, -hardest + jerk * t
+    return min(w, top), 0.0
