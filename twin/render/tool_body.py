@@ -50,10 +50,10 @@ class ToolBodies:
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Put all tools under the spindle nose of a machine's specification."""
-        for name in REPLACED:
-            geom = spec.geom(name)
-            if geom is not None:
-                spec.delete(geom)
+        replaced = [geom for name in REPLACED if (geom := spec.geom(name)) is not None]
+        drawn = {geom.name for geom in replaced}
+        for geom in replaced:
+            spec.delete(geom)
         nose = spec.site(SPINDLE_NOSE)
         spec.add_material(name=PREFIX, rgba=[0.66, 0.63, 0.56, 1.0], specular=0.9, shininess=0.8)
         spec.add_material(name=HOLDER_MATERIAL, rgba=HOLDER_RGBA, specular=0.9, shininess=0.85)
@@ -81,7 +81,7 @@ class ToolBodies:
                 body, "shank", PREFIX, radius, -tool.length + min(tool.flute, tool.below_holder)
             )
             for piece in tool_cylinders(tool, self._flange):
-                if piece.name in HOLDER:
+                if piece.name in HOLDER and piece.name in drawn:
                     _add_cylinder(
                         body, piece.name, HOLDER_MATERIAL, piece.radius, piece.bottom, piece.top
                     )
