@@ -14,6 +14,7 @@ from twin.compare.trace import Trace
 from twin.compare.verdict import judge
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.part import write_stl
+from twin.cutting.spindle import Spindle, speaks_of_spindle
 from twin.machine.alarms import Alarm
 from twin.machine.config import Machine
 from twin.machine.model import build_spec, spindle_over_table_mm
@@ -32,6 +33,7 @@ from twin.program_notes import NoteTaker, ProgramNotes
 from twin.progress import Progress
 from twin.recording import RecordingHeader, Samples, record
 from twin.stages import StageClock
+from twin.stock_alarm import stock_alarm
 from twin.toolpath.part_frame import PartFrame
 
 
@@ -43,12 +45,14 @@ class Survey:
         moves: How many moves the program makes.
         warnings: What the interpreter had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
+        speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
         notes: What the program says beside its moves.
     """
 
     moves: int
     warnings: tuple[Diagnostic, ...]
     alarm: Alarm | None
+    speaks_of_spindle: bool
     notes: ProgramNotes
 
 
@@ -83,6 +87,7 @@ class Run:
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
         self._planned_s = 0.0
+        self._spindle = Spindle(held_to_program=False)
 
     def execute(self, survey: Survey, out: Path, progress: Progress) -> Outcome:
         """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
@@ -101,35 +106,40 @@ class Run:
         comparison = Comparison(preparation.machine.axes, self.part_frame, self.part_zero)
         cutter = self._cutter(survey.notes)
         track = _Track(self.part_zero, preparation.start)
-        alarm = survey.alarm
+        self._spindle = Spindle(held_to_program=survey.speaks_of_spindle)
+        alarm, near_miss = survey.alarm, None
         if alarm is None:
             with record(out / "recording.h5", self.header()) as writer:
                 simulation = self._simulation(comparison)
-                for samples in self.clock.watch("simulate", simulation):
+                for simulated in self.clock.watch("simulate", simulation):
+                    with self.clock.stage("cut"):
+                        samples, alarm = self._cut(cutter, simulated, survey.notes)
                     track.add(samples)
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
                         self.trace.add(samples, contour_um)
-                    with self.clock.stage("cut"):
-                        if cutter is not None:
-                            cutter.add(samples, survey.notes.is_rapid(samples.setpoint.move))
                     with self.clock.stage("record"):
                         writer.append(samples, contour_um)
                     progress("simulate", track.progress(survey.moves))
-                alarm = simulation.alarm
+                    if alarm is not None:
+                        break
+                alarm, near_miss = alarm or simulation.alarm, simulation.near_miss
                 if alarm is not None:
                     writer.note_alarms([(alarm.time_s, alarm.message)])
         cut = self._finish_part(cutter, out) if cutter is not None and len(track) else None
         figures = comparison.result()
         alarms = () if alarm is None else (alarm,)
+        duration_s = min(self._planned_s, track.time_s)
+        tolerance = preparation.job.file.tolerance
         return Outcome(
-            verdict=judge(figures, preparation.job.file.tolerance, alarms),
+            verdict=judge(figures, tolerance, alarms, cycle_time_s=duration_s),
             figures=figures,
             cut=cut,
             alarms=alarms,
+            near_miss=near_miss,
             warnings=survey.warnings,
             samples=len(track),
-            duration_s=min(self._planned_s, track.time_s),
+            duration_s=duration_s,
             final_commanded=track.commanded,
             final_simulated=track.simulated,
         )
@@ -141,19 +151,35 @@ class Run:
             ProgramError: The program is wrong.
         """
         interpretation = self.preparation.interpretation()
-        moves, alarm = 0, None
+        moves, alarm, speaks = 0, None, False
         taker = NoteTaker(self.preparation.job.file)
         for chunk in self.clock.watch("interpret", interpretation.chunks()):
             moves += len(chunk.moves)
             taker.add(chunk)
+            speaks = speaks or speaks_of_spindle(chunk)
             if alarm is None:
                 alarm = soft_limit_alarm(self.preparation.machine, chunk.moves, self.part_zero)
         return Survey(
             moves=moves,
             warnings=tuple(interpretation.diagnostics),
             alarm=alarm,
+            speaks_of_spindle=speaks,
             notes=taker.notes(),
         )
+
+    def _cut(
+        self, cutter: Cutter | None, samples: Samples, notes: ProgramNotes
+    ) -> tuple[Samples, Alarm | None]:
+        """Cut along a chunk; what is left of it where the stock raised an alarm, and the alarm."""
+        if cutter is None:
+            return samples, None
+        rapid = notes.is_rapid(samples.setpoint.move)
+        cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
+        if cutter.halted is None:
+            return samples, None
+        alarm = stock_alarm(cutter.halted, cutter.tool)
+        end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
+        return samples[:end], alarm
 
     def _simulation(self, comparison: Comparison) -> Simulation:
         machine = self.preparation.machine
@@ -178,13 +204,14 @@ class Run:
         """The program's moves on their way to the planner; those who judge hear of them too."""
         for chunk in self.preparation.interpretation().chunks():
             comparison.expect(chunk.moves)
+            self._spindle.expect(chunk)
             yield chunk
 
     def _cutter(self, notes: ProgramNotes) -> Cutter | None:
         job = self.preparation.job.file
         if job.stock is None:
             return None
-        return Cutter(job.stock, notes.tools, self.part_frame, self.part_zero)
+        return Cutter(job.stock, notes.tools, self.part_frame, self.part_zero, halts=True)
 
     def _finish_part(self, cutter: Cutter, out: Path) -> CutResult:
         with self.clock.stage("cut"):

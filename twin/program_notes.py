@@ -7,6 +7,7 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from twin.cutting.spindle import SPEED, STARTS, STOPS
 from twin.cutting.tools import ToolPlan
 from twin.errors import ConfigError
 from twin.job import JobFile, ToolTable
@@ -15,8 +16,7 @@ from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
 BoolArray = npt.NDArray[np.bool_]
 ValueT = TypeVar("ValueT")
 
-SPINDLE_ON = ("M3", "M4")
-SPINDLE_OFF = ("M5", "M2", "M30")
+SPINDLE_OFF = STOPS | {"M2", "M30"}
 """The program's end stops the spindle too (ISO 6983-1)."""
 TOOL_CHANGE = "M6"
 
@@ -124,14 +124,14 @@ class NoteTaker:
             self._selected = int(word[1:])
         elif word == TOOL_CHANGE and self._selected is not None:
             self._change_tool(self._selected, event.line, move)
-        elif word in SPINDLE_ON:
+        elif word in STARTS:
             self._speed = event.arguments.get("S", self._speed)
             self._turn(
                 None if self._speed is None else (1 - 2 * (word == "M4")) * self._speed, move
             )
         elif word in SPINDLE_OFF:
             self._turn(0.0, move)
-        elif word == "S":
+        elif word == SPEED:
             self._speed = event.arguments["S"]
             if self._turns:
                 self._turn(float(np.copysign(self._speed, self._turns)), move)

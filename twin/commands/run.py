@@ -4,7 +4,7 @@ from pathlib import Path
 
 import typer
 
-from twin.alarm_text import alarm_diagnostic
+from twin.alarm_text import alarm_diagnostic, near_miss_diagnostic
 from twin.chain import Run
 from twin.commands.pictures import film_run
 from twin.commands.results import write_results
@@ -63,6 +63,9 @@ def _clear(folder: Path) -> None:
 def _print_findings(run: Run, outcome: Outcome) -> None:
     for warning in outcome.warnings:
         typer.echo(str(warning), err=True)
+    if outcome.near_miss is not None:
+        miss = near_miss_diagnostic(outcome.near_miss, run.preparation.source)
+        typer.echo(str(miss), err=True)
     for alarm in outcome.alarms:
         typer.echo(str(alarm_diagnostic(alarm, run.preparation.source)), err=True)
     if not outcome.alarms:

@@ -27,6 +27,7 @@ from twin.render.work_holding import add_work_holding
 
 WARNINGS = {
     "rapid": "rapid into stock",
+    "standing": "feed with the spindle off",
     "flute": "deeper than the flutes",
     "shank": "shank in the material",
     "holder": "holder in the material",
