@@ -43,10 +43,24 @@ def read_toml(
     data = load_toml(path)
     if prepare is not None:
         data = prepare(data)
+    return checked(data, table, str(path))
+
+
+def checked(data: Data, table: type[TableT], where: str) -> TableT:
+    """Check content against a table model.
+
+    Args:
+        data: The content.
+        table: The model that names its keys.
+        where: What a message begins with, such as the file.
+
+    Raises:
+        ConfigError: A wrong key or value.
+    """
     try:
         return table.model_validate(data)
     except pydantic.ValidationError as error:
-        lines = "\n".join(f"{path}: {_explain(detail, table)}" for detail in error.errors())
+        lines = "\n".join(f"{where}: {_explain(detail, table)}" for detail in error.errors())
         raise ConfigError(lines) from error
 
 

@@ -8,7 +8,8 @@
 | ``drive-saturation`` | a drive was at its force limit for longer than it may |
 | ``collision`` | head, spindle or holder met table, fixture or column, or the table the column |
 | ``rapid-into-stock`` | a rapid move cut into the stock |
-| ``spindle-off`` | a move cut into the stock with the spindle standing |
+| ``spindle-off`` | a feed cut into the stock with the spindle standing |
+| ``emergency-stop`` | an operator pressed the button |
 """
 
 import dataclasses
@@ -16,7 +17,16 @@ from typing import Literal
 
 from twin.errors import ExitCode, TwinError
 
-AlarmCode = Literal["soft-limit", "hard-limit", "following-error", "drive-saturation", "collision"]
+AlarmCode = Literal[
+    "soft-limit",
+    "hard-limit",
+    "following-error",
+    "drive-saturation",
+    "collision",
+    "rapid-into-stock",
+    "spindle-off",
+    "emergency-stop",
+]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -61,5 +71,11 @@ class NearMiss:
 
 class SimulationError(TwinError):
     """The simulation itself failed: MuJoCo warned, or a number is not finite."""
+
+    exit_code = ExitCode.ALARM
+
+
+class AlarmStandsError(TwinError):
+    """The machine was asked to move, or to forget an alarm, when it may not."""
 
     exit_code = ExitCode.ALARM

@@ -45,6 +45,17 @@ class Clearance:
         self._reach = self._reaches(machine)
         self._due = 0.0
         self._last: FloatArray | None = None
+        self._bearable = 0.0
+
+    def acknowledge(self, position: FloatArray) -> None:
+        """Raise again only what gets worse than it is: what has met may be driven apart.
+
+        Args:
+            position: Where the axes stand, shape (k,) [mm or deg].
+        """
+        if self._pairs:
+            self._last, self._due = None, 0.0
+            self._bearable = min(0.0, self._measure(position)[0] - RESOLUTION)
 
     def _reaches(self, machine: Machine) -> FloatArray:
         """Way of the farthest point that an axis moves, per unit of the axis [mm], shape (k,)."""
@@ -76,9 +87,11 @@ class Clearance:
         self._last = position[-1:]
         while first < len(way):
             clearance, pair = self._measure(position[first])
-            if clearance <= 0:
+            if clearance <= self._bearable:
                 return self._alarm(samples, first, clearance, pair)
-            if clearance < self._worth_reporting:
+            if clearance > 0:
+                self._bearable = 0.0
+            if 0 < clearance < self._worth_reporting:
                 self._remember(samples, first, clearance, pair)
             self._due = way[first] + max(clearance - self._worth_reporting, RESOLUTION)
             first = max(first + 1, int(np.searchsorted(way, self._due)))

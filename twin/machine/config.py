@@ -1,16 +1,17 @@
 """The machine file ``machine.toml``: axes, drives, feeds, as data."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import pydantic
 from pydantic import Field
 
 from twin.errors import ConfigError
+from twin.fixture import FixtureTable
 from twin.machine.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
-from twin.toml_file import Table, read_toml
+from twin.toml_file import Table, checked, read_toml
 from twin.toolpath.part_frame import PartFrame
 from twin.units import AxisKind, to_si
 
@@ -134,16 +135,6 @@ class TableTable(Table):
     """Machine X and Y at which the tool stands over the axis of rotation [mm]."""
 
 
-class FixtureTable(Table):
-    """A box clamped to the work-holding surface, such as the jaw of a vise."""
-
-    name: str
-    size: tuple[Positive, Positive, Positive]
-    """Along X, Y, Z [mm]."""
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Centre of its lower face over the middle of the surface [mm], all axes at zero."""
-
-
 class SpindleTable(Table):
     """What holds the tool."""
 
@@ -234,6 +225,19 @@ class Machine:
             center=(0.0, 0.0) if file.table is None else file.table.center,
         )
 
+    def with_fixtures(self, fixtures: tuple[FixtureTable, ...]) -> "Machine":
+        """This machine with more on its table.
+
+        Raises:
+            ConfigError: One has the name of another.
+        """
+        both = (*self.file.fixtures, *fixtures)
+        names = [fixture.name for fixture in both]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ConfigError(f"fixture '{twice[0]}' is named twice")
+        return Machine(self.path, self.file.model_copy(update={"fixtures": both}))
+
     @property
     def model_path(self) -> Path:
         """The MJCF file."""
@@ -248,6 +252,22 @@ class Machine:
     def axis(self, name: str) -> AxisTable:
         """The table of one axis."""
         return self.file.axes[name]
+
+    def changed(self, axis: str, **fields: Any) -> "Machine":
+        """The same machine with some fields of one axis changed.
+
+        Args:
+            axis: Its name.
+            fields: Keys of ``AxisTable`` and their values.
+
+        Raises:
+            ConfigError: The machine lacks the axis, or a key or a value is wrong.
+        """
+        if axis not in self.axes.names:
+            raise ConfigError(f"{self.file.name} has the axes {', '.join(self.axes.names)}")
+        data = self.file.model_dump(by_alias=True)
+        data["axes"][axis].update(fields)
+        return Machine(self.path, checked(data, MachineFile, self.file.name))
 
 
 def read_machine(path: Path) -> Machine:

@@ -12,6 +12,9 @@ from twin.recording import Samples
 
 OVERTRAVEL = 2.0
 """How far beyond its travel an axis meets its limit switch where none is given [mm or deg]."""
+_ON_SWITCH = 0.1
+"""What an axis that stands on its limit switch may move further onto it, such as by settling
+[mm or deg]."""
 _AT_LIMIT = 1.0 - 1e-9
 """Share of the force limit from which a drive counts as being at it: rounding, not slack."""
 
@@ -30,7 +33,18 @@ class Watch:
             [round(axis.saturation_time_s / machine.file.servo_period_s) for axis in axes]
         )
         self._saturated = np.zeros(len(axes), np.int64)
-        self._lowest, self._highest = np.array([_switches(axis) for axis in axes]).T
+        self._switches = np.array([_switches(axis) for axis in axes]).T
+        self._lowest, self._highest = self._switches.copy()
+
+    def acknowledge(self, position: FloatArray) -> None:
+        """Raise again only what gets worse than it is: an axis may leave its limit switch.
+
+        Args:
+            position: Where the axes stand, shape (k,) [mm or deg].
+        """
+        self._saturated[:] = 0
+        self._lowest = np.minimum(self._switches[0], position - _ON_SWITCH)
+        self._highest = np.maximum(self._switches[1], position + _ON_SWITCH)
 
     def look(self, samples: Samples) -> Alarm | None:
         """Return the alarm of the first sample that raises one."""
@@ -45,6 +59,8 @@ class Watch:
             _first(samples, "drive-saturation", saturated > self._patience,
                    lambda row, axis: self._at_limit(saturated[row, axis], axis), self._names),
         ]  # fmt: skip
+        self._lowest = np.where(position[-1] > self._switches[0], self._switches[0], self._lowest)
+        self._highest = np.where(position[-1] < self._switches[1], self._switches[1], self._highest)
         return min(filter(None, found), key=lambda alarm: alarm.time_s, default=None)
 
     def _saturated_for(self, force: FloatArray) -> npt.NDArray[np.int64]:
