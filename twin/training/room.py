@@ -12,7 +12,7 @@ import numpy as np
 from twin.errors import ConfigError, TwinError, UsageError
 from twin.machine.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.machine.live import LiveMachine
-from twin.machine.model import build_spec, spindle_over_table_mm
+from twin.machine.model import spindle_over_table_mm
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
 from twin.nc.settings import ToolData

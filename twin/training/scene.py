@@ -179,4 +179,3 @@ def _require_inside(folder: Path, path: Path, file: SceneFile) -> None:
             raise ConfigError(f"{path}: '{name}' leads out of the scene's folder")
     if not (folder / file.job.program).is_file():
         raise ConfigError(f"{path}: no NC program '{file.job.program}' beside it")
-

@@ -5,33 +5,15 @@ going back is living it again up to an earlier tick, and a replay is the same up
 """
 
 import dataclasses
-from typing import Any, Literal
+from typing import Any
 
 from twin.errors import TwinError
 from twin.training.actions import carry_out
 from twin.training.commands import TRAINERS, Command, Finish, command_data, command_from
+from twin.training.log import Entry, Replay, Who, relive
 from twin.training.room import Room
 from twin.training.scene import Scene
 from twin.training.snapshot import Snapshot, take_snapshot
-
-Who = Literal["operator", "trainer"]
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Entry:
-    """A line of the log.
-
-    Attributes:
-        tick: Servo periods since the beginning.
-        who: Who did it.
-        command: What, as plain data.
-        refusal: Why the machine did not do it; empty when it did.
-    """
-
-    tick: int
-    who: Who
-    command: dict[str, Any]
-    refusal: str = ""
 
 
 class Session:
@@ -69,7 +51,7 @@ class Session:
         """
         plain: dict[str, Any] = {}
         try:
-            command: Command = command_from(data)
+            command = command_from(data)
             plain = command_data(command)
             self._require_allowed(command, who)
             carry_out(self.room, command)
@@ -104,30 +86,12 @@ class Session:
         self.log = kept
         self.refusal = ""
 
+    def replay(self) -> Replay:
+        """What there is to show again."""
+        return Replay(self.scene, self.log, self.room.tick)
+
     def snapshot(self) -> Snapshot:
         """Look at the machine."""
         return dataclasses.replace(
             take_snapshot(self.room), frozen=self.frozen, refusal=self.refusal
         )
-
-
-def relive(scene: Scene, log: list[Entry], tick: int) -> Room:
-    """Live a session again.
-
-    Args:
-        scene: Its scene.
-        log: What was done.
-        tick: How far to go.
-
-    Returns:
-        The room as it was at that tick.
-    """
-    room = Room(scene)
-    for entry in log:
-        if entry.tick > tick:
-            break
-        room.advance(entry.tick - room.tick)
-        if not entry.refusal:
-            carry_out(room, command_from(entry.command))
-    room.advance(tick - room.tick)
-    return room

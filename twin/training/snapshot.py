@@ -122,7 +122,7 @@ def take_snapshot(room: Room) -> Snapshot:
         zero=_row(room.tables.zero),
         touches=room.touches,
         verdicts=tuple(room.judge.verdicts),
-        answers=tuple(room.judge.answers.items()),
+        answers=tuple(room.judge.evidence.answers.items()),
         hints=room.judge.hints,
         score=room.judge.score,
         over=room.judge.over,

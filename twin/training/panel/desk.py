@@ -40,7 +40,9 @@ def build_modes(kit: Kit, words: Words, now: Snapshot, width: float) -> list[Req
         if number % 2:
             imgui.SameLine()
         lit = BLUE if mode == now.mode else None
-        if kit.key(f"mode {mode}", words[f"mode_{mode}"], lit=lit, width=width / 2 - 4, height=_KEY):
+        if kit.key(
+            f"mode {mode}", words[f"mode_{mode}"], lit=lit, width=width / 2 - 4, height=_KEY
+        ):
             asked.append(do("mode", mode=mode))
     return asked
 

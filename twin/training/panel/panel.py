@@ -139,4 +139,3 @@ class Panel:
             imgui.EndTabItem()
         imgui.EndTabBar()
         return asked
-

@@ -21,9 +21,7 @@ def build_head(kit: Kit, words: Words, now: Snapshot) -> None:
     imgui.SameLine()
     kit.text(f"  {state}", colour)
     imgui.SameLine()
-    kit.text(
-        f"   {now.time_s:7.1f} {words['seconds']}   {words['speed']} x{now.speed:.2f}", QUIET
-    )
+    kit.text(f"   {now.time_s:7.1f} {words['seconds']}   {words['speed']} x{now.speed:.2f}", QUIET)
     if now.alarm is not None:
         alarm = words.alarm(now.alarm.code)
         where = f" [N {now.alarm.line}]" if now.alarm.line else ""
