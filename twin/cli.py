@@ -270,7 +270,7 @@ def doctor() -> None:
 def train(
     scene: Annotated[
         str, typer.Argument(help="A shipped scene's name, or a scene.toml.")
-    ] = "first_steps",
+    ] = "fagor_first_steps",
     list_scenes: Annotated[bool, typer.Option("--list", help="List the shipped scenes.")] = False,
     language: Annotated[
         str | None, typer.Option("--language", help="en, ru, it or cs; default: the scene's.")

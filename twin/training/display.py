@@ -19,6 +19,8 @@ from twin.units import MM
 
 STOCK_GROUP = 1
 """Geom group of the columns, so that the stock can be switched off."""
+PLAIN_COLUMNS = 16
+"""Most columns along the stock's longer side where every body that is drawn costs time."""
 _SUNK = -10.0
 """Where columns without material are put [m]: below the floor."""
 _STEEL = (0.62, 0.68, 0.74, 1.0)
@@ -53,7 +55,8 @@ class Display:
         if room.work is not None and stock is not None:
             corner = tables.true_zero[:3] - np.array([*machine.part_frame.center, 0.0])
             add_work_holding(spec, stock, self.frame, corner)
-            self._columns = _Columns(room.work.map, room.scene.file.picture.columns)
+            along = room.scene.file.picture.columns
+            self._columns = _Columns(room.work.map, min(along, PLAIN_COLUMNS) if plain else along)
             self._columns.add_to(spec)
         if plain:
             _make_plain(spec)

@@ -121,7 +121,7 @@ def warm_up(scene: Scene) -> None:
     """Run the first moves on a machine that nobody sees, so that nothing is compiled later."""
     session = Session(scene)
     session.submit({"do": "cycle_start"})
-    session.advance(200)
+    session.advance(20)
 
 
 def _open_window(title: str, plugins: list[RoomPlugin | PanelPlugin]) -> viewer_handle.ViewerHandle:

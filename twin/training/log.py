@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 from twin.training.actions import carry_out
 from twin.training.commands import command_from
-from twin.training.room import Room
+from twin.training.room import SLICE, Room
 from twin.training.scene import Scene
 
 Who = Literal["operator", "trainer"]
@@ -57,15 +57,14 @@ class Replay:
     def advance(self, seconds: float) -> None:
         """Go on by machine time [s], to the end at most."""
         room = self.room
-        ticks = round(seconds / room.machine.machine.file.servo_period_s)
-        goal = min(self._end, room.tick + ticks)
+        goal = min(self._end, room.tick + SLICE * round(seconds / room.slice_s))
         while self._given < len(self._log) and self._log[self._given].tick <= goal:
             entry = self._log[self._given]
-            room.advance(entry.tick - room.tick)
+            room.advance((entry.tick - room.tick) // SLICE)
             if not entry.refusal:
                 carry_out(room, command_from(entry.command))
             self._given += 1
-        room.advance(goal - room.tick)
+        room.advance((goal - room.tick) // SLICE)
 
 
 def relive(scene: Scene, log: list[Entry], tick: int) -> Room:

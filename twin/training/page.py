@@ -5,6 +5,7 @@ import io
 import logging
 import os
 import socket
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -41,10 +42,16 @@ def open_page(title: str, plugins: list[plugin.Plugin], inside: Path) -> viewer_
         # Studio prints an address that nobody can reach.
         with contextlib.redirect_stdout(io.StringIO()):
             viewer = RoomViewer(config, endpoint, viewer_plugins, inside)
+        ready.set()
         viewer_protocol.run_viewer_loop(viewer)
 
+    ready = threading.Event()
     logging.getLogger("WebServer").setLevel(logging.WARNING)
-    return launch_thread.launch_thread(show, sim_plugins=list(sim_plugins))
+    handle = launch_thread.launch_thread(show, sim_plugins=list(sim_plugins))
+    while not ready.wait(0.05):
+        # Raises what ended the page's thread, if something did.
+        handle.is_running()
+    return handle
 
 
 class RoomViewer(web_viewer.WebViewer):

@@ -29,7 +29,8 @@ from twin.training.tables import Tables
 from twin.training.workpiece import Workpiece
 
 SLICE = 10
-"""Servo periods between two looks at the panel: 10 ms at 1 kHz."""
+"""Servo periods between two looks at the panel: 10 ms at 1 kHz. Time goes on by whole slices, so that
+a session that is lived again has its commands, its cuts and its ends at the same borders."""
 STANDSTILL = 0.05
 """Speed below which an axis counts as standing for the panel [mm/s or deg/s]."""
 
@@ -132,16 +133,15 @@ class Room:
             return False
         return self.work.touches(self.machine.position - self.tables.longer)
 
-    def advance(self, ticks: int) -> None:
-        """Let the machine go on.
+    @property
+    def slice_s(self) -> float:
+        """Length of a slice [s]."""
+        return SLICE * self.machine.machine.file.servo_period_s
 
-        Args:
-            ticks: Servo periods.
-        """
-        while ticks > 0:
-            count = min(ticks, SLICE)
-            self._slice(count)
-            ticks -= count
+    def advance(self, slices: int = 1) -> None:
+        """Let the machine go on by slices."""
+        for _ in range(slices):
+            self._slice(SLICE)
 
     def _slice(self, count: int) -> None:
         parts: list[Samples] = []

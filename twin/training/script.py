@@ -9,8 +9,6 @@ from twin.training.session import Session
 
 PATIENCE_S = 600.0
 """How long a step is waited for, in machine time [s]."""
-_LOOK = 10
-"""Servo periods between two looks."""
 
 
 class ScriptError(TwinError):
@@ -33,7 +31,7 @@ def play(session: Session, steps: Iterable[StepTable], *, hand_in: bool = True) 
             who = "trainer" if step.do in ("inject", "repair") else "operator"
             if not session.submit(step.command(), who):
                 raise ScriptError(f"step {number}, {step.do}: {session.refusal}")
-            session.advance(_LOOK)
+            session.advance()
         else:
             _wait(session, step, number)
     if hand_in:
@@ -44,7 +42,7 @@ def _wait(session: Session, step: StepTable, number: int) -> None:
     room = session.room
     end = room.time_s + (step.value if step.wait == "seconds" else PATIENCE_S)
     while not _has_come(room, step, end):
-        session.advance(_LOOK)
+        session.advance()
         if room.time_s > end + 1.0:
             alarm = "" if room.alarm is None else f"; alarm {room.alarm.code}: {room.alarm.message}"
             raise ScriptError(f"step {number}: waited for {step.wait} in vain{alarm}")

@@ -11,7 +11,7 @@ from twin.errors import TwinError
 from twin.training.actions import carry_out
 from twin.training.commands import TRAINERS, Command, Finish, command_data, command_from
 from twin.training.log import Entry, Replay, Who, relive
-from twin.training.room import Room
+from twin.training.room import SLICE, Room
 from twin.training.scene import Scene
 from twin.training.snapshot import Snapshot, take_snapshot
 
@@ -68,10 +68,10 @@ class Session:
         if self.room.judge.over and who != "trainer" and isinstance(command, Finish):
             raise TwinError("the scene has been handed in already")
 
-    def advance(self, ticks: int) -> None:
-        """Let time go on, unless it is frozen."""
+    def advance(self, slices: int = 1) -> None:
+        """Let time go on by slices, unless it is frozen."""
         if not self.frozen:
-            self.room.advance(ticks)
+            self.room.advance(slices)
 
     def rewind(self, seconds: float) -> None:
         """Go back; what was done after that is forgotten.
@@ -79,8 +79,8 @@ class Session:
         Args:
             seconds: How far, in machine time [s].
         """
-        period = self.room.machine.machine.file.servo_period_s
-        tick = max(0, self.room.tick - round(seconds / period))
+        back = SLICE * round(seconds / self.room.slice_s)
+        tick = max(0, self.room.tick - back)
         kept = [entry for entry in self.log if entry.tick <= tick]
         self.room = relive(self.scene, kept, tick)
         self.log = kept

@@ -133,7 +133,7 @@ class RoomPlugin(plugin.SimPlugin):
 
     def _go_on(self, passed: float) -> None:
         session = self.session
-        period = session.room.machine.machine.file.servo_period_s
+        slice_s = session.room.slice_s
         if session.frozen:
             self._owed_s = 0.0
             return
@@ -141,9 +141,9 @@ class RoomPlugin(plugin.SimPlugin):
         kept = min(self._owed_s, MOST_BEHIND_S)
         share = kept / self._owed_s if self._owed_s > 0.0 else 1.0
         self._speed += 0.02 * (share - self._speed)
-        ticks = int(kept / period)
-        session.advance(ticks)
-        self._owed_s = kept - ticks * period
+        slices = int(kept / slice_s)
+        session.advance(slices)
+        self._owed_s = kept - slices * slice_s
 
     def _look(self, room: Room) -> Snapshot:
         if room is self.session.room:
