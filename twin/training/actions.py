@@ -10,6 +10,9 @@ from twin.nc.source import source_from_text
 from twin.training import commands as c
 from twin.training.room import Room
 
+RESOLUTION = 1e-3
+"""Way that counts as none when an axis is jogged [mm or deg]."""
+
 
 def carry_out(room: Room, command: c.Command) -> None:
     """Do what a command asks for.
@@ -84,7 +87,7 @@ def _jog(room: Room, command: c.Jog) -> None:
     machine = room.machine.machine
     column = _column(room, command.axis)
     distance = _within_travel(room, column, command)
-    if distance == 0.0:
+    if abs(distance) < RESOLUTION:
         raise UsageError(f"{command.axis} stands at the end of its travel")
     feed = min(command.feed, 60.0 * machine.axis(command.axis).velocity)
     dialect = room.scene.preparation.dialect.name

@@ -14,6 +14,7 @@ import socket
 import ssl
 import threading
 import urllib.parse
+from collections.abc import Coroutine
 from pathlib import Path
 
 from twin.errors import UsageError
@@ -26,7 +27,8 @@ PORTS = 20
 _HEAD_LIMIT = 16384
 _HEAD_TIME_S = 10.0
 _COOKIE = "twin_token"
-_STREAMS = ("/ui", "/state")
+OPERATOR_STREAM = "/ui"
+_STREAMS = (OPERATOR_STREAM, "/state")
 _LOCAL_NAMES = ("localhost", LOOPBACK, "[::1]")
 _PIECE = 65536
 
@@ -38,6 +40,7 @@ class Gate:
         host: Where it listens.
         port: The port.
         token: What a browser must know, empty for nothing.
+        heard: How often the operator's page has spoken: once a frame while it is shown.
     """
 
     def __init__(
@@ -65,12 +68,14 @@ class Gate:
             raise UsageError(f"--host {host} lets other computers in: give a --token too")
         self.host = host
         self.token = token
+        self.heard = 0
         self._inside = inside
         self._tls = tls
         self._socket = _bound(host, port)
         self.port = int(self._socket.getsockname()[1])
         self._loop = asyncio.new_event_loop()
         self._server: asyncio.Server | None = None
+        self._open = threading.Event()
         self._thread = threading.Thread(target=self._serve, daemon=True, name="gate")
 
     @property
@@ -84,6 +89,7 @@ class Gate:
     def __enter__(self) -> "Gate":
         """Open it."""
         self._thread.start()
+        self._open.wait()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -97,8 +103,8 @@ class Gate:
         self._server = self._loop.run_until_complete(
             asyncio.start_server(self._welcome, sock=self._socket, ssl=self._tls)
         )
-        with contextlib.suppress(asyncio.CancelledError):
-            self._loop.run_forever()
+        self._open.set()
+        self._loop.run_forever()
         pending = asyncio.all_tasks(self._loop)
         for task in pending:
             task.cancel()
@@ -131,7 +137,9 @@ class Gate:
         if not self._knows_token(request):
             return await _answer(writer, "401 Unauthorized")
         if request.token and self.token:
-            cookie = f"{_COOKIE}={self.token}; HttpOnly; SameSite=Strict; Path=/"
+            cookie = (
+                f"{_COOKIE}={urllib.parse.quote(self.token)}; HttpOnly; SameSite=Strict; Path=/"
+            )
             return await _answer(writer, "303 See Other", Location="/", **{"Set-Cookie": cookie})
         if not request.wanted:
             return await _answer(writer, "404 Not Found")
@@ -143,10 +151,20 @@ class Gate:
                 _pass_on(inside_reader, writer),
                 # Only a stream has anything more to say; a second request on this line has not
                 # been looked at.
-                _pass_on(reader, inside_writer) if request.is_stream else None,
+                self._listen(reader, inside_writer, request) if request.is_stream else None,
             )
         finally:
             inside_writer.close()
+
+    async def _listen(
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, request: "_Request"
+    ) -> None:
+        """Pass on what a page says."""
+        with contextlib.suppress(OSError):
+            while piece := await reader.read(_PIECE):
+                self.heard += request.path == OPERATOR_STREAM
+                writer.write(piece)
+                await writer.drain()
 
     def _may_come(self, request: "_Request") -> bool:
         """Whether the request is meant for this gate, by a page of this gate."""
@@ -164,7 +182,8 @@ class Gate:
         cookie = http.cookies.SimpleCookie()
         with contextlib.suppress(http.cookies.CookieError):
             cookie.load(request.headers.get("cookie", ""))
-        shown = [request.token, cookie[_COOKIE].value if _COOKIE in cookie else ""]
+        kept = cookie[_COOKIE].value if _COOKIE in cookie else ""
+        shown = [request.token, urllib.parse.unquote(kept)]
         return any(hmac.compare_digest(each.encode(), self.token.encode()) for each in shown)
 
 
@@ -207,7 +226,7 @@ async def _pass_on(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -
             await writer.drain()
 
 
-async def _until_first(*works: "asyncio._CoroutineLike[None] | None") -> None:
+async def _until_first(*works: Coroutine[None, None, None] | None) -> None:
     """Work until one of several has ended."""
     tasks = [asyncio.ensure_future(work) for work in works if work is not None]
     try:

@@ -107,7 +107,7 @@ def open_room(
         else:
             inside = folder / "studio.sock"
             gate = Gate(inside, host=host, port=port, token=token, tls=tls)
-            handle = open_page(title, [shown, driver], inside)
+            handle = open_page(title, [shown, driver], inside, lambda: gate.heard)
             stack.enter_context(gate)
         stack.enter_context(handle)
         handle.dispatch(messages.LoadModelEvent(path=""))

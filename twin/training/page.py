@@ -6,7 +6,8 @@ import logging
 import os
 import socket
 import threading
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -27,13 +28,20 @@ _FONTS = {
 """Studio's fonts, which have no Cyrillic, and what stands in for them."""
 
 
-def open_page(title: str, plugins: list[plugin.Plugin], inside: Path) -> viewer_handle.ViewerHandle:
+_LONGEST_WAIT_S = 0.25
+"""How long a frame of the panel waits for a page that says nothing [s]."""
+
+
+def open_page(
+    title: str, plugins: list[plugin.Plugin], inside: Path, heard: Callable[[], int]
+) -> viewer_handle.ViewerHandle:
     """Open the page on a thread of its own.
 
     Args:
         title: Of the page.
         plugins: What it shows and what drives it.
         inside: Where its server shall listen: a path for a Unix socket.
+        heard: How often the page has spoken; it does so once a frame.
     """
     viewer_plugins, sim_plugins = plugin.split_plugins(plugins)
     config = viewer_protocol.ViewerConfig(gfx="web", title=title)
@@ -41,7 +49,7 @@ def open_page(title: str, plugins: list[plugin.Plugin], inside: Path) -> viewer_
     def show(endpoint: endpoints.ViewerEndpoint) -> None:
         # Studio prints an address that nobody can reach.
         with contextlib.redirect_stdout(io.StringIO()):
-            viewer = RoomViewer(config, endpoint, viewer_plugins, inside)
+            viewer = RoomViewer(config, endpoint, viewer_plugins, inside, heard)
         ready.set()
         viewer_protocol.run_viewer_loop(viewer)
 
@@ -63,8 +71,11 @@ class RoomViewer(web_viewer.WebViewer):
         endpoint: endpoints.ViewerEndpoint,
         plugins: list[Any],
         inside: Path,
+        heard: Callable[[], int],
     ) -> None:
         self._inside = inside
+        self._heard = heard
+        self._answered = 0
         super().__init__(config, endpoint, plugins=plugins)
 
     def _start_server(self) -> None:
@@ -75,6 +86,18 @@ class RoomViewer(web_viewer.WebViewer):
         # What is dropped onto the page is thrown away.
         if self._web_server is not None:
             self._web_server.drop_queue = None
+
+    def prepare_next_frame(self) -> bool:
+        """Begin a frame when the page has shown the last one.
+
+        Every frame of the panel reaches the page, in order. Were they made faster than a slow page
+        shows them, it would fall behind by minutes.
+        """
+        end = time.perf_counter() + _LONGEST_WAIT_S
+        while self._heard() == self._answered and time.perf_counter() < end:
+            time.sleep(0.002)
+        self._answered = self._heard()
+        return super().prepare_next_frame()
 
     def get_drop_file(self) -> str:
         """There is no upload."""

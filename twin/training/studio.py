@@ -10,7 +10,11 @@ from collections.abc import Callable
 
 import mujoco
 import numpy as np
-from mujoco.studio import messages, plugin, ux
+from mujoco.studio import (
+    messages,
+    plugin,
+    ux,  # pyright: ignore[reportAttributeAccessIssue] (a compiled module, put there at run time)
+)
 
 from twin.render.placement import ROTARY_TABLE
 from twin.training.display import STOCK_GROUP, Display

@@ -41,6 +41,7 @@ class Kit:
 
     def __init__(self) -> None:
         self.places: dict[str, tuple[float, float, float, float]] = {}
+        self._broken: dict[str, tuple[float, list[str]]] = {}
 
     @contextlib.contextmanager
     def dressed(self) -> Iterator[None]:
@@ -124,12 +125,14 @@ class Kit:
         imgui.PopStyleColor()
         imgui.SetWindowFontScale(1.0)
 
-    @staticmethod
-    def wrapped(text: str, colour: Colour = TEXT) -> None:
-        """A paragraph."""
-        imgui.PushStyleColor(int(imgui.Col.Text), imgui.Vec4(*colour))
-        imgui.TextWrapped(text.replace("%", "%%"))
-        imgui.PopStyleColor()
+    def wrapped(self, text: str, colour: Colour = TEXT) -> None:
+        """A paragraph, broken between words."""
+        width = imgui.GetContentRegionAvail().x
+        known = self._broken.get(text)
+        if known is None or known[0] != width:
+            known = self._broken[text] = (width, _break(text, width))
+        for line in known[1]:
+            self.text(line, colour)
 
     @staticmethod
     def bar(share: float, width: float, height: float = 10.0) -> None:
@@ -185,6 +188,18 @@ class Kit:
         imgui.EndGroup()
         imgui.EndGroup()
         return min(max(turned, 0), highest)
+
+
+def _break(text: str, width: float) -> list[str]:
+    """The lines of a paragraph that is so wide [px]."""
+    lines: list[str] = []
+    for word in text.split():
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and imgui.CalcTextSize(longer).x <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
 
 
 def _angle(value: int, highest: int) -> float:

@@ -1,0 +1,154 @@
+"""The whole room in a browser: what is clicked on the page happens at the machine.
+
+The page is drawn by whatever draws WebGL here, on a computer without a graphics card by the
+processor, which takes a good part of a second for a picture. So every step waits for the room.
+"""
+
+import importlib.util
+import json
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from twin.training.launch import OpenRoom, open_room
+from twin.training.scene import read_scene, scene_path
+
+CHROMIUM = Path(os.environ.get("TWIN_CHROMIUM", "/usr/bin/chromium"))
+FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+PATIENCE_S = 90.0
+SIZE = {"width": 1280, "height": 760}
+
+pytestmark = [
+    pytest.mark.skipif(not CHROMIUM.exists(), reason=f"no browser: {CHROMIUM} does not exist"),
+    pytest.mark.skipif(
+        importlib.util.find_spec("playwright") is None, reason="no playwright to lead the browser"
+    ),
+]
+
+
+class Operator:
+    """Somebody at the page."""
+
+    def __init__(self, room: OpenRoom, page: object) -> None:
+        self.room = room
+        self.page = page
+
+    def until(self, come: Callable[[], bool], what: str) -> None:
+        """Wait until the room shows it."""
+        end = time.monotonic() + PATIENCE_S
+        while not come():
+            assert time.monotonic() < end, f"waited for {what} in vain: {self.room.session.refusal}"
+            time.sleep(0.02)
+
+    def click(self, name: str, share: float = 0.5) -> None:
+        """Click a part of the panel, long enough for a slow page to see it."""
+        places = self.room.shown.panel.kit.places
+        self.until(lambda: name in places, f"the key {name}")
+        left, top, right, bottom = places[name]
+        mouse = self.page.mouse  # pyright: ignore[reportAttributeAccessIssue]
+        mouse.move(left + share * (right - left), 0.5 * (top + bottom))
+        seen = self.room.gate.heard if self.room.gate else 0
+        self._frames(seen, 3)
+        mouse.down()
+        self._frames(seen, 6)
+        mouse.up()
+        self._frames(seen, 9)
+
+    def _frames(self, since: int, count: int) -> None:
+        gate = self.room.gate
+        assert gate is not None
+        end = time.monotonic() + PATIENCE_S
+        while gate.heard < since + count and time.monotonic() < end:
+            time.sleep(0.02)
+
+
+@pytest.fixture
+def operator(tmp_path) -> Iterator[Operator]:
+    from playwright.sync_api import sync_playwright
+
+    scene = read_scene(scene_path("fagor_first_steps"))
+    with open_room(scene, plain=True, trainer=True, out=tmp_path) as room:
+        thread = threading.Thread(target=room.serve, daemon=True)
+        thread.start()
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+            # Half the dots: a quarter of the work for a processor that has to draw them.
+            page = browser.new_context(viewport=SIZE, device_scale_factor=0.5).new_page()
+            assert room.gate is not None
+            page.goto(room.gate.address)
+            somebody = Operator(room, page)
+            panel = room.shown.panel
+            somebody.until(lambda: panel.kit.places.get("emergency", (0,))[-1] > 600, "the page")
+            yield somebody
+            browser.close()
+        room.handle.close()
+        thread.join(timeout=10.0)
+
+
+def test_a_scene_is_played_in_the_browser(operator, tmp_path):
+    session = operator.room.session
+    room = session.room
+    operator.click("cycle start")
+    operator.until(lambda: room.running == "program", "cycle start")
+
+    operator.click("feed override", 0.2)
+    operator.until(lambda: room.feed_override == 90, "the feed override")
+
+    operator.until(lambda: int(room.machine.setpoint.line[0]) == 5 and room.moving, "N40")
+    operator.click("feed hold")
+    operator.until(lambda: room.held and not room.moving, "the feed hold")
+    assert room.alarm is None
+    operator.until(lambda: room.judge.verdicts[0].state == "done", "the hold in N40")
+
+    operator.click("mode single")
+    operator.until(lambda: room.mode == "single", "single block")
+    operator.click("cycle start")
+    operator.until(lambda: room.held and not room.moving, "the end of N40")
+    operator.click("cycle start")
+    operator.until(lambda: room.judge.verdicts[1].state == "done", "N50 in single block")
+
+    operator.click("emergency")
+    operator.until(lambda: room.alarm is not None, "the alarm")
+    assert room.alarm is not None
+    assert room.alarm.code == "emergency-stop"
+    operator.click("emergency")
+    operator.until(lambda: not room.pressed, "the button turned free")
+    operator.click("reset")
+    operator.until(lambda: room.judge.verdicts[2].state == "done", "the alarm cleared")
+
+    operator.click("finish")
+    operator.until(lambda: room.judge.over, "the score")
+    assert [verdict.state for verdict in room.judge.verdicts] == [
+        "done", "done", "done", "failed", "done",
+    ]  # fmt: skip
+    sheet = next(tmp_path.glob("fagor_first_steps_*/score.json"))
+    operator.until(lambda: json.loads(sheet.read_text())["handed_in"], "the sheet")
+    read = json.loads(sheet.read_text())
+    assert (read["points"], read["of"]) == (8, 10)
+    assert [action["command"]["do"] for action in read["actions"]][:2] == [
+        "cycle_start",
+        "override",
+    ]
+
+
+def test_a_lost_browser_does_not_stop_the_machine(operator):
+    room = operator.room.session.room
+    operator.click("cycle start")
+    operator.until(lambda: room.running == "program" and room.moving, "cycle start")
+    operator.page.close()
+    operator.until(lambda: room.judge.verdicts[3].state == "done", "the end of the program")
+    assert room.alarm is None
+    assert operator.room.handle.is_running()
