@@ -7,6 +7,7 @@ processor, which takes a good part of a second for a picture. So every step wait
 import importlib.util
 import json
 import os
+import shutil
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -32,6 +33,8 @@ PATIENCE_S = 90.0
 SIZE = {"width": 1280, "height": 760}
 
 pytestmark = [
+    # Studio leaves the sockets of its own server to the collector.
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
     pytest.mark.skipif(not CHROMIUM.exists(), reason=f"no browser: {CHROMIUM} does not exist"),
     pytest.mark.skipif(
         importlib.util.find_spec("playwright") is None, reason="no playwright to lead the browser"
@@ -60,26 +63,33 @@ class Operator:
         left, top, right, bottom = places[name]
         mouse = self.page.mouse  # pyright: ignore[reportAttributeAccessIssue]
         mouse.move(left + share * (right - left), 0.5 * (top + bottom))
-        seen = self.room.gate.heard if self.room.gate else 0
-        self._frames(seen, 3)
+        self._frames(1)
         mouse.down()
-        self._frames(seen, 6)
+        self._frames(2)
         mouse.up()
-        self._frames(seen, 9)
+        self._frames(2)
 
-    def _frames(self, since: int, count: int) -> None:
+    def _frames(self, count: int) -> None:
         gate = self.room.gate
         assert gate is not None
-        end = time.monotonic() + PATIENCE_S
-        while gate.heard < since + count and time.monotonic() < end:
-            time.sleep(0.02)
+        goal = gate.heard + count
+        self.until(lambda: gate.heard >= goal, "the page's next frame")
+
+
+def _slow_copy(folder: Path) -> Path:
+    """The first scene with a feed that leaves a slow page its time."""
+    shipped = scene_path("fagor_first_steps")
+    folder.mkdir()
+    program = shipped.with_suffix(".nc").read_text(encoding="utf-8")
+    (folder / "fagor_first_steps.nc").write_text(program.replace("F1200", "F120"), encoding="utf-8")
+    return Path(shutil.copy(shipped, folder))
 
 
 @pytest.fixture
 def operator(tmp_path) -> Iterator[Operator]:
     from playwright.sync_api import sync_playwright
 
-    scene = read_scene(scene_path("fagor_first_steps"))
+    scene = read_scene(_slow_copy(tmp_path / "scene"))
     with open_room(scene, plain=True, trainer=True, out=tmp_path) as room:
         thread = threading.Thread(target=room.serve, daemon=True)
         thread.start()
@@ -90,8 +100,8 @@ def operator(tmp_path) -> Iterator[Operator]:
             assert room.gate is not None
             page.goto(room.gate.address)
             somebody = Operator(room, page)
-            panel = room.shown.panel
-            somebody.until(lambda: panel.kit.places.get("emergency", (0,))[-1] > 600, "the page")
+            # The panel stands where the page's width puts it as soon as the page is there.
+            somebody.until(lambda: room.shown.panel.width == SIZE["width"], "the page")
             yield somebody
             browser.close()
         room.handle.close()
@@ -149,6 +159,9 @@ def test_a_lost_browser_does_not_stop_the_machine(operator):
     operator.click("cycle start")
     operator.until(lambda: room.running == "program" and room.moving, "cycle start")
     operator.page.close()
-    operator.until(lambda: room.judge.verdicts[3].state == "done", "the end of the program")
+    before = room.time_s
+    operator.until(lambda: room.time_s > before + 3.0, "time to go on")
+    assert room.running == "program"
     assert room.alarm is None
+    assert room.moving
     assert operator.room.handle.is_running()

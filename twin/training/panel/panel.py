@@ -46,6 +46,7 @@ class Panel:
         kit: Knows where each part was drawn.
         desk: What is set at the desk.
         side: What is set at the side.
+        width: Of the page in the last frame [px].
     """
 
     def __init__(self, scene: SceneFile, words: Words, *, trainer: bool) -> None:
@@ -55,6 +56,7 @@ class Panel:
         self.kit = Kit()
         self.desk = DeskState()
         self.side = SideState()
+        self.width = 0.0
 
     def build(self, now: Snapshot) -> list[Request]:
         """Build the panel of one frame.
@@ -66,6 +68,7 @@ class Panel:
             What was asked for.
         """
         size = imgui.GetIO().DisplaySize
+        self.width = size.x
         kit, words = self.kit, self._words
         asked = read_keyboard(now, self.desk)
         middle = size.y - HEAD - DESK - 4 * GAP
