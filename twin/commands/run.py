@@ -41,14 +41,14 @@ def run_and_print(
     """
     preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
     folder = out or Path("out") / preparation.job.program.stem
-    run = Run(preparation, keep_contour=video)
+    run = Run(preparation)
     survey = run.survey()
     _clear(folder)
     with shown_progress() as progress:
         outcome = run.execute(survey, folder, progress)
         if video and outcome.samples:
             with run.clock.stage("render"):
-                film_run(run, folder, progress)
+                film_run(run, survey, folder, progress)
     write_results(run, outcome, folder)
     _print_findings(run, outcome)
     typer.echo(_summary(run, outcome, folder))
