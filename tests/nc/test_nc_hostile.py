@@ -42,6 +42,10 @@ def test_a_diagnostic_within_a_second(name: str, dialect: str) -> None:
     assert len(str(raised.value)) < 2000
 
 
+def test_a_line_beyond_any_block_is_refused_before_it_is_read() -> None:
+    assert bad("G1 X1 " * 20_000, "gost").code == "line-too-long"
+
+
 @pytest.mark.parametrize(
     ("dialect", "text"),
     [

@@ -207,6 +207,10 @@ MEFI = Dialect(
         73: GCode(meaning="jump with repeat: L, Q", after=jump_with_repeat, ground="seed"),
         98: GCode(meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"),
     },
+    instead={
+        **iso.INSTEAD,
+        99: "cycles return to the height of their call; G98 ends a helix here",
+    },
     start=iso.START,
     m=iso.M_CODES,
     words=iso.WORDS,

@@ -60,6 +60,18 @@ def set_polar_origin(control: Control) -> None:
     forget_polar(control)
 
 
+def refuse_origin_by_g93(control: Control) -> None:
+    """G93 I J is the polar origin of the CNC 8055; here G93 is a feed.
+
+    Raises:
+        ProgramError: The block has I or J and no motion that would use them.
+    """
+    word = control.words.get("I") or control.words.get("J")
+    if word is not None and not any(code.group == "motion" for _, code in control.codes):
+        message = "G93 is the feed in seconds; the polar origin by G93 is the CNC 8055's"
+        control.fail("polar-origin", message, word, "write G30 I J")
+
+
 def temporary_polar_origin(control: Control) -> None:
     """G31: for this arc the polar origin is its centre."""
     memory_of(control).temporary = True

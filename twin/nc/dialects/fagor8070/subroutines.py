@@ -16,6 +16,7 @@ DEEPEST_CALL = 20
 
 
 _NAME = re.compile(r"[ \t]*([A-Z_]\w*)[ \t]*", re.IGNORECASE)
+_TITLE = re.compile(r"[ \t]*[^,;(]*(?:\([^)]*\)[ \t]*)?")
 _RANGE = re.compile(
     r"[ \t]*\[[ \t]*(N?[A-Z_0-9]+)[ \t]*,[ \t]*(N?[A-Z_0-9]+)[ \t]*(?:,(.*))?\][ \t]*",
     re.IGNORECASE,
@@ -80,6 +81,10 @@ def heading(control: Control, statement: Statement) -> None:
     if control.block.line - 1 != memory_of(control).main:
         message = "a heading can stand only before the program or a local subroutine"
         refuse(control, statement, "heading", message, hint="end a subroutine by M17")
+    if _TITLE.fullmatch(statement.text) is None:
+        message = "nothing but a comment may follow the program's name"
+        hint = "the 8070's heading is %NAME; what follows a comma is the CNC 8055's"
+        refuse(control, statement, "heading", message, hint)
 
 
 def call_local(control: Control, statement: Statement) -> None:
