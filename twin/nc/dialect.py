@@ -175,11 +175,13 @@ class Decision:
         question: What they leave open.
         answer: What the twin does.
         reason: Why.
+        example: Name of the program that shows it, among the tests' golden files.
     """
 
     question: str
     answer: str
     reason: str
+    example: str
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

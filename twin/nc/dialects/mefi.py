@@ -134,43 +134,51 @@ DECISIONS = (
         "What are I, J, K relative to?",
         "To the start of the arc; a missing one is 0.",
         "In the page's example relative and absolute centres coincide; ISO 6983-1 is relative.",
+        example="centre_from_the_start",
     ),
     Decision(
         "Which way does a lead drag?",
         "A positive lead moves the dragged axis in + for G02 and G03 alike, by "
         "lead · |sweep| / 360.",
         "The page calls it the distance per full circle and ties no sign to the sense.",
+        example="lead_drags_up",
     ),
     Decision(
         "What if a G09 arc block also programs the dragged axis?",
         "A program error.",
         "Two commands for one axis contradict each other.",
+        example="dragged_axis_programmed",
     ),
     Decision(
         "What if G09 comes without a lead?",
         "A program error.",
         "A flat circle is not what a helix code asks for.",
+        example="no_lead",
     ),
     Decision(
         "In which order do motion and jump of a G73 block happen, and how often?",
         "The block's own motion first, then the jump, Q times; the counter belongs to the block "
         "and starts anew when the loop is entered again; a missing Q is 1.",
         "The page's Q20 gives 21 circles.",
+        example="counter_starts_anew",
     ),
     Decision(
         "What about G codes that the page does not name?",
         "Those of ISO 6983-1 have their meaning there; any other is a program error.",
         "Ignoring a code is a guess.",
+        example="unknown_code",
     ),
     Decision(
         "What does F count?",
         "mm/min along the path of X, Y, Z; deg/min where only rotary axes move.",
         "ISO practice; the page shows no feed.",
+        example="feed_of_rotary_axes",
     ),
     Decision(
         "How does a path pass its corners?",
         "Exactly: the speed falls as far as the corner demands, and no more.",
         "Nothing in the page allows the tool to leave the programmed path.",
+        example="exact_path",
     ),
     *iso_decisions.DECISIONS,
 )
