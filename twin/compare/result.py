@@ -132,6 +132,7 @@ def _worst_blocks(blocks: BlockFigures) -> list[dict[str, Any]]:
             "shape": "arc" if blocks.arc[row] else "line",
             "max": float(blocks.max_um[row]),
             "rms": float(blocks.rms_um[row]),
+            "p99": float(blocks.p99_um[row]),
             "time_s": float(blocks.time_s[row]),
         }
         for row in rows

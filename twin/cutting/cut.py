@@ -158,9 +158,10 @@ class Cutter:
         for run, tool in self._plan.runs(setpoint.move):
             if self.halted is not None:
                 break
-            if tool is not self.tool:
-                self.tool, self._last = tool, None
-            self._cut(way[run])
+            if tool.number != self.tool.number:
+                self._last = None
+            self.tool = tool
+            self._cut(way[run].lowered(self._plan.longer(tool)))
         return self._removed - before
 
     def events(self) -> tuple[CutEvent, ...]:
@@ -297,6 +298,10 @@ class _Way:
 
     def __getitem__(self, run: slice) -> "_Way":
         return _Way(*(getattr(self, field.name)[run] for field in dataclasses.fields(self)))
+
+    def lowered(self, by: float) -> "_Way":
+        """The way of a tool that is longer by so much [mm]."""
+        return dataclasses.replace(self, points=self.points - [0.0, 0.0, by])
 
     @property
     def group(self) -> IntArray:
