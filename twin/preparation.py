@@ -60,6 +60,8 @@ def prepare(
     Raises:
         UsageError: A file is missing or wrong, or the dialect cannot be told.
     """
+    if path.is_dir():
+        raise UsageError(f"{path}: a folder; twin check runs the programs in a folder")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
     job = read_job(path)

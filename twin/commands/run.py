@@ -75,8 +75,14 @@ def _print_findings(run: Run, outcome: Outcome) -> None:
 
 def _summary(run: Run, outcome: Outcome, folder: Path) -> str:
     contour = outcome.figures.contour
+    if outcome.alarms:
+        first = outcome.alarms[0]
+        finding = f"{first.code} at line {first.line}"
+    elif outcome.duration_s == 0.0:
+        finding = "nothing moves"
+    else:
+        finding = f"contour error at most {contour.max:.1f} µm (line {contour.worst_line})"
     return (
-        f"{outcome.verdict.outcome}: contour error at most {contour.max:.1f} µm "
-        f"(line {contour.worst_line}), {outcome.duration_s:.3f} s of machine time "
+        f"{outcome.verdict.outcome}: {finding}, {outcome.duration_s:.3f} s of machine time "
         f"in {run.clock.wall_s:.1f} s; results in {folder}"
     )
