@@ -93,6 +93,12 @@ class ControlMotion(ControlWords):
         self.programmed = target
         self.part = end
 
+    def came_to(self, programmed: list[float], part: list[float], last: Segment | None) -> None:
+        """Blocks that went past the control have ended here; ``last`` is their last move, if any."""
+        self.programmed, self.part = programmed, part
+        if last is not None:
+            self._last = last
+
     @property
     def direction(self) -> Vector | None:
         """Where the last move was going when it ended, programmed coordinates; None before one."""

@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Callable
 
 from twin.nc.arcs import SAME_POINT, distance
-from twin.nc.canonical import Axes, Chunk
+from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray
 from twin.nc.compensation import Compensation, Refuse
 from twin.nc.move_columns import MoveColumns, Segment
 from twin.nc.planes import Plane
@@ -39,6 +39,12 @@ class Path:
         if self._leading_out is not None:
             move = self._lead_out(move, self._leading_out)
         self._emit(move)
+
+    def add_rows(self, codes: IntArray, values: FloatArray, positions: FloatArray) -> None:
+        """Moves as columns, shapes as in ``MoveColumns.add_rows``; never while compensating."""
+        assert self._compensation is None
+        self._columns.add_rows(codes, values, positions)
+        self.position = positions[-1, 1].tolist()
 
     def _emit(self, move: Segment) -> None:
         if move.center is None and move.start == move.end:

@@ -276,4 +276,5 @@ CODESYS = Dialect(
     before_motion=codes.take_shortest_way,
     read_variable=program.read_variable,
     place_switches=codes.place_switches,
+    disturbed=lambda control: bool(program.variables(control).periods),
 )

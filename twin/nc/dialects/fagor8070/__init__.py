@@ -5,7 +5,7 @@ from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
 from twin.nc.dialects.fagor8070 import arcs, frames, statements, subroutines, variables
 from twin.nc.dialects.fagor8070.codes import CODES, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
-from twin.nc.dialects.fagor8070.memory import FagorMemory
+from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 
 FAGOR8070 = Dialect(
     name="fagor8070",
@@ -119,4 +119,5 @@ FAGOR8070 = Dialect(
     prepare=subroutines.begin,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,
+    disturbed=acts_on_plain_blocks,
 )
