@@ -4,7 +4,6 @@ import dataclasses
 import random
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from tests.nc.nc_fuzz import REAL, mutated
@@ -19,7 +18,19 @@ from twin.nc.source import Source, read_source, source_from_bytes, source_from_t
 NEVER, ALWAYS = 10**9, 0
 GOLDEN = sorted((ROOT / "tests").glob("*/*/**/*.nc")) + sorted((ROOT / "programs").glob("*/*.nc"))
 
-SOUND = "X{} Y{}|X{}|Y{} Z{}|X{} Y{} Z{} C{}|C{}|Z{}|X+5|x{}y{}|X-0||".split("|")
+SOUND = [
+    "X{} Y{}",
+    "X{}",
+    "Y{} Z{}",
+    "X{} Y{} Z{} C{}",
+    "C{}",
+    "Z{}",
+    "X+5",
+    "x{}y{}",
+    "X-0",
+    "",
+    "",
+]
 RARE = {
     "gost": "G102 C360|G102 C0|$ text|(a) G1 X1 (b)|G9 G1 X3|M3 S100|G41 D1|G40|% heading",
     "codesys": "(* a *) G1 X1|// X2|FX3|LET #a : LREAL := 2|G1 X(1+2)|N1 X1 N2 X2|FF5|E5|M7 K2",
@@ -34,7 +45,7 @@ WRONG = {
     "mefi": "G09|G98|G73 L1 Q2",
 }
 WRONG_ANYWHERE = "X{} U5|I{} J{}|K{}|R{}|R-{}|G{}|F-1|G1 G0 X1|X1 X2|X1.2.3|X|Y12345678|G18|N1 X1|Ü"
-NUMBERS = "0|.5|5.|00.250|-7|-.125|0.000001|-0|123456".split("|")
+NUMBERS = ["0", ".5", "5.", "00.250", "-7", "-.125", "0.000001", "-0", "123456"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,9 +60,7 @@ class Seen:
 
 
 def seen(source: Source, dialect: str, settings: ControlSettings, plain_from: int) -> Seen:
-    interpretation = Interpretation(
-        source, dialect_named(dialect), settings, plain_from=plain_from
-    )
+    interpretation = Interpretation(source, dialect_named(dialect), settings, plain_from=plain_from)
     chunks: list[Chunk] = []
     error = None
     try:
@@ -103,13 +112,13 @@ def number(random_: random.Random) -> str:
 
 
 def arc(random_: random.Random) -> str:
-    """A quarter or full circle, sometimes a helix, sometimes not quite fitting."""
+    """A quarter or full circle, sometimes a helix."""
     clockwise = random_.random() < 0.5
     x, y = random_.randrange(-20, 20) or 3, random_.randrange(-20, 20)
     end_x, end_y = (x - y, y + x) if clockwise else (x + y, y - x)
     if random_.random() < 0.2:
         end_x = end_y = 0
-    off = random_.choice([0.0] * 20 + [0.001, 0.004])
+    off = random_.choice([0.0, 0.0, 0.0, 0.0004])
     height = f" Z{random_.randrange(-5, 5)}" if random_.random() < 0.3 else ""
     center = f"I{x + off} J{y}"
     if random_.random() < 0.3 and end_x:
@@ -125,7 +134,9 @@ def filled(random_: random.Random, words: str) -> str:
 
 def block(random_: random.Random, dialect: str, wildness: float) -> str:
     if random_.random() < wildness:
-        return filled(random_, random_.choice([*WRONG[dialect].split("|"), *WRONG_ANYWHERE.split("|")]))
+        return filled(
+            random_, random_.choice([*WRONG[dialect].split("|"), *WRONG_ANYWHERE.split("|")])
+        )
     kind = random_.random()
     if kind < 0.3:
         return arc(random_)
@@ -177,11 +188,12 @@ def test_both_ways_agree_on_mutated_programs(dialect: str) -> None:
 def test_long_runs_cross_the_border_of_chunks(dialect: str) -> None:
     random_ = random.Random(3)  # noqa: S311 (the same)
     lines = ["G90 G1 X0 Y0 F100"]
-    for index in range(9000):
-        lines.append(arc(random_) if index % 3 else f"G90 G1 X{number(random_) or 1} Y{index}.5")
-    lines = [line for line in lines if ".2 " not in line and not line.count(".") > 8]
+    lines += [
+        arc(random_) if index % 3 else f"G90 G1 X{index % 7} Y{index}.5" for index in range(9000)
+    ]
     result = assert_same(source_from_text("\n".join(lines)), dialect)
-    assert result.error is None or len(result.moves) > 10
+    assert result.error is None
+    assert len(result.moves) > 8000
 
 
 def test_the_fast_way_is_taken() -> None:

@@ -10,7 +10,7 @@ from twin.nc.dialect import FeedMode
 from twin.nc.move_columns import NAN, Segment
 from twin.nc.planes import Plane, Vector, cross
 
-_LARGEST_COORDINATE = 1e7
+LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 
 
@@ -28,7 +28,7 @@ class ControlMotion(ControlWords):
             value = self.axis_value(index, word)
             if self.modal.incremental or word.incremental:
                 value += target[index]
-            if not abs(value) <= _LARGEST_COORDINATE:
+            if not abs(value) <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value
         return target

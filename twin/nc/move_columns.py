@@ -206,8 +206,10 @@ def _norms(vectors: FloatArray) -> FloatArray:
 
 
 def _row_sums(rows: FloatArray) -> FloatArray:
-    """Sum of each row, shape (n,), from left to right: NumPy's order depends on the layout, and
-    the same move must have the same length in every chunk."""
+    """Sum of each row from left to right, shape (n,).
+
+    NumPy's own order depends on the layout, and a move must have the same length in every chunk.
+    """
     total = np.zeros(len(rows))
     for column in rows.T:
         total += column

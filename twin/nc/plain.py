@@ -12,7 +12,8 @@ import numpy as np
 from twin.nc.canonical import Corner, Motion
 from twin.nc.control import Control
 from twin.nc.move_columns import CHUNK, Segment
-from twin.nc.plain_kernels import Constants, Rows, State, run_blocks
+from twin.nc.plain_kernels import run_blocks
+from twin.nc.plain_state import Constants, Rows, State
 from twin.nc.plain_tables import FEED_FACTORS, PlainTables
 from twin.nc.plain_words_kernels import NOT_PLAIN
 from twin.nc.planes import XY, YZ, ZX
@@ -48,7 +49,7 @@ class PlainRunner:
         if not lines or not self._may_run():
             return False
         state = self._state()
-        rows = Rows(*(column[:room] for column in self._rows))
+        rows = self._rows.first(room)
         reached, made, blocks, inked = run_blocks(
             self._lines.data,
             self._lines.starts,
@@ -70,7 +71,7 @@ class PlainRunner:
         control.flow.passed(reached, blocks)
         if inked != NOT_PLAIN:
             control.report.line = inked + 1
-        self._give_back(state, Rows(*(column[:made] for column in rows)))
+        self._give_back(state, rows.first(made))
         return True
 
     def _may_run(self) -> bool:
@@ -128,7 +129,9 @@ class PlainRunner:
 def _segment(rows: Rows) -> Segment:
     """The last row as the control keeps it."""
     motion, _, line, block, corner = rows.codes[-1].tolist()
-    *center_and_normal, sweep, feed, tolerance, acceleration, deceleration = rows.values[-1].tolist()
+    *center_and_normal, sweep, feed, tolerance, acceleration, deceleration = rows.values[
+        -1
+    ].tolist()
     start, end, display = rows.positions[-1].tolist()
     a, b, c, i, j, k = center_and_normal
     return Segment(

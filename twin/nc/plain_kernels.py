@@ -1,22 +1,35 @@
-"""Runs of plain blocks: words, modal codes, geometry and rows of moves in one compiled loop.
+"""Runs of plain blocks: words, modal codes, lines and rows of moves in one compiled loop.
 
-Each step is the control's own (``control``, ``control_motion``, ``circular``) for a block in which
-nothing is doubtful, and computes the same bits. The first block in which something is, be it wrong
-or only rare, ends the run untouched; the control runs it and makes its diagnostics.
+Each step is the control's own (``control``, ``control_motion``) for a block in which nothing is
+doubtful, and computes the same bits. The first block in which something is, be it wrong or only
+rare, ends the run untouched; the control runs it and makes its diagnostics.
 """
-
-from typing import NamedTuple
 
 import numba
 import numpy as np
-import numpy.typing as npt
-from numba.extending import register_jitable
 
-from twin.nc import arcs
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
+from twin.nc.control_motion import LARGEST_COORDINATE
+from twin.nc.lexer import LONGEST_LINE
+from twin.nc.line_reader import LARGEST_LABEL
+from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
+from twin.nc.plain_state import (
+    ARC,
+    CODES,
+    CORNER,
+    FEED_FACTOR,
+    INCREMENTAL,
+    INTERPOLATION,
+    NO_MOTION,
+    RAPID_LINE,
+    UNIT,
+    BlockTables,
+    Constants,
+    Rows,
+    State,
+)
 from twin.nc.plain_words_kernels import (
     AXIS,
-    CENTER,
     CODE,
     FEED,
     MOST_WORDS,
@@ -27,121 +40,12 @@ from twin.nc.plain_words_kernels import (
     LineTables,
     line_end,
     read_words,
+    skip_blanks,
 )
-
-for _shared in (
-    arcs.distance,
-    arcs.sweep_between,
-    arcs.reaches,
-    arcs.center_at_radius,
-    arcs.equidistant,
-):
-    register_jitable(_shared)
-
-INTERPOLATION, INCREMENTAL, CENTER_ABSOLUTE, UNIT, CORNER, FEED_FACTOR, NOTHING = range(7)
-"""Places in the modal state; ``NOTHING`` takes what codes without effect set."""
-
-NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
-"""Kinds of interpolation."""
-
-CODES = 1000
-"""G codes are below this number."""
-LARGEST_LABEL = 4_294_967_295
-LONGEST_LINE = 65_536
-LARGEST_COORDINATE = 1e7
-"""As the control's own limits; what exceeds them is the control's to refuse."""
-SHORTEST = 1e-7
-"""A move that goes less far [mm or deg], but does go, is left to the control to measure."""
-
-
-class BlockTables(NamedTuple):
-    """What plain blocks mean in a dialect, on a machine.
-
-    Attributes:
-        field: Which place of the modal state each G code sets, shape (``CODES``,); ``NOT_PLAIN``
-            for codes that do more.
-        value: To what it sets it, shape (``CODES``,).
-        group: Its modal group, shape (``CODES``,).
-        kind: Kind of each interpolation, shape (i,).
-        clockwise: Of arcs, shape (i,).
-        mismatch: How far start and end radius of an arc may differ, shape (i,) [mm].
-        mismatch_share: The same as a share of the larger one, shape (i,).
-        shift: How far its centre may be moved to fit, shape (i,) [mm].
-        signed_radius: A negative radius asks for the larger arc, shape (i,).
-        fits_radius: A centre found by its radius is fitted like a given one, shape (i,).
-        linear: Which axes are linear, shape (k,).
-    """
-
-    field: IntArray
-    value: FloatArray
-    group: IntArray
-    kind: IntArray
-    clockwise: npt.NDArray[np.bool_]
-    mismatch: FloatArray
-    mismatch_share: FloatArray
-    shift: FloatArray
-    signed_radius: npt.NDArray[np.bool_]
-    fits_radius: npt.NDArray[np.bool_]
-    linear: npt.NDArray[np.bool_]
-
-
-class Constants(NamedTuple):
-    """What stays as it is during a run.
-
-    Attributes:
-        total: From programmed to part coordinates, shape (k,) [mm or deg].
-        plane: Columns of abscissa, ordinate and normal, shape (3,).
-        default_feed: Where none is programmed [mm/min].
-        default_rotary_feed: The same for rotary axes alone [deg/min].
-        feed_may_lack: A feed move without a programmed feed was warned of already.
-        rapid_feed: [mm/min]; NaN: the machine's.
-        last_values: Corner tolerance, acceleration and deceleration of every move, shape (3,).
-    """
-
-    total: FloatArray
-    plane: IntArray
-    default_feed: float
-    default_rotary_feed: float
-    feed_may_lack: bool
-    rapid_feed: float
-    last_values: FloatArray
-
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
 _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
 _STOP = int(Corner.EXACT_STOP)
-
-
-class State(NamedTuple):
-    """What changes during a run; the arrays are written to.
-
-    Attributes:
-        modal: The modal state, shape (7,).
-        in_force: G code set in each group during the run, ``NOT_PLAIN`` for none, shape (g,).
-        feed: F as programmed, NaN for none, shape (1,).
-        programmed: Programmed position, shape (k,) [mm or deg].
-        part: Part position, shape (k,) [mm or deg].
-    """
-
-    modal: FloatArray
-    in_force: IntArray
-    feed: FloatArray
-    programmed: FloatArray
-    part: FloatArray
-
-
-class Rows(NamedTuple):
-    """Room for the moves of a run, as ``MoveColumns`` keeps them.
-
-    Attributes:
-        codes: Shape (n, 5).
-        values: Shape (n, 11).
-        positions: Start, end and display, shape (n, 3, k).
-    """
-
-    codes: IntArray
-    values: FloatArray
-    positions: FloatArray
 
 
 @numba.njit(cache=True)
@@ -176,7 +80,8 @@ def run_blocks(
     roles = np.zeros(MOST_WORDS, np.int64)
     values = np.zeros(MOST_WORDS)
     modal = state.modal.copy()
-    line, made, blocks, inked = first, 0, 0, NOT_PLAIN
+    line, blocks, inked = first, 0, NOT_PLAIN
+    made = int(np.int64(0))  # a literal would have every function below compiled twice
     while line < last and made < len(rows.codes):
         begin = starts[line]
         end = line_end(data, begin, starts[line + 1])
@@ -193,18 +98,10 @@ def run_blocks(
                 break
             made = row
             blocks += 1
-        if _is_inked(data, begin, end):
+        if skip_blanks(data, begin, end) < end:
             inked = line
         line += 1
     return line, made, blocks, inked
-
-
-@numba.njit(cache=True)
-def _is_inked(data: ByteArray, begin: int, end: int) -> bool:
-    for at in range(begin, end):
-        if data[at] != 32 and data[at] != 9:
-            return True
-    return False
 
 
 @numba.njit(cache=True)
@@ -220,8 +117,9 @@ def _run_block(
     row: int,
 ) -> int:
     """Run one block; the number of rows after it, or ``NOT_PLAIN`` with the state untouched."""
-    modal[:] = state.modal
-    number, feed, seen, groups = NO_BLOCK_NUMBER, state.feed[0], 0, 0
+    _copy(state.modal, modal)
+    number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
+    feed = state.feed[0]
     for word in range(len(roles)):
         role, value = roles[word], values[word]
         if role == NUMBER:
@@ -256,20 +154,18 @@ def _run_block(
         if roles[word] == CODE:
             code = int(values[word])
             state.in_force[tables.group[code]] = code
-    state.modal[:] = modal
+    _copy(modal, state.modal)
     state.feed[0] = feed
     if seen >> RADIUS:
-        state.part[:] = rows.positions[row, 1]
-        state.programmed[:] = rows.positions[row, 2]
+        _copy(rows.positions[row, 1], state.part)
+        _copy(rows.positions[row, 2], state.programmed)
     return after
 
 
 @numba.njit(cache=True)
-def _value(role: int, roles: IntArray, values: FloatArray) -> float:
-    for word in range(len(roles)):
-        if roles[word] == role:
-            return values[word]
-    return 0.0
+def _copy(source: FloatArray, target: FloatArray) -> None:
+    for index in range(len(target)):
+        target[index] = source[index]
 
 
 @numba.njit(cache=True)
@@ -288,8 +184,7 @@ def _move(
     row: int,
 ) -> int:
     """Write the block's move; the number of rows after it, or ``NOT_PLAIN``."""
-    interpolation = int(modal[INTERPOLATION])
-    kind = tables.kind[interpolation]
+    kind = tables.kind[int(modal[INTERPOLATION])]
     if kind == NO_MOTION:
         return NOT_PLAIN
     is_arc = kind == ARC
@@ -301,7 +196,7 @@ def _move(
     for axis in range(axes):
         target = state.programmed[axis]
         if seen & (1 << (AXIS + axis)):
-            value = _value(AXIS + axis, roles, values)
+            value = value_of(AXIS + axis, roles, values)
             value *= modal[UNIT] if tables.linear[axis] else 1.0
             target = value + target if modal[INCREMENTAL] != 0.0 else value
             if not abs(target) <= LARGEST_COORDINATE:
@@ -318,7 +213,7 @@ def _move(
             else:
                 other = max(other, way)
     if is_arc:
-        if not _arc(interpolation, roles, values, seen, tables, constants, state, modal, rows, row):
+        if not write_arc(roles, values, seen, tables, constants, state, modal, rows, row):
             return NOT_PLAIN
     else:
         way = spatial if spatial > 0.0 else other
@@ -337,81 +232,10 @@ def _move(
         else:
             pace = (feed if turning else feed * modal[UNIT]) * modal[FEED_FACTOR]
     rows.values[row, 7] = pace
-    rows.values[row, 8:] = constants.last_values
+    _copy(constants.last_values, rows.values[row, 8:])
     rows.codes[row, 0] = _RAPID if kind == RAPID_LINE else _FEED
     rows.codes[row, 1] = _ARC if is_arc else _LINE
     rows.codes[row, 2] = line
     rows.codes[row, 3] = number
     rows.codes[row, 4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
     return row + 1
-
-
-@numba.njit(cache=True)
-def _arc(
-    interpolation: int,
-    roles: IntArray,
-    values: FloatArray,
-    seen: int,
-    tables: BlockTables,
-    constants: Constants,
-    state: State,
-    modal: FloatArray,
-    rows: Rows,
-    row: int,
-) -> bool:
-    """Write the arc's centre, normal and sweep; whether nothing about it is doubtful."""
-    first_axis, second_axis, across = constants.plane
-    display = rows.positions[row, 2]
-    start = (state.programmed[first_axis], state.programmed[second_axis])
-    end = (display[first_axis], display[second_axis])
-    clockwise = tables.clockwise[interpolation]
-    has_first = seen & (1 << (CENTER + first_axis)) != 0
-    has_second = seen & (1 << (CENTER + second_axis)) != 0
-    if seen & (1 << (CENTER + across)):
-        return False
-    if seen & (1 << RADIUS):
-        in_plane = (1 << (AXIS + first_axis)) | (1 << (AXIS + second_axis))
-        if has_first or has_second or not seen & in_plane:
-            return False
-        radius = _value(RADIUS, roles, values) * modal[UNIT]
-        larger = radius < 0.0 and tables.signed_radius[interpolation]
-        if radius == 0.0 or not arcs.reaches(start, end, abs(radius)):
-            return False
-        fits = tables.fits_radius[interpolation]
-        center = arcs.center_at_radius(start, end, abs(radius), clockwise, larger)
-    else:
-        fits = True
-        if not (has_first or has_second):
-            return False
-        first = _value(CENTER + first_axis, roles, values) * modal[UNIT]
-        second = _value(CENTER + second_axis, roles, values) * modal[UNIT]
-        if modal[CENTER_ABSOLUTE] != 0.0:
-            if not (has_first and has_second):
-                return False
-            center = (first, second)
-        else:
-            center = (start[0] + first, start[1] + second)
-    if fits:
-        given = center
-        near, far = arcs.distance(start, given), arcs.distance(end, given)
-        gap, longer = abs(near - far), max(near, far)
-        if not (
-            min(near, far) >= arcs.SAME_POINT
-            and gap <= tables.mismatch[interpolation]
-            and gap <= tables.mismatch_share[interpolation] * longer
-        ):
-            return False
-        center = arcs.equidistant(start, end, given)
-        if not arcs.distance(given, center) <= tables.shift[interpolation]:
-            return False
-    sweep = arcs.sweep_between(start, end, center, clockwise)
-    if not arcs.distance(start, center) * abs(sweep) > SHORTEST * arcs.TURN:
-        return False
-    value = rows.values[row]
-    value[first_axis] = center[0] + constants.total[first_axis]
-    value[second_axis] = center[1] + constants.total[second_axis]
-    value[across] = state.programmed[across] + constants.total[across]
-    value[3:6] = 0.0
-    value[3 + across] = 1.0
-    value[6] = sweep
-    return True

@@ -11,7 +11,7 @@ import numpy as np
 from twin.nc import iso
 from twin.nc.canonical import FloatArray
 from twin.nc.dialect import Comment, Dialect, FeedMode, GCode, Interpolation, Modal, PlainArc
-from twin.nc.plain_kernels import (
+from twin.nc.plain_state import (
     ARC,
     CENTER_ABSOLUTE,
     CODES,
@@ -81,7 +81,8 @@ class PlainTables:
         if isinstance(value, FeedMode):
             return FEED_FACTORS.get(value)
         if name == "interpolation":
-            return float(self._interpolations.index(value)) if value in self._interpolations else None
+            places = (i for i, each in enumerate(self._interpolations) if each == value)
+            return next(map(float, places), None)
         assert isinstance(value, (bool, int, float))
         return float(value)
 
@@ -173,9 +174,7 @@ def _roles(dialect: Dialect, settings: ControlSettings) -> dict[str, int]:
 
 def _marks(texts: list[str]) -> np.ndarray[tuple[int, int], np.dtype[np.uint8]]:
     """Texts of one or two ASCII characters, shape (n, 2); 0 where there is none."""
-    return np.array(
-        [[*text.encode("ascii"), 0, 0][:2] for text in texts], np.uint8
-    ).reshape(-1, 2)
+    return np.array([[*text.encode("ascii"), 0, 0][:2] for text in texts], np.uint8).reshape(-1, 2)
 
 
 def _whole_line(comments: tuple[Comment, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

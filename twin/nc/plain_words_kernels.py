@@ -82,7 +82,7 @@ def read_words(
     """
     count, at = 0, begin
     while True:
-        at = _skip_blanks(data, at, end)
+        at = skip_blanks(data, at, end)
         if at == end:
             return count
         letter = data[at] & _TO_UPPER
@@ -94,7 +94,7 @@ def read_words(
         role = tables.roles[letter - _LETTER_A]
         if role == OTHER or count == MOST_WORDS:
             return NOT_PLAIN
-        value, at = _read_number(data, _skip_blanks(data, at + 1, end), end)
+        value, at = _read_number(data, skip_blanks(data, at + 1, end), end)
         if at == NOT_PLAIN:
             return NOT_PLAIN
         roles[count], values[count] = role, value
@@ -102,7 +102,8 @@ def read_words(
 
 
 @numba.njit(cache=True)
-def _skip_blanks(data: ByteArray, at: int, end: int) -> int:
+def skip_blanks(data: ByteArray, at: int, end: int) -> int:
+    """The first place from ``at`` on that holds no blank, or ``end``."""
     while at < end and (data[at] == _BLANK or data[at] == _TAB):
         at += 1
     return at
@@ -143,7 +144,7 @@ def _skip_comment(data: ByteArray, begin: int, at: int, end: int, tables: LineTa
         behind = _behind(data, at, end, tables.openings[kind])
         if behind == NOT_PLAIN:
             continue
-        if tables.whole_line[kind] and _skip_blanks(data, begin, end) != at:
+        if tables.whole_line[kind] and skip_blanks(data, begin, end) != at:
             continue
         closing = tables.closings[kind]
         for place in range(behind, end):
