@@ -266,6 +266,24 @@ def test_a_rounded_corner_is_measured_from_its_point(rows: int):
     assert corners.count == 3
     assert corners.rounding_um == pytest.approx(np.sqrt(2.0) * 1e3, abs=0.1)
     assert (corners.line, corners.time_s) == (2, pytest.approx(1.0, abs=0.002))
+    assert corners.rms_um == pytest.approx(np.sqrt(2.0 / 3.0) * 1e3, abs=0.1)
+    assert corners.p99_um == corners.rounding_um
+
+
+@pytest.mark.parametrize("rows", [90, 100_000])
+def test_what_happens_at_a_corner_is_not_counted_for_the_straights(rows: int):
+    """0.1 mm a sample: the corner reaches ten samples to either side."""
+    moves = square()
+    asked = setpoints(moves)
+    joint = asked.position.copy()
+    joint[992:1009, 2] += 0.009
+    joint[1200, 2] += 0.004
+    features = compare(moves, asked, joint, rows=rows)[0].features
+    corner, straight = features["corner"], features["line"]
+    assert (corner.max, corner.worst_time_s) == (pytest.approx(9.0), pytest.approx(1.0, abs=0.01))
+    assert corner.rms == pytest.approx(np.sqrt(17.0 * 81.0 / (3 * 21)), rel=0.03)
+    assert (straight.max, straight.worst_line) == (pytest.approx(4.0), 3)
+    assert "arc" not in features
 
 
 def test_smooth_joints_are_no_corners_and_sharp_ones_on_the_table_are():

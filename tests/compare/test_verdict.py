@@ -40,6 +40,7 @@ def figures(contour: float = 12.0, lag: float = 150.0, turn: float = 30.0) -> Fi
             samples=np.array([10, 20, 30]),
             max_um=np.array([0.9, 0.5, 1.0]) * contour,
             rms_um=np.array([4.0, 4.0, 4.0]),
+            p99_um=np.array([5.0, 5.0, 5.0]),
             time_s=np.array([0.1, 0.7, 1.25]),
         ),
         corners=CornerFigures(count=3, rounding_um=6.0, line=8, time_s=1.1),

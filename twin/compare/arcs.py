@@ -9,6 +9,7 @@ from twin.compare.bidirectional import DirectedCircle, PairCollector, directed_c
 from twin.compare.circle import CirclePath, circle_figures
 from twin.compare.figures import ArcFigures, BidirectionalFigures
 from twin.nc.canonical import FloatArray, IntArray, Moves, Shape
+from twin.toolpath.nearest import PathColumns
 
 BoolArray = npt.NDArray[np.bool_]
 
@@ -42,9 +43,21 @@ def plane_axes(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @dataclasses.dataclass(slots=True)
 class _OpenArc:
+    """An arc that the tool may still be on.
+
+    Attributes:
+        time_s: When the tool reached it [s].
+        sweep_deg: Commanded opening angle [deg].
+        directed: Where the tool was.
+        center: Its centre in the part's frame, shape (3,) [mm].
+        across: Directions of 0 and 90 degrees in the part's frame, shape (3, 2).
+    """
+
     time_s: float
     sweep_deg: float
     directed: DirectedCircle
+    center: FloatArray
+    across: FloatArray
 
     @property
     def line(self) -> int:
@@ -64,38 +77,31 @@ class ArcCollector:
         self._pairs = PairCollector()
 
     def add(
-        self, moves: Moves, circular: BoolArray, first: int, place: IntArray, fraction: FloatArray,
-        offset: FloatArray, time: FloatArray,
+        self, moves: Moves, path: PathColumns, first: int, place: IntArray, fraction: FloatArray,
+        point: FloatArray, time: FloatArray,
     ) -> None:  # fmt: skip
         """Take in a chunk of n samples.
 
         Args:
             moves: The moves at hand.
-            circular: Which of them are arcs on the part too, with the table at rest.
+            path: The same in the part's frame; arcs on which the table turns are no circles there.
             first: Number of the first of them in the program.
             place: Index in ``moves`` of each sample's nearest place, shape (n,).
             fraction: Fraction of that place, shape (n,).
-            offset: Tool relative to the arc's centre along the ``plane_axes``, shape (n, 2) [mm];
-                unused where the nearest move is no arc.
+            point: Simulated tool points in the part's frame, shape (n, 3) [mm].
             time: Shape (n,) [s].
         """
-        wanted = (moves.shape == Shape.ARC) & (np.abs(moves.sweep) >= SMALLEST_SWEEP)
-        wanted &= (moves.radius > 0.0) & circular
         # Beyond an arc's ends the distance from its centre says nothing about the arc.
-        inside = wanted[place] & (fraction > 0.0) & (fraction < 1.0)
-        rows = np.flatnonzero(inside)
-        rows = rows[np.argsort(place[rows], kind="stable")]
-        numbers, starts = np.unique(place[rows], return_index=True)
-        for move, here in zip(numbers, np.split(rows, starts[1:]), strict=False):
-            arc = self._open.get(first + int(move))
+        inside = np.flatnonzero(_wanted(moves, path)[place] & (fraction > 0.0) & (fraction < 1.0))
+        starts = np.flatnonzero(np.diff(place[inside], prepend=-1))
+        for rows in np.split(inside, starts[1:]) if len(inside) else ():
+            move = int(place[rows[0]])
+            arc = self._open.get(first + move)
             if arc is None:
-                arc = _OpenArc(
-                    float(time[here[0]]),
-                    float(moves.sweep[move]),
-                    directed_circle(moves, int(move)),
-                )
-                self._open[first + int(move)] = arc
-            arc.path.add(offset[here, 0], offset[here, 1])
+                arc = _open_arc(moves, path, move, float(time[rows[0]]))
+                self._open[first + move] = arc
+            offset = (point[rows] - arc.center) @ arc.across
+            arc.path.add(offset[:, 0], offset[:, 1])
 
     def finish(self, before: int) -> None:
         """Evaluate the arcs whose number in the program is below ``before``."""
@@ -118,6 +124,25 @@ class ArcCollector:
         still_open = [(number, _evaluate(arc)) for number, arc in self._open.items()]
         every = _trimmed([*self._done, *still_open])
         return tuple(arc for _, arc in sorted(every, key=lambda item: item[0]))
+
+
+def _wanted(moves: Moves, path: PathColumns) -> BoolArray:
+    """Which moves have circular figures, shape (n,)."""
+    wide = (moves.shape == Shape.ARC) & (np.abs(moves.sweep) >= SMALLEST_SWEEP)
+    return wide & (moves.radius > 0.0) & (path.turn_rate == 0.0)
+
+
+def _open_arc(moves: Moves, path: PathColumns, move: int, time_s: float) -> _OpenArc:
+    first, second = plane_axes(moves.normal[move : move + 1])
+    cosine, sine = np.cos(path.turn[move]), np.sin(path.turn[move])
+    turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    return _OpenArc(
+        time_s=time_s,
+        sweep_deg=float(moves.sweep[move]),
+        directed=directed_circle(moves, move),
+        center=turned @ path.origin[move],
+        across=turned @ np.column_stack([first[0], second[0]]),
+    )
 
 
 def _trimmed(done: list[tuple[int, ArcFigures]]) -> list[tuple[int, ArcFigures]]:

@@ -20,7 +20,8 @@ import dataclasses
 
 import numpy as np
 
-from twin.nc.canonical import FloatArray, IntArray
+from twin.compare.circle_kernels import collect_by_angle
+from twin.nc.canonical import FloatArray
 
 BINS_PER_TURN = 7200
 """Angular resolution of the collected path: 0.05 degrees."""
@@ -49,19 +50,10 @@ class CirclePath:
 
     def add(self, x: FloatArray, y: FloatArray) -> None:
         """Take in points relative to the nominal centre, shape (n,) [mm]."""
-        angle = np.arctan2(y, x) % (2.0 * np.pi)
-        deviation = np.hypot(x, y) - self.radius
-        bins = np.minimum(
-            (angle * (BINS_PER_TURN / (2.0 * np.pi))).astype(np.int64), BINS_PER_TURN - 1
-        )
-        np.add.at(self._count, bins, 1)
-        np.add.at(self._angle, bins, angle)
-        np.add.at(self._deviation, bins, deviation)
-        order = np.argsort(deviation, kind="stable")
-        # Of several values written to one bin the last stays.
-        falling, rising = order[::-1], order
-        _keep(self._least, bins[falling], deviation[falling], angle[falling], np.less)
-        _keep(self._greatest, bins[rising], deviation[rising], angle[rising], np.greater)
+        collect_by_angle(
+            x, y, self.radius, self._count, self._angle, self._deviation, self._least,
+            self._greatest,
+        )  # fmt: skip
 
     @property
     def filled(self) -> int:
@@ -81,17 +73,9 @@ class CirclePath:
 
     def covers_full_turn(self) -> bool:
         """Whether no gap in the angles is wider than ``FULL_TURN_GAP``."""
-        angle = np.sort(self.mean()[:, 0])
-        gaps = np.diff(np.append(angle, angle[:1] + 2.0 * np.pi))
-        return bool(len(angle) >= 3 and gaps.max() <= np.deg2rad(FULL_TURN_GAP))
-
-
-def _keep(
-    best: FloatArray, bins: IntArray, deviation: FloatArray, angle: FloatArray, better: np.ufunc
-) -> None:
-    chosen = better(deviation, best[bins, 0])
-    best[bins[chosen], 0] = deviation[chosen]
-    best[bins[chosen], 1] = angle[chosen]
+        filled = np.flatnonzero(self._count)
+        gaps = np.diff(np.append(filled, filled[:1] + BINS_PER_TURN))
+        return bool(len(filled) >= 3 and gaps.max() * 360.0 / BINS_PER_TURN <= FULL_TURN_GAP)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -164,7 +148,7 @@ def _least_squares_circle(points: FloatArray) -> tuple[FloatArray, float]:
         distance = np.linalg.norm(offset, axis=1)
         outward = offset / distance[:, None]
         slope = np.column_stack([outward, np.ones(len(points))])
-        change = np.linalg.lstsq(slope, distance - radius, rcond=None)[0]
+        change = np.linalg.solve(slope.T @ slope, slope.T @ (distance - radius))
         center, radius = center + change[:2], radius + float(change[2])
         if np.abs(change).max() < 1e-10:
             break

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.compare.arcs import ArcCollector, plane_axes
+from twin.compare.arcs import ArcCollector
 from twin.compare.blocks import BlockCollector
 from twin.compare.contour_kernels import follow
 from twin.compare.corners import CornerCollector
@@ -10,6 +10,7 @@ from twin.compare.features import FeatureCollector
 from twin.compare.figures import AxisTracking, ContourFigures, Figures, WorstPlace
 from twin.compare.statistics import Distribution
 from twin.errors import RecordingError
+from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray, IntArray, Moves, concatenate
 from twin.recording import Samples
 from twin.toolpath.nearest import drop_moves, join_paths, path_columns
@@ -20,8 +21,6 @@ REACH_S = 0.5
 """A tool that is later than this has left the place on the path that it is held against [s]. The
 slowest position loop in use, 1 (m/min)/mm, lags by 0.06 s."""
 WORST_PLACES = 10
-_NO_NORMAL = 1.0 / np.sqrt(3.0)
-"""Stands in for the normal of lines, whose offsets nobody reads."""
 _ROWS = 4096
 """Samples that are worked on at once: bounds how many arcs are open at a time."""
 
@@ -98,6 +97,7 @@ class Comparison:
             self._moves = concatenate([self._moves, new], self.axes)
             new_path = path_columns(new, self._frame, self._part_zero)
             self._path = join_paths(self._path, new_path)
+            self._corners.expect(new_path)
 
     def _add(self, samples: Samples) -> FloatArray:
         setpoint = samples.setpoint
@@ -117,30 +117,27 @@ class Comparison:
         error = distance * UM_PER_MM
         self._contour.add(error)
         line = setpoint.line if place is None else self._moves.line[place]
-        self._keep_worst(error, line, setpoint.time, setpoint.position)
-        self._blocks.add(self._moves, place, line, error, setpoint.time)
+        rows = self._blocks.add(self._moves, place, line, error, setpoint.time)
+        self._keep_worst(rows, setpoint)
         if place is not None:
-            offset = self._offsets(point, place)
-            self._features.add(self._moves, place, error, setpoint.time)
-            self._corners.add(self._path, point, place, setpoint.time)
-            circular = self._path.turn_rate == 0.0
+            self._corners.add(point, place, setpoint.time)
+            at_corner = self._corners.at_corner(place, fraction)
+            self._features.add(self._moves, place, at_corner, error, setpoint.time)
             self._arcs.add(
-                self._moves, circular, self._first, place, fraction, offset, setpoint.time
+                self._moves, self._path, self._first, place, fraction, point, setpoint.time
             )
             self._drop_passed()
         return error
 
     def _add_tracking(self, samples: Samples) -> None:
-        difference = samples.setpoint.position - samples.joint_position
+        setpoint = samples.setpoint
         for column, kind in enumerate(self.axes.kinds):
-            error = difference[:, column] * (UM_PER_MM if kind == "linear" else MDEG_PER_DEGREE)
-            before = self._axis_errors[column].greatest
-            self._axis_errors[column].add(error)
-            if self._axis_errors[column].greatest > before:
-                row = int(np.abs(error).argmax())
-                self._axis_worst[column] = (
-                    int(samples.setpoint.line[row]), float(samples.setpoint.time[row])
-                )  # fmt: skip
+            per_unit = UM_PER_MM if kind == "linear" else MDEG_PER_DEGREE
+            lag = setpoint.position[:, column] - samples.joint_position[:, column]
+            row = self._axis_errors[column].add(lag * per_unit)
+            if row is not None:
+                place = int(setpoint.line[row]), float(setpoint.time[row])
+                self._axis_worst[column] = place
 
     def _follow(
         self, samples: Samples, point: FloatArray
@@ -169,37 +166,19 @@ class Comparison:
         self._late = time[back_row[-1] :], late[back_row[-1] :]
         return distance, place, fraction
 
-    def _offsets(self, point: FloatArray, place: IntArray) -> FloatArray:
-        """Tool relative to the centre of the nearest move's arc, in the arc's plane [mm]."""
-        path = self._path
-        cosine, sine = np.cos(path.turn[place]), np.sin(path.turn[place])
-        back = point.copy()
-        back[:, 0] = cosine * point[:, 0] + sine * point[:, 1]
-        back[:, 1] = cosine * point[:, 1] - sine * point[:, 0]
-        back -= path.origin[place]
-        across, up = plane_axes(np.nan_to_num(self._moves.normal, nan=_NO_NORMAL))
-        return np.column_stack(
-            [
-                np.einsum("ij,ij->i", back, across[place]),
-                np.einsum("ij,ij->i", back, up[place]),
-            ]
-        )
-
-    def _keep_worst(
-        self, error: FloatArray, line: IntArray, time: FloatArray, position: FloatArray
-    ) -> None:
+    def _keep_worst(self, rows: IntArray, setpoint: Setpoints) -> None:
+        """See whether the lines that the tool was in are among the worst now."""
         least = min((w.error_um for w in self._worst.values()), default=0.0)
         floor = least if len(self._worst) >= WORST_PLACES else -1.0
-        rows = np.flatnonzero(error > floor)
-        rows = rows[np.lexsort((-error[rows], line[rows]))]
-        _, heads = np.unique(line[rows], return_index=True)
-        for row in rows[heads]:
-            known = self._worst.get(int(line[row]))
+        error, when = self._blocks.greatest, self._blocks.when
+        for row in rows[(error[rows] > floor) & (when[rows] >= setpoint.time[0])]:
+            line = int(row) // 2
+            known = self._worst.get(line)
             if known is None or error[row] > known.error_um:
-                self._worst[int(line[row])] = WorstPlace(
-                    int(line[row]), float(time[row]), float(error[row]),
-                    position[row] - self._part_zero,
-                )  # fmt: skip
+                sample = int(np.searchsorted(setpoint.time, when[row]))
+                position = setpoint.position[sample] - self._part_zero
+                place = WorstPlace(line, float(when[row]), float(error[row]), position)
+                self._worst[line] = place
         kept = sorted(self._worst.values(), key=lambda w: (-w.error_um, w.line))[:WORST_PLACES]
         self._worst = {place.line: place for place in kept}
 
@@ -209,7 +188,7 @@ class Comparison:
         self._arcs.finish(reached)
         passed = reached - self._first
         if passed > 0 and 2 * passed >= len(self._moves):
-            self._corners.drop(self._moves, self._path, passed)
+            self._corners.drop(self._moves, passed)
             self._moves = concatenate([self._moves[passed:]], self.axes)
             self._path = drop_moves(self._path, passed)
             self._first = reached
@@ -239,7 +218,7 @@ class Comparison:
             worst=worst,
             blocks=self._blocks.figures(),
             features=self._features.figures(),
-            corners=self._corners.figures(self._moves, self._path),
+            corners=self._corners.figures(self._moves),
         )
 
 

@@ -1,39 +1,50 @@
-"""Contour error by feature: straight blocks and arcs apart."""
+"""Contour error by feature: at corners, on straight blocks and on arcs."""
 
 import numpy as np
 
+from twin.compare.blocks import BoolArray
 from twin.compare.figures import FeatureFigures
 from twin.compare.statistics import Distribution
 from twin.nc.canonical import FloatArray, IntArray, Moves, Shape
 
-FEATURES = {"line": Shape.LINE, "arc": Shape.ARC}
+FEATURES = ("line", "arc", "corner")
+_CORNER = FEATURES.index("corner")
+_SHAPES = {Shape.LINE: FEATURES.index("line"), Shape.ARC: FEATURES.index("arc")}
 
 
 class FeatureCollector:
-    """Collects the contour error of the samples nearest to each kind of block."""
+    """Collects the contour error of every sample under the feature that it is nearest to."""
 
     def __init__(self) -> None:
-        self._errors = {name: Distribution() for name in FEATURES}
-        self._worst: dict[str, tuple[int, float]] = dict.fromkeys(FEATURES, (0, 0.0))
+        self._errors = [Distribution() for _ in FEATURES]
+        self._worst = [(0, 0.0) for _ in FEATURES]
 
-    def add(self, moves: Moves, place: IntArray, error: FloatArray, time: FloatArray) -> None:
-        """Take in a chunk of n samples: nearest move, contour error [µm], time [s]."""
-        for name, shape in FEATURES.items():
-            rows = np.flatnonzero(moves.shape[place] == shape)
-            if not len(rows):
-                continue
-            worst = int(rows[error[rows].argmax()])
-            first = self._errors[name].count == 0
-            if first or error[worst] > self._errors[name].greatest:
-                self._worst[name] = int(moves.line[place[worst]]), float(time[worst])
-            self._errors[name].add(error[rows])
+    def add(
+        self, moves: Moves, place: IntArray, at_corner: BoolArray, error: FloatArray,
+        time: FloatArray,
+    ) -> None:  # fmt: skip
+        """Take in a chunk of n samples.
+
+        Args:
+            moves: The moves at hand.
+            place: Index in ``moves`` of each sample's nearest place, shape (n,).
+            at_corner: Which samples are at a corner rather than on their block, shape (n,).
+            error: Contour error, shape (n,) [µm].
+            time: Shape (n,) [s].
+        """
+        codes = np.array([_SHAPES[Shape(shape)] for shape in range(len(_SHAPES))])
+        feature = np.where(at_corner, _CORNER, codes[moves.shape[place]])
+        for index, errors in enumerate(self._errors):
+            rows = np.flatnonzero(feature == index)
+            greatest = errors.add(error[rows])
+            if greatest is not None:
+                row = rows[greatest]
+                self._worst[index] = int(moves.line[place[row]]), float(time[row])
 
     def figures(self) -> dict[str, FeatureFigures]:
         """The figures of the features that occurred."""
         return {
-            name: FeatureFigures(
-                errors.greatest, errors.rms, errors.percentile(99.0), *self._worst[name]
-            )
-            for name, errors in self._errors.items()
+            name: FeatureFigures(errors.greatest, errors.rms, errors.percentile(99.0), *worst)
+            for name, errors, worst in zip(FEATURES, self._errors, self._worst, strict=True)
             if errors.count
         }

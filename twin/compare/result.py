@@ -38,6 +38,7 @@ class RunSummary:
         cut: The content of the key ``cut``, or None when nothing was cut.
         commanded: Final setpoint by axis, part coordinates [mm or deg].
         simulated: Final joint position by axis, part coordinates [mm or deg].
+        near_miss: The content of the key ``near_miss``, or None when all kept their distance.
     """
 
     program: str
@@ -49,6 +50,7 @@ class RunSummary:
     cut: Mapping[str, Any] | None
     commanded: Mapping[str, float]
     simulated: Mapping[str, float]
+    near_miss: Mapping[str, Any] | None = None
 
 
 STAGES = ("interpret_s", "plan_s", "simulate_s", "compare_s", "cut_s", "render_s")
@@ -94,6 +96,7 @@ def result(
             {"code": a.code, "line": a.line, "time_s": a.time_s, "message": a.message}
             for a in alarms
         ],
+        "near_miss": None if summary.near_miss is None else dict(summary.near_miss),
         "cut": None if summary.cut is None else dict(summary.cut),
         "final": {"commanded": dict(summary.commanded), "simulated": dict(summary.simulated)},
     }
@@ -129,6 +132,7 @@ def _worst_blocks(blocks: BlockFigures) -> list[dict[str, Any]]:
             "shape": "arc" if blocks.arc[row] else "line",
             "max": float(blocks.max_um[row]),
             "rms": float(blocks.rms_um[row]),
+            "p99": float(blocks.p99_um[row]),
             "time_s": float(blocks.time_s[row]),
         }
         for row in rows

@@ -4,18 +4,15 @@ import math
 
 import numpy as np
 
+from twin.compare.statistics_kernels import BINS, FIRST_CODE, SHIFT, tally
 from twin.nc.canonical import FloatArray
 
 RESOLUTION = 1e-3
-"""Relative width of a histogram bin: a percentile is right to 0.1 %."""
-LEAST = 1e-4
-"""Values up to this share the first bin [µm or mdeg]: a tenth of a nanometre."""
-_GREATEST = 1e8
-_BINS = 2 + math.ceil(math.log(_GREATEST / LEAST) / math.log1p(RESOLUTION))
+"""A percentile is at most this much too high, relatively: the width of a bin."""
 
 
-class Extent:
-    """Size of the values seen so far, sign left out.
+class Distribution:
+    """Size of the values seen so far, sign left out, with a histogram of logarithmic bins.
 
     Attributes:
         count: How many values.
@@ -26,33 +23,37 @@ class Extent:
         self.count = 0
         self.greatest = 0.0
         self._squares = 0.0
+        self._histogram = np.zeros(BINS, np.int64)
 
-    def add(self, values: FloatArray) -> None:
-        """Take in more values, shape (n,)."""
-        if len(values):
-            self.count += len(values)
-            self.greatest = max(self.greatest, float(np.abs(values).max()))
-            self._squares += float(values @ values)
+    def add(self, values: FloatArray) -> int | None:
+        """Take in more values, shape (n,).
+
+        Returns:
+            Index of the value that is greater than all before it, if one is; of the very first
+            values, of the greatest among them.
+        """
+        if not len(values):
+            return None
+        values = np.ascontiguousarray(values, np.float64)
+        worst, squares = tally(values, values.view(np.int64), self._histogram)
+        greatest = abs(float(values[worst]))
+        greater = self.count == 0 or greatest > self.greatest
+        self.count += len(values)
+        self.greatest = max(self.greatest, greatest)
+        self._squares += squares
+        return int(worst) if greater else None
+
+    def copy(self) -> "Distribution":
+        """A distribution that goes on from here by itself."""
+        other = Distribution()
+        other.count, other.greatest, other._squares = self.count, self.greatest, self._squares
+        other._histogram = self._histogram.copy()
+        return other
 
     @property
     def rms(self) -> float:
         """Root mean square; 0 before the first value."""
         return math.sqrt(self._squares / self.count) if self.count else 0.0
-
-
-class Distribution(Extent):
-    """An ``Extent`` that also knows percentiles, by a histogram with logarithmic bins."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._histogram = np.zeros(_BINS, np.int64)
-
-    def add(self, values: FloatArray) -> None:
-        """Take in more values, shape (n,)."""
-        super().add(values)
-        size = np.clip(np.abs(values), LEAST, _GREATEST)
-        bins = np.ceil(np.log(size / LEAST) / math.log1p(RESOLUTION)).astype(np.int64)
-        self._histogram += np.bincount(bins, minlength=_BINS)
 
     def percentile(self, percent: float) -> float:
         """The value that ``percent`` of all do not exceed, at most ``RESOLUTION`` too high.
@@ -64,4 +65,9 @@ class Distribution(Extent):
             return 0.0
         rank = max(1, math.ceil(percent / 100.0 * self.count))
         index = int(np.searchsorted(np.cumsum(self._histogram), rank))
-        return min(LEAST * (1.0 + RESOLUTION) ** index, self.greatest)
+        return min(upper_edge(index), self.greatest)
+
+
+def upper_edge(index: int) -> float:
+    """Where a bin ends [µm or mdeg]."""
+    return float(np.array([(index + FIRST_CODE) << SHIFT], np.int64).view(np.float64)[0])

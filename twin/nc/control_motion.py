@@ -9,6 +9,7 @@ from twin.nc.control_words import ControlWords
 from twin.nc.dialect import FeedMode
 from twin.nc.move_columns import NAN, Segment
 from twin.nc.planes import Plane, Vector, cross
+from twin.nc.segments import direction_of
 
 LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
@@ -37,6 +38,15 @@ class ControlMotion(ControlWords):
         """Move straight to a programmed position; nothing when it stands there already."""
         self._add(target, rapid=rapid)
 
+    def spline_to(self, target: list[float], *, flat: bool) -> None:
+        """Move on a spline through a programmed position; ``flat``: its height goes linearly.
+
+        The same position twice ends the spline and begins another.
+        """
+        if target == self.programmed:
+            self.path.end_spline()
+        self._add(target, rapid=False, spline=(flat,))
+
     def arc_to(self, target: list[float], center: Vector, sweep: float) -> None:
         """Move on an arc about the plane's normal.
 
@@ -56,6 +66,7 @@ class ControlMotion(ControlWords):
         center: Vector | None = None,
         normal: Vector = (NAN, NAN, NAN),
         sweep: float = 0.0,
+        spline: tuple[bool] | None = None,
     ) -> None:
         end = self.frame.to_part(target)
         length = self._length(end, center, normal, sweep)
@@ -68,6 +79,9 @@ class ControlMotion(ControlWords):
             self.place_switches(length)
         feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc, length)
         acceleration, deceleration = self.acceleration, self.deceleration
+        if rapid:
+            acceleration = _either(self.rapid_acceleration, acceleration)
+            deceleration = _either(self.rapid_deceleration, deceleration)
         if self.axis_limits or self.axis_accelerations:
             share = self._axis_shares(end, length, is_arc)
             feed = _limited(feed, self.axis_limits, share)
@@ -89,7 +103,10 @@ class ControlMotion(ControlWords):
             normal=normal,
             sweep=sweep,
         )
-        self.path.add(self._last)
+        if spline is None:
+            self.path.add(self._last)
+        else:
+            self.path.add_point(self._last, flat=spline[0])
         self.programmed = target
         self.part = end
 
@@ -103,14 +120,7 @@ class ControlMotion(ControlWords):
     def direction(self) -> Vector | None:
         """Where the last move was going when it ended, programmed coordinates; None before one."""
         move = self._last
-        if move is None:
-            return None
-        x, y, z = (new - old for new, old in zip(move.end[:3], move.start[:3], strict=True))
-        if move.center is not None:
-            arm = tuple(a - b for a, b in zip(move.end[:3], move.center, strict=True))
-            sign = math.copysign(1.0, move.sweep)
-            x, y, z = (sign * value for value in cross(move.normal, (arm[0], arm[1], arm[2])))
-        return self.frame.unturn((x, y, z))
+        return None if move is None else self.frame.unturn(direction_of(move, at_end=True))
 
     def _length(
         self, end: list[float], center: Vector | None, normal: Vector, sweep: float
@@ -196,3 +206,8 @@ def _limited(value: float, limits: Mapping[int, float], shares: list[float]) -> 
     """A value along the path so that no axis exceeds its own limit; NaN is no limit."""
     bounds = [limit / shares[index] for index, limit in limits.items() if shares[index] > 0.0]
     return min([value, *bounds]) if value == value else min(bounds, default=value)
+
+
+def _either(value: float, default: float) -> float:
+    """A value, or where it is NaN another one."""
+    return default if math.isnan(value) else value

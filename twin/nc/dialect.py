@@ -94,6 +94,10 @@ class Modal:
     corner_tolerance: float = float("nan")
     square_corners: bool = False
     """Compensation extends lines at outside corners instead of rolling around them."""
+    indirect_leads: bool = False
+    """Compensation begins and ends around the contour's first and last point."""
+    correct_center: bool = True
+    """A centre that start and end are not equally far from is moved to fit."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -277,7 +281,7 @@ class Dialect:
     function_letters: str = ""
     references: str = ""
     repeat_word: str = ""
-    signed: str = ""
+    signed: tuple[str, ...] = ()
     series: str = ""
     words: Mapping[str, WordAction]
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)

@@ -82,8 +82,10 @@ class PlainRunner:
             and modal.plane in (XY, YZ, ZX)
             and modal.feed_mode in FEED_FACTORS
             and control.frame.plain
-            and not control.path.compensating
-            and not control.path.leading_out
+            and modal.correct_center
+            and control.path.open
+            and math.isnan(control.rapid_acceleration)
+            and math.isnan(control.rapid_deceleration)
             and not (control.axis_limits or control.axis_accelerations)
             and (disturbed is None or not disturbed(control))
         )
@@ -121,8 +123,8 @@ class PlainRunner:
         control.feed = None if math.isnan(feed) else feed
         last = None
         if len(rows.codes):
-            control.path.add_rows(rows.codes, rows.values, rows.positions)
             last = _segment(rows)
+            control.path.add_rows(rows.codes, rows.values, rows.positions, last)
         control.came_to(state.programmed.tolist(), state.part.tolist(), last)
 
 

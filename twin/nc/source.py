@@ -2,6 +2,7 @@
 
 import dataclasses
 import hashlib
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Protocol, overload
@@ -62,6 +63,10 @@ class Lines(Sequence[str]):
 
     def __iter__(self) -> Iterator[str]:
         return (self[index] for index in range(len(self)))
+
+    def any_holds(self, pattern: re.Pattern[bytes]) -> bool:
+        """Whether a pattern, which must not match line ends, stands in any line."""
+        return pattern.search(self._text) is not None
 
     def holding(self, mark: str) -> Iterator[tuple[int, str]]:
         """The lines in which a text stands, with their numbers from 0."""

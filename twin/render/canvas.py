@@ -51,6 +51,17 @@ FINAL = Quality(shadows=True, samples=4, drawn_cells=300)
 QUALITIES = {"draft": DRAFT, "final": FINAL}
 
 
+def quality_named(name: str) -> Quality:
+    """The quality of a name.
+
+    Raises:
+        RenderError: There is none.
+    """
+    if name not in QUALITIES:
+        raise RenderError(f"no quality '{name}': there are {', '.join(QUALITIES)}")
+    return QUALITIES[name]
+
+
 def prepare(spec: mujoco.MjSpec, quality: Quality, size: tuple[int, int]) -> None:
     """Set what the model must say about pictures before it is compiled."""
     spec.visual.global_.offwidth, spec.visual.global_.offheight = size

@@ -116,30 +116,35 @@ class PathEnds(NamedTuple):
         point: Where each move ends, shape (n, 3) [mm].
         arriving: Unit direction at its start, shape (n, 3); 0 where the tool stands still.
         leaving: Unit direction at its end, shape (n, 3).
+        speed: How fast the place moves with the fraction at start and end, shape (n, 2) [mm]; the
+            length of a line or circle.
     """
 
     point: FloatArray
     arriving: FloatArray
     leaving: FloatArray
+    speed: FloatArray
 
 
 def ends_of(path: PathColumns) -> PathEnds:
     """End points and end directions of every move."""
-    _, arriving = _point_and_direction(path, 0.0)
-    point, leaving = _point_and_direction(path, 1.0)
-    return PathEnds(point, arriving, leaving)
+    _, arriving, first = _at(path, 0.0)
+    point, leaving, last = _at(path, 1.0)
+    return PathEnds(point, arriving, leaving, np.column_stack([first, last]))
 
 
-def _point_and_direction(path: PathColumns, u: float) -> tuple[FloatArray, FloatArray]:
+def _at(path: PathColumns, u: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Point, unit direction and speed at one fraction of every move."""
     cosine, sine = np.cos(u * path.sweep)[:, None], np.sin(u * path.sweep)[:, None]
     point = path.origin + u * path.along + cosine * path.first + sine * path.second
     slope = path.along + path.sweep[:, None] * (cosine * path.second - sine * path.first)
     slope[:, 0] -= path.turn_rate * point[:, 1]
     slope[:, 1] += path.turn_rate * point[:, 0]
     angle = path.turn + u * path.turn_rate
-    speed = np.linalg.norm(slope, axis=1, keepdims=True)
-    unit = np.divide(slope, speed, out=np.zeros_like(slope), where=speed > 0.0)
-    return _turned(point, angle), _turned(unit, angle)
+    speed = np.linalg.norm(slope, axis=1)
+    still = np.zeros_like(slope)
+    unit = np.divide(slope, speed[:, None], out=still, where=speed[:, None] > 0.0)
+    return _turned(point, angle), _turned(unit, angle), speed
 
 
 def _turned(vector: FloatArray, angle: FloatArray) -> FloatArray:

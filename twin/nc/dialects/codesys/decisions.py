@@ -62,13 +62,29 @@ DECISIONS = (
     ),
     Decision(
         "How fast is G0?",
-        "As fast as the machine can, unless FF limits it.",
-        "The default of FF is an input of the application.",
+        "FF, else F; as fast as the machine can where the program has set neither.",
+        "The manual says so; the defaults of FF and F are inputs of the application.",
     ),
     Decision(
-        "What is a parabola's I J?",
-        "The point where the tangents of both ends meet.",
-        "It defines the parabola uniquely.",
+        "How long are a spline's tangents?",
+        "Half the distance of the neighbouring points; at the ends as long as the chord.",
+        "The manual gives their directions only; this is a cardinal spline without tension.",
+    ),
+    Decision(
+        "Which arc does G52, which spline does G51 put into a corner?",
+        "G52 one arc, or two of which each touches its move, between the points where the moves are "
+        "cut; G51 a curve of degree 5 without a jump of curvature between straight moves.",
+        "The manual says where the moves are cut, not what lies between.",
+    ),
+    Decision(
+        "In which order do smoothing, radius compensation and loop avoidance act?",
+        "In this order.",
+        "The application chains its function blocks; the manual's examples differ.",
+    ),
+    Decision(
+        "How long may a loop be that G61 cuts out?",
+        "32 moves.",
+        "The control is limited by a buffer of the application.",
     ),
     Decision(
         "What does G56 do?",

@@ -82,8 +82,25 @@ def _arc(control: Control, *, clockwise: bool) -> None:
         memory.circle_radius = None
     if goal.in_plane or pitch is None:
         word = centre.words[0] if centre.words else None
-        center = fitted_center(control, start[:2], end[:2], center, word)
+        fitted = fitted_center(control, start[:2], end[:2], center, word)
+        if control.modal.correct_center:
+            center = fitted
+        else:
+            _end_on_circle(control, goal, center)
     _sweep(control, goal, center, pitch, clockwise=clockwise)
+
+
+def _end_on_circle(control: Control, goal: Goal, center: Point) -> None:
+    """G264: the centre stays, the radius is the start's, and the end moves onto this circle."""
+    start, end = start_and_end(control, goal.target)
+    far = distance(start[:2], center) / distance(end[:2], center)
+    onto = (
+        center[0] + (end[0] - center[0]) * far,
+        center[1] + (end[1] - center[1]) * far,
+    )
+    if onto != end[:2]:
+        goal.target[:3] = control.modal.plane.world(*onto, end.height)
+        forget_polar(control)
 
 
 def _circle_radius(control: Control, *, cartesian: bool) -> Word | None:

@@ -56,6 +56,24 @@ DECISIONS = (
         "A longer extension leaves the contour without need.",
     ),
     Decision(
+        "How do the leads of compensation go (G138, G139)?",
+        "G138 straight to the point beside the contour's first; G139 the same, but around the "
+        "contour's first and last point where the straight way would cut them off.",
+        "The manual calls the one direct and the other indirect.",
+    ),
+    Decision(
+        "What do G36 and G39 do?",
+        "In a block of their own between two moves with a feed: G36 rounds the corner by the radius "
+        "I, G39 cuts both moves at the distance I; I stays for the next of them; compensation acts "
+        "on the blended contour.",
+        "The quick reference names the codes alone.",
+    ),
+    Decision(
+        "Where does an arc end with G264?",
+        "Where the direction of the programmed end meets the circle through the start.",
+        "The centre is not corrected, and the radius is the start's.",
+    ),
+    Decision(
         "How often does NR run a block?",
         "As often as it says, the block's own run included.",
         "A number of repetitions of 1 is a block that runs.",

@@ -1,0 +1,142 @@
+"""The compiled loops of the comparison against plain ones."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+from tests.compare.paths import line, moves_of
+from twin.compare.blocks import BlockCollector
+from twin.compare.circle_kernels import collect_by_angle
+from twin.compare.corner_kernels import pass_corners
+from twin.compare.statistics import RESOLUTION, Distribution
+from twin.compare.statistics_kernels import LEAST_EXPONENT
+from twin.nc.canonical import FloatArray, IntArray
+
+checked = settings(max_examples=40, derandomize=True, deadline=None)
+
+
+def nearest_rank(values: FloatArray, percent: float) -> float:
+    return float(np.sort(values)[max(1, int(np.ceil(percent / 100.0 * len(values)))) - 1])
+
+
+@checked
+@given(
+    arrays.arrays(np.float64, st.integers(1, 400), elements=st.floats(-1e6, 1e6)),
+    st.integers(1, 50),
+    st.sampled_from([50.0, 99.0, 100.0]),
+)
+def test_a_distribution_is_that_of_all_values(values: FloatArray, rows: int, percent: float):
+    found = Distribution()
+    for first in range(0, len(values), rows):
+        found.add(values[first : first + rows])
+    size = np.abs(values)
+    assert found.count == len(values)
+    assert found.greatest == size.max()
+    assert found.rms == pytest.approx(np.sqrt(np.mean(values**2)))
+    exact = nearest_rank(size, percent)
+    assert exact <= found.percentile(percent) <= max(exact * (1 + RESOLUTION), 2.0**LEAST_EXPONENT)
+
+
+def test_a_distribution_tells_where_a_new_greatest_is():
+    found = Distribution()
+    assert found.add(np.array([0.0, 0.0])) == 0
+    assert found.add(np.array([1.0, -3.0, 2.0])) == 1
+    assert found.add(np.array([3.0])) is None
+    assert found.add(np.zeros(0)) is None
+    assert found.copy().percentile(99.0) == found.percentile(99.0) == 3.0
+
+
+def passages(row: IntArray, error: FloatArray) -> list[tuple[int, list[float]]]:
+    """Every stay at a row with its errors; going back to the row before goes on with that stay."""
+    every: list[tuple[int, list[float]]] = []
+    latest: list[tuple[int, list[float]]] = []
+    for r, e in zip(row.tolist(), error.tolist(), strict=True):
+        here = next((stay for stay in latest if stay[0] == r), None)
+        if here is None:
+            here = (r, [])
+            every.append(here)
+        here[1].append(e)
+        latest = [*(stay for stay in latest if stay is not here), here][-2:]
+    return every
+
+
+@checked
+@given(
+    st.lists(st.tuples(st.integers(0, 4), st.integers(1, 150)), min_size=1, max_size=8),
+    st.integers(1, 90),
+    st.integers(0, 2**31),
+)
+def test_blocks_are_what_their_samples_are(stays: list[tuple[int, int]], rows: int, seed: int):
+    corners = [np.array([x, 0.0, 0.0, 0.0]) for x in range(6)]
+    moves = moves_of(*(line(a, b) for a, b in itertools.pairwise(corners)))
+    place = np.repeat([move for move, _ in stays], [count for _, count in stays])
+    error = 10.0 ** np.random.default_rng(seed).uniform(-2, 4, len(place))
+    time = np.float64(0.001) * np.arange(len(place))
+    collector = BlockCollector()
+    for first in range(0, len(place), rows):
+        here = slice(first, first + rows)
+        collector.add(moves, place[here], moves.line[place[here]], error[here], time[here])
+    found = collector.figures()
+    assert found.line.tolist() == sorted(set((place + 1).tolist()))
+    for index, number in enumerate(found.line):
+        own = error[place + 1 == number]
+        p99 = max(
+            nearest_rank(np.array(e), 99.0) for r, e in passages(place + 1, error) if r == number
+        )
+        assert found.samples[index] == len(own)
+        assert found.max_um[index] == own.max()
+        assert found.time_s[index] == time[error == own.max()][0]
+        assert found.rms_um[index] == pytest.approx(np.sqrt(np.mean(own**2)))
+        assert p99 <= found.p99_um[index] <= p99 * 1.008
+
+
+@checked
+@given(st.integers(1, 60), st.integers(0, 2**31))
+def test_points_around_a_circle_are_sorted_by_angle(count: int, seed: int):
+    random = np.random.default_rng(seed)
+    angle = random.uniform(0.0, 2.0 * np.pi, count)
+    deviation = random.normal(0.0, 0.01, count)
+    bins = 12
+    filled, sums = np.zeros(bins, np.int64), np.zeros((2, bins))
+    least, greatest = np.full((bins, 2), np.inf), np.full((bins, 2), -np.inf)
+    x, y = (25.0 + deviation) * np.cos(angle), (25.0 + deviation) * np.sin(angle)
+    collect_by_angle(x, y, 25.0, filled, sums[0], sums[1], least, greatest)
+    for index in range(bins):
+        own = (angle * bins / (2.0 * np.pi)).astype(int) == index
+        assert filled[index] == own.sum()
+        assert sums[0][index] == pytest.approx(angle[own].sum())
+        assert sums[1][index] == pytest.approx(deviation[own].sum(), abs=1e-12)
+        if own.any():
+            low, high = deviation[own].argmin(), deviation[own].argmax()
+            assert least[index] == pytest.approx([deviation[own][low], angle[own][low]], abs=1e-12)
+            assert greatest[index] == pytest.approx(
+                [deviation[own][high], angle[own][high]], abs=1e-12
+            )
+
+
+@checked
+@given(st.integers(1, 40), st.integers(0, 2**31))
+def test_the_way_past_a_corner_is_that_to_the_nearest_stretch(count: int, seed: int):
+    random = np.random.default_rng(seed)
+    corner = random.normal(size=(4, 3))
+    sharp = np.array([True, False, True, True])
+    point, time = random.normal(size=(count, 3)), 0.001 * np.arange(count)
+    place = random.integers(0, 4, count)
+    nearest, when = np.full(4, np.inf), np.zeros(4)
+    pass_corners(corner, sharp, point[0], point, place, time, nearest, when)
+    asked, asked_when = np.full(4, np.inf), np.zeros(4)
+    before = np.concatenate([point[:1], point[:-1]])
+    for i in range(count):
+        for end in {max(int(place[i]) - 1, 0), int(place[i])}:
+            along = point[i] - before[i]
+            share = (corner[end] - before[i]) @ along / max(along @ along, 1e-300)
+            way = float(np.linalg.norm(before[i] + np.clip(share, 0, 1) * along - corner[end]))
+            if sharp[end] and way < asked[end]:
+                asked[end], asked_when[end] = way, time[i]
+    assert nearest == pytest.approx(asked)
+    # Two stretches share the sample between them.
+    assert when == pytest.approx(asked_when, abs=1.1e-3)
