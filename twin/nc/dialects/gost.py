@@ -179,4 +179,5 @@ GOST = Dialect(
     ),
     memory=Periods,
     before_motion=recalculate_start,
+    disturbed=lambda control: bool(_periods(control).by_axis),
 )

@@ -7,7 +7,7 @@ import dataclasses
 
 from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
-from twin.nc.circular import iso_arc_center, start_and_end
+from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
 from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Interpolation, Mark, Syntax
 
@@ -126,8 +126,8 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-CLOCKWISE = Interpolation(clockwise_arc)
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=plain_arc(clockwise=False))
 
 DECISIONS = (
     Decision(
@@ -227,4 +227,5 @@ MEFI = Dialect(
         Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
     ),
     memory=Dragging,
+    disturbed=lambda control: _dragging(control).on,
 )

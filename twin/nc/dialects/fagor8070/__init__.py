@@ -6,7 +6,7 @@ from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, statements, subroutines, variables
 from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
-from twin.nc.dialects.fagor8070.memory import FagorMemory
+from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 
 
 def _prepare(control: Control) -> None:
@@ -130,4 +130,5 @@ FAGOR8070 = Dialect(
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,
+    disturbed=acts_on_plain_blocks,
 )
