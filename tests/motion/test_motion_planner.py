@@ -22,7 +22,8 @@ from motion_programs import (
 
 from twin.motion.blocks import SHORTEST
 from twin.motion.limits import MotionLimits
-from twin.motion.planner import plan, plan_phases
+from twin.motion.phases import plan_phases
+from twin.motion.planner import plan
 from twin.motion.setpoints import join
 from twin.nc.canonical import Chunk, FloatArray, Function, Moves
 
