@@ -84,7 +84,7 @@ def test_junit_is_what_jenkins_validates():
 
 def test_junit_tells_figures_and_warnings():
     ring, _, bad = ET.fromstring(forms.junit_xml(ALL))[0]  # noqa: S314 (made here)
-    assert "contour error: 1.2 µm" in (ring.findtext("system-out") or "")
+    assert "contour_um: 1.234" in (ring.findtext("system-out") or "")
     assert "no feed" in (bad.findtext("system-err") or "")
 
 

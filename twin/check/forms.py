@@ -28,6 +28,17 @@ def table_rows(outcomes: Sequence[CheckOutcome]) -> list[tuple[str, str, str, st
     ]
 
 
+def figures(outcome: CheckOutcome) -> list[tuple[str, object]]:
+    """Name and value of what a run came to; empty for a program that was not run."""
+    if outcome.contour_um is None:
+        return []
+    return [
+        ("contour_um", round(outcome.contour_um, 3)),
+        ("worst_line", outcome.worst_line),
+        ("cycle_time_s", outcome.cycle_time_s),
+    ]
+
+
 def summary_line(outcomes: Sequence[CheckOutcome]) -> str:
     """How many programs came out how, and how many warnings there were."""
     counts = dict.fromkeys(("pass", "fail", "alarm", "error"), 0)
@@ -73,13 +84,11 @@ def _add_case(suite: ET.Element, outcome: CheckOutcome) -> None:
     if not outcome.passed:
         first = outcome.findings[0]
         kind = "error" if outcome.verdict == "error" else "failure"
-        told = {"type": first.code, "message": _printable(first.message)}
-        problem = ET.SubElement(case, kind, told)
+        about = {"type": first.code, "message": _printable(first.message)}
+        problem = ET.SubElement(case, kind, about)
         problem.text = _printable("\n".join(str(finding) for finding in outcome.findings))
-    if outcome.contour_um is not None:
-        _, *cells = table_rows([outcome])[0]
-        figures = zip(_HEADINGS[1:], cells, strict=True)
-        ET.SubElement(case, "system-out").text = "\n".join(f"{k}: {v}" for k, v in figures)
+    if told := figures(outcome):
+        ET.SubElement(case, "system-out").text = "\n".join(f"{k}: {v}" for k, v in told)
     if outcome.warnings:
         text = "\n".join(str(warning) for warning in outcome.warnings)
         ET.SubElement(case, "system-err").text = _printable(text)

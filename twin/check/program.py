@@ -26,12 +26,14 @@ class CheckSettings:
 
     Attributes:
         machine: Overrides the jobs' machines.
+        dialect: Overrides the jobs' dialects.
         strict: Warnings of the interpreter are errors.
         baseline: Folder of the baselines that runs are held to, or None.
         update_baseline: Store baselines there instead of holding runs to them.
     """
 
     machine: str | None = None
+    dialect: str | None = None
     strict: bool = False
     baseline: Path | None = None
     update_baseline: bool = False
@@ -66,7 +68,9 @@ def baseline_file(folder: Path, job: Job) -> Path:
 def _run(path: Path, settings: CheckSettings) -> CheckOutcome:
     from twin.chain import Run
 
-    preparation = prepare(path, machine=settings.machine, strict=settings.strict)
+    preparation = prepare(
+        path, dialect=settings.dialect, machine=settings.machine, strict=settings.strict
+    )
     run = Run(preparation)
     try:
         survey = run.survey()
@@ -116,7 +120,7 @@ def _not_run(path: Path, error: TwinError, differing: tuple[Finding, ...] = ()) 
     if isinstance(error, ProgramError):
         finding = _diagnostic_finding(error.diagnostic)
     else:
-        finding = Finding("cannot-run", str(error), str(path))
+        finding = Finding("cannot-run", str(error).removeprefix(f"{path}: "), str(path))
     return CheckOutcome(
         program=str(path),
         verdict="alarm" if error.exit_code is ExitCode.ALARM else "error",

@@ -158,7 +158,7 @@ def polar_plot(arc: ArcFigures, tolerance_um: float) -> Plot:
 
 def _round_steps(greatest: float) -> FloatArray:
     """A few round values from 0 to the greatest."""
-    steps = MaxNLocator(5).tick_values(0.0, greatest)
+    steps = np.asarray(MaxNLocator(5).tick_values(0.0, greatest), np.float64)
     return steps[(steps >= 0.0) & (steps <= greatest)]
 
 
@@ -196,7 +196,7 @@ def _axes_plot(
     axes.legend(
         handles=handles, ncols=len(handles), loc="lower left", bbox_to_anchor=(0, 1), frameon=False
     )
-    middle = np.full(len(trace.time), np.mean(axes.get_ylim()))
+    middle = np.full(len(trace.time), 0.5 * sum(axes.get_ylim()))
     return finish(figure, axes, np.column_stack([trace.time, middle]))
 
 
