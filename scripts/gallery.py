@@ -9,14 +9,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-import numpy as np
 from PIL import Image
 
 from twin.chain import Run
 from twin.preparation import prepare
 from twin.progress import no_progress
 from twin.recording import open_recording
-from twin.render.film import still
+from twin.render.still import Shot, stills
+from twin.replay import scene_of
 from twin.resources import resource_root
 
 RENDERS = Path(__file__).resolve().parent.parent / "renders"
@@ -50,25 +50,14 @@ PICTURES = {
 def draw(picture: Picture, out: Path) -> None:
     """Run the picture's program and draw its moment."""
     job_file = resource_root("programs") / f"{picture.program}.toml"
-    run = Run(prepare(job_file, machine=picture.machine), keep_contour=True)
-    job = run.preparation.job.file
+    run = Run(prepare(job_file, machine=picture.machine))
+    survey = run.survey()
     with tempfile.TemporaryDirectory() as folder:
-        run.execute(run.survey(), Path(folder), no_progress)
+        run.execute(survey, Path(folder), no_progress)
         with open_recording(Path(folder) / "recording.h5") as recording:
-            still(
-                recording,
-                spec=run.spec,
-                machine=run.preparation.machine,
-                stock=job.stock,
-                tool=job.tools[0],
-                source=run.preparation.source.lines,
-                out=out,
-                camera=picture.camera,
-                time_s=picture.share * (len(recording) - 1) * recording.header.period_s,
-                rapid_moves=run.rapid_moves,
-                contour_um=np.concatenate(run.contour_um),
-                error_scale_um=job.tolerance.contour_um,
-            )
+            scene = scene_of(recording, run.preparation, survey.notes)
+            end = round(picture.share * len(recording))
+            stills(scene, [Shot(out, end)], cameras=(picture.camera,))
     shrink(out)
 
 

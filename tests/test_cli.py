@@ -107,6 +107,27 @@ def test_what_is_not_there_is_refused(twin: Twin, tmp_path: Path):
     assert twin("interpret", program(tmp_path, "G102 C0\n"), "--format", "xml").code == 2
 
 
+@pytest.mark.parametrize("text", ["", "%\n", "(nothing here)\n"])
+def test_a_program_that_moves_nothing_says_so(twin: Twin, tmp_path: Path, text: str):
+    done = twin("run", program(tmp_path, text), "--dialect", "gost", "--out", tmp_path / "out")
+    assert done.code == 0, done.stderr
+    assert "nothing moves" in done.stdout
+    assert (tmp_path / "out" / "report.html").is_file()
+
+
+def test_the_summary_of_an_alarm_names_it(twin: Twin, tmp_path: Path):
+    path = program(tmp_path, "G0 X5000\n")
+    done = twin("run", path, "--dialect", "gost", "--out", tmp_path / "out")
+    assert done.code == 4
+    assert "soft-limit at line 1" in done.stdout
+
+
+def test_a_folder_is_for_check(twin: Twin, tmp_path: Path):
+    done = twin("run", tmp_path)
+    assert done.code == 2
+    assert "twin check" in done.stderr
+
+
 def test_a_dull_drive_fails_the_tolerance_and_names_the_line(twin: Twin, tmp_path: Path):
     path = PROGRAMS / "mefi" / "helix.toml"
     machine = machine_with_gain(tmp_path, 0.5)

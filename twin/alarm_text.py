@@ -1,8 +1,8 @@
-"""Machine alarms shown as the interpreter shows errors: place, caret, hint."""
+"""Machine alarms and near misses shown as the interpreter shows errors: place, caret, hint."""
 
 import re
 
-from twin.machine.alarms import Alarm
+from twin.machine.alarms import Alarm, NearMiss
 from twin.nc.diagnostics import Diagnostic
 from twin.nc.source import Source
 
@@ -16,7 +16,7 @@ def alarm_diagnostic(alarm: Alarm, source: Source) -> Diagnostic:
         alarm: The machine's alarm.
         source: The program that ran.
     """
-    text = source.lines[alarm.line - 1] if 0 < alarm.line <= len(source.lines) else ""
+    text = _line(source, alarm.line)
     word = re.search(rf"{re.escape(alarm.axis)}\s*=?\s*[-+]?[\d.#$]\S*", text, re.IGNORECASE)
     if not alarm.axis or word is None:
         word = re.search(r"\S+", text)
@@ -30,3 +30,31 @@ def alarm_diagnostic(alarm: Alarm, source: Source) -> Diagnostic:
         width=1 if word is None else word.end() - word.start(),
         source=text,
     )
+
+
+def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
+    """Show a near miss as a warning at the line in which it was closest.
+
+    Args:
+        near_miss: The closest approach of the run.
+        source: The program that ran.
+    """
+    text = _line(source, near_miss.line)
+    one, two = near_miss.between
+    return Diagnostic(
+        severity="warning",
+        code="near-miss",
+        message=(
+            f"the {one} passes the {two} with {near_miss.clearance_mm:.2f} mm to spare "
+            f"(after {near_miss.time_s:.3f} s)"
+        ),
+        file=source.name,
+        line=max(near_miss.line, 1),
+        column=1,
+        width=max(len(text), 1),
+        source=text,
+    )
+
+
+def _line(source: Source, number: int) -> str:
+    return source.lines[number - 1] if 0 < number <= len(source.lines) else ""

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-import numpy.typing as npt
 
 from twin import __version__
 from twin.compare.comparison import Comparison
@@ -15,6 +14,7 @@ from twin.compare.trace import Trace
 from twin.compare.verdict import judge
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.part import write_stl
+from twin.cutting.spindle import Spindle, speaks_of_spindle
 from twin.machine.alarms import Alarm
 from twin.machine.config import Machine
 from twin.machine.model import build_spec, spindle_over_table_mm
@@ -24,14 +24,16 @@ from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan
 from twin.motion.setpoints import Setpoints
 from twin.motion.settle import settle
-from twin.nc.canonical import Chunk, FloatArray, IntArray, Motion
+from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.diagnostics import Diagnostic
 from twin.outcome import Outcome
 from twin.placement import part_zero
 from twin.preparation import Preparation
+from twin.program_notes import NoteTaker, ProgramNotes
 from twin.progress import Progress
 from twin.recording import RecordingHeader, Samples, record
 from twin.stages import StageClock
+from twin.stock_alarm import stock_alarm
 from twin.toolpath.part_frame import PartFrame
 
 
@@ -43,11 +45,15 @@ class Survey:
         moves: How many moves the program makes.
         warnings: What the interpreter had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
+        speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
+        notes: What the program says beside its moves.
     """
 
     moves: int
     warnings: tuple[Diagnostic, ...]
     alarm: Alarm | None
+    speaks_of_spindle: bool
+    notes: ProgramNotes
 
 
 class Run:
@@ -60,15 +66,13 @@ class Run:
         spec: The model of the machine with the job's first tool in the spindle.
         clock: How long each stage took; a film's goes on it too.
         trace: The run thinned for plots.
-        contour_um: Contour error of every sample, for those who draw it; empty unless kept.
     """
 
-    def __init__(self, preparation: Preparation, *, keep_contour: bool = False) -> None:
+    def __init__(self, preparation: Preparation) -> None:
         """Lay the job out on its machine.
 
         Args:
             preparation: The job made concrete.
-            keep_contour: Keep the contour error of every sample in memory.
 
         Raises:
             ConfigError: The model is wrong, or the stock does not fit on the table.
@@ -82,10 +86,8 @@ class Run:
         self.part_frame: PartFrame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
-        self.contour_um: list[FloatArray] = []
-        self._keep_contour = keep_contour
-        self._motion = bytearray()
         self._planned_s = 0.0
+        self._spindle = Spindle(held_to_program=False)
 
     def execute(self, survey: Survey, out: Path, progress: Progress) -> Outcome:
         """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
@@ -102,26 +104,28 @@ class Run:
         """
         preparation = self.preparation
         comparison = Comparison(preparation.machine.axes, self.part_frame, self.part_zero)
-        cutter = self._cutter()
+        cutter = self._cutter(survey.notes)
         track = _Track(self.part_zero, preparation.start)
-        alarm = survey.alarm
+        self._spindle = Spindle(held_to_program=survey.speaks_of_spindle)
+        alarm, near_miss = survey.alarm, None
         if alarm is None:
             with record(out / "recording.h5", self.header()) as writer:
                 simulation = self._simulation(comparison)
-                for samples in self.clock.watch("simulate", simulation):
+                for simulated in self.clock.watch("simulate", simulation):
+                    with self.clock.stage("cut"):
+                        samples, alarm = self._cut(cutter, simulated, survey.notes)
                     track.add(samples)
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
                         self.trace.add(samples, contour_um)
-                    if self._keep_contour:
-                        self.contour_um.append(contour_um)
-                    with self.clock.stage("cut"):
-                        if cutter is not None:
-                            cutter.add(samples, self._is_rapid(samples.setpoint.move))
                     with self.clock.stage("record"):
-                        writer.append(samples)
+                        writer.append(samples, contour_um)
                     progress("simulate", track.progress(survey.moves))
-            alarm = simulation.alarm
+                    if alarm is not None:
+                        break
+                alarm, near_miss = alarm or simulation.alarm, simulation.near_miss
+                if alarm is not None:
+                    writer.note_alarms([(alarm.time_s, alarm.message)])
         cut = self._finish_part(cutter, out) if cutter is not None and len(track) else None
         figures = comparison.result()
         alarms = () if alarm is None else (alarm,)
@@ -132,6 +136,7 @@ class Run:
             figures=figures,
             cut=cut,
             alarms=alarms,
+            near_miss=near_miss,
             warnings=survey.warnings,
             samples=len(track),
             duration_s=duration_s,
@@ -146,12 +151,35 @@ class Run:
             ProgramError: The program is wrong.
         """
         interpretation = self.preparation.interpretation()
-        moves, alarm = 0, None
+        moves, alarm, speaks = 0, None, False
+        taker = NoteTaker(self.preparation.job.file)
         for chunk in self.clock.watch("interpret", interpretation.chunks()):
             moves += len(chunk.moves)
+            taker.add(chunk)
+            speaks = speaks or speaks_of_spindle(chunk)
             if alarm is None:
                 alarm = soft_limit_alarm(self.preparation.machine, chunk.moves, self.part_zero)
-        return Survey(moves=moves, warnings=tuple(interpretation.diagnostics), alarm=alarm)
+        return Survey(
+            moves=moves,
+            warnings=tuple(interpretation.diagnostics),
+            alarm=alarm,
+            speaks_of_spindle=speaks,
+            notes=taker.notes(),
+        )
+
+    def _cut(
+        self, cutter: Cutter | None, samples: Samples, notes: ProgramNotes
+    ) -> tuple[Samples, Alarm | None]:
+        """Cut along a chunk; what is left of it where the stock raised an alarm, and the alarm."""
+        if cutter is None:
+            return samples, None
+        rapid = notes.is_rapid(samples.setpoint.move)
+        cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
+        if cutter.halted is None:
+            return samples, None
+        alarm = stock_alarm(cutter.halted, cutter.tool)
+        end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
+        return samples[:end], alarm
 
     def _simulation(self, comparison: Comparison) -> Simulation:
         machine = self.preparation.machine
@@ -176,25 +204,14 @@ class Run:
         """The program's moves on their way to the planner; those who judge hear of them too."""
         for chunk in self.preparation.interpretation().chunks():
             comparison.expect(chunk.moves)
-            self._motion += chunk.moves.motion.tobytes()
+            self._spindle.expect(chunk)
             yield chunk
 
-    @property
-    def rapid_moves(self) -> npt.NDArray[np.bool_]:
-        """Which of the program's moves so far are rapids, by move number."""
-        return np.frombuffer(bytes(self._motion), np.uint8) == Motion.RAPID
-
-    def _is_rapid(self, move: IntArray) -> npt.NDArray[np.bool_]:
-        if not self._motion:
-            return np.zeros(len(move), np.bool_)
-        motion = np.frombuffer(self._motion, np.uint8)
-        return (move >= 0) & (motion[np.maximum(move, 0)] == Motion.RAPID)
-
-    def _cutter(self) -> Cutter | None:
+    def _cutter(self, notes: ProgramNotes) -> Cutter | None:
         job = self.preparation.job.file
         if job.stock is None:
             return None
-        return Cutter(job.stock, job.tools[0], self.part_frame, self.part_zero)
+        return Cutter(job.stock, notes.tools, self.part_frame, self.part_zero, halts=True)
 
     def _finish_part(self, cutter: Cutter, out: Path) -> CutResult:
         with self.clock.stage("cut"):
@@ -216,6 +233,8 @@ class Run:
             machine=preparation.machine.file.name,
             twin_version=__version__,
             mujoco_version=mujoco.__version__,
+            job=preparation.job.file.model_dump_json(exclude_unset=True),
+            machine_file=str(preparation.machine.path.resolve()),
         )
 
 

@@ -7,6 +7,7 @@ import pydantic
 from pydantic import Field
 
 from twin.errors import ConfigError
+from twin.fixture import FixtureTable
 from twin.stl_file import stl_extent
 from twin.toml_file import Table, read_toml
 
@@ -215,6 +216,8 @@ class JobFile(Table):
     stock: StockTable | None = None
     tools: tuple[ToolTable, ...] = (ToolTable(number=1),)
     """The first is in the spindle at the start."""
+    fixtures: tuple[FixtureTable, ...] = ()
+    """What holds the part, beside what the machine file puts on its table."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
     variables: dict[str, float] = Field(default_factory=dict)
@@ -248,7 +251,8 @@ class Job:
 
     def __init__(self, folder: Path, file: JobFile, path: Path | None = None) -> None:
         if file.stock is not None and file.stock.file is not None:
-            stock = file.stock.model_copy(update={"file": str(folder / file.stock.file)})
+            whole = str((folder / file.stock.file).absolute())
+            stock = file.stock.model_copy(update={"file": whole})
             file = file.model_copy(update={"stock": stock})
         self.folder = folder
         self.file = file

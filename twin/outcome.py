@@ -5,7 +5,7 @@ import dataclasses
 from twin.compare.figures import Figures
 from twin.compare.verdict import Verdict
 from twin.cutting.cut import CutResult
-from twin.machine.alarms import Alarm
+from twin.machine.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
 from twin.nc.diagnostics import Diagnostic
 
@@ -19,6 +19,7 @@ class Outcome:
         figures: Following and contour error.
         cut: What the cut told; None without a stock.
         alarms: Alarms of the machine, in order.
+        near_miss: The closest that the tool's side and the part's came, below the machine's limit.
         warnings: The interpreter's.
         samples: How many samples were recorded, settling included.
         duration_s: Machine time of the program, settling not counted [s].
@@ -30,6 +31,7 @@ class Outcome:
     figures: Figures
     cut: CutResult | None
     alarms: tuple[Alarm, ...]
+    near_miss: NearMiss | None
     warnings: tuple[Diagnostic, ...]
     samples: int
     duration_s: float

@@ -3,15 +3,18 @@
 import dataclasses
 from pathlib import Path
 
-from twin.errors import UsageError
-from twin.job import Job, read_job
+import pydantic
+
+from twin.errors import RecordingError, UsageError
+from twin.job import Job, JobFile, read_job
 from twin.machine.config import Machine, read_machine
 from twin.nc.canonical import FloatArray
 from twin.nc.dialects import Dialect, dialect_named, recognise
 from twin.nc.interpreter import Interpretation
 from twin.nc.settings import ControlSettings, ToolData
-from twin.nc.source import Source, read_source
+from twin.nc.source import Source, read_source, source_from_text
 from twin.placement import start_position
+from twin.recording import RecordingHeader
 from twin.resources import machine_file
 
 
@@ -57,6 +60,8 @@ def prepare(
     Raises:
         UsageError: A file is missing or wrong, or the dialect cannot be told.
     """
+    if path.is_dir():
+        raise UsageError(f"{path}: a folder; twin check runs the programs in a folder")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
     job = read_job(path)
@@ -64,7 +69,7 @@ def prepare(
         found = machine_file(job.file.machine, beside=job.folder)
     else:
         found = machine_file(machine)
-    twin_machine = read_machine(found)
+    twin_machine = read_machine(found).with_fixtures(job.file.fixtures)
     name = dialect or job.file.dialect
     named = None if name is None else dialect_named(name)
     source = read_source(job.program, named)
@@ -74,6 +79,35 @@ def prepare(
         source=source,
         dialect=named or recognise(source),
         settings=_control_settings(job, twin_machine, strict=strict),
+    )
+
+
+def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> Preparation:
+    """What a recording was made with, from what it says about itself.
+
+    Args:
+        header: Of the recording.
+        machine: Overrides the machine file; a path is relative to the working folder.
+
+    Raises:
+        UsageError: The recording does not hold its job, or the machine file is gone or wrong.
+    """
+    try:
+        file = JobFile.model_validate_json(header.job)
+    except pydantic.ValidationError as error:
+        raise RecordingError(
+            "the recording does not hold the job that it was made with: run the job again"
+        ) from error
+    beside = header.machine_file if Path(header.machine_file).is_file() else header.machine
+    found = read_machine(machine_file(machine or beside)).with_fixtures(file.fixtures)
+    job = Job(Path(), file)
+    dialect = dialect_named(header.dialect)
+    return Preparation(
+        job=job,
+        machine=found,
+        source=source_from_text(header.program_text, header.program),
+        dialect=dialect,
+        settings=_control_settings(job, found, strict=False),
     )
 
 

@@ -8,7 +8,8 @@ same folder, for HDF5 writes it so that others may read it (single writer, multi
 
 import contextlib
 import dataclasses
-from collections.abc import Iterator, Mapping
+import json
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +63,10 @@ class RecordingHeader:
     machine: str
     twin_version: str
     mujoco_version: str
+    job: str = ""
+    """The job as JSON, files in it as whole paths; empty in recordings that were made without."""
+    machine_file: str = ""
+    """Where the machine file lay."""
 
 
 _COLUMNS: Mapping[str, tuple[str, str]] = {
@@ -78,6 +83,8 @@ _JOINT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "joint/velocity": ("joint_velocity", "mm/s or deg/s"),
     "drive/force": ("drive_force", "N or N m"),
 }
+CONTOUR = "contour"
+"""Dataset of the contour error, shape (n,) [µm]; missing where nobody compared."""
 _ROWS_PER_CHUNK = 4096
 _FORMAT = ("v110", "v110")
 """The oldest format of HDF5 that can be read while it is written."""
@@ -92,19 +99,33 @@ class RecordingWriter:
         width = len(header.axes)
         for path, (name, unit) in {**_COLUMNS, **_JOINT_COLUMNS}.items():
             kind = np.int64 if name in ("line", "move") else np.float64
-            shape = (0, width) if "/" in path else (0,)
-            rows = (_ROWS_PER_CHUNK, *shape[1:])
-            dataset = file.create_dataset(
-                path, shape, maxshape=(None, *shape[1:]), dtype=kind, chunks=rows,
-                compression="gzip", compression_opts=1, shuffle=True,
-            )  # fmt: skip
-            if unit:
-                dataset.attrs["unit"] = unit
+            self._create(path, (0, width) if "/" in path else (0,), kind, unit)
         _write_attributes(file, header)
 
-    def append(self, samples: Samples) -> None:
-        """Add a chunk that follows the last one."""
+    def _create(self, path: str, shape: tuple[int, ...], kind: type[np.generic], unit: str) -> None:
+        dataset = self._file.create_dataset(
+            path, shape, maxshape=(None, *shape[1:]), dtype=kind, chunks=(_ROWS_PER_CHUNK, *shape[1:]),
+            compression="gzip", compression_opts=1, shuffle=True,
+        )  # fmt: skip
+        if unit:
+            dataset.attrs["unit"] = unit
+
+    def note_alarms(self, alarms: Iterable[tuple[float, str]]) -> None:
+        """Add what the machine raised when [s, text]."""
+        self._file.attrs["alarms"] = json.dumps(list(alarms))
+
+    def append(self, samples: Samples, contour_um: FloatArray | None = None) -> None:
+        """Add a chunk that follows the last one.
+
+        Args:
+            samples: n samples.
+            contour_um: Their contour errors, shape (n,) [µm]; for all chunks or for none.
+        """
         end = self._count + len(samples)
+        if contour_um is not None:
+            if CONTOUR not in self._file:
+                self._create(CONTOUR, (0,), np.float64, "um")
+            self._put(CONTOUR, contour_um, end)
         for path, (name, _) in _COLUMNS.items():
             self._put(path, getattr(samples.setpoint, name), end)
         for path, (name, _) in _JOINT_COLUMNS.items():
@@ -130,7 +151,7 @@ def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
     )
     attributes["table_center"] = header.part_frame.center
     attributes["table_zero"] = header.part_frame.turn_zero
-    for name in _TEXT_ATTRIBUTES:
+    for name in (*_TEXT_ATTRIBUTES, *_LATER_ATTRIBUTES):
         attributes[name] = getattr(header, name)
     attributes["complete"] = False
 
@@ -144,6 +165,8 @@ _TEXT_ATTRIBUTES = (
     "twin_version",
     "mujoco_version",
 )
+_LATER_ATTRIBUTES = ("job", "machine_file")
+"""Recordings of earlier versions lack them."""
 
 
 @contextlib.contextmanager
@@ -199,6 +222,16 @@ class Recording:
         """One whole dataset, such as ``joint/position``."""
         return self._dataset(name)[: len(self)]
 
+    @property
+    def alarms(self) -> tuple[tuple[float, str], ...]:
+        """When the machine raised which alarm [s, text]."""
+        noted = json.loads(str(self._file.attrs.get("alarms", "[]")))
+        return tuple((float(time), str(text)) for time, text in noted)
+
+    def contour_um(self, first: int, last: int) -> FloatArray | None:
+        """Contour error of the samples from ``first`` up to ``last`` [µm]; None where not known."""
+        return self._dataset(CONTOUR)[first:last] if CONTOUR in self._file else None
+
     def chunks(self, rows: int = 65536) -> Iterator[Samples]:
         """Samples in order, at most ``rows`` at a time."""
         for first in range(0, len(self), rows):
@@ -226,6 +259,7 @@ def _read_header(file: h5py.File) -> RecordingHeader:
             turn_zero=values["table_zero"],
         ),
         **{name: values[name] for name in _TEXT_ATTRIBUTES},
+        **{name: values.get(name, "") for name in _LATER_ATTRIBUTES},
     )
 
 

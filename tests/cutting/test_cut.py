@@ -152,6 +152,65 @@ def test_a_feed_that_ends_in_the_rapid_is_no_collision(samples: Motion) -> None:
     assert cutter.result().rapid_into_stock == ()
 
 
+def bore_twice() -> FloatArray:
+    """Down a hole, up, and in rapid down the same hole again, some micrometres beside it."""
+    down, up = np.linspace(2.0, -6.0, 300), np.linspace(-6.0, 2.0, 300)
+    return np.concatenate(
+        [path(3.0, 1.0, down), path(3.0, 1.0, up), path(3.004, 1.002, np.linspace(2.0, -5.9, 300))]
+    )
+
+
+@pytest.mark.parametrize("cell", [0.05, 0.2, 0.5])
+def test_a_rapid_down_a_bored_hole_brushes_its_wall_and_is_no_collision(
+    samples: Motion, cell: float
+) -> None:
+    motion = bore_twice()
+    cutter = Cutter(plate(cell), TOOL, FRAME, ZERO, halts=True)
+    cutter.add(samples(motion), np.repeat([False, True, True], 300))
+    assert cutter.halted is None
+    assert cutter.result().rapid_into_stock == ()
+
+
+def test_a_feed_with_the_spindle_off_is_noted_where_it_meets_material(samples: Motion) -> None:
+    cutter = Cutter(plate(0.2), TOOL, FRAME, ZERO)
+    motion = path(np.linspace(-60.0, 60.0, 1200), 0.0, -2.5)
+    off = np.zeros(1200, np.bool_)
+    cutter.add(samples(motion, 3), off, off)
+    assert cutter.result().spindle_off == ()
+    motion = path(np.linspace(60.0, -60.0, 1200), 12.0, -2.5)
+    cutter.add(samples(motion, 8, start=2.0), off, ~off)
+    (event,) = cutter.result().spindle_off
+    assert (event.line, event.what) == (8, "standing")
+    assert event.depth_mm == pytest.approx(2.5)
+    assert event.position[0] == pytest.approx(43.0, abs=2.0)
+    assert event in cutter.events()
+
+
+@pytest.mark.parametrize("size", [37, 150, 2000])
+def test_a_cutter_that_halts_leaves_the_part_as_it_was_at_that_moment(
+    samples: Motion, size: int
+) -> None:
+    feed = path(np.linspace(-60.0, 0.0, 600), 0.0, -2.5)
+    rapid = path(np.linspace(0.0, 60.0, 200), 0.0, -2.5)
+    motion = np.concatenate([feed, rapid])
+    fast = np.arange(800) >= 600
+    cutter = Cutter(plate(0.2), TOOL, FRAME, ZERO, halts=True, keep_marks=True)
+    for first in range(0, 800, size):
+        here = slice(first, first + size)
+        cutter.add(samples(motion[here], 1, start=first * 1e-3), fast[here])
+    event = cutter.halted
+    assert event is not None
+    assert 0.6 < event.time_s < 0.62
+    assert cutter.result().rapid_into_stock == (event,)
+    same = Cutter(plate(0.2), TOOL, FRAME, ZERO)
+    until = round(event.time_s / 1e-3) + 1
+    same.add(samples(motion[:until]), fast[:until])
+    assert np.array_equal(cutter.map.heights, same.map.heights)
+    assert cutter.result().removed_mm3 == pytest.approx(same.result().removed_mm3, rel=1e-4)
+    uncut = cutter.map.heights == cutter.map.top
+    assert not cutter.marks[uncut].any()
+
+
 def test_cut_deeper_than_the_flutes_is_a_gouge(samples: Motion) -> None:
     cutter = Cutter(plate(0.2), TOOL, FRAME, ZERO)
     motion = path(np.linspace(-20.0, 20.0, 500), 0.0, np.linspace(-7.0, -9.0, 500))

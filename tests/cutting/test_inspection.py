@@ -52,7 +52,11 @@ def test_a_slot_too_deep_is_measured_and_walls_are_not() -> None:
 def test_nothing_measured_says_so() -> None:
     part = slotted(0.0).map
     part.heights[:] = part.bottom
-    assert inspect(part, part, 20.0).as_json() == {"measured_share": 0.0}
+    assert inspect(part, part, 20.0).as_json() == {
+        "measured_share": 0.0,
+        "standing_mm3": 0.0,
+        "missing_mm3": 0.0,
+    }
 
 
 def test_different_grids_are_refused() -> None:

@@ -15,14 +15,54 @@ EXPECTED = {
     "soft_limit_arc": ("soft-limit", 4, "X would go to 440.000 mm"),
     "hard_limit": ("hard-limit", 4, "X ran onto its limit switch at 402.0"),
     "following_error": ("following-error", 5, "X trails its setpoint by 3.0"),
-    "drive_saturation": ("drive-saturation", 5, "the drive of Y has been at its limit of 6000 N"),
+    "drive_saturation": ("drive-saturation", 5, "the drive of Y has been at its limit of 3500 N"),
     "collision_faceplate": ("collision", 5, "the tool's shank meets the faceplate"),
     "collision_vise": ("collision", 6, "the holder's nut meets the fixed jaw"),
+    "rapid_into_stock": (
+        "rapid-into-stock",
+        6,
+        "a rapid drives tool 1 3.00 mm deep into the stock",
+    ),
+    "spindle_off": ("spindle-off", 10, "tool 1 feeds 3.00 mm deep into the stock with the spindle"),
 }
+NO_ALARM = "near_miss"
 
 
 def test_every_program_has_its_expectation():
-    assert {path.stem for path in FOLDER.glob("*.nc")} == set(EXPECTED)
+    assert {path.stem for path in FOLDER.glob("*.nc")} == {*EXPECTED, NO_ALARM}
+
+
+def test_a_near_miss_is_told_and_stops_nothing(twin: Twin, tmp_path: Path):
+    done = twin("run", FOLDER / f"{NO_ALARM}.toml", "--out", tmp_path)
+    assert done.code == 0, done.stderr
+    assert (
+        "near_miss.nc:5:1: warning near-miss: the holder's nut passes the fixed jaw" in done.stderr
+    )
+    result = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))
+    assert result["alarms"] == []
+    assert result["near_miss"]["line"] == 5
+    assert result["near_miss"]["between"] == ["holder's nut", "fixed jaw"]
+    assert result["near_miss"]["clearance_mm"] == pytest.approx(30.0 - 12.0 - 15.75, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("spindle", "code"),
+    [("", 0), ("M03", 0), ("M13", None), ("S500", 4), ("M04 S500", 0), ("S0 M03", 4), ("M19", 4)],
+)
+def test_a_program_that_speaks_of_the_spindle_is_held_to_it(
+    twin: Twin, tmp_path: Path, spindle: str, code: int | None
+):
+    """One that never does runs with it turning; a speed alone starts nothing."""
+    text = f"%A\nG90 G17 T1 {spindle}\nG00 X-60 Y0 Z20\nG01 Z-3 F1000\nG01 X60\nM30\n"
+    (tmp_path / "a.nc").write_text(text)
+    job = (FOLDER / "spindle_off.toml").read_text(encoding="utf-8")
+    (tmp_path / "a.toml").write_text(job.replace("spindle_off.nc", "a.nc"))
+    done = twin("run", tmp_path / "a.toml", "--out", tmp_path / "out")
+    if code is None:
+        assert done.code == 3
+        return
+    assert done.code == code, done.stderr
+    assert ("a.nc:5:1: error spindle-off" in done.stderr) == (code == 4)
 
 
 @pytest.mark.parametrize("name", sorted(EXPECTED))

@@ -9,7 +9,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from twin.motion.limits import MotionLimits
-from twin.motion.planner import plan, plan_phases
+from twin.motion.phases import plan_phases
+from twin.motion.planner import plan
 from twin.motion.setpoints import Setpoints, join
 from twin.nc.canonical import (
     NO_BLOCK_NUMBER,

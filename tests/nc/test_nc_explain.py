@@ -13,7 +13,7 @@ from twin.nc.explain import explain, findings
 from twin.nc.settings import ToolData
 
 _CODE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
-_MAKERS = {"fail", "warn", "warn_once", "_fail", "_refuse", "refuse", "ExpressionError"}
+_MAKERS = {"fail", "warn", "warn_once", "_warn", "_fail", "_refuse", "refuse", "ExpressionError"}
 
 
 def codes_in_the_source() -> Iterator[str]:

@@ -18,7 +18,7 @@ from twin.nc.source import read_source
 
 GOLDEN = ROOT / "tests" / "golden"
 PROGRAMS = sorted((ROOT / "programs").glob("*/*.nc"))
-RULES = sorted(GOLDEN.glob("*/rules/*.nc"))
+RULES = sorted(GOLDEN.glob("*/*/*.nc"))
 
 
 def interpretation_of(path: Path) -> Interpretation:
@@ -70,12 +70,18 @@ def test_every_golden_file_has_its_program() -> None:
 
 
 @pytest.mark.parametrize("name", DIALECTS)
-def test_every_followed_code_stands_in_a_golden_program(name: str) -> None:
-    paths = [path for path in [*PROGRAMS, *RULES] if name in path.parts]
-    text = "\n".join(path.read_text(encoding="utf-8") for path in paths).upper()
-    written = {int(number) for number in re.findall(r"G[ ]?([0-9]+)", text)}
+def test_every_followed_code_has_its_golden_file(name: str) -> None:
     followed = {number for number, code in DIALECTS[name].g.items() if not code.refused}
-    assert followed - written <= set(DIALECTS[name].start)
+    paths = {int(path.stem[1:]): path for path in (GOLDEN / name / "codes").glob("G*.nc")}
+    assert followed == set(paths)
+    for number, path in paths.items():
+        assert re.search(rf"G0*{number}(?![0-9])", path.read_text(encoding="utf-8")), path
+
+
+@pytest.mark.parametrize("name", DIALECTS)
+def test_every_decision_has_its_golden_file(name: str) -> None:
+    shown = sorted(decision.example for decision in DIALECTS[name].decisions)
+    assert shown == sorted(path.stem for path in (GOLDEN / name / "decisions").glob("*.nc"))
 
 
 def write_all() -> None:

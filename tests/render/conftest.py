@@ -1,19 +1,22 @@
 """A machine of a few boxes, and recordings of motion made by hand."""
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
 
+from twin.cutting.tools import ToolPlan
 from twin.job import StockTable, ToolTable
 from twin.machine.config import Machine, read_machine
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.program_notes import ProgramNotes
 from twin.recording import Recording, RecordingHeader, Samples, open_recording, record
 from twin.render.gl import BACKENDS, probe
+from twin.render.stage import Scene
 
 MODEL = """
 <mujoco>
@@ -64,7 +67,7 @@ STOCK = StockTable(shape="box", size=(120.0, 80.0, 20.0), cell=0.5)
 ZERO = np.array([0.0, 0.0, -230.0, 15.0])
 """The table top is 250 mm below the tip of the tool at Z 0; the stock stands on it."""
 SOURCE = ("G0 X0 Y0 Z50", "G1 X-40 Z-5 ; прямая", "G1 X40", "G1 C90 ; kružnice")
-RAPID_MOVES = np.array([True, False, False, False])
+NOTES = ProgramNotes(tools=ToolPlan((TOOL,)), rapid=np.array([True, False, False, False]))
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -104,8 +107,41 @@ def program() -> tuple[FloatArray, FloatArray]:
     return np.concatenate(parts), np.concatenate(lines)
 
 
+Record = Callable[..., Path]
+
+
 @pytest.fixture
-def recording(tmp_path: Path, machine: Machine) -> Iterator[Recording]:
+def make_recording(tmp_path: Path, machine: Machine) -> Record:
+    """Writes the program's recording, with contour errors and alarms if wanted."""
+
+    def make(
+        contour_um: FloatArray | None = None, alarms: Sequence[tuple[float, str]] = ()
+    ) -> Path:
+        path = tmp_path / "slot.h5"
+        header, samples = slot(machine)
+        with record(path, header) as writer:
+            writer.append(samples, contour_um)
+            writer.note_alarms(alarms)
+        return path
+
+    return make
+
+
+@pytest.fixture
+def recording(make_recording: Record) -> Iterator[Recording]:
+    with open_recording(make_recording()) as opened:
+        yield opened
+
+
+@pytest.fixture
+def scene(recording: Recording, spec: mujoco.MjSpec, machine: Machine) -> Scene:
+    return Scene(
+        recording=recording, spec=spec, machine=machine, notes=NOTES, source=SOURCE, stock=STOCK
+    )
+
+
+def slot(machine: Machine) -> tuple[RecordingHeader, Samples]:
+    """The header and the samples of the program's recording; the joints stand off a little."""
     position, line = program()
     position = position + ZERO
     velocity = np.gradient(position, 1e-3, axis=0)
@@ -128,7 +164,4 @@ def recording(tmp_path: Path, machine: Machine) -> Iterator[Recording]:
         twin_version="0",
         mujoco_version="4",
     )
-    with record(tmp_path / "slot.h5", header) as writer:
-        writer.append(samples)
-    with open_recording(tmp_path / "slot.h5") as opened:
-        yield opened
+    return header, samples

@@ -1,3 +1,7 @@
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 
 from twin.errors import RenderError
@@ -51,3 +55,23 @@ def test_the_user_may_name_the_backend(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_missing_encoder_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doctor, "H264_ENCODER", "no_such_encoder")
     assert "no_such_encoder" in doctor.render_facts().problems[0]
+
+
+def test_osmesa_draws_the_same_scene(tmp_path: Path) -> None:
+    if gl.probe("osmesa").error:
+        pytest.skip("OSMesa is not installed here")
+    code = (
+        "import sys, pytest; "
+        "sys.exit(pytest.main(['-q', '-p', 'no:cacheprovider', "
+        f"'--basetemp={tmp_path / 'osmesa'}', "
+        "'tests/render/test_stage.py::test_tool_tip_is_where_the_recording_says']))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env={"MUJOCO_GL": "osmesa", "PYTHONPATH": ":".join(sys.path), "PATH": "/usr/bin:/bin"},
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.recording import Recording
-from twin.render.replay import deal, frame_ends, rapid_mask
+from twin.render.replay import deal, frame_ends
 
 
 @hypothesis.settings(derandomize=True, max_examples=50)
@@ -36,14 +36,3 @@ def test_every_sample_is_dealt_once(
 def test_dealing_stops_at_the_last_frame(recording: Recording) -> None:
     dealt = list(deal(recording, np.array([3, 3, 10])))
     assert [len(samples) for samples, _ in dealt] == [3, 0, 7]
-
-
-def test_rapids_are_looked_up_by_move(recording: Recording) -> None:
-    (samples,) = recording.chunks()
-    samples.setpoint.move[0] = -1
-    assert not rapid_mask(samples, None).any()
-    mask = rapid_mask(samples, np.array([True, False]))
-    assert mask[0]
-    assert mask[100]
-    assert not mask[300]
-    assert mask[600], "a move that nobody knows is not taken for a cut that may be air"

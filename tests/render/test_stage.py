@@ -7,33 +7,20 @@ import numpy as np
 import pytest
 import trimesh
 
-from tests.render.conftest import RAPID_MOVES, STOCK, TOOL
+from tests.render.conftest import NOTES, TOOL, Record
 from twin.cutting.tools import ToolPlan, profile
-from twin.errors import RenderError
 from twin.job import StockTable, ToolTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
-from twin.recording import Recording
+from twin.recording import Recording, open_recording
 from twin.render.canvas import DRAFT, Pixels
-from twin.render.film import moment
 from twin.render.placement import tip_position
 from twin.render.replay import deal
 from twin.render.stage import Scene, Stage, stage
+from twin.render.still import moment
 from twin.render.tool_body import fluted
 
 SIZE = (320, 240)
-
-
-@pytest.fixture
-def scene(recording: Recording, spec: mujoco.MjSpec, machine: Machine) -> Scene:
-    return Scene(
-        recording=recording,
-        spec=spec,
-        machine=machine,
-        tool=TOOL,
-        stock=STOCK,
-        rapid_moves=RAPID_MOVES,
-    )
 
 
 def play_to(play: Stage, recording: Recording, samples: int) -> None:
@@ -63,8 +50,10 @@ def test_tool_tip_is_where_the_recording_says(scene: Scene, line: int) -> None:
 
 
 def test_a_change_of_tool_is_seen(scene: Scene) -> None:
-    long = ToolTable(number=2, kind="drill", diameter=8.0, length=80.0)
-    changed = dataclasses.replace(scene, tool=ToolPlan((TOOL, long), (0, 2)))
+    long = ToolTable(number=2, kind="drill", diameter=8.0, length=55.0)
+    changed = dataclasses.replace(
+        scene, notes=dataclasses.replace(NOTES, tools=ToolPlan((TOOL, long), (0, 2)))
+    )
     with stage(changed, SIZE, DRAFT) as play:
         for line, number in ((2, 1), (3, 2)):
             rest = [s for s, _ in deal(scene.recording, np.array([300, 600]))][number - 1]
@@ -75,6 +64,7 @@ def test_a_change_of_tool_is_seen(scene: Scene) -> None:
             length = (TOOL, long)[number - 1].length
             tip = tip_position(play.model, play.data, length)
             part = scene.recording.header.part_frame.position(rest.joint_position[-1:])
+            part[:, 2] -= length - TOOL.length
             body = play.data.body("rotary_table")
             point = body.xpos + body.xmat.reshape(3, 3) @ play.placement.points(part)[0]
             np.testing.assert_allclose(tip, point, atol=1e-9)
@@ -180,14 +170,23 @@ def trail_colour(scene: Scene) -> FloatArray:
         return play.picture("top")[here].astype(float).mean(axis=0)
 
 
-def test_trail_shows_the_error(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_trail_shows_the_error(
+    make_recording: Record,
+    spec: mujoco.MjSpec,
+    machine: Machine,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr("twin.render.stage.TRAIL_MM", (2.0, 2.0))
-    feeds = dataclasses.replace(scene, stock=None, rapid_moves=None, error_scale_um=20.0)
-    none, much = np.zeros(1001), np.full(1001, 25.0)
-    right = trail_colour(dataclasses.replace(feeds, error_um=none))
-    wrong = trail_colour(dataclasses.replace(feeds, error_um=much))
-    assert right[1] > right[0] + 30, "green"
-    assert wrong[0] > wrong[1] + 60, "red"
+    feeds = dataclasses.replace(NOTES, rapid=np.zeros(4, np.bool_))
+    colours = []
+    for error in (0.0, 25.0):
+        with open_recording(make_recording(np.full(1001, error))) as recording:
+            scene = Scene(
+                recording=recording, spec=spec, machine=machine, notes=feeds, error_scale_um=20.0
+            )
+            colours.append(trail_colour(scene))
+    assert colours[0][1] > colours[0][0] + 30, "green"
+    assert colours[1][0] > colours[1][1] + 60, "red"
 
 
 @pytest.mark.parametrize("camera", ["part", "riding"])
@@ -239,7 +238,3 @@ def test_moments(recording: Recording) -> None:
     assert moment(recording, time_s=0.5) == 501
     assert moment(recording, line=1) == 250
     assert moment(recording, line=4) == 1001
-    with pytest.raises(RenderError, match="line 9"):
-        moment(recording, line=9)
-    with pytest.raises(RenderError, match="ends at 1 s"):
-        moment(recording, time_s=3.0)

@@ -2,44 +2,38 @@
 
 from pathlib import Path
 
-import numpy as np
-
-from twin.chain import Run
+from twin.chain import Run, Survey
 from twin.progress import Progress
 from twin.recording import open_recording
 
 STILL_NAME = "still.png"
+FILM_STEM = "video"
 
 
-def film_run(run: Run, folder: Path, progress: Progress) -> None:
+def film_run(run: Run, survey: Survey, folder: Path, progress: Progress) -> None:
     """Film a run that was recorded, and draw its end as a still.
 
     Args:
-        run: The run, with its contour errors kept.
+        run: The run.
+        survey: What the first pass over its program found.
         folder: Where ``recording.h5`` lies and the pictures go.
         progress: Told how far the film is.
 
     Raises:
         RenderError: Pictures cannot be made here.
     """
-    from twin.render.film import film, still
+    from twin.render.film import film
+    from twin.render.still import Shot, stills
+    from twin.replay import scene_of
 
-    job = run.preparation.job.file
+    video = run.preparation.job.file.video
     with open_recording(folder / "recording.h5") as recording:
-        shared = {
-            "spec": run.spec,
-            "machine": run.preparation.machine,
-            "stock": job.stock,
-            "tool": job.tools[0],
-            "source": run.preparation.source.lines,
-            "rapid_moves": run.rapid_moves,
-            "contour_um": np.concatenate(run.contour_um),
-        }
+        scene = scene_of(recording, run.preparation, survey.notes)
         film(
-            recording,
-            video=job.video,
-            out=folder / "video.mp4",
+            scene,
+            video=video,
+            out=folder / f"{FILM_STEM}.mp4",
             progress=lambda done, frames: progress("film", done / frames),
-            **shared,
         )
-        still(recording, camera=job.video.cameras[0], out=folder / STILL_NAME, **shared)
+        shot = Shot(folder / STILL_NAME, len(recording))
+        stills(scene, [shot], cameras=video.cameras[:1], quality=video.quality)

@@ -1,5 +1,6 @@
 """``result.json`` and ``report.html`` of a run."""
 
+import dataclasses
 from pathlib import Path
 
 from twin.chain import Run
@@ -46,6 +47,7 @@ def _summary(run: Run, outcome: Outcome) -> RunSummary:
         duration_s=outcome.duration_s,
         wall_s=run.clock.wall_s,
         stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
+        near_miss=None if outcome.near_miss is None else dataclasses.asdict(outcome.near_miss),
         cut=None if outcome.cut is None else outcome.cut.as_json(),
         commanded=named(outcome.final_commanded),
         simulated=named(outcome.final_simulated),

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import typer
 
-from twin.alarm_text import alarm_diagnostic
+from twin.alarm_text import alarm_diagnostic, near_miss_diagnostic
 from twin.chain import Run
 from twin.commands.pictures import film_run
 from twin.commands.results import write_results
@@ -42,14 +42,14 @@ def run_and_print(
     """
     preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
     folder = out or Path("out") / preparation.job.program.stem
-    run = Run(preparation, keep_contour=video)
+    run = Run(preparation)
     survey = run.survey()
     _clear(folder)
     with shown_progress() as progress:
         outcome = run.execute(survey, folder, progress)
         if video and outcome.samples:
             with run.clock.stage("render"):
-                film_run(run, folder, progress)
+                film_run(run, survey, folder, progress)
     write_results(run, outcome, folder)
     _print_findings(run, outcome)
     typer.echo(_summary(run, outcome, folder))
@@ -64,6 +64,9 @@ def _clear(folder: Path) -> None:
 def _print_findings(run: Run, outcome: Outcome) -> None:
     for warning in outcome.warnings:
         typer.echo(str(warning), err=True)
+    if outcome.near_miss is not None:
+        miss = near_miss_diagnostic(outcome.near_miss, run.preparation.source)
+        typer.echo(str(miss), err=True)
     for alarm in outcome.alarms:
         typer.echo(str(alarm_diagnostic(alarm, run.preparation.source)), err=True)
     if not outcome.alarms:
@@ -73,8 +76,14 @@ def _print_findings(run: Run, outcome: Outcome) -> None:
 
 def _summary(run: Run, outcome: Outcome, folder: Path) -> str:
     contour = outcome.figures.contour
+    if outcome.alarms:
+        first = outcome.alarms[0]
+        finding = f"{first.code} at line {first.line}"
+    elif outcome.duration_s == 0.0:
+        finding = "nothing moves"
+    else:
+        finding = f"contour error at most {contour.max:.1f} µm (line {contour.worst_line})"
     return (
-        f"{outcome.verdict.outcome}: contour error at most {contour.max:.1f} µm "
-        f"(line {contour.worst_line}), {outcome.duration_s:.3f} s of machine time "
+        f"{outcome.verdict.outcome}: {finding}, {outcome.duration_s:.3f} s of machine time "
         f"in {run.clock.wall_s:.1f} s; results in {folder}"
     )

@@ -203,9 +203,9 @@ def _axes_plot(
 def _mark_lines(axes: PlotAxes, trace: Trace) -> None:
     """Program lines along the upper edge, as many as have room, the longest first."""
     axes.set_xlabel("time [s]")
-    if not len(trace.time):
-        return
     changes = [change for change in line_changes(trace) if change[1] > 0]
+    if not changes:
+        return
     ends = [time for time, _ in changes[1:]] + [float(trace.time[-1])]
     stays = [end - time for (time, _), end in zip(changes, ends, strict=True)]
     room = (trace.time[-1] - trace.time[0]) / _LINE_LABELS

@@ -38,6 +38,7 @@ class RunSummary:
         cut: The content of the key ``cut``, or None when nothing was cut.
         commanded: Final setpoint by axis, part coordinates [mm or deg].
         simulated: Final joint position by axis, part coordinates [mm or deg].
+        near_miss: The content of the key ``near_miss``, or None when all kept their distance.
     """
 
     program: str
@@ -49,6 +50,7 @@ class RunSummary:
     cut: Mapping[str, Any] | None
     commanded: Mapping[str, float]
     simulated: Mapping[str, float]
+    near_miss: Mapping[str, Any] | None = None
 
 
 STAGES = ("interpret_s", "plan_s", "simulate_s", "compare_s", "cut_s", "render_s")
@@ -95,6 +97,7 @@ def result(
             {"code": a.code, "line": a.line, "time_s": a.time_s, "message": a.message}
             for a in alarms
         ],
+        "near_miss": None if summary.near_miss is None else dict(summary.near_miss),
         "cut": None if summary.cut is None else dict(summary.cut),
         "final": {"commanded": dict(summary.commanded), "simulated": dict(summary.simulated)},
     }

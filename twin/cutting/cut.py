@@ -6,12 +6,13 @@ from typing import Any, Literal
 
 import numpy as np
 
-from twin.cutting.events import SCRAPE_MM, CutEvent, EventLog, RapidWatch, Stretches
+from twin.cutting.events import SCRAPE_MM, CutEvent, EventLog, StockWatch, Stretches, meets_material
 from twin.cutting.force import cutting_load, cutting_width, kienzle
 from twin.cutting.height_map import BoolArray, blank
 from twin.cutting.ledger import BlockCut, Ledger
-from twin.cutting.sweep_kernels import overlap, sweep, thin
-from twin.cutting.tools import ToolPlan, default_cell, profile
+from twin.cutting.sweep_kernels import overlap, sweep
+from twin.cutting.thin_kernels import thin
+from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
 from twin.job import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording import Samples
@@ -47,6 +48,8 @@ class CutResult:
     """Flutes too short, shank or holder in the material; one each per program line."""
     rapid_into_stock: tuple[CutEvent, ...]
     """Rapids that met material, one per move."""
+    spindle_off: tuple[CutEvent, ...]
+    """Feeds that met material with the spindle off, one per move."""
     blocks: Mapping[int, BlockCut]
     """What each program line took off."""
     bin_s: float
@@ -76,6 +79,7 @@ class Cutter:
         tool: What is in the spindle after the last ``add``.
         marks: Way of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
             the marks that a cutter leaves. Of no size unless asked for.
+        halted: The rapid or the feed with the spindle off at which cutting ended, if it shall.
     """
 
     def __init__(
@@ -87,6 +91,7 @@ class Cutter:
         *,
         along: Literal["joints", "setpoints"] = "joints",
         keep_marks: bool = False,
+        halts: bool = False,
     ) -> None:
         """Lay the uncut stock on the table.
 
@@ -97,6 +102,8 @@ class Cutter:
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             along: Whether the simulated motion cuts or the commanded one.
             keep_marks: Whether to note the cutter's marks, for pictures.
+            halts: Whether to cut no further once a rapid, or a feed with the spindle off, has met
+                material. The part is then as it was at that moment.
 
         Raises:
             ConfigError: The stock is too large for its grid, its file cannot be read, or its
@@ -119,15 +126,19 @@ class Cutter:
         self._force: float | None = None
         self._power: float | None = None
         self._gouges = EventLog()
-        self._rapids = RapidWatch()
+        self._rapids = StockWatch("rapid")
+        self._standing = StockWatch("standing")
+        self._halts = halts
+        self.halted: CutEvent | None = None
         self._ledger = Ledger()
 
-    def add(self, samples: Samples, rapid: BoolArray) -> float:
+    def add(self, samples: Samples, rapid: BoolArray, standing: BoolArray | None = None) -> float:
         """Cut along a chunk that follows the last one.
 
         Args:
             samples: n samples.
             rapid: Which of them belong to rapids, shape (n,).
+            standing: During which of them the spindle is off, shape (n,); none of them by default.
 
         Returns:
             Material that this chunk took off [mm³].
@@ -137,17 +148,26 @@ class Cutter:
         if not len(samples):
             return 0.0
         setpoint = samples.setpoint
-        joints = samples.joint_position if self._along == "joints" else setpoint.position
-        points = self._part_frame.position(joints)
+        meant = self._part_frame.position(setpoint.position)
+        points = meant
+        if self._along == "joints":
+            points = self._part_frame.position(samples.joint_position)
+        off = np.zeros(len(samples), np.bool_) if standing is None else standing
+        way = _Way(
+            points, np.abs(meant - points).sum(axis=1), setpoint.time, setpoint.line, rapid, off
+        )
         for run, tool in self._plan.runs(setpoint.move):
-            if tool is not self.tool:
-                self.tool, self._last = tool, None
-            self._cut(points[run], setpoint.time[run], setpoint.line[run], np.asarray(rapid)[run])
+            if self.halted is not None:
+                break
+            if tool.number != self.tool.number:
+                self._last = None
+            self.tool = tool
+            self._cut(way[run].lowered(self._plan.longer(tool)))
         return self._removed - before
 
     def events(self) -> tuple[CutEvent, ...]:
-        """Gouges and rapids into stock so far."""
-        return (*self._gouges.events(), *self._rapids.events())
+        """Gouges, rapids into stock and feeds with the spindle off so far."""
+        return (*self._gouges.events(), *self._rapids.events(), *self._standing.events())
 
     def result(self) -> CutResult:
         """What was cut so far."""
@@ -158,6 +178,7 @@ class Cutter:
             air_share=self._air_path / self._feed_path if self._feed_path else 0.0,
             gouges=self._gouges.events(),
             rapid_into_stock=self._rapids.events(),
+            spindle_off=self._standing.events(),
             blocks=self._ledger.blocks,
             bin_s=bin_s,
             removed_over_time=tuple(over_time.tolist()),
@@ -165,24 +186,55 @@ class Cutter:
             power_w=self._power,
         )
 
-    def _cut(self, points: FloatArray, time: FloatArray, line: IntArray, rapid: BoolArray) -> None:
+    def _cut(self, way: "_Way") -> None:
         """Cut with one tool from the last point of the run before through all of this one's."""
-        before, since = (points[:1], time[0]) if self._last is None else self._last
-        self._last = points[-1:].copy(), float(time[-1])
-        points = np.concatenate([before, points])
+        before, since = (way.points[:1], way.time[0]) if self._last is None else self._last
+        self._last = way.points[-1:].copy(), float(way.time[-1])
+        points = np.concatenate([before, way.points])
         edge = profile(self.tool)
+        group = way.group
         chosen = thin(
             points,
-            np.concatenate([line[:1] * 2 + rapid[:1], line * 2 + rapid]),
+            np.concatenate([group[:1], group]),
             min(STRAIGHT_SHARE * self.map.cell, STRAIGHT_MM),
             LONGEST_SHARE * edge.radius,
             MOST_JOINED,
         )
         points, sample = points[chosen], chosen[1:] - 1
+        rapid, off, lag = way.rapid[sample], way.standing[sample], way.lag[sample]
+        rapids = self._rapids.suspects(points, rapid, lag)
+        standing = self._standing.suspects(points, ~rapid & off, lag)
+        suspect = (rapids > 0) | (standing > 0)
         overlaps = self._overlaps(points)
-        removed, depth = np.zeros(len(sample)), np.zeros(len(sample))
-        travelled = self._travelled + np.append(0.0, np.cumsum(_lengths(points)))
-        self._travelled = float(travelled[-1])
+        uncut = None
+        if self._halts and suspect.any():
+            uncut = self.map.heights.copy(), self.marks.copy()
+        removed, depth = self._sweep(points, edge)
+        hits = suspect & meets_material(removed, depth, edge.radius, self.map.cell)
+        if uncut is not None and hits.any():
+            end = int(np.argmax(hits)) + 1
+            self.map.heights[:], self.marks[:] = uncut
+            points, sample = points[: end + 1], sample[:end]
+            rapid, rapids, standing, hits = rapid[:end], rapids[:end], standing[:end], hits[:end]
+            overlaps = {what: excess[:end] for what, excess in overlaps.items()}
+            removed, depth = self._sweep(points, edge)
+        self._travelled += float(_lengths(points).sum())
+        self._removed += float(removed.sum())
+        stretches = Stretches(points, way.time[sample], way.line[sample], rapid, removed, depth)
+        overlaps["flute"] = depth - self.tool.flute
+        for what, excess in overlaps.items():
+            for i in np.flatnonzero(excess > SCRAPE_MM):
+                key = (what, int(stretches.line[i]))
+                self._gouges.note(key, what, stretches, int(i), float(excess[i]))
+        self._rapids.add(stretches, rapids, hits)
+        self._standing.add(stretches, standing, hits)
+        if self._halts and hits.any():
+            (self.halted,) = (*self._rapids.events(), *self._standing.events())
+        self._note(stretches, np.diff(stretches.time, prepend=since))
+
+    def _sweep(self, points: FloatArray, edge: Profile) -> tuple[FloatArray, FloatArray]:
+        """Take off what lies in the way; give volume [mm³] and depth [mm] by stretch."""
+        removed, depth = np.zeros(len(points) - 1), np.zeros(len(points) - 1)
         changed = sweep(
             self.map.heights,
             self.map.origin,
@@ -193,18 +245,10 @@ class Cutter:
             removed,
             depth,
             self.marks,
-            travelled[1:],
+            self._travelled + np.cumsum(_lengths(points)),
         )
         self.changed = union(self.changed, changed)
-        self._removed += float(removed.sum())
-        stretches = Stretches(points, time[sample], line[sample], rapid[sample], removed, depth)
-        overlaps["flute"] = depth - self.tool.flute
-        for what, excess in overlaps.items():
-            for i in np.flatnonzero(excess > SCRAPE_MM):
-                key = (what, int(stretches.line[i]))
-                self._gouges.note(key, what, stretches, int(i), float(excess[i]))
-        self._rapids.add(stretches)
-        self._note(stretches, np.diff(stretches.time, prepend=since))
+        return removed, depth
 
     def _overlaps(self, points: FloatArray) -> dict[str, FloatArray]:
         """How deep shank and holder go into the material along each stretch [mm]."""
@@ -240,6 +284,30 @@ class Cutter:
             self._force = max(self._force or 0.0, float(force.max()))
             self._power = max(self._power or 0.0, float(load.power.max()))
         self._ledger.add(stretches, cutting_width(stretches, self.tool.diameter), force)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Way:
+    """Where the tool went: n samples."""
+
+    points: FloatArray
+    lag: FloatArray
+    time: FloatArray
+    line: IntArray
+    rapid: BoolArray
+    standing: BoolArray
+
+    def __getitem__(self, run: slice) -> "_Way":
+        return _Way(*(getattr(self, field.name)[run] for field in dataclasses.fields(self)))
+
+    def lowered(self, by: float) -> "_Way":
+        """The way of a tool that is longer by so much [mm]."""
+        return dataclasses.replace(self, points=self.points - [0.0, 0.0, by])
+
+    @property
+    def group(self) -> IntArray:
+        """A number that changes wherever a stretch must end."""
+        return self.line * 4 + self.rapid * 2 + self.standing
 
 
 def _lengths(points: FloatArray) -> FloatArray:

@@ -10,10 +10,17 @@ from twin.nc.canonical import FloatArray, IntArray
 
 TAIL_MM = 0.2
 """A rapid's removal on its first way counts as the end of the feed before it [mm]: the axes lag
-behind the setpoints, so that the last of a feed is cut when the rapid has already begun."""
+behind the setpoints, so that the last of a feed is cut when the rapid has already begun. As long
+as the lag at its beginning, and so much more. The same holds for a feed after the spindle stopped."""
 
 SCRAPE_MM = 0.01
 """Depth below which a removal is the grid's doing [mm]."""
+
+BRUSH_SHARE = 0.01
+BRUSH_CELLS = 4.0
+"""Ground that a stretch may take off at its full depth and still be said to brush a wall, as a
+share of the tool's cross-section and in cells, the greater of the two: on a second way down a bore
+or along a slot the axes are off their first by some micrometres, and a few cells of the wall go."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -25,8 +32,8 @@ class CutEvent:
         time_s: When it began [s].
         depth_mm: Its greatest depth below the material that was first met [mm].
         position: Tool tip in the part's frame at its beginning [mm].
-        what: ``rapid``; or which part of the tool gouges: ``flute`` (the cut is deeper than the
-            flutes are long), ``shank``, ``holder``.
+        what: ``rapid``; ``standing``, a feed with the spindle off; or which part of the tool
+            gouges: ``flute`` (the cut is deeper than the flutes are long), ``shank``, ``holder``.
     """
 
     line: int
@@ -85,36 +92,72 @@ class EventLog:
         return tuple(self._events.values())
 
 
-class RapidWatch:
-    """Finds rapids that meet material; one event per move."""
+class StockWatch:
+    """Finds moves that take material although they must not; one event per move."""
 
-    def __init__(self) -> None:
+    def __init__(self, what: str) -> None:
+        """Watch for one kind of misuse.
+
+        Args:
+            what: What its events are called.
+        """
+        self._what = what
         self._log = EventLog()
         self._runs = 0
         self._running = False
         self._start = np.zeros(3)
+        self._tail = TAIL_MM
         self._surface: dict[tuple[int, int], float] = {}
 
-    def add(self, stretches: Stretches) -> None:
-        """Look at a chunk that follows the last one."""
-        rapid = stretches.rapid
-        if not len(rapid):
-            return
-        begins = rapid & ~np.append(self._running, rapid[:-1])
+    def suspects(self, points: FloatArray, forbidden: BoolArray, lag: FloatArray) -> IntArray:
+        """Number the runs of stretches that must not cut, in a chunk that follows the last one.
+
+        Args:
+            points: Tool tip positions at the ends of n stretches, shape (n + 1, 3) [mm].
+            forbidden: Which stretches must take no material, shape (n,).
+            lag: How far the tool trails its setpoint at the end of each, shape (n,) [mm].
+
+        Returns:
+            Number of the run that each stretch belongs to, from 1; 0 where it may cut, and on the
+            first way of a run, shape (n,).
+        """
+        if not len(forbidden):
+            return np.zeros(0, np.int64)
+        begins = forbidden & ~np.append(self._running, forbidden[:-1])
         run = self._runs + np.cumsum(begins)
-        latest = np.maximum.accumulate(np.where(begins, np.arange(len(rapid)), -1))
-        start = np.where(latest[:, None] < 0, self._start, stretches.points[latest])
-        way = stretches.points[1:] - start
+        latest = np.maximum.accumulate(np.where(begins, np.arange(len(forbidden)), -1))
+        start = np.where(latest[:, None] < 0, self._start, points[latest])
+        tail = np.where(latest < 0, self._tail, TAIL_MM + lag[latest])
+        way = points[1:] - start
         advance = np.hypot(way[:, 0], way[:, 1]) + np.maximum(0.0, -way[:, 2])
-        hits = rapid & (stretches.depth > SCRAPE_MM) & (advance > TAIL_MM)
-        for i in np.flatnonzero(hits):
-            key = (int(run[i]), int(stretches.line[i]))
+        self._runs, self._running = int(run[-1]), bool(forbidden[-1])
+        self._start, self._tail = start[-1].copy(), float(tail[-1])
+        return np.where(forbidden & (advance > tail), run, 0)
+
+    def add(self, stretches: Stretches, suspects: IntArray, hits: BoolArray) -> None:
+        """Note those of a chunk's suspects that met material."""
+        for i in np.flatnonzero(hits & (suspects > 0)):
+            key = (int(suspects[i]), int(stretches.line[i]))
             tip = float(min(stretches.points[i : i + 2, 2]))
             surface = max(self._surface.get(key, tip), tip + float(stretches.depth[i]))
             self._surface[key] = surface
-            self._log.note(key, "rapid", stretches, int(i), surface - tip)
-        self._runs, self._running, self._start = int(run[-1]), bool(rapid[-1]), start[-1].copy()
+            self._log.note(key, self._what, stretches, int(i), surface - tip)
 
     def events(self) -> tuple[CutEvent, ...]:
-        """All rapids that met material."""
+        """All moves that met material."""
         return self._log.events()
+
+
+def meets_material(
+    removed: FloatArray, depth: FloatArray, tool_radius: float, cell: float
+) -> BoolArray:
+    """Which stretches take material rather than brush along a wall or a floor that was cut before.
+
+    Args:
+        removed: Material taken off, shape (n,) [mm³].
+        depth: Greatest depth of it, shape (n,) [mm].
+        tool_radius: Of the cutting edge [mm].
+        cell: Side of a cell of the height map [mm].
+    """
+    brushed = max(BRUSH_SHARE * np.pi * tool_radius**2, BRUSH_CELLS * cell**2)
+    return (depth > SCRAPE_MM) & (removed > brushed * depth)

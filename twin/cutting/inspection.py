@@ -25,18 +25,42 @@ class Inspection:
     NaN where either is steep, where there is no part, and on the blank's own skin."""
     tolerance_um: float
     """What ``within_share`` counts [µm]."""
+    standing_mm3: float
+    """Material that should have gone, walls included [mm³]."""
+    missing_mm3: float
+    """Material that should have stayed, walls included [mm³]."""
 
     @property
     def measured(self) -> BoolArray:
         """Cells that were measured, shape (ny, nx)."""
         return np.isfinite(self.deviation_mm)
 
+    @property
+    def holds(self) -> bool:
+        """Whether every measured deviation is within the tolerance."""
+        here = np.abs(self.deviation_mm[self.measured])
+        return float(here.max(initial=0.0)) * UM_PER_MM <= self.tolerance_um
+
+    @property
+    def summary(self) -> str:
+        """One line for a person."""
+        figures = self.as_json()
+        if "max_um" not in figures:
+            return "no surface of the part could be measured"
+        return (
+            f"part: {figures['min_um']:+.1f} to {figures['max_um']:+.1f} µm, mean "
+            f"{figures['mean_um']:+.2f} µm, {100 * figures['within_share']:.2f} % within "
+            f"±{self.tolerance_um:g} µm"
+        )
+
     def as_json(self) -> dict[str, Any]:
         """Figures for a report: max, min, mean and rms [µm], shares of cells."""
         here = UM_PER_MM * self.deviation_mm[self.measured]
+        volumes = {"standing_mm3": self.standing_mm3, "missing_mm3": self.missing_mm3}
         if not len(here):
-            return {"measured_share": 0.0}
+            return {"measured_share": 0.0, **volumes}
         return {
+            **volumes,
             "measured_share": float(self.measured.mean()),
             "max_um": float(here.max()),
             "min_um": float(here.min()),
@@ -71,8 +95,12 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
     touched = (part.heights < part.top) | (nominal.heights < nominal.top)
     cosine = 1.0 / np.sqrt(1.0 + _steepness(nominal) ** 2)
     deviation = (part.heights - nominal.heights) * cosine
+    off = (part.heights - nominal.heights) * part.cell**2
     return Inspection(
-        deviation_mm=np.where(gentle & touched, deviation, np.nan), tolerance_um=tolerance_um
+        deviation_mm=np.where(gentle & touched, deviation, np.nan),
+        tolerance_um=tolerance_um,
+        standing_mm3=float(off.clip(min=0.0).sum()),
+        missing_mm3=float((-off).clip(min=0.0).sum()),
     )
 
 

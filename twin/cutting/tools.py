@@ -1,5 +1,6 @@
 """What a turning tool's lower end looks like: its lowest height over every radius."""
 
+import bisect
 import dataclasses
 import itertools
 import math
@@ -75,11 +76,20 @@ class ToolPlan:
 
     Attributes:
         tools: In the order in which they come into the spindle; the first is in it at the start.
-        first_move: Number of the first move that each is in the spindle for, rising from 0.
+            A tool whose speed changes stands there once for each speed.
+        first_move: Number of the first move that each is in the spindle for, never falling from 0.
     """
 
     tools: tuple[ToolTable, ...]
     first_move: tuple[int, ...] = (0,)
+
+    def at(self, move: int) -> ToolTable:
+        """The tool in the spindle during a move."""
+        return self.tools[bisect.bisect_right(self.first_move, max(move, 0)) - 1]
+
+    def longer(self, tool: ToolTable) -> float:
+        """How much lower a tool's tip is than that of the first, which positions count for [mm]."""
+        return tool.length - self.tools[0].length
 
     def runs(self, move: IntArray) -> list[tuple[slice, ToolTable]]:
         """Split samples where the tool changes.

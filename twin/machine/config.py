@@ -8,6 +8,7 @@ import pydantic
 from pydantic import Field
 
 from twin.errors import ConfigError
+from twin.fixture import FixtureTable
 from twin.machine.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
 from twin.toml_file import Table, checked, read_toml
@@ -134,16 +135,6 @@ class TableTable(Table):
     """Machine X and Y at which the tool stands over the axis of rotation [mm]."""
 
 
-class FixtureTable(Table):
-    """A box clamped to the work-holding surface, such as the jaw of a vise."""
-
-    name: str
-    size: tuple[Positive, Positive, Positive]
-    """Along X, Y, Z [mm]."""
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Centre of its lower face over the middle of the surface [mm], all axes at zero."""
-
-
 class SpindleTable(Table):
     """What holds the tool."""
 
@@ -233,6 +224,19 @@ class Machine:
             rotary=None if file.table is None else self.axes.index(file.table.axis),
             center=(0.0, 0.0) if file.table is None else file.table.center,
         )
+
+    def with_fixtures(self, fixtures: tuple[FixtureTable, ...]) -> "Machine":
+        """This machine with more on its table.
+
+        Raises:
+            ConfigError: One has the name of another.
+        """
+        both = (*self.file.fixtures, *fixtures)
+        names = [fixture.name for fixture in both]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ConfigError(f"fixture '{twice[0]}' is named twice")
+        return Machine(self.path, self.file.model_copy(update={"fixtures": both}))
 
     @property
     def model_path(self) -> Path:

@@ -159,8 +159,9 @@ def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
             raise ConfigError(
                 f"{machine.path}: fixture '{fixture.name}' has the name of a part of the machine"
             )
-        half = np.array(fixture.size) / 2 * MM
+        half = np.array(fixture.extent) / 2 * MM
         center = top.pos + np.array(fixture.position) * MM + [0.0, 0.0, half[2]]
+        is_box = fixture.size is not None
         for name, group, material in (
             (fixture.name, COLLISION_GROUP, ""),
             (f"{fixture.name} seen", VISUAL_GROUP, "steel"),
@@ -168,8 +169,8 @@ def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
             collides = group == COLLISION_GROUP
             top.parent.add_geom(
                 name=name,
-                type=mujoco.mjtGeom.mjGEOM_BOX,
-                size=list(half),
+                type=mujoco.mjtGeom.mjGEOM_BOX if is_box else mujoco.mjtGeom.mjGEOM_CYLINDER,
+                size=list(half) if is_box else [half[0], half[2], 0.0],
                 pos=list(center),
                 material=material,
                 group=group,

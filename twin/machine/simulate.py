@@ -41,8 +41,12 @@ class Simulation:
 
     @property
     def near_miss(self) -> NearMiss | None:
-        """The closest approach so far, where it was below the machine file's limit."""
-        return None if self._clearance is None else self._clearance.near_miss
+        """The closest approach so far, where it was below the machine file's limit.
+
+        None after a collision, which nobody would call a near miss.
+        """
+        collided = self.alarm is not None and self.alarm.code == "collision"
+        return None if self._clearance is None or collided else self._clearance.near_miss
 
     def __iter__(self) -> Iterator[Samples]:
         """Yield chunks of samples; a run can be iterated once.

@@ -41,7 +41,8 @@ class Blocks:
         line: Source line, shape (n,).
         length: In path parameter x, shape (n,) [mm or deg]; 0 for dwells.
         stretch: Path parameter per what the feed counts, almost always 1, shape (n,).
-        feed: Shape (n,) [mm/s or deg/s]; infinite for rapids.
+        rapid: Whether the move is a rapid, shape (n,).
+        feed: Shape (n,) [mm/s or deg/s]; infinite for rapids that the program gives none.
         acceleration: Programmed, shape (n,) [mm/s² or deg/s²]; infinite: the machine's.
         deceleration: The same for slowing down.
         rotary_alone: Only rotary axes move, shape (n,).
@@ -55,6 +56,7 @@ class Blocks:
     line: IntArray
     length: FloatArray
     stretch: FloatArray
+    rapid: BoolArray
     feed: FloatArray
     acceleration: FloatArray
     deceleration: FloatArray
@@ -155,7 +157,8 @@ def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[
         line=kept.line,
         length=length[rows],
         stretch=stretch[rows],
-        feed=np.where(rapid, np.inf, kept.feed / SECONDS_PER_MINUTE),
+        rapid=rapid,
+        feed=np.where(np.isnan(kept.feed), np.inf, kept.feed / SECONDS_PER_MINUTE),
         acceleration=np.where(np.isnan(kept.acceleration), np.inf, kept.acceleration),
         deceleration=np.where(np.isnan(kept.deceleration), np.inf, kept.deceleration),
         rotary_alone=(moved == 0.0) & (shapes.angle == 0.0),
@@ -183,6 +186,7 @@ def _of_dwell(dwell: Dwell, move: int, position: FloatArray) -> Blocks:
         line=np.array([dwell.line]),
         length=zero,
         stretch=np.ones(1),
+        rapid=np.zeros(1, np.bool_),
         feed=zero,
         acceleration=zero,
         deceleration=zero,

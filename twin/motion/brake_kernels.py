@@ -1,7 +1,8 @@
-"""Braking along the path: the quickest way from (v, a >= 0) to a lower velocity at a = 0.
+"""Braking along the path: the quickest way from (v, a) to a lower velocity at a = 0.
 
 The acceleration falls by the full jerk, stays at the full deceleration while it must, and comes
-back to zero by the full jerk.
+back to zero by the full jerk. A state with a < 0 is one on a brake that began earlier, at a higher
+velocity: the same formulas hold, as long as the new end leaves time to bring a back to zero.
 """
 
 import math
@@ -54,7 +55,7 @@ def brake_time(v: float, w: float, deceleration: float, jerk: float) -> float:
 
 @numba.njit(cache=True)
 def brake_need(v: float, a: float, w: float, deceleration: float, jerk: float) -> float:
-    """Way from (v, a >= 0) to the first a = 0 at which the velocity is w or less."""
+    """Way from (v, a) to the first a = 0 at which the velocity is w or less."""
     lift_time = a / jerk
     top = v + 0.5 * a * lift_time
     lift = (v + a * lift_time / 3.0) * lift_time
@@ -65,11 +66,11 @@ def brake_need(v: float, a: float, w: float, deceleration: float, jerk: float) -
 def brake_state(
     x: float, v: float, a: float, w: float, deceleration: float, jerk: float
 ) -> tuple[float, float]:
-    """Velocity and acceleration after x on the brake from (v, a >= 0) to (w, 0)."""
+    """Velocity and acceleration after x on the brake from (v, a) to (w, 0)."""
     top = v + a * a / (2.0 * jerk)
     drop = top - w
     hardest = min(deceleration, math.sqrt(drop * jerk)) if drop > 0.0 else 0.0
-    duration = (a + hardest) / jerk
+    duration = max(0.0, (a + hardest) / jerk)
     length = ((-jerk / 6.0 * duration + 0.5 * a) * duration + v) * duration
     if x < length:
         t = time_to(x, v, a, -jerk, duration)

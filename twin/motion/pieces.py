@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from twin.motion.blocks import Blocks, Surroundings, blocks_of_chunks, with_neighbours
+from twin.motion.blocks import Blocks, BoolArray, Surroundings, blocks_of_chunks, with_neighbours
 from twin.motion.corners import CONTEXT, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.piece_kernels import bound_derivatives, cut_blocks, reachable_velocities
@@ -42,6 +42,8 @@ class Pieces:
         begin: Path fraction of the move at which the piece begins, shape (n,).
         fraction_per_length: Path fraction per x, shape (n,) [1/mm or 1/deg].
         length: In x, shape (n,) [mm or deg]; 0 for dwells.
+        rapid: Whether the move is a rapid, shape (n,).
+        feed: What the program asks for, infinite for rapids without, shape (n,) [mm/s or deg/s].
         velocity: Highest v, shape (n,) [mm/s or deg/s].
         acceleration: Highest a, shape (n,) [mm/s² or deg/s²].
         deceleration: Highest -a, shape (n,) [mm/s² or deg/s²].
@@ -58,6 +60,8 @@ class Pieces:
     begin: FloatArray
     fraction_per_length: FloatArray
     length: FloatArray
+    rapid: BoolArray
+    feed: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
     deceleration: FloatArray
@@ -93,7 +97,7 @@ def join_pieces(parts: list[Pieces]) -> Pieces:
 
 
 def pieces_of_chunks(
-    chunks: Iterable[Chunk], limits: MotionLimits, start: FloatArray
+    chunks: Iterable[Chunk], limits: MotionLimits, start: FloatArray, largest_override: float = 1.0
 ) -> Iterator[Pieces]:
     """Cut a program into pieces, dwells included, in order.
 
@@ -101,16 +105,17 @@ def pieces_of_chunks(
         chunks: The program.
         limits: Of the axes and the path.
         start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        largest_override: Of the feed that the limits of a piece must leave room for.
 
     Raises:
         ValueError: A move does not begin where the one before it ended.
     """
     blocks = blocks_of_chunks(chunks, start)
     for surroundings in with_neighbours(blocks, BATCH, CONTEXT):
-        yield _cut(surroundings, limits)
+        yield _cut(surroundings, limits, largest_override)
 
 
-def _cut(surroundings: Surroundings, limits: MotionLimits) -> Pieces:
+def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: float) -> Pieces:
     blocks, first, last = surroundings.blocks, surroundings.first, surroundings.last
     borders = find_borders(blocks, limits)
     # The neighbours are cut as well: they tell how fast a piece can be reached and left.
@@ -121,8 +126,10 @@ def _cut(surroundings: Surroundings, limits: MotionLimits) -> Pieces:
     scale = np.divide(1.0, own.length, out=np.zeros(len(owner)), where=own.length > 0.0)
     begin = np.where(own.length > 0.0, offset * scale, np.where(own.move < 0, 0.0, 1.0))
     entry = np.where(offset == 0.0, borders.entry[owner], np.inf)
+    feed = own.feed * own.stretch
+    wanted = feed * np.where(own.rapid, 1.0, largest_override)
     velocity, acceleration, deceleration, jerk = _constant_limits(
-        own, begin, scale, length, rounding, _ceilings(surroundings, entry), limits
+        own, wanted, begin, scale, length, rounding, _ceilings(surroundings, entry), limits
     )
     pieces = Pieces(
         move=own.move,
@@ -130,6 +137,8 @@ def _cut(surroundings: Surroundings, limits: MotionLimits) -> Pieces:
         begin=begin,
         fraction_per_length=scale,
         length=length,
+        rapid=own.rapid,
+        feed=feed,
         velocity=velocity,
         acceleration=acceleration,
         deceleration=deceleration,
@@ -152,6 +161,7 @@ def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:
 
 def _constant_limits(
     own: Blocks,
+    wanted: FloatArray,
     begin: FloatArray,
     scale: FloatArray,
     length: FloatArray,
@@ -173,7 +183,7 @@ def _constant_limits(
     )
     path_jerk = own.stretch * np.where(own.rotary_alone, limits.rotary_path_jerk, limits.path_jerk)
     with np.errstate(divide="ignore", over="ignore"):
-        velocity = np.minimum(own.feed * own.stretch, (limits.velocity / first).min(axis=1))
+        velocity = np.minimum(wanted, (limits.velocity / first).min(axis=1))
         centripetal = (CENTRIPETAL_SHARE * limits.acceleration / second).min(axis=1)
         centripetal = np.minimum(centripetal, path_acceleration / own.stretch / bend)
         velocity = np.minimum(velocity, np.sqrt(centripetal))

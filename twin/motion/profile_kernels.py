@@ -5,15 +5,18 @@ zero; when neither is safe any more, the brake that made the state safe is carri
 this gives the well-known seven phases of minimum time.
 """
 
-import math
-
 import numba
 import numpy as np
 
 from twin.motion.brake_kernels import brake_distance, time_to
 from twin.motion.early_brake_kernels import better_to_brake
+from twin.motion.phase_kernels import put_brake, put_phase
 from twin.motion.reach_kernels import BISECTIONS, ROUNDING, SLOWEST, find_brake
 from twin.nc.canonical import FloatArray, IntArray
+
+STATE_AT_REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0])
+"""Piece, x within it, v, a, time; the piece in which an early brake was chosen, and that in which
+one was weighed, -1: none."""
 
 SHORTEST_PHASE = 1e-10
 """Phases below this are rounding [s]."""
@@ -67,26 +70,13 @@ def _longest(
 
 
 @numba.njit(cache=True)
-def _put(
-    phases: FloatArray, pieces: IntArray, row: int,
-    first: int, last: int, begin: float, duration: float, x: float, v: float, a: float, j: float,
-) -> None:  # fmt: skip
-    pieces[row, 0] = first
-    pieces[row, 1] = last
-    phases[row, 0] = begin
-    phases[row, 1] = duration
-    phases[row, 2] = x
-    phases[row, 3] = v
-    phases[row, 4] = a
-    phases[row, 5] = j
-
-
-@numba.njit(cache=True)
 def find_phases(
     limits: FloatArray, entry: FloatArray, reach: FloatArray, pause: FloatArray,
-    stop: int, state: FloatArray,
+    stop: int, until: float, state: FloatArray,
 ) -> tuple[FloatArray, IntArray]:  # fmt: skip
-    """Drive from ``state`` until the piece ``stop`` is reached, between two brakes at the latest.
+    """Drive from ``state`` to a piece or a time, on to the end of a phase or brake.
+
+    However often the drive is broken off and gone on with, the phases are the same.
 
     Args:
         limits: As in ``find_brake``.
@@ -94,7 +84,8 @@ def find_phases(
         reach: From ``find_reach``.
         pause: How long each piece waits, shape (n,) [s].
         stop: Piece at which to end.
-        state: Piece, x, v, a, time; overwritten by the state at the end, shape (5,).
+        until: Time at which to end [s].
+        state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (7,).
 
     Returns:
         Rows begin [s], duration [s], x, v, a, j, and the first and last piece of each phase.
@@ -105,9 +96,9 @@ def find_phases(
     used = 0
     i, x, v, a, now = int(state[0]), state[1], state[2], state[3], state[4]
     phases_here = 0
-    brake_in, compared_in = -1, -1
+    brake_in, compared_in = int(state[5]), int(state[6])
     last_i = i
-    while i < stop and i < count:
+    while i < stop and i < count and now < until:
         phases_here = phases_here + 1 if i == last_i else 0
         last_i = i
         if phases_here > MOST_PHASES:
@@ -116,7 +107,7 @@ def find_phases(
             phases = np.concatenate((phases, np.zeros_like(phases)))
             pieces = np.concatenate((pieces, np.zeros_like(pieces)))
         if limits[0, i] == 0.0:
-            _put(phases, pieces, used, i, i, now, pause[i], 0.0, 0.0, 0.0, 0.0)
+            put_phase(phases, pieces, used, i, i, now, pause[i], 0.0, 0.0, 0.0, 0.0)
             used += 1
             now += pause[i]
             i += 1
@@ -149,7 +140,7 @@ def find_phases(
                 # Once per piece: what rounding leaves over must not be weighed again.
                 compared_in = i
         if duration > 0.0 and (duration >= SHORTEST_PHASE or at_border):
-            _put(phases, pieces, used, i, i, now, duration, x, v, a, j)
+            put_phase(phases, pieces, used, i, i, now, duration, x, v, a, j)
             used += 1
             now += duration
             x += ((j / 6.0 * duration + 0.5 * a) * duration + v) * duration
@@ -176,7 +167,7 @@ def find_phases(
             at_border = length >= rest
             if at_border:
                 duration = time_to(rest, v, a, -jerk, duration)
-            _put(phases, pieces, used, i, i, now, duration, x, v, a, -jerk)
+            put_phase(phases, pieces, used, i, i, now, duration, x, v, a, -jerk)
             used += 1
             now += duration
             v += (a - 0.5 * jerk * duration) * duration
@@ -185,6 +176,9 @@ def find_phases(
                 i, x, a = i + 1, 0.0, max(0.0, a)
             else:
                 x, a = x + length, 0.0
+                if v <= highest_v * (1.0 + ROUNDING):
+                    # Above the limit by rounding alone, it would never be held.
+                    v = min(v, highest_v)
             continue
 
         w = reach[k]
@@ -194,37 +188,29 @@ def find_phases(
         if v <= w:
             # Only rounding has kept the state from going on as it is.
             duration = (limits[0, i] - x) / v
-            _put(phases, pieces, used, i, i, now, duration, x, v, 0.0, 0.0)
+            put_phase(phases, pieces, used, i, i, now, duration, x, v, 0.0, 0.0)
             used += 1
             now += duration
             i, x, v = i + 1, 0.0, min(v, entry[i + 1])
             continue
         spare = distance - brake_distance(v, w, deceleration, jerk)
         to_border = spare <= ROUNDING * distance
-        hardest = min(deceleration, math.sqrt((v - w) * jerk))
-        ramp = hardest / jerk
-        hold = max(0.0, (v - w) / hardest - ramp)
-        for step in range(4):
-            duration, j = ramp, -jerk
-            if step == 0:
-                duration, j = (max(0.0, spare) / v if to_border else 0.0), 0.0
-            elif step == 2:
-                duration, j = hold, 0.0
-            elif step == 3:
-                j = jerk
-            if duration > 0.0:
-                _put(phases, pieces, used, i, k - 1, now, duration, x, v, a, j)
-                used += 1
-                now += duration
-                x += ((j / 6.0 * duration + 0.5 * a) * duration + v) * duration
-                v += (0.5 * j * duration + a) * duration
-                a += j * duration
-                while x >= limits[0, i] and i < k - 1:
-                    x -= limits[0, i]
-                    i += 1
+        if to_border and spare > 0.0:
+            duration = spare / v
+            put_phase(phases, pieces, used, i, k - 1, now, duration, x, v, 0.0, 0.0)
+            used += 1
+            now += duration
+            x += v * duration
+            while x >= limits[0, i] and i < k - 1:
+                x -= limits[0, i]
+                i += 1
+        used, i, now, x = put_brake(
+            phases, pieces, used, limits[0], i, k - 1, now, x, v, 0.0, w, deceleration, jerk
+        )
         v, a = w, 0.0
         brake_in = -1
         if to_border:
             i, x = k, 0.0
     state[0], state[1], state[2], state[3], state[4] = i, x, v, a, now
+    state[5], state[6] = brake_in, compared_in
     return phases[:used], pieces[:used]

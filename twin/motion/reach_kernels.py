@@ -32,7 +32,7 @@ FAILED_BRAKES = 4
 
 
 @numba.njit(cache=True)
-def _holds_on_the_way(
+def holds_on_the_way(
     limits: FloatArray, entry: FloatArray, i: int, x: float, v: float, a: float,
     k: int, w: float, deceleration: float, jerk: float, wide: float,
 ) -> bool:  # fmt: skip
@@ -40,7 +40,7 @@ def _holds_on_the_way(
     top = v + a * a / (2.0 * jerk)
     distance = limits[0, i] - x
     now_v, now_a = brake_state(distance, v, a, w, deceleration, jerk)
-    highest = now_v if now_a > 0.0 else top
+    highest = v if a < 0.0 else now_v if now_a > 0.0 else top
     if highest > limits[1, i] * wide:
         return False
     for border in range(i + 1, k):
@@ -112,7 +112,7 @@ def find_brake(
         if need <= distance * wide + slack * 1e-3 and w < lowest:
             if top <= ceiling * wide and (lift <= own_distance or a <= softest):
                 return k
-            if _holds_on_the_way(limits, entry, i, x, v, a, k, w, deceleration, jerk, wide):
+            if holds_on_the_way(limits, entry, i, x, v, a, k, w, deceleration, jerk, wide):
                 return k
             lowest = w
             failed += 1

@@ -52,6 +52,35 @@ def sample_path(
 
 
 @numba.njit(cache=True)
+def state_at(
+    phases: FloatArray, phase_pieces: IntArray, lengths: FloatArray, time: float
+) -> tuple[int, float, float, float, int]:
+    """Where the path is at any time within the phases.
+
+    Args:
+        phases: As in ``sample_path``.
+        phase_pieces: As in ``sample_path``.
+        lengths: As in ``sample_path``.
+        time: Not before the first phase begins [s].
+
+    Returns:
+        Piece, x within it, v, a, and the row of the phase; -1 for the row after the last.
+    """
+    for row in range(len(phase_pieces)):
+        t = max(0.0, time - phases[row, 0])
+        if t >= phases[row, 1]:
+            continue
+        v, a, j = phases[row, 3], phases[row, 4], phases[row, 5]
+        x = phases[row, 2] + ((j / 6.0 * t + 0.5 * a) * t + v) * t
+        i = phase_pieces[row, 0]
+        while i < phase_pieces[row, 1] and x >= lengths[i]:
+            x -= lengths[i]
+            i += 1
+        return i, min(x, lengths[i]), max(0.0, v + (0.5 * j * t + a) * t), a + j * t, row
+    return 0, 0.0, 0.0, 0.0, -1
+
+
+@numba.njit(cache=True)
 def sample_axes(
     base: FloatArray, drift: FloatArray, cosine: FloatArray, sine: FloatArray,
     angle: FloatArray, end: FloatArray,

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.motion.limits import MotionLimits
-from twin.motion.planner import Phases, plan_phases
+from twin.motion.phases import Phases, plan_phases
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray
 

@@ -2,10 +2,14 @@
 
 It looks one move ahead. Outside corners are rolled around on an arc about the corner, inside
 corners end where the parallel paths meet, the straight lead-in ends square to the first element of
-the contour and the straight lead-out starts square to its last. What does not fit is refused: an
-inside arc smaller than the tool, or an element that its neighbours leave no room for.
+the contour and the straight lead-out starts square to its last; indirect leads go around the
+contour's first and last point where the straight way would cut them off. What does not fit is refused: an
+inside arc smaller than the tool, an element that its neighbours leave no room for, or a neck of the
+contour that is narrower than the tool. A lead-in or lead-out that cuts into the contour is driven,
+as controls do, with a warning.
 """
 
+import collections
 import dataclasses
 from collections.abc import Callable
 from typing import NoReturn
@@ -13,18 +17,36 @@ from typing import NoReturn
 from twin.nc.arcs import SAME_POINT, Point, distance
 from twin.nc.canonical import Corner
 from twin.nc.contour import Element, crossings, turn_between
+from twin.nc.leads import LeadOut, around, lead_depth
+from twin.nc.loops import crossing
 from twin.nc.move_columns import NAN, Segment
 from twin.nc.planes import Plane
+from twin.nc.segments import element_of, level_arc
 
 Emit = Callable[[Segment], None]
 Refuse = Callable[[Segment, str, str], NoReturn]
 """Told the segment, the code and the message; raises."""
+Warn = Callable[[Segment, str, str], None]
+"""The same for a warning."""
 
 _LARGEST_SQUARE = 90.0 + 1e-9
 """Square corners are extended up to this turn, beyond it rolled around [deg]."""
 
 _STRAIGHT_ON = 1e-4
 """Corners that turn by less pass as straight on [deg]."""
+
+
+_NECK = 50
+"""Elements of the contour that a new one is checked against: beyond them a neck goes unnoticed."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Passed:
+    """A compensated element that was emitted, its contour and its source line."""
+
+    element: Element
+    contour: Element | None
+    line: int
 
 
 @dataclasses.dataclass(slots=True)
@@ -60,15 +82,21 @@ class Compensation:
         radius: float,
         emit: Emit,
         refuse: Refuse,
+        warn: Warn,
         *,
         square: bool = False,
+        indirect: bool = False,
     ) -> None:
         self._square = square
+        self._indirect = indirect
+        self._warn = warn
+        self._passed: collections.deque[_Passed] = collections.deque(maxlen=_NECK)
         self.plane = plane
         self._aside = side * radius
         self._emit = emit
         self._refuse = refuse
         self._held: _Held | None = None
+        self._here: list[float] = []
 
     def add(self, move: Segment) -> None:
         """The next move of the contour."""
@@ -93,33 +121,37 @@ class Compensation:
         else:
             self._held.waiting.append(event)
 
-    def finish(self) -> bool:
+    def finish(self) -> LeadOut | None:
         """G40: what is held ends square to itself.
 
         Returns:
-            Whether the path now stands beside the contour, so that a line must lead out.
+            What the path now stands beside, so that a line must lead out; None on the contour.
         """
         held, self._held = self._held, None
         if held is None:
-            return False
+            return None
         self._end(held, held.contour.end if held.element is None else held.element.end)
-        return held.element is not None
+        return (
+            LeadOut(self.plane, held.contour, self._aside, self._indirect) if held.element else None
+        )
+
+    def _out(self, move: Segment) -> None:
+        self._here = move.end
+        self._emit(move)
 
     def _pass(self, move: Segment) -> None:
+        self._passed.clear()
         if self._held is None:
-            self._emit(move)
+            self._out(move)
         else:
             self._held.waiting.append(move)
 
     def _element(self, move: Segment) -> Element:
-        start, end = self.plane.local(move.start)[:2], self.plane.local(move.end)[:2]
-        if move.center is None:
-            return Element(start, end)
-        sense = sum(a * b for a, b in zip(move.normal, self.plane.normal, strict=True))
-        if abs(sense) < 1.0 - 1e-9:
+        element = element_of(move, self.plane)
+        if element is None:
             message = "an arc outside the compensated plane cannot be compensated"
             self._refuse(move, "compensation-plane", message)
-        return Element(start, end, self.plane.local(move.center)[:2], move.sweep * sense)
+        return element
 
     def _parallel(self, move: Segment, contour: Element) -> Element:
         element = contour.aside(self._aside)
@@ -135,7 +167,7 @@ class Compensation:
     def _join(self, held: _Held, contour: Element, element: Element, move: Segment) -> Point:
         """End the held move, go around the corner; return where the next one starts."""
         if held.element is None:
-            self._end(held, element.start)
+            self._lead_in(held, contour, element)
             return element.start
         turn = turn_between(held.contour, contour)
         if abs(turn) < _STRAIGHT_ON:
@@ -175,38 +207,46 @@ class Compensation:
         self._end(held, at)
         return at
 
+    def _lead_in(self, held: _Held, contour: Element, element: Element) -> None:
+        arc = None
+        if self._indirect:
+            arc = around(held.start, element.start, contour.start, self._aside)
+        touch = element.start if arc is None else arc.start
+        depth = lead_depth(Element(held.start, touch), contour, abs(self._aside))
+        if depth:
+            message = f"on its way to the contour the tool cuts {depth:.3f} mm into it"
+            self._warn(held.move, "compensation-lead", message)
+        self._end(held, touch)
+        if arc is not None:
+            self._turn(held.move, arc)
+
     def _roll(self, held: _Held, corner: Point, end: Point, turn: float) -> None:
         sweep = abs(turn) if self._aside < 0.0 else -abs(turn)
-        move, height = held.move, self.plane.local(held.move.end).height
         assert held.element is not None
-        before = [*self.plane.world(*held.element.end, height), *move.end[3:]]
-        after = [*self.plane.world(*end, height), *move.end[3:]]
-        self._emit(
-            dataclasses.replace(
-                move,
-                start=before,
-                end=after,
-                center=self.plane.world(*corner, height),
-                normal=self.plane.normal,
-                sweep=sweep,
-                corner=Corner.EXACT_PATH,
-            )
-        )
+        arc = Element(held.element.end, end, corner, sweep)
+        self._pass_by(arc, None, held.move)
+        self._turn(held.move, arc)
+
+    def _turn(self, move: Segment, arc: Element) -> None:
+        """Go around a corner where the path has come to."""
+        arc_move = level_arc(move, self.plane, arc, self._here)
+        self._out(dataclasses.replace(arc_move, corner=Corner.EXACT_PATH))
 
     def _end(self, held: _Held, at: Point) -> None:
         """Emit the held move up to a point in the plane, then what waits for its end."""
         move, plane = held.move, self.plane
-        start = plane.world(*held.start, plane.local(move.start).height)
         end = plane.world(*at, plane.local(move.end).height)
         sweep, center, normal = move.sweep, move.center, move.normal
+        if held.element is not None:
+            self._pass_by(held.element.cut(held.start, at), held.contour, move)
         if held.element is not None and held.element.center is not None:
             sweep = held.element.cut(held.start, at).sweep
             normal = plane.normal
             center = plane.world(*held.element.center, plane.local(move.start).height)
-        self._emit(
+        self._out(
             dataclasses.replace(
                 move,
-                start=[*start, *move.start[3:]],
+                start=self._here or move.start,
                 end=[*end, *move.end[3:]],
                 center=center,
                 normal=normal if center is not None else (NAN, NAN, NAN),
@@ -215,13 +255,37 @@ class Compensation:
         )
         for each in held.waiting:
             if isinstance(each, Segment):
-                first, last = plane.local(each.start).height, plane.local(each.end).height
-                self._emit(
+                last = plane.local(each.end).height
+                self._out(
                     dataclasses.replace(
                         each,
-                        start=[*plane.world(*at, first), *each.start[3:]],
+                        start=self._here,
                         end=[*plane.world(*at, last), *each.end[3:]],
                     )
                 )
             else:
                 each()
+
+    def _pass_by(self, element: Element, contour: Element | None, move: Segment) -> None:
+        """Refuse an element that crosses an earlier one, unless the contour crosses itself there."""
+        passed = self._passed
+        for index, older in enumerate(passed):
+            if crossing(older.element, element) is None:
+                continue
+            near = list(passed)[max(0, index - 2) : index + 3]
+            here = [contour, *(each.contour for each in list(passed)[-2:])]
+            if any(
+                _cross(each.contour, other) for each in near for other in here if other is not None
+            ):
+                continue
+            self._refuse(
+                move,
+                "compensation-gouge",
+                f"the tool's radius {abs(self._aside):g} does not fit between this element and "
+                f"that of line {older.line}: the path crosses itself",
+            )
+        passed.append(_Passed(element, contour, move.line))
+
+
+def _cross(first: Element | None, second: Element) -> bool:
+    return first is not None and crossing(first, second) is not None

@@ -7,7 +7,7 @@ left of the direction of travel, -1 right of it.
 import dataclasses
 import math
 
-from twin.nc.arcs import Point, distance
+from twin.nc.arcs import Point, distance, turned
 
 _NEAR = 1e-7
 """Slack of comparisons along an element [mm]."""
@@ -34,6 +34,22 @@ class Element:
         """Of an arc [mm]."""
         assert self.center is not None
         return distance(self.start, self.center)
+
+    @property
+    def length(self) -> float:
+        """Along the element [mm]."""
+        if self.center is None:
+            return distance(self.start, self.end)
+        return math.radians(abs(self.sweep)) * self.radius
+
+    def point(self, fraction: float) -> Point:
+        """The point at a fraction of its length from the start."""
+        if self.center is not None:
+            return turned(self.start, self.center, self.sweep * fraction)
+        return (
+            self.start[0] + fraction * (self.end[0] - self.start[0]),
+            self.start[1] + fraction * (self.end[1] - self.start[1]),
+        )
 
     def tangent(self, *, at_end: bool) -> Point:
         """Unit direction of travel at the start or the end."""
@@ -78,14 +94,24 @@ class Element:
             angle -= 360.0
         return angle / size
 
+    def last_along(self, point: Point) -> float:
+        """As ``along``; on an arc of several turns in its last one."""
+        fraction = self.along(point)
+        if self.center is None or abs(self.sweep) < 360.0:
+            return fraction
+        turn = 360.0 / abs(self.sweep)
+        return fraction + turn * math.floor((1.0 - fraction) / turn + _NEAR)
+
+    def tangent_at(self, fraction: float) -> Point:
+        """Unit direction of travel at a fraction of its length."""
+        if self.center is None:
+            return self.tangent(at_end=False)
+        x, y = _unit(*(a - b for a, b in zip(self.point(fraction), self.center, strict=True)))
+        return (-y, x) if self.sweep > 0.0 else (y, -x)
+
     def within(self, fraction: float) -> bool:
         """Whether a place along the element lies on it, with a little slack."""
-        length = (
-            distance(self.start, self.end)
-            if self.center is None
-            else math.radians(abs(self.sweep)) * self.radius
-        )
-        slack = _NEAR / max(length, _NEAR)
+        slack = _NEAR / max(self.length, _NEAR)
         return -slack <= fraction <= 1.0 + slack
 
     def cut(self, start: Point, end: Point) -> "Element":
@@ -97,6 +123,35 @@ class Element:
             before = before if before < 0.5 else before - 360.0 / abs(self.sweep)
             after = after if after > 0.5 else after + 1.0
         return Element(start, end, self.center, self.sweep * (after - before))
+
+    def cut_share(self, last: float) -> "Element":
+        """The part from its start to a share of its way."""
+        return Element(self.start, self.point(last), self.center, self.sweep * last)
+
+
+def clearance(line: Element, element: Element) -> float:
+    """Smallest distance between a line and a line or an arc; 0 where they cross [mm]."""
+    for point in crossings(line, element):
+        if line.within(line.along(point)) and element.within(element.along(point)):
+            return 0.0
+    near = [distance_to(element, line.start), distance_to(element, line.end)]
+    near += [distance_to(line, element.start), distance_to(line, element.end)]
+    if element.center is not None:
+        share = line.along(element.center)
+        foot = line.point(share)
+        if line.within(share):
+            near.append(distance_to(element, foot))
+    return min(near)
+
+
+def distance_to(element: Element, point: Point) -> float:
+    """From a point to the nearest point of an element [mm]."""
+    share = element.along(point)
+    if 0.0 <= share <= 1.0:
+        if element.center is not None:
+            return abs(distance(point, element.center) - element.radius)
+        return distance(point, element.point(share))
+    return min(distance(point, element.start), distance(point, element.end))
 
 
 def crossings(first: Element, second: Element) -> list[Point]:
@@ -161,8 +216,9 @@ def _halves(radius: float, aside: float) -> list[float]:
 
 
 def _unit(x: float, y: float) -> Point:
+    """The direction of a vector; none, 0 0, where a slot as wide as the tool leaves no way."""
     length = math.hypot(x, y)
-    return (x / length, y / length)
+    return (x / length, y / length) if length > 0.0 else (0.0, 0.0)
 
 
 def _moved(point: Point, dx: float, dy: float) -> Point:

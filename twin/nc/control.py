@@ -94,7 +94,7 @@ class Control(ControlMotion):
         """The program has ended, by an end code or by its last line."""
         if not self.ended and self.dialect.finish is not None:
             self.dialect.finish(self)
-        self.path.end_compensation()
+        self.path.finish()
 
     def _apply_codes(self) -> list[tuple[str, object]]:
         """Apply the block's codes; what those for this block only have replaced."""

@@ -9,8 +9,9 @@ from twin.nc.control_words import ControlWords
 from twin.nc.dialect import FeedMode
 from twin.nc.move_columns import NAN, Segment
 from twin.nc.planes import Plane, Vector, cross
+from twin.nc.segments import direction_of
 
-_LARGEST_COORDINATE = 1e7
+LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 
 
@@ -28,7 +29,7 @@ class ControlMotion(ControlWords):
             value = self.axis_value(index, word)
             if self.modal.incremental or word.incremental:
                 value += target[index]
-            if not abs(value) <= _LARGEST_COORDINATE:
+            if not abs(value) <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value
         return target
@@ -36,6 +37,15 @@ class ControlMotion(ControlWords):
     def line_to(self, target: list[float], *, rapid: bool) -> None:
         """Move straight to a programmed position; nothing when it stands there already."""
         self._add(target, rapid=rapid)
+
+    def spline_to(self, target: list[float], *, flat: bool) -> None:
+        """Move on a spline through a programmed position; ``flat``: its height goes linearly.
+
+        The same position twice ends the spline and begins another.
+        """
+        if target == self.programmed:
+            self.path.end_spline()
+        self._add(target, rapid=False, spline=(flat,))
 
     def arc_to(self, target: list[float], center: Vector, sweep: float) -> None:
         """Move on an arc about the plane's normal.
@@ -56,6 +66,7 @@ class ControlMotion(ControlWords):
         center: Vector | None = None,
         normal: Vector = (NAN, NAN, NAN),
         sweep: float = 0.0,
+        spline: tuple[bool] | None = None,
     ) -> None:
         end = self.frame.to_part(target)
         length = self._length(end, center, normal, sweep)
@@ -68,6 +79,9 @@ class ControlMotion(ControlWords):
             self.place_switches(length)
         feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc, length)
         acceleration, deceleration = self.acceleration, self.deceleration
+        if rapid:
+            acceleration = _either(self.rapid_acceleration, acceleration)
+            deceleration = _either(self.rapid_deceleration, deceleration)
         if self.axis_limits or self.axis_accelerations:
             share = self._axis_shares(end, length, is_arc)
             feed = _limited(feed, self.axis_limits, share)
@@ -89,22 +103,24 @@ class ControlMotion(ControlWords):
             normal=normal,
             sweep=sweep,
         )
-        self.path.add(self._last)
+        if spline is None:
+            self.path.add(self._last)
+        else:
+            self.path.add_point(self._last, flat=spline[0])
         self.programmed = target
         self.part = end
+
+    def came_to(self, programmed: list[float], part: list[float], last: Segment | None) -> None:
+        """Blocks that went past the control have ended here; ``last`` is their last move, if any."""
+        self.programmed, self.part = programmed, part
+        if last is not None:
+            self._last = last
 
     @property
     def direction(self) -> Vector | None:
         """Where the last move was going when it ended, programmed coordinates; None before one."""
         move = self._last
-        if move is None:
-            return None
-        x, y, z = (new - old for new, old in zip(move.end[:3], move.start[:3], strict=True))
-        if move.center is not None:
-            arm = tuple(a - b for a, b in zip(move.end[:3], move.center, strict=True))
-            sign = math.copysign(1.0, move.sweep)
-            x, y, z = (sign * value for value in cross(move.normal, (arm[0], arm[1], arm[2])))
-        return self.frame.unturn((x, y, z))
+        return None if move is None else self.frame.unturn(direction_of(move, at_end=True))
 
     def _length(
         self, end: list[float], center: Vector | None, normal: Vector, sweep: float
@@ -190,3 +206,8 @@ def _limited(value: float, limits: Mapping[int, float], shares: list[float]) -> 
     """A value along the path so that no axis exceeds its own limit; NaN is no limit."""
     bounds = [limit / shares[index] for index, limit in limits.items() if shares[index] > 0.0]
     return min([value, *bounds]) if value == value else min(bounds, default=value)
+
+
+def _either(value: float, default: float) -> float:
+    """A value, or where it is NaN another one."""
+    return default if math.isnan(value) else value

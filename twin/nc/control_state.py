@@ -40,6 +40,9 @@ class ControlState:
         codes: Its G codes.
         series: Its words for switch points, in order.
         rapid_feed: Feed of rapids where the program limits it [mm/min]; NaN: the machine's.
+        rapid_acceleration: Acceleration of rapids where the program sets their own [mm/s²]; NaN:
+            that of the path.
+        rapid_deceleration: The same for slowing down.
         axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
         axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
         ended: An end code was run.
@@ -63,8 +66,10 @@ class ControlState:
         self.spindle: float | None = None
         self.acceleration = NAN
         self.deceleration = NAN
+        self.rapid_acceleration = NAN
+        self.rapid_deceleration = NAN
         self.tools = Tools(settings.tools)
-        self.path = Path(settings.axes, self.part, self._refuse_move)
+        self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
         self.flow = Flow(source, Lexer(dialect, self.report), settings.step_limit, self.report)
         self.cycle_values: dict[str, float] = {}
         self.block = Block(0, 0)
@@ -127,6 +132,11 @@ class ControlState:
     def _refuse_move(self, move: Segment, code: str, message: str) -> NoReturn:
         self.report.line = move.line
         self.report.fail(code, message)
+
+    def _warn_of_move(self, move: Segment, code: str, message: str) -> None:
+        line, self.report.line = self.report.line, move.line
+        self.report.warn(code, message)
+        self.report.line = line
 
 
 def number_of(word: Word) -> float:

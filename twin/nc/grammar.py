@@ -3,7 +3,8 @@
 import re
 
 from twin.nc.dialect import Dialect
-from twin.nc.expressions import NUMBER, ExpressionReader, operator_pattern
+from twin.nc.expression_reader import ExpressionReader, operator_pattern
+from twin.nc.expressions import NUMBER
 
 
 class Grammar:

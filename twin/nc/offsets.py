@@ -125,7 +125,11 @@ def compensate(control: Control, side: float, radius: float) -> None:
         return
     plane = control.part_plane()
     control.path.start_compensation(
-        plane, side * control.frame.handedness, radius, square=control.modal.square_corners
+        plane,
+        side * control.frame.handedness,
+        radius,
+        square=control.modal.square_corners,
+        indirect=control.modal.indirect_leads,
     )
 
 

@@ -1,13 +1,24 @@
-"""The way of moves from the control to the columns, through compensation where it is in force."""
+"""The way of moves from the control to the columns.
+
+The stages, in order: splines through points, blends at corners, tool radius compensation, loops cut
+out. Each is there only while a program asks for it, and holds few moves.
+"""
 
 import dataclasses
 from collections.abc import Callable
 
 from twin.nc.arcs import SAME_POINT, distance
-from twin.nc.canonical import Axes, Chunk
-from twin.nc.compensation import Compensation, Refuse
+from twin.nc.blends import Blend
+from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray, Motion
+from twin.nc.compensation import Compensation, Refuse, Warn
+from twin.nc.contour import Element
+from twin.nc.leads import LeadOut, around, lead_depth
+from twin.nc.loops import Loops
 from twin.nc.move_columns import MoveColumns, Segment
 from twin.nc.planes import Plane
+from twin.nc.rounding import Rounding
+from twin.nc.segments import level_arc
+from twin.nc.splines import Spline
 
 
 class Path:
@@ -17,11 +28,16 @@ class Path:
         position: Where the emitted path has come to, shape (k,) [mm or deg].
     """
 
-    def __init__(self, axes: Axes, start: list[float], refuse: Refuse) -> None:
+    def __init__(self, axes: Axes, start: list[float], refuse: Refuse, warn: Warn) -> None:
         self._columns = MoveColumns(axes)
         self._refuse = refuse
+        self._warn = warn
+        self._before: Segment | None = None
+        self._spline: Spline | None = None
+        self._rounding: Rounding | None = None
         self._compensation: Compensation | None = None
-        self._leading_out: Plane | None = None
+        self._leading_out: LeadOut | None = None
+        self._loops: Loops | None = None
         self.position = start
 
     def __len__(self) -> int:
@@ -31,8 +47,111 @@ class Path:
         """All that has been emitted, as columns."""
         return self._columns.take()
 
+    def finish(self) -> None:
+        """Nothing follows: emit what the stages hold."""
+        self._flush()
+        self.end_compensation()
+        self.keep_loops()
+
+    # --- what the control adds
+
     def add(self, move: Segment) -> None:
         """The next programmed move."""
+        if self._spline is not None:
+            self._end_spline(move)
+        self._before = move
+        self._round(move)
+
+    @property
+    def open(self) -> bool:
+        """No stage holds or changes moves: what is added is emitted at once."""
+        stages = (self._spline, self._rounding, self._compensation, self._leading_out, self._loops)
+        return all(stage is None for stage in stages)
+
+    def add_rows(
+        self, codes: IntArray, values: FloatArray, positions: FloatArray, last: Segment
+    ) -> None:
+        """Moves as columns while the path is open.
+
+        Args:
+            codes: Shape (n, 5), as in ``MoveColumns.add_rows``.
+            values: Shape (n, 11).
+            positions: Shape (n, 3, k).
+            last: The last of them.
+        """
+        assert self.open
+        self._columns.add_rows(codes, values, positions)
+        self._before = last
+        self.position = last.end
+
+    def add_point(self, move: Segment, *, flat: bool) -> None:
+        """The straight way to the next point of a spline; ``flat``: its height goes linearly."""
+        if self._spline is None:
+            before = self._before
+            cuts = before is not None and before.motion is Motion.FEED
+            self._spline = Spline(before if cuts else None, self._round)
+        self._spline.add(move, flat=flat)
+        self._before = None
+
+    def end_spline(self) -> None:
+        """The spline's next point begins a new one."""
+        self._end_spline(None)
+
+    def event(self, happen: Callable[[MoveColumns], None]) -> None:
+        """Something that happens between the moves so far and the next."""
+        self._end_spline(None)
+        self._before = None
+        if self._rounding is None:
+            self._happen(happen)
+        else:
+            self._rounding.event(lambda: self._happen(happen))
+
+    def _end_spline(self, behind: Segment | None) -> None:
+        if self._spline is not None:
+            cuts = behind is not None and behind.motion is Motion.FEED
+            self._spline.finish(behind if cuts else None)
+            self._spline = None
+
+    # --- blends
+
+    def _round(self, move: Segment) -> None:
+        if self._rounding is None:
+            self._compensate(move)
+        else:
+            self._rounding.add(move)
+
+    def hold_for_blends(self) -> None:
+        """From now on moves are held until their successor is known."""
+        if self._rounding is None:
+            self._rounding = Rounding(self._compensate, self._refuse)
+
+    def blend_next(self, blend: Blend) -> bool:
+        """Blend the corner between the last move and the next; False where there is no last."""
+        assert self._rounding is not None
+        if self._rounding.holding is None:
+            return False
+        self._rounding.once = blend
+        return True
+
+    def blend_always(self, blend: Blend | None) -> None:
+        """Blend every corner between two moves that follow; None: no more."""
+        self._end_spline(None)
+        if blend is not None:
+            self.hold_for_blends()
+        if self._rounding is not None:
+            self._rounding.always = blend
+            if blend is None:
+                self._rounding.flush()
+                self._rounding = None
+
+    def _flush(self) -> None:
+        self._end_spline(None)
+        if self._rounding is not None:
+            self._rounding.flush()
+
+    # --- compensation
+
+    def _compensate(self, move: Segment) -> None:
         if self._compensation is not None:
             self._compensation.add(move)
             return
@@ -40,30 +159,34 @@ class Path:
             move = self._lead_out(move, self._leading_out)
         self._emit(move)
 
-    def _emit(self, move: Segment) -> None:
-        if move.center is None and move.start == move.end:
-            return
-        self._columns.add(move)
-        self.position = move.end
-
-    def _lead_out(self, move: Segment, plane: Plane) -> Segment:
+    def _lead_out(self, move: Segment, leading: LeadOut) -> Segment:
         """The first line in the plane leads out; until then only its normal and others move."""
+        plane = leading.plane
         if move.center is not None:
             self._refuse(move, "compensation-end", "compensation must end on a line")
-        start, end = plane.local(move.start), plane.local(move.end)
+        start, end, here = (plane.local(each) for each in (move.start, move.end, self.position))
         if distance(start[:2], end[:2]) >= SAME_POINT:
             self._leading_out = None
+            arc = None
+            if leading.indirect:
+                arc = around(end[:2], here[:2], leading.contour.end, -leading.aside)
+            if arc is not None:
+                back = Element(here[:2], arc.start, arc.center, -arc.sweep)
+                self._emit(level_arc(move, plane, back, self.position))
+            lead = Element(plane.local(self.position)[:2], end[:2])
+            depth = lead_depth(lead, leading.contour, abs(leading.aside))
+            if depth:
+                message = f"on its way from the contour the tool cuts {depth:.3f} mm into it"
+                self._warn(move, "compensation-lead", message)
             return dataclasses.replace(move, start=self.position)
-        here = plane.local(self.position)
         level = [*plane.world(here.abscissa, here.ordinate, end.height), *move.end[3:]]
         return dataclasses.replace(move, start=self.position, end=level)
 
-    def event(self, happen: Callable[[MoveColumns], None]) -> None:
-        """Something that happens between the moves so far and the next."""
+    def _happen(self, happen: Callable[[MoveColumns], None]) -> None:
         if self._compensation is None:
-            happen(self._columns)
+            self._record(happen)
         else:
-            self._compensation.event(lambda: happen(self._columns))
+            self._compensation.event(lambda: self._record(happen))
 
     @property
     def leading_out(self) -> bool:
@@ -75,7 +198,9 @@ class Path:
         """Compensation is in force."""
         return self._compensation is not None
 
-    def start_compensation(self, plane: Plane, side: float, radius: float, *, square: bool) -> None:
+    def start_compensation(
+        self, plane: Plane, side: float, radius: float, *, square: bool, indirect: bool
+    ) -> None:
         """Compensate from the next move on.
 
         Args:
@@ -83,14 +208,60 @@ class Path:
             side: +1 left of the contour, -1 right of it.
             radius: Of the tool [mm].
             square: Outside corners between lines are extended as far as 90°.
+            indirect: Leads go around the contour's first and last point.
         """
+        self._flush()
         self._compensation = Compensation(
-            plane, side, radius, self._emit, self._refuse, square=square
+            plane,
+            side,
+            radius,
+            self._emit,
+            self._refuse,
+            self._warn,
+            square=square,
+            indirect=indirect,
         )
 
     def end_compensation(self) -> None:
         """The next line leads out."""
         if self._compensation is not None:
-            if self._compensation.finish():
-                self._leading_out = self._compensation.plane
+            self._flush()
+            self._leading_out = self._compensation.finish()
             self._compensation = None
+
+    # --- loops
+
+    @property
+    def cutting_loops(self) -> bool:
+        """Loops are cut out."""
+        return self._loops is not None
+
+    def cut_loops(self, plane: Plane) -> None:
+        """Loops of the path in a plane are cut out from now on."""
+        self._flush()
+        self._loops = Loops(plane, self._add)
+
+    def keep_loops(self) -> None:
+        """Loops stay."""
+        if self._loops is not None:
+            self._flush()
+            self._loops.flush()
+            self._loops = None
+
+    def _emit(self, move: Segment) -> None:
+        if move.center is None and move.start == move.end:
+            return
+        self.position = move.end
+        if self._loops is None:
+            self._columns.add(move)
+        else:
+            self._loops.add(move)
+
+    def _add(self, move: Segment) -> None:
+        self._columns.add(move)
+
+    def _record(self, happen: Callable[[MoveColumns], None]) -> None:
+        if self._loops is None:
+            happen(self._columns)
+        else:
+            self._loops.event(lambda: happen(self._columns))

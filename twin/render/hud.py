@@ -12,6 +12,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from twin.nc.canonical import Axes, FloatArray
 from twin.render.canvas import Pixels
+from twin.render.palette import error_palette
 
 INK = (24, 33, 42, 255)
 MUTED = (92, 105, 118, 255)
@@ -40,6 +41,10 @@ class Reading:
     feed: float
     """Speed along the path [mm/min, or deg/min where only rotary axes move]."""
     feed_unit: str
+    tool: int
+    """Number of the tool in the spindle."""
+    spindle: float | None
+    """Its speed [1/min], negative counter-clockwise, 0 at rest; None where it is not known."""
     error_um: float
     """What ``error_name`` says [µm]."""
     time_s: float
@@ -69,6 +74,7 @@ class Display:
         size: tuple[int, int],
         speed: float | None,
         error_name: str = "lag",
+        error_scale_um: float | None = None,
     ) -> None:
         """Lay the panels out.
 
@@ -79,6 +85,7 @@ class Display:
             size: Width and height of the frames [px].
             speed: How much faster than in reality the film runs; None for a still.
             error_name: What the error is called.
+            error_scale_um: Error that has the trail's last colour [µm]; None: no error colours it.
         """
         self._source = [_printable(line) for line in source]
         self._axes = axes
@@ -86,6 +93,7 @@ class Display:
         self._scale = min(size[1] / BASE_HEIGHT, size[0] / 1280)
         self._title = title if speed is None else f"{title}   ×{speed:.3g}"
         self._error_name = error_name
+        self._error_scale = error_scale_um
         self._mono = font("DejaVuSansMono", self._px(17))
         self._bold = font("DejaVuSansMono-Bold", self._px(23))
         self._small = font("DejaVuSans", self._px(14))
@@ -163,11 +171,13 @@ class Display:
         padding, row, small_row = self._px(14), self._px(30), self._px(23)
         small = [
             ("feed", f"{reading.feed:.0f} {reading.feed_unit}"),
+            (f"tool {reading.tool}", _turning(reading.spindle)),
             (self._error_name, f"{reading.error_um:.1f} µm"),
             ("time", _clock(reading.time_s)),
         ]
         width = self._px(262)
-        rows = len(self._axes.names) * row + self._px(10) + len(small) * small_row
+        legend = self._error_scale is not None
+        rows = len(self._axes.names) * row + self._px(10) + (len(small) + legend) * small_row
         panel, draw = self._panel(width, rows + 2 * padding, PAPER)
         middle = padding + row // 2
         right = width - padding
@@ -189,6 +199,14 @@ class Display:
             draw.text((padding, middle), name, font=self._small, fill=MUTED, anchor="lm")
             draw.text((right, middle), text, font=self._mono, fill=INK, anchor="rm")
             middle += small_row
+        if self._error_scale is not None:
+            scale = f"{self._error_scale:.3g} µm"
+            draw.text((padding, middle), "trail 0", font=self._small, fill=MUTED, anchor="lm")
+            draw.text((right, middle), scale, font=self._small, fill=MUTED, anchor="rm")
+            left = padding + round(self._small.getlength("trail 0")) + self._px(8)
+            width = right - round(self._small.getlength(scale)) - self._px(8) - left
+            bar = np.tile(error_palette(max(1, width))[None], (self._px(10), 1, 1))
+            panel.paste(Image.fromarray(bar), (left, middle - self._px(5)))
         return panel
 
     def _panel(
@@ -218,6 +236,12 @@ def _printable(line: str) -> str:
     """A source line for the panel: wide gaps before comments are closed."""
     shown = "".join(character if character.isprintable() else " " for character in line)
     return re.sub(r" {3,}", "  ", shown.strip())
+
+
+def _turning(spindle: float | None) -> str:
+    if spindle is None:
+        return "-"
+    return f"{abs(spindle):.0f} min⁻¹ {'↺' if spindle < 0 else '↻'}" if spindle else "stands still"
 
 
 def _clock(seconds: float) -> str:

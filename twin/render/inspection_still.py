@@ -1,86 +1,52 @@
-"""The machined part, coloured by how far it is from what was commanded."""
+"""The machined part, coloured by how far it is from what it should be."""
 
 from pathlib import Path
 
-import mujoco
 import numpy as np
 from PIL import Image, ImageDraw
 
 from twin.cutting.colours import deviation_colours
-from twin.cutting.cut import Cutter
-from twin.cutting.inspection import Inspection, inspect
-from twin.cutting.outline import BoolArray
-from twin.cutting.tools import ToolPlan
-from twin.errors import RenderError
-from twin.files import complete_or_absent
-from twin.job import StockTable, ToolTable
-from twin.machine.config import Machine
-from twin.recording import Recording
+from twin.cutting.inspection import Inspection
 from twin.render.cameras import PART
-from twin.render.canvas import QUALITIES
+from twin.render.canvas import quality_named
 from twin.render.hud import INK, MUTED, PAPER, font, lay_over
-from twin.render.replay import rapid_mask
 from twin.render.stage import Scene, stage
+from twin.render.still import save
 from twin.units import UM_PER_MM
 
 
 def inspection_still(
-    recording: Recording,
+    scene: Scene,
+    found: Inspection,
     *,
-    spec: mujoco.MjSpec,
-    machine: Machine,
-    stock: StockTable,
-    tool: ToolTable | ToolPlan,
-    tolerance_um: float,
     out: Path,
     camera: str = PART,
     size: tuple[int, int] = (1280, 720),
     quality: str = "final",
-    rapid_moves: BoolArray | None = None,
-) -> Inspection:
-    """Measure the part against the one that the commanded path would cut, and draw it.
+) -> None:
+    """Draw the part at the end of a run, coloured by what measuring it found.
 
     Args:
-        recording: The run.
-        spec: Machine, tool and named cameras.
-        machine: The machine file.
-        stock: The blank.
-        tool: What is in the spindle, or what is in it when.
-        tolerance_um: Deviation that is still good, and that has the last colours [µm].
+        scene: The run; it must have a stock.
+        found: Deviations on the grid of that stock; the tolerance has the last colours.
         out: The picture (PNG), complete or not at all.
         camera: Name of the camera.
         size: Width and height [px].
         quality: ``draft`` or ``final``.
-        rapid_moves: Whether each move of the program is a rapid; None: none is.
 
     Raises:
         RenderError: There is no such camera, no OpenGL, or the file cannot be written.
         ConfigError: The stock is wrong.
     """
-    scene = Scene(recording=recording, spec=spec, machine=machine, tool=tool, stock=stock)
-    scene.require_camera(camera)
-    header = recording.header
-    real, ideal = (
-        Cutter(stock, tool, header.part_frame, header.part_zero, along=along)
-        for along in ("joints", "setpoints")
-    )
-    for samples in recording.chunks():
-        rapid = rapid_mask(samples, rapid_moves)
-        real.add(samples, rapid)
-        ideal.add(samples, rapid)
-    found = inspect(real.map, ideal.map, tolerance_um)
-    paint = deviation_colours(found.deviation_mm, tolerance_um / UM_PER_MM)
-    with stage(scene, size, QUALITIES[quality], paint=paint) as play:
-        for samples in recording.chunks():
+    scene.require((camera,))
+    paint = deviation_colours(found.deviation_mm, found.tolerance_um / UM_PER_MM)
+    with stage(scene, size, quality_named(quality), paint=paint, trail=False) as play:
+        for samples in scene.recording.chunks():
             play.advance(samples)
         pixels = play.picture(camera).copy()
-    lay_over(pixels, _legend(found, size[1] / 720), 18, 18)
-    try:
-        with complete_or_absent(out) as temporary:
-            Image.fromarray(np.ascontiguousarray(pixels)).save(temporary, "PNG", optimize=True)
-    except OSError as error:
-        raise RenderError(f"{out}: cannot be written: {error.strerror}") from error
-    return found
+    margin = max(1, round(18 * size[1] / 720))
+    lay_over(pixels, _legend(found, size[1] / 720), margin, margin)
+    save(pixels, out)
 
 
 def _legend(found: Inspection, scale: float) -> Image.Image:

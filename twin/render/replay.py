@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from twin.cutting.outline import BoolArray
 from twin.nc.canonical import IntArray
 from twin.recording import Recording, Samples
 
@@ -42,17 +41,3 @@ def deal(recording: Recording, ends: IntArray) -> Iterator[tuple[Samples, bool]]
         if done < len(chunk):
             yield chunk[done:], False
         first = last
-
-
-def rapid_mask(samples: Samples, rapid_moves: BoolArray | None) -> BoolArray:
-    """Which samples belong to rapids; those before the first move do.
-
-    Args:
-        samples: n samples.
-        rapid_moves: Whether each move of the program is a rapid; None: none is.
-    """
-    move = samples.setpoint.move
-    if rapid_moves is None or not len(rapid_moves):
-        return np.zeros(len(move), np.bool_)
-    known = (move >= 0) & (move < len(rapid_moves))
-    return np.where(known, rapid_moves[np.clip(move, 0, len(rapid_moves) - 1)], True)

@@ -3,39 +3,46 @@
 import contextlib
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import mujoco
 import numpy as np
 
 from twin.cutting.colours import Colours
 from twin.cutting.cut import Cutter, Rectangle, union
-from twin.cutting.outline import BoolArray
-from twin.cutting.tools import ToolPlan
 from twin.errors import RenderError
-from twin.job import StockTable, ToolTable
+from twin.job import StockTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
+from twin.program_notes import ProgramNotes
 from twin.recording import Recording, Samples
-from twin.render.cameras import PART_CAMERAS, add_part_cameras, framed
-from twin.render.canvas import Canvas, Pixels, Quality, canvas, prepare
-from twin.render.placement import Joints, Placement, place
-from twin.render.replay import rapid_mask
+from twin.render.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
+from twin.render.canvas import Canvas, Focus, Pixels, Quality, canvas, prepare
+from twin.render.placement import ROTARY_TABLE, Joints, Placement, place
 from twin.render.skin import Skin
 from twin.render.stock_surface import StockSurface
 from twin.render.tool_body import ToolBodies
 from twin.render.trail import Trail, trail_points
 from twin.render.work_holding import add_work_holding
+from twin.units import MM
 
 WARNINGS = {
     "rapid": "rapid into stock",
+    "standing": "feed with the spindle off",
     "flute": "deeper than the flutes",
     "shank": "shank in the material",
     "holder": "holder in the material",
 }
 
+_NO_POINTS = np.zeros(0, np.int64)
+
 BETWEEN_FIELDS = 255
 """Grey of the line between the fields of a split picture."""
+
+SHADOWS_OVER_MACHINE = 0.55
+"""Radius in which shadows fall, as a share of the machine's extent."""
+SHADOWS_OVER_PART = 1.6
+"""The same for the part's cameras, as a share of the radius around the part."""
 
 TRAIL_SHARE = 0.003
 """Radius of the trail's tube, as a share of the trail's extent."""
@@ -51,35 +58,42 @@ class Scene:
     spec: mujoco.MjSpec
     """Machine, tool and named cameras, as the machine room builds it; it is not changed."""
     machine: Machine
-    tool: ToolTable | ToolPlan
-    """What is in the spindle, or what is in it when."""
+    notes: ProgramNotes
+    """What is in the spindle when, which moves are rapids, what the screen shows."""
+    source: Sequence[str] = ()
+    """Lines of the program."""
     stock: StockTable | None = None
-    rapid_moves: BoolArray | None = None
-    """Whether each move of the program is a rapid; none: none is."""
-    error_um: FloatArray | None = None
-    """Error of every sample that colours the trail, shape (n,) [µm]; none: one colour."""
     error_scale_um: float | None = None
-    """Error that has the last colour [µm]; none: the greatest."""
-
-    @property
-    def plan(self) -> ToolPlan:
-        """What is in the spindle when."""
-        return self.tool if isinstance(self.tool, ToolPlan) else ToolPlan((self.tool,))
+    """Contour error that has the trail's last colour [µm]; none: the greatest."""
 
     def camera_names(self) -> list[str]:
         """Names of the cameras that can be asked for."""
         own = [camera.name for camera in self.spec.cameras if camera.name]
         return own + [name for name in PART_CAMERAS if name not in own]
 
-    def require_camera(self, name: str) -> None:
-        """Refuse a camera that the machine does not have.
+    @property
+    def error_scale(self) -> float:
+        """Contour error that has the trail's last colour [µm]."""
+        if self.error_scale_um is not None:
+            return self.error_scale_um
+        errors = self.recording.contour_um(0, len(self.recording))
+        return 0.0 if errors is None else float(errors.max(initial=0.0))
+
+    def require(self, cameras: Sequence[str]) -> None:
+        """Refuse a scene that cannot be shown.
 
         Raises:
-            RenderError: There is none; the message names those that there are.
+            RenderError: The recording is empty, or the machine lacks a camera; the message names
+                those that there are.
         """
-        if name not in self.camera_names():
-            known = ", ".join(self.camera_names()) or "none"
-            raise RenderError(f"no camera '{name}': the machine has {known}")
+        if not len(self.recording):
+            raise RenderError("the recording has no samples: there is nothing to show")
+        known = ", ".join(self.camera_names())
+        if not cameras:
+            raise RenderError(f"no camera is named: the machine has {known}")
+        for name in cameras:
+            if name not in self.camera_names():
+                raise RenderError(f"no camera '{name}': the machine has {known}")
 
 
 class Stage:
@@ -96,6 +110,7 @@ class Stage:
         cutter: Cutter | None,
         trail: Trail,
         tools: ToolBodies,
+        seen: tuple[FloatArray, float],
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
@@ -107,7 +122,9 @@ class Stage:
         self._cutter = cutter
         self._trail = trail
         self._tools = tools
-        self._tool = scene.plan.tools[0]
+        self._seen = seen
+        self._tool = scene.notes.tools.tools[0]
+        self._move = 0
         self._joints = Joints(scene.machine, model)
         self._samples = 0
         self._changed: Rectangle = (0, 0, 0, 0)
@@ -120,9 +137,10 @@ class Stage:
             return
         self._samples += len(samples)
         self._position = samples.joint_position[-1]
-        self._tool = self._scene.plan.runs(samples.setpoint.move[-1:])[0][1]
+        self._move = int(samples.setpoint.move[-1])
+        self._tool = self._scene.notes.tools.at(self._move)
         if self._cutter is not None:
-            self._cutter.add(samples, rapid_mask(samples, self._scene.rapid_moves))
+            self._cutter.add(samples, self._scene.notes.is_rapid(samples.setpoint.move))
             self._changed = union(self._changed, self._cutter.changed)
 
     def warning(self, line: int) -> str:
@@ -142,7 +160,8 @@ class Stage:
         field = (width // columns, height // rows)
         whole = np.full((height, width, 3), BETWEEN_FIELDS, np.uint8)
         for number, camera in enumerate(cameras):
-            view = self._drawing.draw(self.data, int(self.model.camera(camera).id), field)
+            number_of = int(self.model.camera(camera).id)
+            view = self._drawing.draw(self.data, number_of, field, self._focus(camera))
             if len(cameras) == 1:
                 return view
             top, left = field[1] * (number // columns), field[0] * (number % columns)
@@ -155,25 +174,38 @@ class Stage:
         self._refresh()
         return self._drawing.draw_objects(self.data, int(self.model.camera(camera).id))
 
+    def _focus(self, camera: str) -> Focus:
+        """Where a camera needs shadows: around the part, or all over the machine."""
+        if camera not in PART_CAMERAS:
+            stat = self.model.stat
+            return Focus(stat.center.copy(), SHADOWS_OVER_MACHINE * float(stat.extent))
+        table = self.data.body(ROTARY_TABLE)
+        middle, radius = self._seen
+        center = table.xpos + table.xmat.reshape(3, 3) @ self.placement.points(middle[None])[0]
+        return Focus(center, SHADOWS_OVER_PART * MM * max(radius, SMALLEST_MM))
+
     def _refresh(self) -> None:
-        self._tools.show(self._tool)
-        # Positions are the tool point's: with a longer tool the head stands higher.
-        longer = self._tool.length - self._scene.plan.tools[0].length
-        drawn = self._position.copy()
-        drawn[2] += longer
-        self._joints.set(self.data, drawn)
+        turns = self._scene.notes.spindle.at(self._move)
+        self._tools.show(self._tool, 1.0 if turns is None else float(np.sign(turns)))
+        self._joints.set(self.data, self._position)
         mujoco.mj_forward(self.model, self.data)
         if self._surface is not None:
             self._surface.update(self._drawing, self._changed)
             self._changed = (0, 0, 0, 0)
         if self._samples:
             tip = self._scene.recording.header.part_frame.position(self._position[None])[0]
+            tip[2] -= self._scene.notes.tools.longer(self._tool)
             self._trail.show(self._drawing, self._samples, tip)
 
 
 @contextlib.contextmanager
 def stage(
-    scene: Scene, size: tuple[int, int], quality: Quality, paint: Colours | None = None
+    scene: Scene,
+    size: tuple[int, int],
+    quality: Quality,
+    *,
+    paint: Colours | None = None,
+    trail: bool = True,
 ) -> Iterator[Stage]:
     """Build the drawn machine and open the canvas.
 
@@ -182,6 +214,7 @@ def stage(
         size: Width and height of the pictures [px].
         quality: What a picture may cost.
         paint: Colours of the stock's cells, shape (ny, nx, 3); None: as metal looks.
+        trail: Whether the way of the tool is seen.
 
     Raises:
         RenderError: No OpenGL works here.
@@ -191,31 +224,34 @@ def stage(
     spec = scene.spec.copy()
     prepare(spec, quality, size)
     turn_zero = header.part_frame.turn_zero
-    placement = place(scene.machine, spec.compile(), scene.plan.tools[0].length, turn_zero)
+    placement = place(scene.machine, spec.compile(), scene.notes.tools.tools[0].length, turn_zero)
     cutter = surface = None
     if scene.stock is not None:
         cutter = Cutter(
-            scene.stock, scene.tool, header.part_frame, header.part_zero, keep_marks=True
+            scene.stock, scene.notes.tools, header.part_frame, header.part_zero, keep_marks=True
         )
-        skin = Skin(cutter.map, cutter.marks, paint)
-        surface = StockSurface(cutter.map, skin, quality.drawn_cells)
+        step = max(1, -(-max(cutter.map.heights.shape) // quality.drawn_cells))
+        skin = Skin(cutter.map, cutter.marks, step, paint)
+        surface = StockSurface(cutter.map, skin, step)
         surface.add_to(spec)
         corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
         add_work_holding(spec, scene.stock, placement, corner)
-    points = trail_points(scene.recording, scene.rapid_moves, scene.error_um)
-    seen = points.position if cutter is None else cutter.map.corners
-    add_part_cameras(spec, placement, *framed(seen))
-    trail = Trail(points, _trail_radius(points.position), scene.error_scale_um)
-    trail.add_to(spec)
-    tools = ToolBodies(scene.plan)
+    points = trail_points(scene.recording, scene.notes)
+    seen = framed(points.position if cutter is None else cutter.map.corners)
+    add_part_cameras(spec, placement, *seen)
+    way = Trail(
+        points if trail else points[_NO_POINTS], _trail_radius(points.position), scene.error_scale
+    )
+    way.add_to(spec)
+    tools = ToolBodies(scene.notes.tools, scene.machine.file.spindle.flange_diameter)
     tools.add_to(spec)
     model = spec.compile()
     if surface is not None:
         surface.bind(model, placement)
-    trail.bind(model, placement)
+    way.bind(model, placement)
     tools.bind(model)
     with canvas(model, size, quality) as drawing:
-        yield Stage(scene, model, placement, drawing, size, surface, cutter, trail, tools)
+        yield Stage(scene, model, placement, drawing, size, surface, cutter, way, tools, seen)
 
 
 def _trail_radius(points: FloatArray) -> float:

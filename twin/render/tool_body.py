@@ -5,6 +5,7 @@ import numpy as np
 
 from twin.cutting.tools import Profile, ToolPlan, profile
 from twin.job import ToolTable
+from twin.machine.tool_shape import tool_cylinders
 from twin.nc.canonical import FloatArray, IntArray
 from twin.render.canvas import HIDDEN_GROUP
 from twin.render.live_mesh import SHOWN_GROUP
@@ -14,8 +15,13 @@ from twin.units import MM
 PREFIX = "cutter_"
 """What the names of drawn tools begin with; their number follows."""
 
-REPLACED = ("tool_cutter", "tool_ball", "tool_shank")
-"""Plain geoms of the machine's first tool that the fluted ones stand for."""
+REPLACED = ("tool_cutter", "tool_ball", "tool_shank", "tool_flange", "tool_nut")
+"""Plain geoms of the machine's first tool that those of every tool stand for."""
+HOLDER = ("tool_flange", "tool_nut")
+
+HOLDER_MATERIAL = "holder_steel"
+HOLDER_RGBA = (0.42, 0.43, 0.45, 1.0)
+_SEEN = {"contype": 0, "conaffinity": 0, "mass": 0.0, "group": SHOWN_GROUP}
 
 SPIN_DEG = 47.0
 """Turn of the spindle from one picture to the next; the true one could not be followed."""
@@ -30,19 +36,28 @@ _LEVELS_IN_TIP = 9
 class ToolBodies:
     """Draws the tools of a plan; ``add_to`` the specification, compile, ``bind``, then ``show``."""
 
-    def __init__(self, plan: ToolPlan) -> None:
-        self._plan = plan
+    def __init__(self, plan: ToolPlan, flange_diameter: float) -> None:
+        """Take the tools.
+
+        Args:
+            plan: What is in the spindle when.
+            flange_diameter: Of the holders [mm].
+        """
+        self._tools = {tool.number: tool for tool in plan.tools}
+        self._first = plan.tools[0]
+        self._flange = flange_diameter
         self._angle = 0.0
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Put all tools under the spindle nose of a machine's specification."""
-        for name in REPLACED:
-            geom = spec.geom(name)
-            if geom is not None:
-                spec.delete(geom)
+        replaced = [geom for name in REPLACED if (geom := spec.geom(name)) is not None]
+        drawn = {geom.name for geom in replaced}
+        for geom in replaced:
+            spec.delete(geom)
         nose = spec.site(SPINDLE_NOSE)
         spec.add_material(name=PREFIX, rgba=[0.66, 0.63, 0.56, 1.0], specular=0.9, shininess=0.8)
-        for tool in self._plan.tools:
+        spec.add_material(name=HOLDER_MATERIAL, rgba=HOLDER_RGBA, specular=0.9, shininess=0.85)
+        for tool in self._tools.values():
             body = nose.parent.add_body(
                 name=f"{PREFIX}{tool.number}", pos=nose.pos.tolist(), quat=nose.quat.tolist()
             )
@@ -53,44 +68,60 @@ class ToolBodies:
                 userface=faces.ravel().tolist(),
                 inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
             )
-            shared = {
-                "material": PREFIX,
-                "contype": 0,
-                "conaffinity": 0,
-                "mass": 0.0,
-                "group": SHOWN_GROUP,
-            }
             body.add_geom(
-                name=body.name, type=mujoco.mjtGeom.mjGEOM_MESH, meshname=body.name, **shared
+                name=body.name,
+                type=mujoco.mjtGeom.mjGEOM_MESH,
+                meshname=body.name,
+                material=PREFIX,
+                **_SEEN,
             )
-            flute = min(tool.flute, tool.below_holder)
-            # The shank goes on into the holder, whose own form nobody knows here.
-            shank = 0.5 * (tool.length - flute)
-            body.add_geom(
-                name=f"{body.name}_shank",
-                type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-                size=[0.5 * MM * (tool.shank or 0.98 * tool.diameter), MM * shank, 0.0],
-                pos=[0.0, 0.0, -MM * shank],
-                **shared,
+            radius = 0.5 * (tool.shank or 0.98 * tool.diameter)
+            # The shank goes on into the holder.
+            _add_cylinder(
+                body, "shank", PREFIX, radius, -tool.length + min(tool.flute, tool.below_holder)
             )
+            for piece in tool_cylinders(tool, self._flange):
+                if piece.name in HOLDER and piece.name in drawn:
+                    _add_cylinder(
+                        body, piece.name, HOLDER_MATERIAL, piece.radius, piece.bottom, piece.top
+                    )
 
     def bind(self, model: mujoco.MjModel) -> None:
         """Take over the compiled tools; the first is shown."""
         self._model = model
         self._rest = model.body_quat.copy()
-        self.show(self._plan.tools[0])
+        self.show(self._first, 1.0)
 
-    def show(self, tool: ToolTable) -> None:
-        """Show one tool, a little turned on since the last picture."""
+    def show(self, tool: ToolTable, way: float) -> None:
+        """Show one tool, a little turned on since the last picture.
+
+        Args:
+            tool: The one in the spindle.
+            way: 1 where the spindle turns clockwise seen from above, -1 the other way, 0 not at all.
+        """
         model = self._model
-        self._angle += np.deg2rad(SPIN_DEG)
+        self._angle -= way * np.deg2rad(SPIN_DEG)
         spin = np.array([np.cos(0.5 * self._angle), 0.0, 0.0, np.sin(0.5 * self._angle)])
-        for other in self._plan.tools:
-            body = int(model.body(f"{PREFIX}{other.number}").id)
+        for number in self._tools:
+            body = int(model.body(f"{PREFIX}{number}").id)
             mujoco.mju_mulQuat(model.body_quat[body], self._rest[body], spin)
             first = int(model.body_geomadr[body])
-            group = SHOWN_GROUP if other is tool else HIDDEN_GROUP
+            group = SHOWN_GROUP if number == tool.number else HIDDEN_GROUP
             model.geom_group[first : first + int(model.body_geomnum[body])] = group
+
+
+def _add_cylinder(
+    body: mujoco.MjsBody, name: str, material: str, radius: float, bottom: float, top: float = 0.0
+) -> None:
+    """Add an upright cylinder between heights over the spindle nose [mm]."""
+    body.add_geom(
+        name=f"{body.name}_{name}",
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+        size=[MM * radius, 0.5 * MM * (top - bottom), 0.0],
+        pos=[0.0, 0.0, 0.5 * MM * (top + bottom)],
+        material=material,
+        **_SEEN,
+    )
 
 
 def fluted(tool: ToolTable) -> tuple[FloatArray, IntArray]:

@@ -6,13 +6,14 @@ import mujoco
 import numpy as np
 
 from twin.cutting.outline import BoolArray
-from twin.cutting.sweep_kernels import thin
+from twin.cutting.thin_kernels import thin
 from twin.nc.canonical import FloatArray, IntArray
+from twin.program_notes import ProgramNotes
 from twin.recording import Recording
 from twin.render.canvas import Canvas
 from twin.render.live_mesh import LiveMesh, add_live_mesh
+from twin.render.palette import error_palette
 from twin.render.placement import Placement
-from twin.render.replay import rapid_mask
 
 MOST_POINTS = 6000
 """Points of a whole trail; a longer one is drawn more coarsely."""
@@ -28,8 +29,6 @@ MOST_JOINED = 200
 
 FEED_RGB = (235, 94, 30)
 RAPID_RGB = (60, 130, 200)
-ERROR_STOPS = ((0.0, (40, 170, 90)), (0.5, (245, 200, 40)), (1.0, (205, 25, 25)))
-"""From no error to that of the scale."""
 ERROR_COLOURS = 30
 """Steps of error that the trail can show; feed and rapid follow them in the palette."""
 _PALETTE = ERROR_COLOURS + 2
@@ -55,7 +54,7 @@ class TrailPoints:
     error: FloatArray
 
     def __getitem__(self, kept: IntArray) -> "TrailPoints":
-        """A selection of the points; errors of those left out go to the next."""
+        """A selection of the points by number; errors of those left out go to the next."""
         starts = np.append(0, kept[:-1] + 1)
         error = np.maximum.reduceat(self.error, starts) if len(kept) else self.error[:0]
         return TrailPoints(self.position[kept], self.sample[kept], self.rapid[kept], error)
@@ -68,25 +67,26 @@ class TrailPoints:
         return self[thin(self.position, group, tolerance, np.inf, MOST_JOINED)]
 
 
-def trail_points(
-    recording: Recording, rapid_moves: BoolArray | None, error_um: FloatArray | None = None
-) -> TrailPoints:
+def trail_points(recording: Recording, notes: ProgramNotes) -> TrailPoints:
     """The trail of a whole recording, with few enough points to be drawn.
 
     Args:
-        recording: Of n samples.
-        rapid_moves: Whether each move of the program is a rapid; None: none is.
-        error_um: Error of every sample, shape (n,) [µm]; None: unknown.
+        recording: Of n samples; its contour errors colour the trail, where it has any.
+        notes: What is in the spindle when, and which moves are rapids.
     """
     parts = []
     first = 0
     for chunk in recording.chunks():
         position = recording.header.part_frame.position(chunk.joint_position)
+        for run, tool in notes.tools.runs(chunk.setpoint.move):
+            position[run, 2] -= notes.tools.longer(tool)
         sample = first + np.arange(len(chunk))
-        error = np.full(len(chunk), np.nan) if error_um is None else error_um[sample]
-        parts.append(TrailPoints(position, sample, rapid_mask(chunk, rapid_moves), error))
-        parts[-1] = parts[-1].thinned(FINEST_MM)
         first += len(chunk)
+        error = recording.contour_um(first - len(chunk), first)
+        if error is None:
+            error = np.full(len(chunk), np.nan)
+        rapid = notes.is_rapid(chunk.setpoint.move)
+        parts.append(TrailPoints(position, sample, rapid, error).thinned(FINEST_MM))
     if not parts:
         return TrailPoints(
             np.zeros((0, 3)), np.zeros(0, np.int64), np.zeros(0, np.bool_), np.zeros(0)
@@ -114,17 +114,15 @@ class Trail:
     before every picture.
     """
 
-    def __init__(
-        self, points: TrailPoints, radius: float, error_scale_um: float | None = None
-    ) -> None:
+    def __init__(self, points: TrailPoints, radius: float, error_scale_um: float) -> None:
         """Take the points.
 
         Args:
             points: The whole trail.
             radius: Of the tube [mm]; it lies on the trail, so that a floor does not hide it.
-            error_scale_um: Error that has the last colour [µm]; None: the greatest.
+            error_scale_um: Error that has the last colour [µm].
         """
-        self._scale = error_scale_um
+        self._scale = max(error_scale_um, 1e-9)
         self._lift = np.array([0.0, 0.0, radius])
         self._points = points = dataclasses.replace(points, position=points.position + self._lift)
         self._radius = radius
@@ -155,8 +153,7 @@ class Trail:
         """Each stretch's column of the palette, shape (n - 1,)."""
         error, rapid = self._points.error[1:], self._points.rapid[1:]
         known = np.isfinite(error)
-        scale = self._scale or max(float(error[known].max(initial=0.0)), 1e-9)
-        share = np.clip(np.nan_to_num(error) / scale, 0.0, 1.0)
+        share = np.clip(np.nan_to_num(error) / self._scale, 0.0, 1.0)
         column = np.round(share * (ERROR_COLOURS - 1)).astype(np.int64)
         column = np.where(known, column, ERROR_COLOURS)
         return np.where(rapid, ERROR_COLOURS + 1, column)
@@ -165,11 +162,8 @@ class Trail:
         """Take over the compiled meshes; nothing is shown yet."""
         texture = int(model.texture(MATERIAL).id)
         first = int(model.tex_adr[texture])
-        share = np.linspace(0.0, 1.0, ERROR_COLOURS)
-        stops = [stop for stop, _ in ERROR_STOPS]
-        error = [np.interp(share, stops, [rgb[i] for _, rgb in ERROR_STOPS]) for i in range(3)]
-        row = np.concatenate([np.stack(error, axis=1), [FEED_RGB, RAPID_RGB]])
-        colours = np.tile(row.round().astype(np.uint8).ravel(), 2)
+        row = np.concatenate([error_palette(ERROR_COLOURS), [FEED_RGB, RAPID_RGB]])
+        colours = np.tile(row.astype(np.uint8).ravel(), 2)
         model.tex_data[first : first + len(colours)] = colours
         self._meshes = [LiveMesh(model, f"{MATERIAL}_{first}", placement) for first in self._pieces]
         for piece in range(len(self._meshes)):

@@ -1,6 +1,7 @@
 """CODESYS SoftMotion CNC (DIN 66025 with SoftMotion's own codes)."""
 
 from twin.nc import iso, offsets
+from twin.nc.blends import BlendKind
 from twin.nc.canonical import Corner
 from twin.nc.dialect import (
     HEADING,
@@ -18,9 +19,12 @@ from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
     COUNTER_CLOCKWISE_ELLIPSE,
+    FLAT_SPLINE,
     PARABOLA,
+    SPATIAL_SPLINE,
 )
 from twin.nc.dialects.codesys.decisions import DECISIONS
+from twin.nc.linear import rapid_line
 from twin.nc.planes import XY, YZ, ZX, Plane
 
 ADDITIONAL = "ABCPQUVW"
@@ -46,7 +50,9 @@ def _plane(meaning: str, plane: Plane) -> GCode:
     )
 
 
-_SPLINE = "splines are not drawn by the twin; write lines or arcs"
+RAPID = Interpolation(rapid_line, rapid=True)
+"""Its pace may follow F (``codes.before_motion``): no plain block."""
+
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
 
@@ -74,16 +80,16 @@ CODESYS = Dialect(
         "motion",
     ),
     g={
-        0: _motion("positioning in a straight line; FF is its feed", iso.RAPID),
+        0: _motion("positioning in a straight line; FF is its feed", RAPID),
         1: _motion("straight line", iso.FEED, seed=True),
         2: _motion("arc clockwise", CLOCKWISE, seed=True),
         3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
         4: GCode(meaning="dwell, seconds in T", perform=codes.dwell, ground="manual"),
-        5: GCode(meaning="point of a 2D spline", group="motion", refused=_SPLINE, ground="manual"),
-        6: _motion("parabola: X Y, tangents meet at I J", PARABOLA),
+        5: _motion("point of a spline in X Y", FLAT_SPLINE),
+        6: _motion("parabola: X Y, vertex I J", PARABOLA),
         8: _motion("ellipse clockwise: X Y I J K R", CLOCKWISE_ELLIPSE),
         9: _motion("ellipse counter-clockwise: X Y I J K R", COUNTER_CLOCKWISE_ELLIPSE),
-        10: GCode(meaning="point of a 3D spline", group="motion", refused=_SPLINE, ground="manual"),
+        10: _motion("point of a spline in space", SPATIAL_SPLINE),
         15: _plane("2D mode: arcs in X Y", XY),
         16: GCode(
             meaning="3D mode, plane with normal I J K",
@@ -102,10 +108,16 @@ CODESYS = Dialect(
         ),
         31: GCode(meaning="probe", perform=codes.probe, ground="manual"),
         36: GCode(
-            meaning="write D to the variable O", perform=program.write_variable, ground="manual"
+            meaning="write D to the variable O",
+            perform=program.write_variable,
+            takes="D",
+            ground="manual",
         ),
         37: GCode(
-            meaning="add D to the variable O", perform=program.add_to_variable, ground="manual"
+            meaning="add D to the variable O",
+            perform=program.add_to_variable,
+            takes="D",
+            ground="manual",
         ),
         38: GCode(meaning="state flags", refused=_PROFILE, ground="manual"),
         39: GCode(meaning="parameters of the preprocessing", refused=_PROFILE, ground="manual"),
@@ -133,17 +145,22 @@ CODESYS = Dialect(
             action=codes.length_vector,
             ground="manual",
         ),
-        50: GCode(meaning="smoothing off", group="smoothing", ground="manual"),
-        51: GCode(
-            meaning="spline smoothing of corners",
+        50: GCode(
+            meaning="smoothing off",
             group="smoothing",
-            refused=_SPLINE,
+            action=codes.keep_corners,
+            ground="manual",
+        ),
+        51: GCode(
+            meaning="corners become splines, cut at the distance D",
+            group="smoothing",
+            action=codes.smooth_corners(BlendKind.SPLINE),
             ground="manual",
         ),
         52: GCode(
-            meaning="rounding of corners with an arc",
+            meaning="corners become arcs, cut at the distance D",
             group="smoothing",
-            refused="corners are not rounded by the twin; write the arcs",
+            action=codes.smooth_corners(BlendKind.ARC),
             ground="manual",
         ),
         53: GCode(meaning="coordinate shift off", perform=codes.reset_shift, ground="manual"),
@@ -154,11 +171,13 @@ CODESYS = Dialect(
             meaning="coordinate shift, relative", perform=codes.shift_relatively, ground="manual"
         ),
         56: GCode(meaning="set the reference here", perform=codes.set_reference, ground="manual"),
-        60: GCode(meaning="loop avoidance off", group="loops", ground="manual"),
+        60: GCode(
+            meaning="loop avoidance off", group="loops", action=codes.keep_loops, ground="manual"
+        ),
         61: GCode(
-            meaning="loop avoidance on",
+            meaning="loop avoidance on: loops are cut out",
             group="loops",
-            refused="the twin never cuts loops out of a path; it refuses what does not fit",
+            action=codes.cut_loops,
             ground="manual",
         ),
         70: GCode(
@@ -205,14 +224,16 @@ CODESYS = Dialect(
     motion_words=frozenset(f"XYZ{ADDITIONAL}IJKRT"),
     function_letters="KLO",
     references="O",
-    signed="E",
+    signed=("E", "EF"),
     series="HOL",
     words={
         "F": iso.set_feed,
         "E": codes.set_acceleration,
         "E-": codes.set_acceleration,
         "FF": codes.set_rapid_feed,
-        "EF": codes.refuse_rapid_acceleration,
+        "EF": codes.set_rapid_acceleration,
+        "EF-": codes.set_rapid_acceleration,
+        "D": codes.set_smoothing,
         "S": codes.refuse_profile,
         "L!": codes.pass_label,
         **{f"P{letter}": codes.set_period(letter) for letter in ADDITIONAL},
@@ -247,9 +268,10 @@ CODESYS = Dialect(
         "F": "feed per second",
         "E": "acceleration per second squared",
         "E-": "deceleration per second squared, below 0",
-        "FF": "feed of G0 per second; 0: the machine's",
-        "EF": "acceleration of G0; 0 only",
-        "D": "tool radius; value of G36 and G37",
+        "FF": "feed of G0 per second; 0: as F",
+        "EF": "acceleration of G0; 0: as E",
+        "EF-": "deceleration of G0, below 0",
+        "D": "tool radius; distance of smoothing; value of G36 and G37",
         "H": "switch point, negative: off",
         "O": "place of a switch point as a share; variable of G36 and G37; parameter of M",
         "L": "block to jump to; place of a switch point as a distance; parameter of M",
@@ -273,7 +295,8 @@ CODESYS = Dialect(
         Mark(r"\bG20[ \t]+L", "G20 L"),
     ),
     memory=program.Variables,
-    before_motion=codes.take_shortest_way,
+    before_motion=codes.before_motion,
     read_variable=program.read_variable,
     place_switches=codes.place_switches,
+    disturbed=lambda control: bool(program.variables(control).periods),
 )

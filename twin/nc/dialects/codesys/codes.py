@@ -2,12 +2,13 @@
 
 import math
 
+from twin.nc.blends import Blend, BlendKind
 from twin.nc.blocks import Word
 from twin.nc.control import Control
-from twin.nc.dialect import WordAction
+from twin.nc.dialect import Action, WordAction
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.offsets import LEFT, RIGHT, compensate
-from twin.nc.planes import plane_with_normal
+from twin.nc.planes import XY, plane_with_normal
 
 SWITCHES = 3
 """Switch points that one element may have (manual)."""
@@ -34,6 +35,8 @@ def probe(control: Control) -> None:
 
     Decision: nothing touches the twin's probe, so that the path is run to its end.
     """
+    if control.path.cutting_loops:
+        control.fail("loops", "a probe cannot run where loops are cut out", hint="write G60")
     control.function("G31", {})
     control.line_to(control.target(), rapid=False)
 
@@ -53,6 +56,57 @@ def _compensate(control: Control, side: float) -> None:
     if word is not None:
         variables(control).tool_radius = control.length(word)
     compensate(control, side, variables(control).tool_radius)
+
+
+def smooth_corners(kind: BlendKind) -> Action:
+    """G51, G52: every corner between two moves with a feed is blended.
+
+    The points where both moves are cut lie D from the corner, and at most half a move (manual).
+    """
+
+    def action(control: Control) -> None:
+        memory = variables(control)
+        word = control.take("D")
+        if word is not None:
+            memory.smoothing = control.length(word)
+        memory.smoothed_by = kind
+        _smooth(control, word)
+
+    return action
+
+
+def set_smoothing(control: Control, word: Word) -> None:
+    """D elsewhere: the distance of the corners that follow (manual, from 4.18)."""
+    variables(control).smoothing = control.length(word)
+    if variables(control).smoothed_by is not None:
+        _smooth(control, word)
+
+
+def _smooth(control: Control, word: Word | None) -> None:
+    memory = variables(control)
+    assert memory.smoothed_by is not None
+    if memory.smoothing < 0.0:
+        control.fail("blend", "the distance of smoothing cannot be negative", word)
+    plane = control.part_plane()
+    control.path.blend_always(Blend(memory.smoothed_by, memory.smoothing, plane, halves=True))
+
+
+def keep_corners(control: Control) -> None:
+    """G50."""
+    variables(control).smoothed_by = None
+    control.path.blend_always(None)
+
+
+def cut_loops(control: Control) -> None:
+    """G61: loops are cut out, in 2D mode only (manual)."""
+    if control.modal.plane is not XY:
+        control.fail("loops", "loops are cut out in the plane X Y only", hint="write G15 before")
+    control.path.cut_loops(control.part_plane())
+
+
+def keep_loops(control: Control) -> None:
+    """G60."""
+    control.path.keep_loops()
 
 
 def length_vector(control: Control) -> None:
@@ -113,18 +167,28 @@ def set_acceleration(control: Control, word: Word) -> None:
 
 
 def set_rapid_feed(control: Control, word: Word) -> None:
-    """FF: the feed of G0; 0 gives it back to the machine."""
+    """FF: the feed of G0; 0 gives it back to F."""
     value = control.number(word)
     if value < 0.0:
         control.fail("feed-range", f"the feed {word.text} is negative", word)
-    control.rapid_feed = value * 60.0 if value else math.nan
+    variables(control).rapid_feed = value
 
 
-def refuse_rapid_acceleration(control: Control, word: Word) -> None:
-    """EF: only 0, the path's own acceleration, can be followed."""
-    if control.number(word) != 0.0:
-        message = "rapids take the machine's acceleration; EF can only be 0"
-        control.fail("unsupported-word", message, word)
+def set_rapid_acceleration(control: Control, word: Word) -> None:
+    """EF: above 0 the acceleration of G0, below 0 its deceleration; 0 gives both back to E."""
+    value = control.number(word)
+    if value >= 0.0:
+        control.rapid_acceleration = value or math.nan
+    if value <= 0.0:
+        control.rapid_deceleration = -value or math.nan
+
+
+def before_motion(control: Control, rapid: bool) -> None:
+    """What holds for every motion block: the pace of G0, and the shortest way of modulo axes."""
+    if rapid:
+        feed = variables(control).rapid_feed or control.feed
+        control.rapid_feed = math.nan if feed is None else feed * 60.0
+    take_shortest_way(control)
 
 
 def set_period(letter: str) -> WordAction:
@@ -170,7 +234,7 @@ def pass_label(_control: Control, _word: Word) -> None:
     """L!: a place to jump to; nothing happens there."""
 
 
-def take_shortest_way(control: Control, _rapid: bool) -> None:
+def take_shortest_way(control: Control) -> None:
     """Axes with a period go the shorter way round: the start is relabelled by whole periods."""
     if control.modal.incremental:
         return

@@ -4,6 +4,7 @@ import dataclasses
 import math
 import re
 
+from twin.nc.blends import BlendKind
 from twin.nc.blocks import Statement, Word
 from twin.nc.control import Control
 from twin.nc.expressions import (
@@ -95,6 +96,9 @@ class Variables:
         local: ``#name`` of the main program and of each call, the innermost last.
         counter: The decoder's internal variable.
         tool_radius: The last D of G41 or G42 [mm].
+        smoothing: Distance from a corner at which its moves are cut [mm].
+        smoothed_by: What takes the corners' place; None: nothing.
+        rapid_feed: FF as programmed, 0 where it is not.
         periods: Modulo periods of additional axes by column [mm or deg].
         subprograms: By name; None before the program was searched for them.
     """
@@ -103,6 +107,9 @@ class Variables:
     local: list[dict[str, float]] = dataclasses.field(default_factory=lambda: [{}])
     counter: float = COUNTER_AT_START
     tool_radius: float = 0.0
+    smoothing: float = 0.0
+    smoothed_by: BlendKind | None = None
+    rapid_feed: float = 0.0
     periods: dict[int, float] = dataclasses.field(default_factory=dict)
     subprograms: dict[str, Subprogram] | None = None
 

@@ -1,11 +1,18 @@
 """Fagor CNC 8070, milling model."""
 
 from twin.nc import iso
+from twin.nc.control import Control
 from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
-from twin.nc.dialects.fagor8070 import arcs, frames, statements, subroutines, variables
+from twin.nc.dialects.fagor8070 import arcs, corners, frames, statements, subroutines, variables
 from twin.nc.dialects.fagor8070.codes import CODES, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
-from twin.nc.dialects.fagor8070.memory import FagorMemory
+from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
+
+
+def _prepare(control: Control) -> None:
+    subroutines.begin(control)
+    corners.prepare(control)
+
 
 FAGOR8070 = Dialect(
     name="fagor8070",
@@ -36,12 +43,13 @@ FAGOR8070 = Dialect(
         "offset",
         "return plane",
         "compensation corners",
+        "compensation leads",
         "compensation",
         "motion",
         "cycle",
     ),
     g=CODES,
-    start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 138, 152, 197, 262, 265),
+    start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
     m={
         **iso.M_CODES,
         6: MCode(meaning="tool change", action=frames.change_tool, ground="manual"),
@@ -83,7 +91,7 @@ FAGOR8070 = Dialect(
             axis: f"{axis} axis; {axis}1= and a trailing I (incremental) too"
             for axis in "XYZABCUVW"
         },
-        "I": "centre along X; abscissa of G30; depth of a cycle",
+        "I": "centre along X; abscissa of G30; depth of a cycle; size of G36 and G39",
         "J": "centre along Y; ordinate of G30; number of pecks",
         "K": "centre along Z; pitch of a helix; seconds of G04 and of a cycle",
         "R": "polar radius; radius of the arc where a coordinate of the plane stands beside it",
@@ -92,7 +100,9 @@ FAGOR8070 = Dialect(
         "F": "feed",
         "S": "spindle speed; scale of G72",
         "T": "tool",
-        "D": "tool offset: 1, or 0 for none",
+        "D": "tool offset: 1, or 0 for none; way to the surface of a cycle",
+        "B": "B axis; depth of a pass or of the first peck of a cycle",
+        "L": "subroutine; finishing stock of a cycle",
         "H": "auxiliary function",
         "M": "machine function",
         "NR": "how often the block runs",
@@ -116,7 +126,8 @@ FAGOR8070 = Dialect(
     memory=FagorMemory,
     before_motion=frames.turn_in_commanded_direction,
     read_variable=variables.read_variable,
-    prepare=subroutines.begin,
+    prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,
+    disturbed=acts_on_plain_blocks,
 )

@@ -21,13 +21,14 @@ from twin.nc.blocks import Word
 from twin.nc.circular import (
     center_of_radius,
     fitted_center,
+    plain_arc,
     radius_center,
     start_and_end,
     sweep_arc,
     take_center,
 )
 from twin.nc.control import Control
-from twin.nc.dialect import Interpolation
+from twin.nc.dialect import Interpolation, PlainLine
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 
@@ -81,8 +82,25 @@ def _arc(control: Control, *, clockwise: bool) -> None:
         memory.circle_radius = None
     if goal.in_plane or pitch is None:
         word = centre.words[0] if centre.words else None
-        center = fitted_center(control, start[:2], end[:2], center, word)
+        fitted = fitted_center(control, start[:2], end[:2], center, word)
+        if control.modal.correct_center:
+            center = fitted
+        else:
+            _end_on_circle(control, goal, center)
     _sweep(control, goal, center, pitch, clockwise=clockwise)
+
+
+def _end_on_circle(control: Control, goal: Goal, center: Point) -> None:
+    """G264: the centre stays, the radius is the start's, and the end moves onto this circle."""
+    start, end = start_and_end(control, goal.target)
+    far = distance(start[:2], center) / distance(end[:2], center)
+    onto = (
+        center[0] + (end[0] - center[0]) * far,
+        center[1] + (end[1] - center[1]) * far,
+    )
+    if onto != end[:2]:
+        goal.target[:3] = control.modal.plane.world(*onto, end.height)
+        forget_polar(control)
 
 
 def _circle_radius(control: Control, *, cartesian: bool) -> Word | None:
@@ -236,9 +254,11 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-RAPID = Interpolation(rapid_line, rapid=True)
-FEED = Interpolation(feed_line)
-CLOCKWISE = Interpolation(clockwise_arc)
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+RAPID = Interpolation(rapid_line, rapid=True, plain=PlainLine())
+FEED = Interpolation(feed_line, plain=PlainLine())
+CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True, fits_radius=True))
+COUNTER_CLOCKWISE = Interpolation(
+    counter_clockwise_arc, plain=plain_arc(clockwise=False, fits_radius=True)
+)
 TANGENT = Interpolation(tangent_arc)
 THREE_POINTS = Interpolation(three_point_arc)

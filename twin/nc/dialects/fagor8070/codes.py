@@ -11,7 +11,7 @@ from twin.nc.dialect import (
     FeedMode,
     GCode,
 )
-from twin.nc.dialects.fagor8070 import arcs, frames, polar
+from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar
 from twin.nc.dialects.fagor8070.cycles import CYCLES
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.planes import XY, YZ, ZX, Plane
@@ -91,13 +91,17 @@ def _do(meaning: str, action: Action, *, group: str = "", takes: str = "") -> GC
     return GCode(meaning=meaning, group=group, action=action, ground="manual")
 
 
+def _decided(meaning: str, action: Action) -> GCode:
+    return GCode(meaning=meaning, perform=action)
+
+
 def _refused(meaning: str, reason: str, numbers: Mapping[int, None] | range) -> dict[int, GCode]:
     code = GCode(meaning=meaning, refused=reason, ground="manual")
     return dict.fromkeys(numbers, code)
 
 
 _PROBE = "the twin has no probe to touch with"
-_BLEND = "corners are not blended by the twin; write the arc or the chamfer"
+_LEAD = "where its arc begins is not documented well enough; write the lead as an arc"
 _LIMITS = "the limits are the machine file's"
 _UNKNOWN = "its effect on the path is not documented well enough to be followed"
 
@@ -116,7 +120,7 @@ CODES: dict[int, GCode] = {
     11: _do("mirror X", frames.mirror_x),
     12: _do("mirror Y", frames.mirror_y),
     13: _do("mirror Z", frames.mirror_z),
-    14: GCode(meaning="mirror the given axes: X-1", perform=frames.mirror_axes, ground="manual"),
+    14: _decided("mirror the given axes: X-1", frames.mirror_axes),
     17: _plane("plane X Y", XY),
     18: _plane("plane Z X", ZX),
     19: _plane("plane Y Z", YZ),
@@ -124,7 +128,9 @@ CODES: dict[int, GCode] = {
     30: _do("polar origin: I J, or where the tool stands", polar.set_polar_origin),
     31: _do("temporary polar origin at the arc's centre", polar.temporary_polar_origin),
     33: GCode(meaning="threading", refused="the twin's spindle has no angle", ground="manual"),
-    **_refused("corner blend or tangential entry", _BLEND, range(36, 40)),
+    36: _decided("corner rounded by the radius I", corners.round_corner),
+    **_refused("tangential entry, tangential exit", _LEAD, range(37, 39)),
+    39: _decided("corner chamfered at the distance I", corners.chamfer_corner),
     40: _do("radius compensation off", offsets.end_compensation, group="compensation"),
     41: _do("compensation, tool left", _compensate(offsets.LEFT), group="compensation"),
     42: _do("compensation, tool right", _compensate(offsets.RIGHT), group="compensation"),
@@ -172,7 +178,12 @@ CODES: dict[int, GCode] = {
     **_refused("acceleration and jerk", _LIMITS, range(130, 136)),
     136: _g("compensation rounds outside corners", "compensation corners", square_corners=False),
     137: _g("compensation extends outside corners", "compensation corners", square_corners=True),
-    138: _g("compensation starts directly", "compensation start"),
+    138: _g("leads of compensation go straight", "compensation leads", indirect_leads=False),
+    139: GCode(
+        meaning="leads of compensation go around the contour's ends",
+        group="compensation leads",
+        sets={"indirect_leads": True},
+    ),
     151: GCode(meaning="programming in diameters", refused="a mill has none", ground="manual"),
     152: _g("programming in radii", "diameters"),
     157: GCode(meaning="axes without offset", refused=_UNKNOWN, ground="manual"),
@@ -190,7 +201,7 @@ CODES: dict[int, GCode] = {
     **_refused("circular probing", _PROBE, range(210, 213)),
     261: _g("centre in absolute coordinates", "centre", center_absolute=True),
     262: _g("centre relative to the start", "centre", center_absolute=False),
-    264: _g("arc centre not corrected", "centre correction"),
-    265: _g("arc centre corrected", "centre correction"),
+    264: _g("arc centre not corrected", "centre correction", correct_center=False),
+    265: _g("arc centre corrected", "centre correction", correct_center=True),
     266: GCode(meaning="feed override at 100 %", refused=_UNKNOWN, ground="manual"),
 }

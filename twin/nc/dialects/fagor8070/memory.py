@@ -20,6 +20,7 @@ class FagorMemory:
         angle: Its Q, or None [deg].
         temporary: G31: this block's polar origin is the arc's centre.
         circle_radius: G263 or R1 in force, or None [mm].
+        blend: I of the last G36 or G39 [mm]; 0: none yet.
         local: P0 to P25 of the main program and of each call, the innermost last.
         common: All other parameters and variables.
         subroutines: First line of each local subroutine by name, from 0.
@@ -37,6 +38,7 @@ class FagorMemory:
     angle: float | None = None
     temporary: bool = False
     circle_radius: float | None = None
+    blend: float = 0.0
     local: list[dict[str, float]] = dataclasses.field(default_factory=lambda: [{}])
     common: dict[str, float] = dataclasses.field(default_factory=dict)
     subroutines: dict[str, int] = dataclasses.field(default_factory=dict)
@@ -57,3 +59,14 @@ def memory_of(control: Control) -> FagorMemory:
     """The dialect's memory."""
     assert isinstance(control.memory, FagorMemory)
     return control.memory
+
+
+def acts_on_plain_blocks(control: Control) -> bool:
+    """Polar values, a radius in force, a modal call or module axes: plain blocks heed them."""
+    memory = memory_of(control)
+    return (
+        memory.temporary
+        or memory.modal_call is not None
+        or not (memory.radius is memory.angle is memory.circle_radius is None)
+        or control.settings.module_rotary
+    )

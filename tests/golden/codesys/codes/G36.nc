@@ -1,0 +1,3 @@
+LET #a : LREAL
+N10 G36 O#a D3
+N20 G1 X#a F5

@@ -1,0 +1,3 @@
+LET #a : LREAL := 2
+N10 G37 O#a D3
+N20 G1 X#a F5

@@ -1,0 +1,121 @@
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.render.conftest import NOTES, SOURCE, STOCK, Record
+from twin.errors import RenderError
+from twin.machine.config import Machine
+from twin.program_notes import Steps
+from twin.recording import open_recording
+from twin.render.gauge import Gauge
+from twin.render.replay import deal
+from twin.render.stage import Scene
+from twin.render.still import Shot, moment, stills
+
+
+def take(scene: Scene, out: Path, end: int, **more: Any) -> np.ndarray[Any, Any]:
+    stills(scene, [Shot(out, end)], **{"quality": "draft", **more})
+    return np.asarray(Image.open(out)).astype(int)
+
+
+def test_one_pass_draws_all_moments_with_the_running_block(scene: Scene, tmp_path: Path) -> None:
+    shots = [Shot(tmp_path / f"{line}.png", moment(scene.recording, line=line)) for line in (3, 2)]
+    stills(scene, shots)
+    pictures = [np.asarray(Image.open(tmp_path / f"{line}.png")).astype(int) for line in (2, 3)]
+    plain = take(scene, tmp_path / "plain.png", shots[0].end, quality="final", display=False)
+    assert pictures[0].shape == (720, 1280, 3)
+    accent = [np.all(np.abs(picture[:, :300] - [0, 96, 143]) < 12, axis=2) for picture in pictures]
+    rows = [np.flatnonzero(mask.sum(axis=1) > 100).mean() for mask in accent]
+    assert 15 < rows[1] - rows[0] < 35, "the mark is one line further down"
+    assert np.abs(plain[560:, 20:300] - pictures[1][560:, 20:300]).mean() > 20
+
+
+def test_odd_sizes_and_programs_that_are_not_there(scene: Scene, tmp_path: Path) -> None:
+    bare = dataclasses.replace(scene, source=())
+    assert take(bare, tmp_path / "s.png", 500, size=(65, 67)).shape == (67, 65, 3)
+
+
+def test_unwritable_place_is_said(scene: Scene, tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("a file")
+    with pytest.raises(RenderError, match=r"cannot be written"):
+        take(scene, tmp_path / "taken" / "run.png", 500, size=(64, 64))
+
+
+@pytest.mark.parametrize(
+    ("wanted", "message"),
+    [({"line": 9}, "line 9 of the program moved nothing"), ({"time_s": 2.0}, "it ends at 1 s")],
+)
+def test_moments_that_never_were_are_refused(
+    scene: Scene, wanted: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(RenderError, match=message):
+        moment(scene.recording, **wanted)
+
+
+def gauge_at(scene: Scene, end: int) -> Gauge:
+    gauge = Gauge(scene)
+    for samples, _ in deal(scene.recording, np.array([end])):
+        gauge.add(samples)
+    return gauge
+
+
+def no_warning(_: int) -> str:
+    return ""
+
+
+def test_display_reads_the_lag_where_nobody_compared(scene: Scene) -> None:
+    reading = gauge_at(scene, 601).reading(no_warning)
+    assert reading.error_um == pytest.approx(5.0)
+    assert reading.line == 3
+    assert reading.feed == pytest.approx(80.0 / 0.25 * 60.0, rel=1e-6)
+    np.testing.assert_allclose(reading.position, [-40 + 80 * 100 / 250, 0, -5, 0], atol=0.01)
+
+
+def test_display_reads_contour_spindle_tool_and_the_screens_own_position(
+    make_recording: Record, spec: mujoco.MjSpec, machine: Machine
+) -> None:
+    notes = dataclasses.replace(
+        NOTES,
+        spindle=Steps((0, 2), (None, -800.0)),
+        shown=Steps((0, 2), (np.zeros(4), np.array([0.0, 0.0, 0.0, -360.0]))),
+    )
+    with open_recording(make_recording(np.arange(1001.0))) as recording:
+        scene = Scene(
+            recording=recording, spec=spec, machine=machine, notes=notes, source=SOURCE, stock=STOCK
+        )
+        reading = gauge_at(scene, 601).reading(no_warning)
+        before = gauge_at(scene, 301).reading(no_warning)
+    assert reading.error_um == 600.0
+    assert (before.spindle, reading.spindle) == (None, -800.0)
+    assert reading.tool == 1
+    assert reading.position[3] - before.position[3] == pytest.approx(-360.0)
+
+
+def red(picture: np.ndarray[Any, Any]) -> int:
+    """Pixels of the alarm's chip."""
+    chip = picture[18:56, 400:880]
+    return int(np.all(np.abs(chip - [196, 40, 27]) < 10, axis=2).sum())
+
+
+def test_alarms_are_shown_from_their_moment_on(
+    make_recording: Record, spec: mujoco.MjSpec, machine: Machine, tmp_path: Path
+) -> None:
+    alarms: Sequence[tuple[float, str]] = [(0.5, "following error of X")]
+    with open_recording(make_recording(alarms=alarms)) as recording:
+        scene = Scene(recording=recording, spec=spec, machine=machine, notes=NOTES, stock=STOCK)
+        assert red(take(scene, tmp_path / "before.png", 401)) == 0
+        assert red(take(scene, tmp_path / "after.png", 601)) > 1000
+
+
+def test_a_block_that_spoils_the_part_is_warned_of(scene: Scene, tmp_path: Path) -> None:
+    spoiled = dataclasses.replace(
+        scene, notes=dataclasses.replace(NOTES, rapid=np.ones(4, np.bool_))
+    )
+    assert red(take(spoiled, tmp_path / "warned.png", 601)) > 1000
+    assert red(take(spoiled, tmp_path / "air.png", 101)) == 0

@@ -1,0 +1,39 @@
+"""Corners that the Fagor CNC 8070 rounds or chamfers: G36, G39."""
+
+import re
+
+from twin.nc.blends import Blend, BlendKind
+from twin.nc.control import Control
+from twin.nc.dialects.fagor8070.memory import memory_of
+
+_CODES = re.compile(rb"G[ \t]*0*3[69](?![0-9])", re.IGNORECASE)
+
+
+def prepare(control: Control) -> None:
+    """Hold moves until their successor is known, where the program blends corners at all."""
+    if control.flow.lines.any_holds(_CODES):
+        control.path.hold_for_blends()
+
+
+def round_corner(control: Control) -> None:
+    """G36 I5: the corner between the last move and the next becomes an arc of radius I."""
+    _blend(control, BlendKind.FILLET, 36)
+
+
+def chamfer_corner(control: Control) -> None:
+    """G39 I5: it becomes a line between the points that lie I away from it."""
+    _blend(control, BlendKind.CHAMFER, 39)
+
+
+def _blend(control: Control, kind: BlendKind, number: int) -> None:
+    memory, word = memory_of(control), control.take("I")
+    if word is not None:
+        memory.blend = control.length(word)
+    if memory.blend <= 0.0:
+        message = f"G{number} needs I above 0, the size of the blend"
+        control.fail("blend", message, word, hint=f"write G{number} I5 between two moves")
+    if control.words:
+        message = f"G{number} stands in a block of its own between two moves"
+        control.fail("blend", message, hint=f"write G{number} I{memory.blend:g} in its own block")
+    if not control.path.blend_next(Blend(kind, memory.blend, control.part_plane())):
+        control.fail("blend", "there is no move before the corner")

@@ -1,0 +1,82 @@
+"""Reads off a recording what the display shows."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from twin.recording import Samples
+from twin.render.hud import Display, Reading
+from twin.render.stage import Scene
+from twin.units import SECONDS_PER_MINUTE, UM_PER_MM
+
+
+class Gauge:
+    """Follows a scene's recording, sample by sample."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._alarms = sorted(scene.recording.alarms)
+        self._last: Samples | None = None
+        self._count = 0
+
+    def display(self, size: tuple[int, int], speed: float | None) -> Display:
+        """A display for this run; a film has a speed, a still has none."""
+        header = self._scene.recording.header
+        compared = self._scene.recording.contour_um(0, 0) is not None
+        return Display(
+            title=f"{Path(header.program).name} · {header.machine}",
+            source=self._scene.source,
+            axes=header.axes,
+            size=size,
+            speed=speed,
+            error_name="contour" if compared else "lag",
+            error_scale_um=self._scene.error_scale if compared else None,
+        )
+
+    def add(self, samples: Samples) -> None:
+        """Go on by samples that follow the last ones."""
+        if len(samples):
+            self._last = samples[-1:]
+            self._count += len(samples)
+
+    def reading(self, warning: Callable[[int], str]) -> Reading:
+        """What there is to read after the last sample.
+
+        Args:
+            warning: What to warn of while a program line runs, where there is no alarm.
+        """
+        assert self._last is not None
+        header, last = self._scene.recording.header, self._last
+        setpoint = last.setpoint
+        velocity = SECONDS_PER_MINUTE * last.joint_velocity[0]
+        feed = float(np.linalg.norm(velocity[:3]))
+        rotary = header.axes.rotary()
+        turning = float(np.linalg.norm(velocity[rotary]))
+        only_turns = feed < 1.0 < turning
+        line, move, time = int(setpoint.line[0]), int(setpoint.move[0]), float(setpoint.time[0])
+        raised = [text for since, text in self._alarms if since <= time]
+        position = last.joint_position[0] - header.part_zero
+        if self._scene.notes.shown is not None:
+            position = position + self._scene.notes.shown.at(move)
+        return Reading(
+            line=line,
+            position=position,
+            feed=turning if only_turns else feed,
+            feed_unit="°/min" if only_turns else "mm/min",
+            spindle=self._scene.notes.spindle.at(move),
+            tool=self._scene.notes.tools.at(move).number,
+            error_um=self._error(),
+            time_s=time,
+            alarm=raised[-1] if raised else warning(line),
+        )
+
+    def _error(self) -> float:
+        """Contour error now, or the lag where nobody compared [µm]."""
+        assert self._last is not None
+        contour = self._scene.recording.contour_um(self._count - 1, self._count)
+        if contour is not None:
+            return float(contour[0])
+        position = self._scene.recording.header.part_frame.position
+        away = position(self._last.joint_position)[0] - position(self._last.setpoint.position)[0]
+        return UM_PER_MM * float(np.linalg.norm(away))
