@@ -110,7 +110,7 @@ class Run:
         alarm, near_miss = survey.alarm, None
         if alarm is None:
             with record(out / "recording.h5", self.header()) as writer:
-                simulation = self._simulation(comparison)
+                simulation = self._simulation(comparison, survey.notes)
                 for simulated in self.clock.watch("simulate", simulation):
                     with self.clock.stage("cut"):
                         samples, alarm = self._cut(cutter, simulated, survey.notes)
@@ -181,7 +181,7 @@ class Run:
         end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
         return samples[:end], alarm
 
-    def _simulation(self, comparison: Comparison) -> Simulation:
+    def _simulation(self, comparison: Comparison, notes: ProgramNotes) -> Simulation:
         machine = self.preparation.machine
         period = machine.file.servo_period_s
         setpoints = plan(
@@ -191,9 +191,8 @@ class Run:
             part_zero=self.part_zero,
             start=self.preparation.start + self.part_zero,
         )
-        return simulate(
-            machine, self.spec, self.clock.watch("plan", settle(self._planned(setpoints), period))
-        )
+        settled = self.clock.watch("plan", settle(self._planned(setpoints), period))
+        return simulate(machine, self.spec, settled, notes.tools)
 
     def _planned(self, setpoints: Iterator[Setpoints]) -> Iterator[Setpoints]:
         for chunk in setpoints:
