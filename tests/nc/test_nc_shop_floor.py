@@ -232,7 +232,7 @@ FAGOR = {
         (0, 20, 0, 0), 20,
     ),
     "scaled square repeated": Job(
-        "G72 S0.5\nN10 G91 G01 X40 F100\nY40\nX-40\nN20 Y-40\n#RPT[N10,N20]\nG90 G72\nM30",
+        "G72 S0.5\nN10 G91 G01 X40 F100\nY40\nX-40\nY-40\nN20\n#RPT[N10,N20]\nG90 G72\nM30",
         (0, 0, 0, 0), 160,
     ),
     "circular pocket cycle": Job(

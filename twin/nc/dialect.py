@@ -47,7 +47,7 @@ class PlainArc:
         mismatch: How far the distances of start and end from the centre may differ [mm].
         mismatch_share: The same as a share of the larger one.
         shift: How far the centre may be moved to fit [mm].
-        signed_radius: A negative radius asks for the larger arc.
+        signed_radius: A negative radius asks for the larger arc; else it is not plain.
         fits_radius: A centre found by its radius is fitted to both points like a given one.
     """
 

@@ -34,6 +34,10 @@ def repeat_range(control: Control, statement: Statement) -> None:
         control.flow.find_label(_range_label(match[group]), _span(statement), "#RPT")
         for group in (1, 2)
     )
+    blocks = control.flow.lexer.blocks(control.flow.lines[last.line], last.line + 1)
+    if len(blocks) != 1 or blocks[0].words or blocks[0].statement is not None:
+        message = "the last label must stand alone in its block"
+        refuse(control, statement, "repeat-range", message, "give it a block of its own behind")
     column = statement.text_column
     count = (
         1.0
