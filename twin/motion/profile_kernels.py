@@ -176,6 +176,9 @@ def find_phases(
                 i, x, a = i + 1, 0.0, max(0.0, a)
             else:
                 x, a = x + length, 0.0
+                if v <= highest_v * (1.0 + ROUNDING):
+                    # Above the limit by rounding alone, it would never be held.
+                    v = min(v, highest_v)
             continue
 
         w = reach[k]

@@ -7,9 +7,19 @@ import dataclasses
 
 from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
-from twin.nc.circular import iso_arc_center, start_and_end
+from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
-from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Interpolation, Mark, Syntax
+from twin.nc.dialect import (
+    HEADING,
+    Comment,
+    Decision,
+    Dialect,
+    GCode,
+    Interpolation,
+    Mark,
+    PlainArc,
+    Syntax,
+)
 
 
 @dataclasses.dataclass(slots=True)
@@ -107,6 +117,10 @@ def _arc(control: Control, *, clockwise: bool) -> None:
                 control.words[name],
                 hint="leave it out, or end the helix by G98",
             )
+    radius = control.words.get("R")
+    if radius is not None and control.number(radius) < 0.0:
+        message = "R draws arcs below 180 degrees; what a negative one means is not known"
+        control.fail("arc-radius", message, radius, "write the centre (I, J, K) of a larger arc")
     target = control.target()
     center = iso_arc_center(control, target, clockwise=clockwise)
     start, end = start_and_end(control, target)
@@ -126,51 +140,69 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-CLOCKWISE = Interpolation(clockwise_arc)
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+def _plain(*, clockwise: bool) -> PlainArc:
+    return dataclasses.replace(plain_arc(clockwise=clockwise), signed_radius=False)
+
+
+CLOCKWISE = Interpolation(clockwise_arc, plain=_plain(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=_plain(clockwise=False))
 
 DECISIONS = (
     Decision(
         "What are I, J, K relative to?",
         "To the start of the arc; a missing one is 0.",
         "In the page's example relative and absolute centres coincide; ISO 6983-1 is relative.",
+        example="centre_from_the_start",
+    ),
+    Decision(
+        "What does R draw?",
+        "An arc of that radius below 180 degrees; a negative R is refused.",
+        "The page shows centres only.",
+        example="radius_words",
     ),
     Decision(
         "Which way does a lead drag?",
         "A positive lead moves the dragged axis in + for G02 and G03 alike, by "
         "lead · |sweep| / 360.",
         "The page calls it the distance per full circle and ties no sign to the sense.",
+        example="lead_drags_up",
     ),
     Decision(
         "What if a G09 arc block also programs the dragged axis?",
         "A program error.",
         "Two commands for one axis contradict each other.",
+        example="dragged_axis_programmed",
     ),
     Decision(
         "What if G09 comes without a lead?",
         "A program error.",
         "A flat circle is not what a helix code asks for.",
+        example="no_lead",
     ),
     Decision(
         "In which order do motion and jump of a G73 block happen, and how often?",
         "The block's own motion first, then the jump, Q times; the counter belongs to the block "
         "and starts anew when the loop is entered again; a missing Q is 1.",
         "The page's Q20 gives 21 circles.",
+        example="counter_starts_anew",
     ),
     Decision(
         "What about G codes that the page does not name?",
         "Those of ISO 6983-1 have their meaning there; any other is a program error.",
         "Ignoring a code is a guess.",
+        example="unknown_code",
     ),
     Decision(
         "What does F count?",
         "mm/min along the path of X, Y, Z; deg/min where only rotary axes move.",
         "ISO practice; the page shows no feed.",
+        example="feed_of_rotary_axes",
     ),
     Decision(
         "How does a path pass its corners?",
         "Exactly: the speed falls as far as the corner demands, and no more.",
         "Nothing in the page allows the tool to leave the programmed path.",
+        example="exact_path",
     ),
     *iso_decisions.DECISIONS,
 )
@@ -199,11 +231,16 @@ MEFI = Dialect(
         73: GCode(meaning="jump with repeat: L, Q", after=jump_with_repeat, ground="seed"),
         98: GCode(meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"),
     },
+    instead={
+        **iso.INSTEAD,
+        99: "cycles return to the height of their call; G98 ends a helix here",
+    },
     start=iso.START,
     m=iso.M_CODES,
     words=iso.WORDS,
     word_meanings={
         **iso.WORD_MEANINGS,
+        "R": "radius of an arc below 180 degrees; reference plane of a cycle",
         "L": "block to jump to (G73)",
         "Q": "number of jumps (G73); depth of one peck (G83)",
     },
@@ -215,4 +252,5 @@ MEFI = Dialect(
         Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
     ),
     memory=Dragging,
+    disturbed=lambda control: _dragging(control).on,
 )

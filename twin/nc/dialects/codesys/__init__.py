@@ -24,6 +24,7 @@ from twin.nc.dialects.codesys.curves import (
     SPATIAL_SPLINE,
 )
 from twin.nc.dialects.codesys.decisions import DECISIONS
+from twin.nc.linear import rapid_line
 from twin.nc.planes import XY, YZ, ZX, Plane
 
 ADDITIONAL = "ABCPQUVW"
@@ -49,6 +50,9 @@ def _plane(meaning: str, plane: Plane) -> GCode:
     )
 
 
+RAPID = Interpolation(rapid_line, rapid=True)
+"""Its pace may follow F (``codes.before_motion``): no plain block."""
+
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
 
@@ -62,6 +66,7 @@ CODESYS = Dialect(
         expressions=program.EXPRESSIONS,
         statement=program.STATEMENT,
         several_blocks=True,
+        trailing_prose=True,
     ),
     groups=(
         "plane",
@@ -76,7 +81,7 @@ CODESYS = Dialect(
         "motion",
     ),
     g={
-        0: _motion("positioning in a straight line; FF is its feed", iso.RAPID),
+        0: _motion("positioning in a straight line; FF is its feed", RAPID),
         1: _motion("straight line", iso.FEED, seed=True),
         2: _motion("arc clockwise", CLOCKWISE, seed=True),
         3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
@@ -212,6 +217,14 @@ CODESYS = Dialect(
             ground="seed",
         ),
     },
+    instead={
+        **dict.fromkeys(range(80, 90), "there are no canned cycles: write their moves"),
+        **dict.fromkeys((57, 58, 59), "shifts are G54 and G55 with their distances"),
+        **dict.fromkeys((94, 95), "F counts units per second"),
+        21: "lengths are in the axes' unit, millimetres",
+        28: "write G53, then G0 and the axes",
+        49: "write G43 I0 J0 K0",
+    },
     start=(15, 40, 50, 60, 70, 90, 99),
     start_state={"feed_mode": FeedMode.PER_SECOND, "corner": Corner.EXACT_PATH},
     m={number: MCode(meaning="end of program", late=True, ends=True) for number in (2, 30)},
@@ -260,7 +273,7 @@ CODESYS = Dialect(
         "J": "centre along Y",
         "K": "centre along Z; condition of a jump; angle of an ellipse; parameter of M",
         "R": "radius; short by long half axis of an ellipse",
-        "T": "opening angle; seconds of G4",
+        "T": "opening angle of an arc; seconds of G4; no tool",
         "F": "feed per second",
         "E": "acceleration per second squared",
         "E-": "deceleration per second squared, below 0",
@@ -294,4 +307,5 @@ CODESYS = Dialect(
     before_motion=codes.before_motion,
     read_variable=program.read_variable,
     place_switches=codes.place_switches,
+    disturbed=lambda control: bool(program.variables(control).periods),
 )
