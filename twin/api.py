@@ -13,11 +13,12 @@ Every function raises ``twin.errors.TwinError`` where the command would end with
 import dataclasses
 from pathlib import Path
 
-from twin.chain import Run, motion_limits
+from twin.chain import Run
 from twin.compare.track_comparison import TrackDifference, compare_tracks
 from twin.compare.tracks import read_track
 from twin.motion.planner import plan as plan_chunks
 from twin.motion.setpoints import Setpoints, join
+from twin.motion_limits import motion_limits
 from twin.nc.canonical import Moves, concatenate
 from twin.outcome import Outcome
 from twin.preparation import prepare

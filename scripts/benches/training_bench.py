@@ -86,10 +86,11 @@ def _open_page() -> Iterator[tuple[OpenRoom, Callable[[], None]]]:
         assert room.gate is not None
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
-            size = {"width": 1280, "height": 760}
-            page = browser.new_context(viewport=size, device_scale_factor=0.25).new_page()
+            page = browser.new_context(
+                viewport={"width": 1280, "height": 760}, device_scale_factor=0.25
+            ).new_page()
             page.goto(room.gate.address)
-            _until(lambda: room.shown.panel.width == size["width"])
+            _until(lambda: room.shown.panel.width == 1280)
 
             def click() -> None:
                 left, top, right, bottom = room.shown.panel.kit.places["feed hold"]

@@ -30,7 +30,7 @@ FLAGS = [
     "--disable-sync",
 ]
 PATIENCE_S = 90.0
-SIZE = {"width": 1280, "height": 760}
+WIDTH, HEIGHT = 1280, 760
 
 pytestmark = [
     # Studio leaves the sockets of its own server to the collector.
@@ -96,12 +96,14 @@ def operator(tmp_path) -> Iterator[Operator]:
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
             # Half the dots: a quarter of the work for a processor that has to draw them.
-            page = browser.new_context(viewport=SIZE, device_scale_factor=0.5).new_page()
+            page = browser.new_context(
+                viewport={"width": WIDTH, "height": HEIGHT}, device_scale_factor=0.5
+            ).new_page()
             assert room.gate is not None
             page.goto(room.gate.address)
             somebody = Operator(room, page)
             # The panel stands where the page's width puts it as soon as the page is there.
-            somebody.until(lambda: room.shown.panel.width == SIZE["width"], "the page")
+            somebody.until(lambda: room.shown.panel.width == WIDTH, "the page")
             yield somebody
             browser.close()
         room.handle.close()

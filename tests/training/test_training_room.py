@@ -156,9 +156,9 @@ def test_jog_stops_when_let_go_and_at_the_end_of_the_travel(session):
 
 def test_an_edited_program_is_what_runs(session):
     do(session, "edit", line=5, text="N40 X20 F1200\nN45 X25")
-    assert len(session.room.program.lines) == 11
+    assert len(session.room.lines) == 11
     do(session, "edit", line=6)
-    assert session.room.program.lines[4] == "N40 X20 F1200"
+    assert session.room.lines[4] == "N40 X20 F1200"
     assert not session.submit({"do": "edit", "line": 99, "text": "M30"})
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from twin.errors import UsageError
 from twin.nc.source import source_from_text
 from twin.training import commands as c
+from twin.training.faults import inject
 from twin.training.room import Room
 
 RESOLUTION = 1e-3
@@ -124,12 +125,13 @@ def _enter(room: Room, command: c.Enter) -> None:
 def _edit(room: Room, command: c.Edit) -> None:
     if room.run is not None:
         raise UsageError("a program cannot be edited while something runs: reset first")
-    lines = list(room.program.lines)
+    lines = list(room.lines)
     if command.line > len(lines) + 1:
         raise UsageError(f"the program has {len(lines)} lines")
     new = [] if command.text is None else command.text.split("\n")
     lines[command.line - 1 : command.line] = new
-    room.write_program(lines)
+    room.program = source_from_text("\n".join(lines), room.program.name)
+    room.lines = tuple(lines)
 
 
 def _spindle(room: Room, command: c.Spindle) -> None:
@@ -173,7 +175,7 @@ def _finish(room: Room, _command: c.Finish) -> None:
 
 
 def _inject(room: Room, command: c.Inject) -> None:
-    room.inject(command.fault)
+    inject(room, command.fault)
 
 
 def _repair(room: Room, _command: c.Repair) -> None:

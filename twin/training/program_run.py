@@ -13,11 +13,11 @@ from typing import Literal
 
 import numpy as np
 
-from twin.chain import motion_limits
 from twin.machine.config import Machine
 from twin.machine.travel import soft_limit_alarm
 from twin.motion.live_motion import LiveMotion
 from twin.motion.setpoints import Setpoints
+from twin.motion_limits import motion_limits
 from twin.nc.blocks import Block
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves
 from twin.nc.control import Control

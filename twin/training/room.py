@@ -9,18 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from twin.errors import ConfigError, TwinError, UsageError
+from twin.errors import TwinError, UsageError
 from twin.machine.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.machine.live import LiveMachine
 from twin.machine.model import spindle_over_table_mm
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
 from twin.nc.settings import ToolData
-from twin.nc.source import Source, source_from_text
+from twin.nc.source import Source
 from twin.placement import part_zero, start_position
 from twin.recording import Samples
 from twin.training.commands import Mode
-from twin.training.faults import FaultTable, axis_change
+from twin.training.faults import inject
 from twin.training.judge import Judge
 from twin.training.notice import Notice
 from twin.training.program_run import ProgramRun
@@ -53,6 +53,7 @@ class Room:
         spindle: Speed of the spindle [1/min]; 0 when it stands.
         coolant: Whether coolant flows.
         program: The program as the operator has edited it.
+        lines: Its lines.
         entered: What stands in the MDI line.
         run: The program, MDI block or jog that is being run.
         running: What is being run: ``program``, ``mdi``, ``jog``, or nothing.
@@ -93,6 +94,7 @@ class Room:
         self.alarm: Notice | None = None
         self.pressed = False
         self.program: Source = preparation.source
+        self.lines = tuple(preparation.source.lines)
         self.entered = ""
         self.run: ProgramRun | None = None
         self.running = ""
@@ -101,7 +103,7 @@ class Room:
         self.samples = self.machine.hold(1)
         self.label = np.zeros(len(stand))
         for fault in file.faults:
-            self.inject(fault)
+            inject(self, fault)
         if file.start.alarm:
             self._begin_in_alarm(file.start.alarm)
         self.judge = Judge(self)
@@ -336,28 +338,6 @@ class Room:
         self.alarm = None
         if self.work is not None:
             self.work.forgive()
-
-    def inject(self, fault: FaultTable) -> None:
-        """Break something.
-
-        Raises:
-            ConfigError: The machine cannot have this fault.
-        """
-        names = self.machine.machine.axes.names
-        if fault.kind == "alarm":
-            self.raise_alarm("external", "the machine's own safety circuit has tripped")
-            return
-        if fault.axis not in names:
-            raise ConfigError(f"no axis '{fault.axis}': the machine has {', '.join(names)}")
-        if fault.kind == "lost_offset":
-            self.tables.zero[names.index(fault.axis)] += fault.value
-            return
-        axis = self.machine.machine.axis(fault.axis)
-        self.machine.change(fault.axis, **axis_change(fault, axis))
-
-    def write_program(self, lines: list[str]) -> None:
-        """Take over an edited program."""
-        self.program = source_from_text("\n".join(lines), self.program.name)
 
     def _begin_in_alarm(self, code: str) -> None:
         """Begin as the last shift left the machine."""

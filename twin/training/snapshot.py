@@ -111,7 +111,7 @@ def take_snapshot(room: Room) -> Snapshot:
         rapid_override=room.rapid_override,
         spindle=room.spindle,
         coolant=room.coolant,
-        program=room.program.lines,
+        program=room.lines,
         line=int(setpoint.line[0]) if room.running == "program" else 0,
         entered=room.entered,
         tool=room.tables.spindle,
