@@ -6,6 +6,7 @@ from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, statements, subroutines, variables
 from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
+from twin.nc.dialects.fagor8070.library import with_globals
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 
 
@@ -127,6 +128,7 @@ FAGOR8070 = Dialect(
     memory=FagorMemory,
     before_motion=frames.turn_in_commanded_direction,
     read_variable=variables.read_variable,
+    library=with_globals,
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,
