@@ -94,7 +94,9 @@ def lines_around(control: Control) -> range:
     """The program or subroutine that is being run; labels are its own."""
     headings, here = memory_of(control).headings, control.block.line - 1
     begin = max((line for line in headings if line <= here), default=0)
-    return range(begin, min((line for line in headings if line > here), default=len(control.flow.lines)))
+    return range(
+        begin, min((line for line in headings if line > here), default=len(control.flow.lines))
+    )
 
 
 def heading(control: Control, statement: Statement) -> None:
