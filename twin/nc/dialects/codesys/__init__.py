@@ -14,7 +14,7 @@ from twin.nc.dialect import (
     MCode,
     Syntax,
 )
-from twin.nc.dialects.codesys import codes, program
+from twin.nc.dialects.codesys import codes, program, subprograms
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
@@ -257,11 +257,11 @@ CODESYS = Dialect(
     },
     statements={
         "LET": program.let,
-        "SUBPROGRAM": program.define,
-        "END_SUBPROGRAM": program.leave_subprogram,
-        "RETURN": program.leave_subprogram,
+        "SUBPROGRAM": subprograms.define,
+        "END_SUBPROGRAM": subprograms.leave_subprogram,
+        "RETURN": subprograms.leave_subprogram,
     },
-    other_statement=program.assign_or_call,
+    other_statement=subprograms.assign_or_call,
     word_meanings={
         "N": "block number",
         "G": "preparatory code",
