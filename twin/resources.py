@@ -27,11 +27,24 @@ def machine_names() -> tuple[str, ...]:
     )
 
 
+def variant_names() -> tuple[str, ...]:
+    """Names of the shipped machines' variants, such as ``mill4/uncompensated``, sorted."""
+    return tuple(
+        sorted(
+            f"{path.parent.name}/{path.stem}"
+            for name in machine_names()
+            for path in (resource_root("models") / name).glob("*.toml")
+            if path.name != "machine.toml"
+        )
+    )
+
+
 def machine_file(name: str, *, beside: Path | None = None) -> Path:
     """Find a machine file by its shipped name or by its path.
 
     Args:
-        name: A shipped machine's name (``mill4``), a ``machine.toml``, or a folder that holds one.
+        name: A shipped machine's name (``mill4``), that of a variant of it
+            (``mill4/uncompensated``), a ``machine.toml``, or a folder that holds one.
         beside: Folder that a relative path is taken from; the working folder by default.
 
     Raises:
@@ -45,7 +58,9 @@ def machine_file(name: str, *, beside: Path | None = None) -> Path:
         path = path / "machine.toml"
     if path.is_file():
         return path
+    if name in variant_names():
+        return resource_root("models") / f"{name}.toml"
     raise UsageError(
-        f"no machine '{name}': shipped machines are {', '.join(machine_names())}; "
-        "or give the path of a machine.toml"
+        f"no machine '{name}': shipped machines are "
+        f"{', '.join((*machine_names(), *variant_names()))}; or give the path of a machine.toml"
     )

@@ -6,7 +6,8 @@ import hypothesis.strategies as st
 import numpy as np
 import pytest
 
-from twin.cutting.sweep_kernels import sweep, thin
+from twin.cutting.sweep_kernels import sweep
+from twin.cutting.thin_kernels import thin
 from twin.cutting.tools import Profile
 from twin.nc.canonical import FloatArray
 
@@ -77,6 +78,34 @@ def test_sweep_agrees_with_many_small_steps(
         assert changed[3] > columns.max()
     else:
         assert changed[0] >= changed[1]
+
+
+step = st.floats(-1.5, 1.5)
+steps = st.lists(
+    st.tuples(step, step, st.sampled_from([-0.4, 0.0, 0.0, 0.3])), min_size=2, max_size=12
+)
+
+
+@hypothesis.settings(derandomize=True, max_examples=60, deadline=None)
+@hypothesis.given(steps, st.sampled_from(PROFILES))
+def test_what_is_passed_over_was_cut_before(
+    ways: list[tuple[float, float, float]], cutter: Profile
+) -> None:
+    """A path swept whole, where places that lie under the tool are passed over, and line by line."""
+    path = np.cumsum(np.array([(4.0, 4.0, -1.0), *ways]), axis=0)
+    shape = (25, 27)
+    whole, removed, depth, _ = swept(path, cutter, shape)
+    heights = np.zeros(shape)
+    none, nothing = np.zeros((0, 0)), np.zeros(1)
+    for i, line in enumerate(itertools.pairwise(path)):
+        volume, deepest = np.zeros(1), np.zeros(1)
+        sweep(
+            heights, (0.0, 0.0), CELL, BOTTOM, np.array(line), dataclasses.astuple(cutter),
+            volume, deepest, none, nothing,
+        )  # fmt: skip
+        assert removed[i] == pytest.approx(volume[0], abs=1e-9)
+        assert depth[i] == pytest.approx(deepest[0], abs=1e-9)
+    np.testing.assert_allclose(whole, heights, atol=1e-12)
 
 
 def test_level_sweep_is_the_stadium() -> None:

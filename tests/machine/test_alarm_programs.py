@@ -15,7 +15,7 @@ EXPECTED = {
     "soft_limit_arc": ("soft-limit", 4, "X would go to 440.000 mm"),
     "hard_limit": ("hard-limit", 4, "X ran onto its limit switch at 402.0"),
     "following_error": ("following-error", 5, "X trails its setpoint by 3.0"),
-    "drive_saturation": ("drive-saturation", 5, "the drive of Y has been at its limit of 6000 N"),
+    "drive_saturation": ("drive-saturation", 5, "the drive of Y has been at its limit of 3500 N"),
     "collision_faceplate": ("collision", 5, "the tool's shank meets the faceplate"),
     "collision_vise": ("collision", 6, "the holder's nut meets the fixed jaw"),
     "rapid_into_stock": (

@@ -11,6 +11,7 @@ def test_the_list_names_every_machine_with_its_axes(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[:5] for line in lines] == [
         ["mill4", "X", "Y", "Z", "C"],
+        ["mill4/uncompensated", "X", "Y", "Z", "C"],
         ["mill4_light", "X", "Y", "Z", "C"],
     ]
     print_machines("json")
@@ -20,7 +21,7 @@ def test_the_list_names_every_machine_with_its_axes(capsys):
 def test_show_prints_the_lag_at_the_feed(capsys):
     print_machine("mill4", feed=3000.0, form="text")
     out = capsys.readouterr().out
-    assert "1849.2" in out
+    assert "1041.2" in out
     assert "0.4000" in out
     assert "endless" in out
     print_machine("mill4", feed=3000.0, form="json")
@@ -51,7 +52,9 @@ def test_wrong_arguments_are_refused(tmp_path):
         print_machines("xml")
     with pytest.raises(UsageError, match="feed must be positive"):
         print_machine("mill4", feed=-1.0, form="text")
-    with pytest.raises(UsageError, match="shipped machines are mill4, mill4_light"):
+    with pytest.raises(
+        UsageError, match="shipped machines are mill4, mill4_light, mill4/uncompensated"
+    ):
         print_check("mill9")
     with pytest.raises(UsageError, match=r"no plot of kind '\.txt'"):
         print_circle("mill4", radius=20, feed=100, plane="XY", form="text", plot=tmp_path / "a.txt")

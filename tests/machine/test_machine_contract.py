@@ -5,9 +5,11 @@ import shutil
 import pytest
 
 from twin.machine.check import check_machine
+from twin.machine.circular_test import circular_test
 from twin.machine.config import read_machine
 from twin.machine.describe import describe, shipped_machines
-from twin.resources import machine_file, machine_names
+from twin.resources import machine_file, machine_names, variant_names
+from twin.units import MM, UM_PER_MM
 
 POINTS = (
     "the folder is complete",
@@ -77,4 +79,20 @@ def test_the_figures_of_mill4():
     assert x.moved > x.reflected > 0
     assert facts.spindle_over_table_mm == pytest.approx(620.0)
     assert facts.as_contract()["name"] == "mill4"
-    assert [machine.file.name for machine in shipped_machines()] == list(machine_names())
+
+
+def test_the_shipped_machines_come_with_their_variants():
+    names = [machine.file.name for machine in shipped_machines()]
+    assert names == sorted((*machine_names(), *variant_names()))
+    assert "mill4/uncompensated" in names
+
+
+def test_the_circle_of_the_uncompensated_mill_is_that_of_its_readme():
+    """Peaks at most 2 F/kp, hysteresis at most what friction and spring lose together."""
+    machine = read_machine(machine_file("mill4/uncompensated"))
+    result = circular_test(machine, 50.0, 3000.0)
+    readme = (machine.path.parent / "README.md").read_text(encoding="utf-8")
+    figures = (result.circular_deviation_um, result.hysteresis_um, result.quadrant_peaks_um[0])
+    assert "| mill4/uncompensated | {:.1f} µm | {:.1f} µm | {:.1f} µm |".format(*figures) in readme
+    lost = 2 * 480.0 / 170e3 * UM_PER_MM
+    assert lost < result.hysteresis_um < 2 * lost + 2 * 480.0 / 6.5e7 / MM * UM_PER_MM

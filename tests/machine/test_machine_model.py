@@ -74,10 +74,10 @@ def test_gains_follow_from_what_is_moved():
     model = physics_model(machine, build_spec(machine))
     x, y, z, c = drives(machine, model)
     screw = 2 * np.pi / 0.016
-    assert x.moved == pytest.approx(485 + 38 + (0.0062 + 0.0024) * screw**2)
-    assert y.moved == pytest.approx(420 + 485 + 38 + (0.0120 + 0.0021) * screw**2)
-    assert z.moved == pytest.approx(430 + 12 + (0.0120 + 0.0018) * screw**2)
-    assert c.moved == pytest.approx(0.77 + (0.00135 + 0.0003) * 60**2)
+    assert x.moved == pytest.approx(485 + 38 + (0.00096 + 0.0024) * screw**2)
+    assert y.moved == pytest.approx(420 + 485 + 38 + (0.00123 + 0.0021) * screw**2)
+    assert z.moved == pytest.approx(430 + 12 + (0.00123 + 0.0018) * screw**2)
+    assert c.moved == pytest.approx(0.77 + (0.0002 + 0.0003) * 60**2)
     for drive in (x, y, z, c):
         assert drive.natural_frequency == pytest.approx(2 * 7.5 * 1000 / 60)
         assert drive.position_gain / drive.velocity_gain == pytest.approx(7.5 * 1000 / 60)

@@ -1,9 +1,9 @@
 """Throws nonsense at the interpreter: it must answer with moves or a diagnostic, never otherwise.
 
-``python -m tests.nc.nc_fuzz 100000 7`` runs as many tries with that seed and reports the first that
-fails.
+``scripts/fuzz 100000 7`` runs as many tries with that seed and reports the first that fails.
 """
 
+import collections
 import dataclasses
 import random
 import sys
@@ -28,15 +28,16 @@ FUZZ_SETTINGS = dataclasses.replace(
     machine_zero={"Z": 300.0},
 )
 LONGEST_SECONDS = 1.0
+RAN = "ran to its end"
 
 PIECES = {
     "gost": "G102 C360|G102 C0|G9|G61|G64|G99|$ текст|C721|C-721|G83 Q2|...",
     "codesys": "T90|T720|G16|G20 L1|K0|LET #a : LREAL := 2|#a|#a:=#a+1|$v$|G36 O#a D3|G37 D1|G6"
-    "|G8|H1|O0.5|L-1|SUBPROGRAM S{#x}|END_SUBPROGRAM|S{1}|L?4|L!4|PC360|FF5|(x)|//|E5|E-5|FX3|N2",
+    "|G8|G5|G10|G51 D2|G52 D3|G50|G61|G60|EF3|EF-4|D2|H1|O0.5|L-1|SUBPROGRAM S{#x}|END_SUBPROGRAM|S{1}|L?4|L!4|PC360|FF5|(x)|//|E5|E-5|FX3|N2",
     "fagor8070": "Q90|R30|Q360|G30|G31|G08|G09|G263=20|R1=30|X20I|X1=5|NR3|P1=2|P[P1]=3|[P1+2]"
     "|$IF P1==2|$ELSE|$ENDIF|$WHILE P1<5|$ENDWHILE|$FOR P2=1,3,1|$ENDFOR|$GOTO N1|#RPT[N1,N2,2]"
     "|%L SUB|M17|LL SUB|#PCALL SUB A1|#MCALL SUB|#MDOFF|G73 Q30|G72 S2|G11|G10|G14 X-1|G20 X1 Z2"
-    "|;|$SWITCH P1|$CASE 2|$ENDSWITCH|$BREAK|#TIME [1]|G04 1|SIN[30]|G06|G136|G158 X3|G159=2",
+    "|;|$SWITCH P1|$CASE 2|$ENDSWITCH|$BREAK|#TIME [1]|G04 1|SIN[30]|G06|G136|G36 I2|G39 I1|G138|G139|G264|G82 Z1 I-5 B2|G87 J9 K7 I-3 B2|G88 J8 I-3 B1|G158 X3|G159=2",
     "mefi": 'G10 Z1|G09|G98|G73 L1 Q2|G73 L2|L1|Q3|"text|I100',
 }  # fmt: skip
 COMMON = (
@@ -69,7 +70,7 @@ JUNK = [
 
 def _texts(dialect: Dialect) -> list[bytes]:
     paths = [*(ROOT / "programs" / dialect.name).glob("*.nc")]
-    paths += (ROOT / "tests" / "golden" / dialect.name).glob("rules/*.nc")
+    paths += (ROOT / "tests" / "golden" / dialect.name).glob("*/*.nc")
     return [path.read_bytes() for path in sorted(paths)]
 
 
@@ -77,11 +78,13 @@ REAL = {name: _texts(dialect) for name, dialect in DIALECTS.items()}
 
 
 def program(random_: random.Random, dialect: Dialect) -> bytes:
-    """Random bytes, a mutated real program, or words of the dialect in any order."""
+    """Random bytes, a mutated or spliced real program, or words of the dialect in any order."""
     kind = random_.random()
     if kind < 0.1:
         return random_.randbytes(random_.randrange(200))
-    if kind < 0.5:
+    if kind < 0.4:
+        return spliced(random_, REAL[dialect.name])
+    if kind < 0.7:
         of = dialect.name if random_.random() < 0.9 else random_.choice(list(REAL))
         return mutated(random_, random_.choice(REAL[of]))
     own, common = PIECES[dialect.name].split("|"), COMMON.split("|")
@@ -94,6 +97,13 @@ def program(random_: random.Random, dialect: Dialect) -> bytes:
         label = f"N{number} " if random_.random() < 0.3 else ""
         lines.append(label + " ".join(words))
     return "\n".join(lines).encode()
+
+
+def spliced(random_: random.Random, programs: list[bytes]) -> bytes:
+    """Lines of several programs, in the order of each: plausible blocks in an unplanned state."""
+    lines = [line for text in random_.sample(programs, 3) for line in text.splitlines()]
+    kept = [line for line in lines if random_.random() < 0.7]
+    return b"\n".join([b"F100", *kept])
 
 
 def mutated(random_: random.Random, data: bytes) -> bytes:
@@ -115,8 +125,8 @@ def mutated(random_: random.Random, data: bytes) -> bytes:
     return bytes(changed)
 
 
-def check(data: bytes, dialect: Dialect) -> None:
-    """Interpret; complain of anything but consistent moves and a diagnostic."""
+def check(data: bytes, dialect: Dialect) -> str:
+    """Interpret; complain of anything but consistent moves and a diagnostic; the latter's code."""
     begin = time.perf_counter()
     source = source_from_bytes(data, "fuzz.nc", dialect)
     interpretation = Interpretation(source, dialect, FUZZ_SETTINGS)
@@ -125,11 +135,12 @@ def check(data: bytes, dialect: Dialect) -> None:
         for chunk in interpretation.chunks():
             before = check_chunk(chunk, before)
     except ProgramError as error:
-        line = error.diagnostic.line if str(error) else 0
+        line, outcome = error.diagnostic.line if str(error) else 0, error.diagnostic.code
     else:
-        line = 1
+        line, outcome = 1, RAN
     assert 1 <= line <= max(1, len(source.lines))
     assert time.perf_counter() - begin < LONGEST_SECONDS, "too slow"
+    return outcome
 
 
 def check_chunk(chunk: Chunk, before: np.ndarray) -> np.ndarray:
@@ -162,22 +173,35 @@ def check_arc_ends_where_it_says(
     np.testing.assert_allclose(center + turned + advance * normal, end, atol=2e-6 * scale)
 
 
-def main(tries: int, seed: int = 1) -> None:
+def main(tries: int, seed: int = 1) -> dict[str, int]:
     """Run as many tries.
+
+    Returns:
+        How many programs were run to their end, and how many were refused with each code.
 
     Raises:
         AssertionError: A try failed; the program is printed.
     """
     random_ = random.Random(seed)  # noqa: S311 (nonsense needs no cryptography)
-    for _ in range(tries):
+    outcomes: collections.Counter[str] = collections.Counter()
+    for number in range(tries):
         dialect = random_.choice(list(DIALECTS.values()))
         data = program(random_, dialect)
         try:
-            check(data, dialect)
+            outcomes[check(data, dialect)] += 1
         except BaseException:
-            sys.stderr.write(f"{dialect.name}: {data!r}\n")
+            sys.stderr.write(f"try {number}, {dialect.name}: {data!r}\n")
             raise
+    return dict(outcomes.most_common())
 
 
 if __name__ == "__main__":
-    main(*(int(argument) for argument in sys.argv[1:3] or ["2000"]))
+    arguments = [int(argument) for argument in sys.argv[1:]]
+    tries, seed = [*arguments, *[100_000, 1][len(arguments) :]]
+    begin = time.perf_counter()
+    found = main(tries, seed)
+    seconds = time.perf_counter() - begin
+    sys.stdout.write(
+        f"{tries} programs in {seconds:.0f} s, seed {seed}: {found.pop(RAN, 0)} ran, the others:\n"
+    )
+    sys.stdout.writelines(f"{count:7d}  {code}\n" for code, count in found.items())

@@ -78,6 +78,12 @@ def test_every_followed_code_has_its_golden_file(name: str) -> None:
         assert re.search(rf"G0*{number}(?![0-9])", path.read_text(encoding="utf-8")), path
 
 
+@pytest.mark.parametrize("name", DIALECTS)
+def test_every_decision_has_its_golden_file(name: str) -> None:
+    shown = sorted(decision.example for decision in DIALECTS[name].decisions)
+    assert shown == sorted(path.stem for path in (GOLDEN / name / "decisions").glob("*.nc"))
+
+
 def write_all() -> None:
     for path in [*PROGRAMS, *RULES]:
         golden = golden_of(path)

@@ -28,7 +28,7 @@ def print_machines(form: str) -> None:
         _print_json([{"name": m.file.name, "axes": list(m.axes.names)} for m in machines])
         return
     for machine in machines:
-        sys.stdout.write(f"{machine.file.name:16}{' '.join(machine.axes.names):12}{machine.path}\n")
+        sys.stdout.write(f"{machine.file.name:24}{' '.join(machine.axes.names):12}{machine.path}\n")
 
 
 def print_machine(name: str, *, feed: float, form: str) -> None:

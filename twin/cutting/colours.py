@@ -6,9 +6,9 @@ import numpy.typing as npt
 from twin.cutting.height_map import HeightMap
 from twin.nc.canonical import FloatArray
 
-RAW_RGB = (150, 157, 166)
+RAW_RGB = (163, 167, 172)
 """The blank's own skin."""
-MACHINED_RGB = (214, 219, 225)
+MACHINED_RGB = (226, 229, 232)
 """Where a tool went."""
 UNMEASURED_RGB = (170, 170, 170)
 

@@ -10,7 +10,8 @@ from twin.cutting.events import SCRAPE_MM, CutEvent, EventLog, StockWatch, Stret
 from twin.cutting.force import cutting_load, cutting_width, kienzle
 from twin.cutting.height_map import BoolArray, blank
 from twin.cutting.ledger import BlockCut, Ledger
-from twin.cutting.sweep_kernels import overlap, sweep, thin
+from twin.cutting.sweep_kernels import overlap, sweep
+from twin.cutting.thin_kernels import thin
 from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
 from twin.job import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray

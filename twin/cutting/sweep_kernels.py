@@ -1,71 +1,16 @@
-"""Hot loops of cutting: thin the samples, then sweep the tool along what is left."""
+"""Hot loops of cutting: sweep the tool along straight stretches."""
 
 import math
 
 import numba
-import numpy as np
 
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import FloatArray
+
+_FAR = 1e9
+"""Farther than any stock reaches [mm]."""
 
 _BISECTIONS = 40
 """Halvings of a sweep in search of its lowest point: 1e-12 of its length."""
-
-
-@numba.njit(cache=True)
-def thin(
-    points: FloatArray, group: IntArray, tolerance: float, longest: float, most: int
-) -> IntArray:
-    """Choose samples between which the tool moved straight.
-
-    From each chosen sample on, samples are passed over while all that were passed lie within
-    ``tolerance`` of the straight line between the chosen ones, the line is no longer than
-    ``longest``, and the group stays the same.
-
-    Args:
-        points: Tool positions, shape (n, 3) [mm].
-        group: Samples of different groups are never joined, shape (n,).
-        tolerance: Largest distance of a sample from the line that replaces it [mm].
-        longest: Longest line [mm].
-        most: Most samples that one line may replace.
-
-    Returns:
-        Indices of the chosen samples, rising; the first and the last sample are among them.
-    """
-    count = len(points)
-    chosen = np.zeros(count, np.int64)
-    kept = 1
-    anchor = 0
-    while anchor < count - 1:
-        last = anchor + 1
-        while last + 1 < count and last + 1 - anchor <= most:
-            following = last + 1
-            if group[following] != group[last]:
-                break
-            if not _straight(points, anchor, following, tolerance, longest):
-                break
-            last = following
-        chosen[kept] = last
-        kept += 1
-        anchor = last
-    return chosen[:kept]
-
-
-@numba.njit(cache=True)
-def _straight(points: FloatArray, first: int, last: int, tolerance: float, longest: float) -> bool:
-    ax, ay, az = points[first]
-    dx, dy, dz = points[last, 0] - ax, points[last, 1] - ay, points[last, 2] - az
-    squared = dx * dx + dy * dy + dz * dz
-    if squared > longest * longest:
-        return False
-    for between in range(first + 1, last):
-        px, py, pz = points[between, 0] - ax, points[between, 1] - ay, points[between, 2] - az
-        share = 0.0
-        if squared > 0.0:
-            share = min(1.0, max(0.0, (px * dx + py * dy + pz * dz) / squared))
-        px, py, pz = px - share * dx, py - share * dy, pz - share * dz
-        if px * px + py * py + pz * pz > tolerance * tolerance:
-            return False
-    return True
 
 
 @numba.njit(cache=True)
@@ -110,25 +55,37 @@ def sweep(
         bx, by = points[i + 1, 0], points[i + 1, 1]
         low = max(0, math.ceil((min(ay, by) - radius - origin[1]) / cell))
         high = min(rows - 1, math.floor((max(ay, by) + radius - origin[1]) / cell))
+        # What the tool stands in already, no stretch that does not sink can take off again.
+        stands = i > 0 and points[i + 1, 2] >= points[i, 2]
         for row in range(low, high + 1):
-            left, right = _chord(ax, ay, bx, by, radius, origin[1] + row * cell)
+            y = origin[1] + row * cell
+            left, right = _chord(ax, ay, bx, by, radius, y)
             first = max(0, math.ceil((left - origin[0]) / cell))
             end = min(columns - 1, math.floor((right - origin[0]) / cell)) + 1
-            if first >= end:
-                continue
-            line = heights[row, first:end]
-            x, y = origin[0] + first * cell, origin[1] + row * cell
-            before = line.copy() if marks.size else line
-            cut, most = _cut_row(line, x, y, cell, bottom, points[i], points[i + 1], profile)
-            if cut > 0.0:
-                volume += cut
-                deepest = max(deepest, most)
-                row_first, row_end = min(row_first, row), max(row_end, row + 1)
-                column_first, column_end = min(column_first, first), max(column_end, end)
-                if marks.size:
-                    for k in range(len(line)):
-                        if line[k] < before[k]:
-                            marks[row, first + k] = mark[i]
+            hole, hole_end = end, end
+            if stands:
+                left, right = _done(ax, ay, bx, by, radius, profile[1], y)
+                if left <= right:
+                    hole = _within(math.ceil((max(left, -_FAR) - origin[0]) / cell), first, end)
+                    hole_end = _within(
+                        math.floor((min(right, _FAR) - origin[0]) / cell) + 1, hole, end
+                    )
+            for begin, stop in ((first, hole), (hole_end, end)):
+                if begin >= stop:
+                    continue
+                line = heights[row, begin:stop]
+                x = origin[0] + begin * cell
+                before = line.copy() if marks.size else line
+                cut, most = _cut_row(line, x, y, cell, bottom, points[i], points[i + 1], profile)
+                if cut > 0.0:
+                    volume += cut
+                    deepest = max(deepest, most)
+                    row_first, row_end = min(row_first, row), max(row_end, row + 1)
+                    column_first, column_end = min(column_first, begin), max(column_end, stop)
+                    if marks.size:
+                        for k in range(len(line)):
+                            if line[k] < before[k]:
+                                marks[row, begin + k] = mark[i]
         removed[i] = volume * cell * cell
         depth[i] = deepest
     return row_first, row_end, column_first, column_end
@@ -198,6 +155,36 @@ def _chord(
                 x = ax - side * dy / length + share * dx
                 left, right = min(left, x), max(right, x)
     return left, right
+
+
+@numba.njit(cache=True)
+def _done(
+    ax: float, ay: float, bx: float, by: float, radius: float, flat: float, y: float
+) -> tuple[float, float]:
+    """Where the row at ``y`` lies under a tool at a that will only rise or stay level [mm].
+
+    A flat tool has taken off all that it stands over; of any other the tool at a reaches lowest
+    behind it, seen in the direction of travel. Left above right: nowhere.
+    """
+    if flat >= radius:
+        squared = radius * radius - (y - ay) * (y - ay)
+        if squared < 0.0:
+            return 1.0, 0.0
+        half = math.sqrt(squared)
+        return ax - half, ax + half
+    dx, dy = bx - ax, by - ay
+    if dx > 0.0:
+        return -math.inf, ax - (y - ay) * dy / dx
+    if dx < 0.0:
+        return ax - (y - ay) * dy / dx, math.inf
+    if (y - ay) * dy <= 0.0:
+        return -math.inf, math.inf
+    return 1.0, 0.0
+
+
+@numba.njit(cache=True)
+def _within(value: int, low: int, high: int) -> int:
+    return min(max(value, low), high)
 
 
 @numba.njit(cache=True)

@@ -41,12 +41,13 @@ def write_circle_plot(result: CircularTest, path: Path) -> None:
         width, colour = (1.4, "#404850") if ring == 0 else (0.6, "#c4ccd4")
         axes.plot(radius * np.cos(turn), radius * np.sin(turn), color=colour, lw=width, zorder=1)
     _cross(axes, result)
-    for deviation, colour, label in (
-        (result.counter_clockwise_um, "#0072b2", "counter-clockwise"),
-        (result.clockwise_um, "#d55e00", "clockwise"),
+    for deviation, colour, label, arrow in (
+        (result.counter_clockwise_um, "#0072b2", "counter-clockwise", 40.0),
+        (result.clockwise_um, "#d55e00", "clockwise", -40.0),
     ):
         x, y = _drawn(result.angle_deg, deviation, scale)
         axes.plot(x, y, color=colour, lw=1.6, label=label, zorder=3)
+        _show_direction(axes, result.angle_deg, (x, y), colour, arrow)
     _name_peaks(axes, result)
     figure.suptitle(
         f"{result.machine}: circle {result.plane}, R {result.radius_mm:g} mm, F {result.feed:g} mm/min\n"
@@ -83,14 +84,28 @@ def _cross(axes: "Axes", result: CircularTest) -> None:
         axes.text(x * (reach + 0.4), y * (reach + 0.4), name, ha="center", va="center", fontsize=12)
 
 
+def _show_direction(
+    axes: "Axes", angle: FloatArray, curve: tuple[FloatArray, FloatArray], colour: str, at: float
+) -> None:
+    """An arrow on a curve, the way it was run; it points away from 0°."""
+    here = int(np.argmin(np.abs(angle - at % 360.0)))
+    there = here + round(np.sign(at) * len(angle) / 180.0)
+    x, y = curve
+    axes.annotate(
+        "", (x[there], y[there]), (x[here], y[here]),
+        arrowprops={"arrowstyle": "-|>,head_width=0.35,head_length=0.7", "color": colour}, zorder=4,
+    )  # fmt: skip
+
+
 def _name_peaks(axes: "Axes", result: CircularTest) -> None:
-    """Write each quadrant peak beside where it stands."""
-    for peak, angle in zip(result.quadrant_peaks_um, (0.0, 90.0, 180.0, 270.0), strict=True):
-        turned = np.deg2rad(angle + 6.0)
-        radius = _BASE + _RINGS - 0.6
+    """Name each quadrant peak after the axis that turns round there, beside where it stands."""
+    named = zip(result.quadrant_names, result.quadrant_peaks_um, (0, 90, 180, 270), strict=True)
+    for name, peak, angle in named:
+        turned = np.deg2rad(angle + 11.0)
+        radius = _BASE + _RINGS - 0.9
         axes.text(
-            radius * np.cos(turned), radius * np.sin(turned), f"{peak:+.2f} µm",
-            ha="center", va="center", fontsize=9, color="#404850",
+            radius * np.cos(turned), radius * np.sin(turned), f"peak {name}\n{peak:+.1f} µm",
+            ha="center", va="center", fontsize=9, color="#404850", linespacing=1.3, zorder=5,
             bbox={"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none", "alpha": 0.8},
         )  # fmt: skip
 

@@ -6,7 +6,7 @@ import math
 from twin.machine.config import Machine, read_machine
 from twin.machine.drives import reflected_inertia
 from twin.machine.model import build_spec, drives, physics_model, spindle_over_table_mm
-from twin.resources import machine_file, machine_names
+from twin.resources import machine_file, machine_names, variant_names
 from twin.units import SECONDS_PER_MINUTE, AxisKind, kv_per_second
 
 
@@ -93,5 +93,6 @@ def describe(machine: Machine, feed: float = 1000.0) -> MachineFacts:
 
 
 def shipped_machines() -> tuple[Machine, ...]:
-    """The machines that come with the twin, by name."""
-    return tuple(read_machine(machine_file(name)) for name in machine_names())
+    """The machines that come with the twin, by name, each with its variants after it."""
+    names = sorted((*machine_names(), *variant_names()))
+    return tuple(read_machine(machine_file(name)) for name in names)

@@ -265,6 +265,9 @@ def find_phases(
                     a = 0.0
             else:
                 x, a = x + length, 0.0
+                if v <= highest_v * (1.0 + ROUNDING):
+                    # Above the limit by rounding alone, it would never be held.
+                    v = min(v, highest_v)
             continue
         if v <= w and brake_in == i:
             brake_in = -1

@@ -1,4 +1,9 @@
-"""Arc geometry in a plane: centres from radii, tangents and points, and signed sweeps."""
+"""Arc geometry in a plane: centres from radii, tangents and points, and signed sweeps.
+
+The fast way through plain blocks (``plain_kernels``) compiles ``distance``, ``sweep_between``,
+``reaches``, ``center_at_radius`` and ``equidistant`` as they stand here: what they use must give the same bits
+either way, which ``math.hypot`` does not.
+"""
 
 import math
 
@@ -15,7 +20,8 @@ TURN = 360.0
 
 def distance(left: Point, right: Point) -> float:
     """Between two points [mm]."""
-    return math.hypot(right[0] - left[0], right[1] - left[1])
+    x, y = right[0] - left[0], right[1] - left[1]
+    return math.sqrt(x * x + y * y)
 
 
 def direction(angle: float) -> Point:
@@ -44,7 +50,7 @@ def angle_of(point: Point, center: Point) -> float:
     return angle if angle >= 0.0 else angle + TURN
 
 
-def sweep_between(start: Point, end: Point, center: Point, *, clockwise: bool) -> float:
+def sweep_between(start: Point, end: Point, center: Point, clockwise: bool) -> float:
     """Signed angle from start to end about the centre [deg]; a whole turn where they meet."""
     turn = -TURN if clockwise else TURN
     if distance(start, end) < SAME_POINT:
@@ -58,7 +64,7 @@ def sweep_between(start: Point, end: Point, center: Point, *, clockwise: bool) -
 
 
 def center_by_radius(
-    start: Point, end: Point, radius: float, *, clockwise: bool, larger: bool
+    start: Point, end: Point, radius: float, clockwise: bool, larger: bool
 ) -> Point | None:
     """Centre of the arc of a given radius [mm].
 
@@ -72,9 +78,22 @@ def center_by_radius(
     Returns:
         The centre; None where the radius is shorter than half the chord.
     """
-    chord = distance(start, end)
-    if radius < chord / 2.0 - ROUNDING or chord < SAME_POINT:
+    if not reaches(start, end, radius):
         return None
+    return center_at_radius(start, end, radius, clockwise, larger)
+
+
+def reaches(start: Point, end: Point, radius: float) -> bool:
+    """Whether an arc of a radius goes from one point to another [mm]."""
+    chord = distance(start, end)
+    return not (radius < chord / 2.0 - ROUNDING or chord < SAME_POINT)
+
+
+def center_at_radius(
+    start: Point, end: Point, radius: float, clockwise: bool, larger: bool
+) -> Point:
+    """As ``center_by_radius``, of a radius that reaches."""
+    chord = distance(start, end)
     middle = ((start[0] + end[0]) / 2.0, (start[1] + end[1]) / 2.0)
     height = math.sqrt(max(0.0, radius * radius - chord * chord / 4.0))
     side = height / chord if clockwise == larger else -height / chord

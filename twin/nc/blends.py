@@ -108,7 +108,7 @@ def _plane_of(first: Segment, second: Segment, blend: Blend) -> Plane:
     a, b = direction_of(first, at_end=True), direction_of(second, at_end=False)
     normal = cross(a, b)
     size = math.hypot(*a) * math.hypot(*b)
-    if math.hypot(*cross(normal, blend.plane.normal)) < _SMALL * size:
+    if math.hypot(*cross(normal, blend.plane.normal)) <= _SMALL * size:
         return blend.plane
     return plane_with_normal(normal)
 

@@ -12,6 +12,7 @@ from twin.nc.arcs import (
 )
 from twin.nc.blocks import Word
 from twin.nc.control import Control
+from twin.nc.dialect import PlainArc
 from twin.nc.planes import Local, Vector
 
 RADIUS_TOLERANCE = 0.01
@@ -195,3 +196,13 @@ def _iso_arc(control: Control, *, clockwise: bool) -> None:
     target = control.target()
     center = iso_arc_center(control, target, clockwise=clockwise)
     sweep_arc(control, target, center, clockwise=clockwise)
+
+
+def plain_arc(*, clockwise: bool, fits_radius: bool = False) -> PlainArc:
+    """The bounds within which ``fitted_center`` has nothing to refuse."""
+    return PlainArc(
+        clockwise=clockwise,
+        mismatch=RADIUS_TOLERANCE,
+        shift=CENTER_SHIFT,
+        fits_radius=fits_radius,
+    )

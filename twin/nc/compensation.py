@@ -96,6 +96,7 @@ class Compensation:
         self._emit = emit
         self._refuse = refuse
         self._held: _Held | None = None
+        self._here: list[float] = []
 
     def add(self, move: Segment) -> None:
         """The next move of the contour."""
@@ -134,10 +135,14 @@ class Compensation:
             LeadOut(self.plane, held.contour, self._aside, self._indirect) if held.element else None
         )
 
+    def _out(self, move: Segment) -> None:
+        self._here = move.end
+        self._emit(move)
+
     def _pass(self, move: Segment) -> None:
         self._passed.clear()
         if self._held is None:
-            self._emit(move)
+            self._out(move)
         else:
             self._held.waiting.append(move)
 
@@ -223,16 +228,13 @@ class Compensation:
         self._turn(held.move, arc)
 
     def _turn(self, move: Segment, arc: Element) -> None:
-        """Go around a corner at the height of a move's end."""
-        height = self.plane.local(move.end).height
-        start = [*self.plane.world(*arc.start, height), *move.end[3:]]
-        arc_move = level_arc(move, self.plane, arc, start)
-        self._emit(dataclasses.replace(arc_move, corner=Corner.EXACT_PATH))
+        """Go around a corner where the path has come to."""
+        arc_move = level_arc(move, self.plane, arc, self._here)
+        self._out(dataclasses.replace(arc_move, corner=Corner.EXACT_PATH))
 
     def _end(self, held: _Held, at: Point) -> None:
         """Emit the held move up to a point in the plane, then what waits for its end."""
         move, plane = held.move, self.plane
-        start = plane.world(*held.start, plane.local(move.start).height)
         end = plane.world(*at, plane.local(move.end).height)
         sweep, center, normal = move.sweep, move.center, move.normal
         if held.element is not None:
@@ -241,10 +243,10 @@ class Compensation:
             sweep = held.element.cut(held.start, at).sweep
             normal = plane.normal
             center = plane.world(*held.element.center, plane.local(move.start).height)
-        self._emit(
+        self._out(
             dataclasses.replace(
                 move,
-                start=[*start, *move.start[3:]],
+                start=self._here or move.start,
                 end=[*end, *move.end[3:]],
                 center=center,
                 normal=normal if center is not None else (NAN, NAN, NAN),
@@ -253,11 +255,11 @@ class Compensation:
         )
         for each in held.waiting:
             if isinstance(each, Segment):
-                first, last = plane.local(each.start).height, plane.local(each.end).height
-                self._emit(
+                last = plane.local(each.end).height
+                self._out(
                     dataclasses.replace(
                         each,
-                        start=[*plane.world(*at, first), *each.start[3:]],
+                        start=self._here,
                         end=[*plane.world(*at, last), *each.end[3:]],
                     )
                 )

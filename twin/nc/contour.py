@@ -216,8 +216,9 @@ def _halves(radius: float, aside: float) -> list[float]:
 
 
 def _unit(x: float, y: float) -> Point:
+    """The direction of a vector; none, 0 0, where a slot as wide as the tool leaves no way."""
     length = math.hypot(x, y)
-    return (x / length, y / length)
+    return (x / length, y / length) if length > 0.0 else (0.0, 0.0)
 
 
 def _moved(point: Point, dx: float, dy: float) -> Point:

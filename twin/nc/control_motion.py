@@ -11,7 +11,7 @@ from twin.nc.move_columns import NAN, Segment
 from twin.nc.planes import Plane, Vector, cross
 from twin.nc.segments import direction_of
 
-_LARGEST_COORDINATE = 1e7
+LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 
 
@@ -29,7 +29,7 @@ class ControlMotion(ControlWords):
             value = self.axis_value(index, word)
             if self.modal.incremental or word.incremental:
                 value += target[index]
-            if not abs(value) <= _LARGEST_COORDINATE:
+            if not abs(value) <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value
         return target
@@ -109,6 +109,12 @@ class ControlMotion(ControlWords):
             self.path.add_point(self._last, flat=spline[0])
         self.programmed = target
         self.part = end
+
+    def came_to(self, programmed: list[float], part: list[float], last: Segment | None) -> None:
+        """Blocks that went past the control have ended here; ``last`` is their last move, if any."""
+        self.programmed, self.part = programmed, part
+        if last is not None:
+            self._last = last
 
     @property
     def direction(self) -> Vector | None:

@@ -50,6 +50,7 @@ def describe(dialect: Dialect) -> str:
         _REFUSED,
         _refused_table(refused),
         "## Decisions where the documents are silent",
+        f"Each is shown by a program of `tests/golden/{dialect.name}/decisions`.",
         _decisions(dialect),
         "## Told apart by",
         "\n".join(f"- {mark.shown}" for mark in dialect.marks),
@@ -115,7 +116,8 @@ def _refused_table(codes: dict[int, GCode]) -> str:
 
 def _decisions(dialect: Dialect) -> str:
     return "\n".join(
-        f"- **{each.question}** {each.answer} *{each.reason}*" for each in dialect.decisions
+        f"- **{each.question}** {each.answer} *{each.reason}* (`{each.example}.nc`)"
+        for each in dialect.decisions
     )
 
 

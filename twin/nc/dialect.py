@@ -2,6 +2,7 @@
 
 import dataclasses
 import enum
+import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Literal
 
@@ -31,16 +32,47 @@ class FeedMode(enum.Enum):
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
+class PlainLine:
+    """A block of plain axis words goes straight to their target."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class PlainArc:
+    """A block of plain axis words with I, J, K of the plane or R is an arc.
+
+    Within these bounds nothing about it is doubtful: no error, no warning, no correction to report.
+
+    Attributes:
+        clockwise: Its sense.
+        mismatch: How far the distances of start and end from the centre may differ [mm].
+        mismatch_share: The same as a share of the larger one.
+        shift: How far the centre may be moved to fit [mm].
+        signed_radius: A negative radius asks for the larger arc.
+        fits_radius: A centre found by its radius is fitted to both points like a given one.
+    """
+
+    clockwise: bool
+    mismatch: float = math.inf
+    mismatch_share: float = math.inf
+    shift: float = math.inf
+    signed_radius: bool = True
+    fits_radius: bool = False
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class Interpolation:
     """How axis words become a move.
 
     Attributes:
         perform: Takes the block's words and moves.
         rapid: At the machine's own speed.
+        plain: What it does in a block of plain words, for the fast way; None: ``perform`` alone
+            knows.
     """
 
     perform: Action
     rapid: bool = False
+    plain: PlainLine | PlainArc | None = None
 
 
 @dataclasses.dataclass(slots=True)
@@ -175,11 +207,13 @@ class Decision:
         question: What they leave open.
         answer: What the twin does.
         reason: Why.
+        example: Name of the program that shows it, among the tests' golden files.
     """
 
     question: str
     answer: str
     reason: str
+    example: str
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -231,6 +265,8 @@ class Dialect:
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
+        disturbed: Something that only this dialect remembers acts on plain blocks now, so that they
+            must go the general way; None: nothing can.
     """
 
     name: str
@@ -264,3 +300,4 @@ class Dialect:
     prepare: Action | None = None
     after_motion: Action | None = None
     finish: Action | None = None
+    disturbed: Callable[["Control"], bool] | None = None

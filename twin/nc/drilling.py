@@ -9,6 +9,10 @@ CHIP_CLEARANCE = 0.5
 """Deep drilling stops its rapid return this far above where it was [mm]."""
 
 
+MOST_PECKS = 10_000
+"""Pecks of one hole: more is a slip of the pen."""
+
+
 class Retract(enum.Enum):
     """How a cycle leaves the hole."""
 
@@ -27,7 +31,10 @@ class Drilling:
         bottom: Height of the hole's bottom [mm].
         back: Height to which the tool returns [mm].
         dwell: At the bottom [s].
-        peck: Depth of one peck [mm]; 0: in one go.
+        stops: Heights at which it withdraws to break or clear chips, downwards [mm].
+        clearance: It returns with rapid to this far above where it was [mm].
+        full_every: After how many stops it withdraws to the reference plane.
+        lift: How far it withdraws at the other stops [mm].
         retract: How it leaves the hole.
     """
 
@@ -35,8 +42,44 @@ class Drilling:
     bottom: float
     back: float
     dwell: float = 0.0
-    peck: float = 0.0
+    stops: tuple[float, ...] = ()
+    clearance: float = CHIP_CLEARANCE
+    full_every: int = 1
+    lift: float = 0.0
     retract: Retract = Retract.RAPID
+
+
+def pecks(
+    control: Control,
+    surface: float,
+    bottom: float,
+    first: float,
+    factor: float = 1.0,
+    least: float = 0.0,
+) -> tuple[float, ...]:
+    """Heights at which deep drilling stops on its way down [mm].
+
+    Args:
+        control: The control.
+        surface: Height at which the first peck begins [mm].
+        bottom: Height of the hole's bottom [mm].
+        first: Depth of the first peck, above 0 [mm].
+        factor: By which each peck is deeper than the one before.
+        least: No peck is less deep, except the last [mm].
+
+    Raises:
+        ProgramError: There are more than ``MOST_PECKS``.
+    """
+    stops: list[float] = []
+    depth, peck = surface, first
+    while depth - peck > bottom:
+        depth -= peck
+        peck = max(peck * factor, least)
+        stops.append(depth)
+        if len(stops) > MOST_PECKS:
+            message = f"the hole would need more than {MOST_PECKS} pecks"
+            control.fail("cycle-depth", message, hint="write deeper pecks")
+    return tuple(stops)
 
 
 def drill(control: Control, cycle: Drilling, target: list[float]) -> None:
@@ -56,13 +99,12 @@ def drill(control: Control, cycle: Drilling, target: list[float]) -> None:
         control.line_to(up, rapid=True)
     control.line_to(over, rapid=True)
     _to(control, axis, cycle.reference, rapid=True)
-    depth = cycle.reference
-    if cycle.peck > 0.0:
-        while depth - cycle.peck > cycle.bottom:
-            depth -= cycle.peck
-            _to(control, axis, depth, rapid=False)
-            _to(control, axis, cycle.reference, rapid=True)
-            _to(control, axis, min(depth + CHIP_CLEARANCE, cycle.reference), rapid=True)
+    for number, stop in enumerate(cycle.stops, start=1):
+        _to(control, axis, stop, rapid=False)
+        full = number % cycle.full_every == 0
+        up = cycle.reference if full else min(stop + cycle.lift, cycle.reference)
+        _to(control, axis, up, rapid=True)
+        _to(control, axis, min(stop + cycle.clearance, up), rapid=True)
     _to(control, axis, cycle.bottom, rapid=False)
     if cycle.dwell > 0.0:
         control.dwell(cycle.dwell)

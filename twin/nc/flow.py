@@ -10,7 +10,7 @@ from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.diagnostics import ProgramError
 from twin.nc.lexer import Lexer
 from twin.nc.reporter import Reporter
-from twin.nc.source import Source
+from twin.nc.source import Lines, Source
 
 _LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
 _CACHED_LINES = 10_000
@@ -67,7 +67,7 @@ class Flow:
         self.calls: list[Return] = []
 
     @property
-    def lines(self) -> tuple[str, ...]:
+    def lines(self) -> Lines:
         """The program's text."""
         return self._lines
 
@@ -94,6 +94,29 @@ class Flow:
             line, part = line + 1, 0
         self.place = Place(line, 0)
         return None
+
+    def straight_on(self) -> range:
+        """The lines, from 0, that run one after another from here whatever they hold but jumps."""
+        line, part = self.place
+        if part > 0:
+            if line != self._here_line or part < len(self._here):
+                return range(0)
+            line += 1
+        last = len(self._lines)
+        call = self.calls[-1] if self.calls else None
+        if call is not None and call.last is not None:
+            last = min(last, call.last.line)
+        if line <= self._furthest.line:
+            last = min(last, self._furthest.line, line + self._steps_left)
+        return range(line, last)
+
+    def passed(self, line: int, blocks: int) -> None:
+        """Lines of ``straight_on`` up to ``line`` have been run, with so many blocks."""
+        if line <= self._furthest.line:
+            self._steps_left -= blocks
+        elif blocks:
+            self._furthest = Place(line - 1, 0)
+        self.place = Place(line, 0)
 
     def _past_end(self, call: Return) -> bool:
         return call.last is not None and self.place > call.last

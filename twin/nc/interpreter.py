@@ -1,6 +1,7 @@
 """Runs a program: text in, chunks of canonical moves out."""
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,12 @@ from twin.nc.move_columns import CHUNK
 from twin.nc.settings import ControlSettings
 from twin.nc.source import Source
 
+if TYPE_CHECKING:
+    from twin.nc.plain import PlainRunner
+
+PLAIN_FROM = 500
+"""Lines from which on a program takes the fast way: loading it costs as much as so many blocks."""
+
 
 class Interpretation:
     """One run of a program on one control.
@@ -22,10 +29,26 @@ class Interpretation:
         settings: What the control was told of the machine and the job.
     """
 
-    def __init__(self, source: Source, dialect: Dialect, settings: ControlSettings) -> None:
+    def __init__(
+        self,
+        source: Source,
+        dialect: Dialect,
+        settings: ControlSettings,
+        *,
+        plain_from: int = PLAIN_FROM,
+    ) -> None:
+        """Take a program.
+
+        Args:
+            source: The program.
+            dialect: The language it is read in.
+            settings: What the control is told of the machine and the job.
+            plain_from: Lines from which on plain blocks take the fast way.
+        """
         self.source = source
         self.dialect = dialect
         self.settings = settings
+        self._plain_from = plain_from
         self._control = Control(dialect, settings, source)
 
     @property
@@ -52,8 +75,13 @@ class Interpretation:
         control = self._control
         try:
             control.prepare()
-            while not control.ended and (block := control.flow.next()) is not None:
-                control.run(block)
+            plain = self._plain_runner()
+            while not control.ended:
+                if plain is None or not plain.run():
+                    block = control.flow.next()
+                    if block is None:
+                        break
+                    control.run(block)
                 if len(control.path) >= CHUNK:
                     yield control.path.take()
             control.finish()
@@ -61,3 +89,10 @@ class Interpretation:
             yield control.path.take()
             raise
         yield control.path.take()
+
+    def _plain_runner(self) -> "PlainRunner | None":
+        if len(self.source.lines) < self._plain_from:
+            return None
+        from twin.nc.plain import PlainRunner
+
+        return PlainRunner(self._control)

@@ -3,18 +3,18 @@
 import re
 
 from twin.nc.blocks import Word
-from twin.nc.circular import clockwise_arc, counter_clockwise_arc
+from twin.nc.circular import clockwise_arc, counter_clockwise_arc, plain_arc
 from twin.nc.control import Control
-from twin.nc.dialect import FeedMode, GCode, Interpolation, MCode
+from twin.nc.dialect import FeedMode, GCode, Interpolation, MCode, PlainLine
 from twin.nc.iso_cycles import CYCLES
 from twin.nc.linear import feed_line, rapid_line
 from twin.nc.offsets import COMPENSATION, LENGTH, OFFSETS, PRESET, refuse_plane_change
 from twin.nc.planes import XY, YZ, ZX
 
-RAPID = Interpolation(rapid_line, rapid=True)
-FEED = Interpolation(feed_line)
-CLOCKWISE = Interpolation(clockwise_arc)
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+RAPID = Interpolation(rapid_line, rapid=True, plain=PlainLine())
+FEED = Interpolation(feed_line, plain=PlainLine())
+CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=plain_arc(clockwise=False))
 
 
 _ELLIPSIS = re.compile(r"[ \t]*\.{3,}[ \t]*")

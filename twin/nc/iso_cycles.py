@@ -9,7 +9,7 @@ was called, or with G99 to the reference plane.
 
 from twin.nc.control import Control
 from twin.nc.dialect import GCode, Interpolation
-from twin.nc.drilling import Drilling, Retract, drill
+from twin.nc.drilling import Drilling, Retract, drill, pecks
 
 
 def _cycle(name: str, *, dwell: bool = False, peck: bool = False, retract: Retract) -> GCode:
@@ -58,8 +58,8 @@ def drill_hole(control: Control, name: str, *, dwell: bool, peck: bool, retract:
         reference=values["R"],
         bottom=values[letter],
         back=back,
-        dwell=values.get("P", 0.0),
-        peck=values.get("Q", 0.0),
+        dwell=values.get("P", 0.0) if dwell else 0.0,
+        stops=pecks(control, values["R"], values[letter], values["Q"]) if peck else (),
         retract=retract,
     )
     drill(control, cycle, control.target())

@@ -9,7 +9,7 @@ from twin.nc.expressions import LARGEST_NUMBER, ExpressionError
 from twin.nc.grammar import Grammar
 from twin.nc.reporter import Reporter
 
-_LARGEST_LABEL = 4_294_967_295
+LARGEST_LABEL = 4_294_967_295
 """Largest N number (32 bits, as the Fagor manual states)."""
 
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
@@ -161,7 +161,7 @@ class LineReader:
 
     def _label(self, number: str, begin: int) -> None:
         value = float(number)
-        if not (value <= _LARGEST_LABEL and value == int(value) and value >= 0.0):
+        if not (value <= LARGEST_LABEL and value == int(value) and value >= 0.0):
             self._fail("label", f"N{number} is no block number", begin)
         if self._words or self._number != NO_BLOCK_NUMBER:
             if not self._syntax.several_blocks:

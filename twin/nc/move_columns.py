@@ -14,6 +14,7 @@ from twin.nc.canonical import (
     FeedUnit,
     FloatArray,
     Function,
+    IntArray,
     Motion,
     Moves,
     Shape,
@@ -74,11 +75,15 @@ class MoveColumns:
         self._clear()
 
     def _clear(self) -> None:
+        self._parts: list[tuple[IntArray, FloatArray, FloatArray]] = []
+        self._events: list[Event] = []
+        self._count = 0
+        self._clear_lists()
+
+    def _clear_lists(self) -> None:
         self._codes: list[int] = []
         self._values: list[float] = []
         self._positions: list[float] = []
-        self._events: list[Event] = []
-        self._count = 0
 
     def __len__(self) -> int:
         return self._count
@@ -107,6 +112,28 @@ class MoveColumns:
         self._positions += move.display
         self._count += 1
 
+    def add_rows(self, codes: IntArray, values: FloatArray, positions: FloatArray) -> None:
+        """Append moves that are columns already.
+
+        Args:
+            codes: Motion, shape, line, block and corner, shape (n, 5).
+            values: Centre, normal, sweep, feed, corner tolerance, acceleration and deceleration,
+                shape (n, 11).
+            positions: Start, end and display, shape (n, 3, k).
+        """
+        self._close_lists()
+        self._parts.append((codes.copy(), values.copy(), positions.copy()))
+        self._count += len(codes)
+
+    def _close_lists(self) -> None:
+        """Make the moves that were appended one by one a part of columns."""
+        if self._codes:
+            codes = np.array(self._codes, np.int64).reshape(-1, 5)
+            values = np.array(self._values, np.float64).reshape(-1, 11)
+            positions = np.array(self._positions, np.float64).reshape(len(codes), 3, -1)
+            self._parts.append((codes, values, positions))
+            self._clear_lists()
+
     def dwell(self, line: int, seconds: float) -> None:
         """Append a dwell after the moves so far."""
         self._events.append(Dwell(self._count, line, seconds))
@@ -117,16 +144,17 @@ class MoveColumns:
 
     def take(self) -> Chunk:
         """All that was appended, as columns; nothing is left here."""
-        n, k = self._count, len(self._axes)
-        codes = np.array(self._codes, np.int64).reshape(n, 5)
-        values = np.array(self._values, np.float64).reshape(n, 11)
-        positions = np.array(self._positions, np.float64).reshape(n, 3, k)
+        self._close_lists()
+        k = len(self._axes)
+        none = (np.zeros((0, 5), np.int64), np.zeros((0, 11)), np.zeros((0, 3, k)))
+        columns = zip(*(self._parts or [none]), strict=True)
+        codes, values, positions = (np.concatenate(each) for each in columns)
         events = tuple(self._events)
         self._clear()
         start, end = positions[:, 0], positions[:, 1]
         shape = codes[:, 1].astype(np.uint8)
         center, normal = values[:, 0:3], values[:, 3:6]
-        radius = np.linalg.norm(start[:, :3] - center, axis=1)
+        radius = _norms(start[:, :3] - center)
         length, unit = self._measure(start, end, normal, radius, values[:, 6])
         moves = Moves(
             axes=self._axes,
@@ -161,12 +189,28 @@ class MoveColumns:
     ) -> tuple[FloatArray, FloatArray]:
         """Length that the feed counts and its unit, by the convention of ``canonical``."""
         delta = end - start
-        spatial = np.linalg.norm(delta[:, :3], axis=1)
-        advance = np.sum(delta[:, :3] * normal, axis=1)
+        spatial = _norms(delta[:, :3])
+        advance = _row_sums(delta[:, :3] * normal)
         arc = np.hypot(radius * np.deg2rad(sweep), advance)
         path = np.where(np.isnan(radius), spatial, arc)
-        linear = np.linalg.norm(delta[:, self._other_linear], axis=1)
-        rotary = np.linalg.norm(delta[:, self._rotary], axis=1)
+        linear = _norms(delta[:, self._other_linear])
+        rotary = _norms(delta[:, self._rotary])
         length = np.where(path > 0.0, path, np.where(linear > 0.0, linear, rotary))
         turning = (path == 0.0) & (linear == 0.0) & (rotary > 0.0)
         return length, np.where(turning, float(FeedUnit.DEG_PER_MIN), float(FeedUnit.MM_PER_MIN))
+
+
+def _norms(vectors: FloatArray) -> FloatArray:
+    """Length of each row, shape (n,)."""
+    return np.sqrt(_row_sums(vectors * vectors))
+
+
+def _row_sums(rows: FloatArray) -> FloatArray:
+    """Sum of each row from left to right, shape (n,).
+
+    NumPy's own order depends on the layout, and a move must have the same length in every chunk.
+    """
+    total = np.zeros(len(rows))
+    for column in rows.T:
+        total += column
+    return total

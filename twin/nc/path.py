@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from twin.nc.arcs import SAME_POINT, distance
 from twin.nc.blends import Blend
-from twin.nc.canonical import Axes, Chunk, Motion
+from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray, Motion
 from twin.nc.compensation import Compensation, Refuse, Warn
 from twin.nc.contour import Element
 from twin.nc.leads import LeadOut, around, lead_depth
@@ -61,6 +61,28 @@ class Path:
             self._end_spline(move)
         self._before = move
         self._round(move)
+
+    @property
+    def open(self) -> bool:
+        """No stage holds or changes moves: what is added is emitted at once."""
+        stages = (self._spline, self._rounding, self._compensation, self._leading_out, self._loops)
+        return all(stage is None for stage in stages)
+
+    def add_rows(
+        self, codes: IntArray, values: FloatArray, positions: FloatArray, last: Segment
+    ) -> None:
+        """Moves as columns while the path is open.
+
+        Args:
+            codes: Shape (n, 5), as in ``MoveColumns.add_rows``.
+            values: Shape (n, 11).
+            positions: Shape (n, 3, k).
+            last: The last of them.
+        """
+        assert self.open
+        self._columns.add_rows(codes, values, positions)
+        self._before = last
+        self.position = last.end
 
     def add_point(self, move: Segment, *, flat: bool) -> None:
         """The straight way to the next point of a spline; ``flat``: its height goes linearly."""

@@ -56,6 +56,10 @@ class Reporter:
             self._said.add(code)
             self.warn(code, message, hint=hint)
 
+    def has_said(self, code: str) -> bool:
+        """Whether ``warn_once`` has given this warning."""
+        return code in self._said
+
     def _diagnostic(
         self,
         severity: Severity,

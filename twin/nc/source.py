@@ -3,12 +3,15 @@
 import dataclasses
 import hashlib
 import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, overload
+
+import numpy as np
+import numpy.typing as npt
 
 from twin.errors import UsageError
 
-_LINE_END = re.compile("\r\n|\n|\r")
 _FALLBACK = "latin-1"
 """Decodes any byte; used where a file is neither UTF-8 nor in the dialect's own code page."""
 
@@ -22,6 +25,72 @@ class HasCodePage(Protocol):
         ...
 
 
+_SURROGATES = "surrogatepass"
+"""Text that is made on the fly may hold what no file can."""
+_BLOCK = 1 << 20
+"""Bytes that are searched for line ends at a time."""
+_LINE_FEED, _RETURN = 10, 13
+
+
+class Lines(Sequence[str]):
+    """The lines of a program without their ends: kept as bytes, decoded when they are asked for.
+
+    Attributes:
+        data: The whole program as UTF-8, read-only.
+        starts: Where each line begins, and where the last one ends, shape (n + 1,).
+    """
+
+    def __init__(self, text: bytes) -> None:
+        self._text = text
+        self.data = np.frombuffer(text, np.uint8)
+        self.starts = _line_starts(self.data)
+
+    def __len__(self) -> int:
+        return len(self.starts) - 1
+
+    @overload
+    def __getitem__(self, index: int) -> str: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[str]: ...
+    def __getitem__(self, index: int | slice) -> str | list[str]:
+        if isinstance(index, slice):
+            return [self[each] for each in range(*index.indices(len(self)))]
+        if not -len(self) <= index < len(self):
+            raise IndexError(index)
+        begin = index % len(self)
+        line = self.data[self.starts[begin] : self.starts[begin + 1]].tobytes()
+        return line.removesuffix(b"\n").removesuffix(b"\r").decode("utf-8", _SURROGATES)
+
+    def __iter__(self) -> Iterator[str]:
+        return (self[index] for index in range(len(self)))
+
+    def any_holds(self, pattern: re.Pattern[bytes]) -> bool:
+        """Whether a pattern, which must not match line ends, stands in any line."""
+        return pattern.search(self._text) is not None
+
+    def holding(self, mark: str) -> Iterator[tuple[int, str]]:
+        """The lines in which a text stands, with their numbers from 0."""
+        wanted, at = mark.encode("utf-8", _SURROGATES), 0
+        while (at := self._text.find(wanted, at)) >= 0:
+            index = int(np.searchsorted(self.starts, at, side="right")) - 1
+            yield index, self[index]
+            at = int(self.starts[index + 1])
+
+
+def _line_starts(data: npt.NDArray[np.uint8]) -> npt.NDArray[np.int64]:
+    """Where lines begin that end with LF, CR or CR LF; the text behind the last end is a line."""
+    found: list[npt.NDArray[np.int64]] = [np.zeros(1, np.int64)]
+    for begin in range(0, len(data), _BLOCK):
+        # One byte more, so that a CR at the border sees the LF behind it.
+        block = data[begin : begin + _BLOCK + 1]
+        feed = block == _LINE_FEED
+        ends = feed | (block == _RETURN)
+        ends[:-1] &= ~((block[:-1] == _RETURN) & feed[1:])
+        found.append(np.flatnonzero(ends[:_BLOCK]) + (begin + 1))
+    starts = np.concatenate(found)
+    return starts if starts[-1] == len(data) else np.append(starts, len(data))
+
+
 @dataclasses.dataclass(frozen=True, slots=True)
 class Source:
     """A program that was read.
@@ -33,13 +102,14 @@ class Source:
     """
 
     name: str
-    lines: tuple[str, ...]
+    lines: Lines
     sha256: str
 
     @property
     def text(self) -> str:
-        """All lines, joined by newlines."""
-        return "\n".join(self.lines)
+        """All lines, ended by newlines."""
+        text = self.lines.data.tobytes().decode("utf-8", _SURROGATES)
+        return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def read_source(path: Path, dialect: HasCodePage | None = None) -> Source:
@@ -61,27 +131,22 @@ def read_source(path: Path, dialect: HasCodePage | None = None) -> Source:
 
 def source_from_bytes(data: bytes, name: str, dialect: HasCodePage | None = None) -> Source:
     """Make a source of bytes that need not come from a file; arguments as in ``read_source``."""
-    return _source(_decoded(data, dialect), name, hashlib.sha256(data).hexdigest())
+    return Source(name, Lines(_as_utf8(data, dialect)), hashlib.sha256(data).hexdigest())
 
 
 def source_from_text(text: str, name: str = "program") -> Source:
     """Make a source of text, for tests and programs that are made on the fly."""
-    digest = hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
-    return _source(text, name, digest)
+    data = text.encode("utf-8", _SURROGATES)
+    return Source(name, Lines(data), hashlib.sha256(data).hexdigest())
 
 
-def _source(text: str, name: str, digest: str) -> Source:
-    lines = _LINE_END.split(text)
-    if lines[-1] == "":
-        lines.pop()
-    return Source(name, tuple(lines), digest)
-
-
-def _decoded(data: bytes, dialect: HasCodePage | None) -> str:
+def _as_utf8(data: bytes, dialect: HasCodePage | None) -> bytes:
+    if data.isascii():
+        return data
     encodings = ("utf-8-sig",) if dialect is None else ("utf-8-sig", dialect.code_page)
     for encoding in encodings:
         try:
-            return data.decode(encoding)
+            return data.decode(encoding).encode("utf-8")
         except UnicodeDecodeError:
             continue
-    return data.decode(_FALLBACK)
+    return data.decode(_FALLBACK).encode("utf-8")

@@ -17,7 +17,7 @@ _DIRECTION = np.array([-0.50, -1.0, 0.47])
 _FIELD_DEG = 30.0
 _MARGIN = 1.12
 """Room around the part's bounding ball."""
-_SMALLEST_MM = 40.0
+SMALLEST_MM = 40.0
 """A smaller part is looked at from as far as one of this size, so that the tool is seen too."""
 
 
@@ -35,7 +35,7 @@ def add_part_cameras(
     known = [camera.name for camera in spec.cameras]
     away = _DIRECTION / np.linalg.norm(_DIRECTION)
     half = np.deg2rad(0.5 * _FIELD_DEG)
-    distance = _MARGIN * max(radius, _SMALLEST_MM) / np.sin(half)
+    distance = _MARGIN * max(radius, SMALLEST_MM) / np.sin(half)
     eye = center + distance * away
     right = np.cross([0.0, 0.0, 1.0], away)
     right /= np.linalg.norm(right)
@@ -58,6 +58,6 @@ def add_part_cameras(
 def framed(points: FloatArray) -> tuple[FloatArray, float]:
     """Middle and radius of the ball around the bounding box of points, shape (n, 3) [mm]."""
     if not len(points):
-        return np.zeros(3), _SMALLEST_MM
+        return np.zeros(3), SMALLEST_MM
     low, high = points.min(axis=0), points.max(axis=0)
     return 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low))

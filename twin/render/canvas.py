@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.errors import RenderError
+from twin.nc.canonical import FloatArray
 from twin.render.gl import choose_backend, open_context
 
 Pixels = npt.NDArray[np.uint8]
@@ -24,6 +25,9 @@ FILL_SHARE = 0.45
 
 SHADOWLESS = "trail"
 """What the names of geoms that cast no shadow begin with."""
+
+_LIGHT_FAR = 2.0
+"""Distance of a light from the middle of its shadows, as a share of their radius."""
 
 _SPARE_GEOMS = 200
 """Scene geoms beside the model's own, for lights' and frames' decoration."""
@@ -47,7 +51,7 @@ class Quality:
 
 
 DRAFT = Quality(shadows=False, samples=0, drawn_cells=160)
-FINAL = Quality(shadows=True, samples=4, drawn_cells=300)
+FINAL = Quality(shadows=True, samples=4, drawn_cells=480)
 QUALITIES = {"draft": DRAFT, "final": FINAL}
 
 
@@ -87,6 +91,19 @@ def _soften_shadows(spec: mujoco.MjSpec) -> None:
         )
 
 
+@dataclasses.dataclass(frozen=True, slots=True)
+class Focus:
+    """A ball in the world, in which shadows are drawn.
+
+    Attributes:
+        center: Shape (3,) [m].
+        radius: [m].
+    """
+
+    center: FloatArray
+    radius: float
+
+
 class Canvas:
     """Draws a model; open it with ``canvas``."""
 
@@ -109,17 +126,26 @@ class Canvas:
             if quality.shadows and model.geom(number).name.startswith(SHADOWLESS)
         }
 
-    def draw(self, data: mujoco.MjData, camera: int, size: tuple[int, int] | None = None) -> Pixels:
+    def draw(
+        self,
+        data: mujoco.MjData,
+        camera: int,
+        size: tuple[int, int] | None = None,
+        focus: Focus | None = None,
+    ) -> Pixels:
         """Draw one frame, top row first.
 
         Args:
             data: Positions of everything (after ``mj_forward`` or the like).
             camera: Number of the camera in the model.
             size: Width and height, at most those of the canvas [px]; None: all of it.
+            focus: Where shadows fall; None: as the model says.
 
         Returns:
             Shape (height, width, 3).
         """
+        if focus is not None:
+            self._aim_shadows(data, focus)
         self._update(data, camera)
         view = self._view if size is None else mujoco.MjrRect(0, 0, *size)
         mujoco.mjr_render(view, self._scene, self.context)
@@ -144,6 +170,14 @@ class Canvas:
             if geom.objtype == mujoco.mjtObj.mjOBJ_GEOM:
                 geoms[geom.segid + 1] = geom.objid
         return geoms[number]
+
+    def _aim_shadows(self, data: mujoco.MjData, focus: Focus) -> None:
+        """Spread the shadow map over the focus alone: the smaller, the sharper the shadows."""
+        self.context.shadowClip = focus.radius
+        for light in np.flatnonzero(self._model.light_castshadow):
+            data.light_xpos[light] = (
+                focus.center - _LIGHT_FAR * focus.radius * data.light_xdir[light]
+            )
 
     def _update(self, data: mujoco.MjData, camera: int) -> None:
         self._camera.fixedcamid = camera

@@ -16,14 +16,15 @@ from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.program_notes import ProgramNotes
 from twin.recording import Recording, Samples
-from twin.render.cameras import PART_CAMERAS, add_part_cameras, framed
-from twin.render.canvas import Canvas, Pixels, Quality, canvas, prepare
-from twin.render.placement import Joints, Placement, place
+from twin.render.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
+from twin.render.canvas import Canvas, Focus, Pixels, Quality, canvas, prepare
+from twin.render.placement import ROTARY_TABLE, Joints, Placement, place
 from twin.render.skin import Skin
 from twin.render.stock_surface import StockSurface
 from twin.render.tool_body import ToolBodies
 from twin.render.trail import Trail, trail_points
 from twin.render.work_holding import add_work_holding
+from twin.units import MM
 
 WARNINGS = {
     "rapid": "rapid into stock",
@@ -37,6 +38,11 @@ _NO_POINTS = np.zeros(0, np.int64)
 
 BETWEEN_FIELDS = 255
 """Grey of the line between the fields of a split picture."""
+
+SHADOWS_OVER_MACHINE = 0.55
+"""Radius in which shadows fall, as a share of the machine's extent."""
+SHADOWS_OVER_PART = 1.6
+"""The same for the part's cameras, as a share of the radius around the part."""
 
 TRAIL_SHARE = 0.003
 """Radius of the trail's tube, as a share of the trail's extent."""
@@ -104,6 +110,7 @@ class Stage:
         cutter: Cutter | None,
         trail: Trail,
         tools: ToolBodies,
+        seen: tuple[FloatArray, float],
     ) -> None:
         self.model = model
         self.data = mujoco.MjData(model)
@@ -115,6 +122,7 @@ class Stage:
         self._cutter = cutter
         self._trail = trail
         self._tools = tools
+        self._seen = seen
         self._tool = scene.notes.tools.tools[0]
         self._move = 0
         self._joints = Joints(scene.machine, model)
@@ -152,7 +160,8 @@ class Stage:
         field = (width // columns, height // rows)
         whole = np.full((height, width, 3), BETWEEN_FIELDS, np.uint8)
         for number, camera in enumerate(cameras):
-            view = self._drawing.draw(self.data, int(self.model.camera(camera).id), field)
+            number_of = int(self.model.camera(camera).id)
+            view = self._drawing.draw(self.data, number_of, field, self._focus(camera))
             if len(cameras) == 1:
                 return view
             top, left = field[1] * (number // columns), field[0] * (number % columns)
@@ -164,6 +173,16 @@ class Stage:
         """Number of the geom that every pixel shows now, -1 for none, shape (height, width)."""
         self._refresh()
         return self._drawing.draw_objects(self.data, int(self.model.camera(camera).id))
+
+    def _focus(self, camera: str) -> Focus:
+        """Where a camera needs shadows: around the part, or all over the machine."""
+        if camera not in PART_CAMERAS:
+            stat = self.model.stat
+            return Focus(stat.center.copy(), SHADOWS_OVER_MACHINE * float(stat.extent))
+        table = self.data.body(ROTARY_TABLE)
+        middle, radius = self._seen
+        center = table.xpos + table.xmat.reshape(3, 3) @ self.placement.points(middle[None])[0]
+        return Focus(center, SHADOWS_OVER_PART * MM * max(radius, SMALLEST_MM))
 
     def _refresh(self) -> None:
         turns = self._scene.notes.spindle.at(self._move)
@@ -211,14 +230,15 @@ def stage(
         cutter = Cutter(
             scene.stock, scene.notes.tools, header.part_frame, header.part_zero, keep_marks=True
         )
-        skin = Skin(cutter.map, cutter.marks, paint)
-        surface = StockSurface(cutter.map, skin, quality.drawn_cells)
+        step = max(1, -(-max(cutter.map.heights.shape) // quality.drawn_cells))
+        skin = Skin(cutter.map, cutter.marks, step, paint)
+        surface = StockSurface(cutter.map, skin, step)
         surface.add_to(spec)
         corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
         add_work_holding(spec, scene.stock, placement, corner)
     points = trail_points(scene.recording, scene.notes)
-    seen = points.position if cutter is None else cutter.map.corners
-    add_part_cameras(spec, placement, *framed(seen))
+    seen = framed(points.position if cutter is None else cutter.map.corners)
+    add_part_cameras(spec, placement, *seen)
     way = Trail(
         points if trail else points[_NO_POINTS], _trail_radius(points.position), scene.error_scale
     )
@@ -231,7 +251,7 @@ def stage(
     way.bind(model, placement)
     tools.bind(model)
     with canvas(model, size, quality) as drawing:
-        yield Stage(scene, model, placement, drawing, size, surface, cutter, way, tools)
+        yield Stage(scene, model, placement, drawing, size, surface, cutter, way, tools, seen)
 
 
 def _trail_radius(points: FloatArray) -> float:

@@ -67,17 +67,16 @@ class StockSurface:
     before every picture.
     """
 
-    def __init__(self, height_map: HeightMap, skin: Skin, drawn_cells: int) -> None:
-        """Choose the drawn net.
+    def __init__(self, height_map: HeightMap, skin: Skin, step: int) -> None:
+        """Lay the drawn net.
 
         Args:
             height_map: The stock before it is cut.
             skin: What paints it.
-            drawn_cells: Most vertices along the longer side.
+            step: Cells from one vertex to the next.
         """
         self._map = height_map
         self._skin = skin
-        step = max(1, -(-max(height_map.heights.shape) // drawn_cells))
         self._step = step
         self._net = net(height_map, step)
         self._z = self._net.heights(height_map)

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from twin.cutting.outline import BoolArray
-from twin.cutting.sweep_kernels import thin
+from twin.cutting.thin_kernels import thin
 from twin.nc.canonical import FloatArray, IntArray
 from twin.program_notes import ProgramNotes
 from twin.recording import Recording

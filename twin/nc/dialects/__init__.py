@@ -35,7 +35,7 @@ def recognise(source: Source) -> Dialect:
     Raises:
         UsageError: No dialect's own words stand in it, or those of several.
     """
-    found = {dialect.name: _marks_in(source, dialect) for dialect in DIALECTS.values()}
+    found = _marks_found(source)
     fitting = [name for name, marks in found.items() if marks]
     if len(fitting) == 1:
         return DIALECTS[fitting[0]]
@@ -55,21 +55,32 @@ def recognise(source: Source) -> Dialect:
     )
 
 
-def _marks_in(source: Source, dialect: Dialect) -> list[str]:
-    lines = [_BRACKETS.sub(" ", line) for line in source.lines]
-    return [
-        mark.shown
+def _marks_found(source: Source) -> dict[str, list[str]]:
+    """The marks of each dialect that stand in a program."""
+    patterns = {
+        (dialect.name, mark.shown): re.compile(mark.pattern, re.IGNORECASE)
+        for dialect in DIALECTS.values()
         for mark in dialect.marks
-        if any(_mark(mark.pattern).search(line) for line in lines)
-    ]
+    }
+    found: set[tuple[str, str]] = set()
+    seen: set[str] = set()
+    for line in source.lines:
+        shape = _VALUES.sub("0", _BRACKETS.sub(" ", line))
+        if shape not in seen:
+            found |= {mark for mark, pattern in patterns.items() if pattern.search(shape)}
+            if len(seen) < _MOST_SHAPES:
+                seen.add(shape)
+    return {
+        dialect.name: [mark.shown for mark in dialect.marks if (dialect.name, mark.shown) in found]
+        for dialect in DIALECTS.values()
+    }
 
 
 _BRACKETS = re.compile(r"\([^()]*\)")
 """A comment in every dialect: what it says decides nothing."""
-
-
-def _mark(pattern: str) -> re.Pattern[str]:
-    return re.compile(pattern, re.IGNORECASE)
+_VALUES = re.compile(r"(?<=[XYZABCIJKRUVWN])[-+]?[0-9.]+(?![0-9.]|[ \t]*=)", re.IGNORECASE)
+"""Values of words that no mark looks at: without them most lines of long programs are the same."""
+_MOST_SHAPES = 10_000
 
 
 __all__ = ["DIALECTS", "dialect_named", "recognise"]

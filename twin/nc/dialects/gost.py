@@ -102,37 +102,44 @@ DECISIONS = (
         "Does the recalculation touch G0?",
         "No: interpolated blocks (G1, G2, G3) only; the machine's recalculate_on_rapid turns it on.",
         "The page says 'in the mode of interpolation'.",
+        example="rapid_is_not_recalculated",
     ),
     Decision(
         "When does a start point count as a whole turn?",
         "It is rounded to 1e-9 degree before the remainder is taken.",
         "Three incremental moves of 120 degrees must count as 360.",
+        example="three_thirds_are_a_turn",
     ),
     Decision(
         "What if G102 names an axis that is not periodic?",
         "A program error that names the axis and the machine's periodic axes.",
         "The page reserves G102 for axes that are configured as periodic.",
+        example="axis_not_periodic",
     ),
     Decision(
         "What does the coordinate become after G102 C0?",
         "The relabelled coordinate stays.",
         "Switching off ends the recalculation; it does not undo it.",
+        example="label_stays",
     ),
     Decision(
         "How does a path pass its corners?",
         "Exactly; G9 and G61 stop, G64 returns to the exact path.",
         "Nothing in the page allows the tool to leave the programmed path.",
+        example="exact_path",
     ),
     Decision(
         "What is a line of prose behind a line with a comment?",
         "The comment's tail, left out with a warning, unless it begins with a readable word; a line "
         "of dots is left out with a warning too.",
         "The control's document breaks long comments and shows omitted blocks by dots.",
+        example="comment_tail",
     ),
     Decision(
         "What does F count?",
         "mm/min along the path of X, Y, Z; deg/min where only rotary axes move.",
         "1200 degrees per minute is the only sensible reading of the page's G1 C359.999 F1200.",
+        example="feed_of_rotary_axes",
     ),
     *iso_decisions.DECISIONS,
 )
@@ -171,4 +178,5 @@ GOST = Dialect(
     ),
     memory=Periods,
     before_motion=recalculate_start,
+    disturbed=lambda control: bool(_periods(control).by_axis),
 )

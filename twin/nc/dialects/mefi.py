@@ -7,7 +7,7 @@ import dataclasses
 
 from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
-from twin.nc.circular import iso_arc_center, start_and_end
+from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
 from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Interpolation, Mark, Syntax
 
@@ -126,51 +126,59 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-CLOCKWISE = Interpolation(clockwise_arc)
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=plain_arc(clockwise=False))
 
 DECISIONS = (
     Decision(
         "What are I, J, K relative to?",
         "To the start of the arc; a missing one is 0.",
         "In the page's example relative and absolute centres coincide; ISO 6983-1 is relative.",
+        example="centre_from_the_start",
     ),
     Decision(
         "Which way does a lead drag?",
         "A positive lead moves the dragged axis in + for G02 and G03 alike, by "
         "lead · |sweep| / 360.",
         "The page calls it the distance per full circle and ties no sign to the sense.",
+        example="lead_drags_up",
     ),
     Decision(
         "What if a G09 arc block also programs the dragged axis?",
         "A program error.",
         "Two commands for one axis contradict each other.",
+        example="dragged_axis_programmed",
     ),
     Decision(
         "What if G09 comes without a lead?",
         "A program error.",
         "A flat circle is not what a helix code asks for.",
+        example="no_lead",
     ),
     Decision(
         "In which order do motion and jump of a G73 block happen, and how often?",
         "The block's own motion first, then the jump, Q times; the counter belongs to the block "
         "and starts anew when the loop is entered again; a missing Q is 1.",
         "The page's Q20 gives 21 circles.",
+        example="counter_starts_anew",
     ),
     Decision(
         "What about G codes that the page does not name?",
         "Those of ISO 6983-1 have their meaning there; any other is a program error.",
         "Ignoring a code is a guess.",
+        example="unknown_code",
     ),
     Decision(
         "What does F count?",
         "mm/min along the path of X, Y, Z; deg/min where only rotary axes move.",
         "ISO practice; the page shows no feed.",
+        example="feed_of_rotary_axes",
     ),
     Decision(
         "How does a path pass its corners?",
         "Exactly: the speed falls as far as the corner demands, and no more.",
         "Nothing in the page allows the tool to leave the programmed path.",
+        example="exact_path",
     ),
     *iso_decisions.DECISIONS,
 )
@@ -215,4 +223,5 @@ MEFI = Dialect(
         Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
     ),
     memory=Dragging,
+    disturbed=lambda control: _dragging(control).on,
 )

@@ -24,6 +24,7 @@ from twin.nc.dialects.codesys.curves import (
     SPATIAL_SPLINE,
 )
 from twin.nc.dialects.codesys.decisions import DECISIONS
+from twin.nc.linear import rapid_line
 from twin.nc.planes import XY, YZ, ZX, Plane
 
 ADDITIONAL = "ABCPQUVW"
@@ -48,6 +49,9 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         ground="manual",
     )
 
+
+RAPID = Interpolation(rapid_line, rapid=True)
+"""Its pace may follow F (``codes.before_motion``): no plain block."""
 
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
@@ -76,7 +80,7 @@ CODESYS = Dialect(
         "motion",
     ),
     g={
-        0: _motion("positioning in a straight line; FF is its feed", iso.RAPID),
+        0: _motion("positioning in a straight line; FF is its feed", RAPID),
         1: _motion("straight line", iso.FEED, seed=True),
         2: _motion("arc clockwise", CLOCKWISE, seed=True),
         3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
@@ -294,4 +298,5 @@ CODESYS = Dialect(
     before_motion=codes.before_motion,
     read_variable=program.read_variable,
     place_switches=codes.place_switches,
+    disturbed=lambda control: bool(program.variables(control).periods),
 )

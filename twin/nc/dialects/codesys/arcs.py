@@ -11,7 +11,7 @@ from twin.nc.arcs import (
 from twin.nc.blocks import Word
 from twin.nc.circular import start_and_end, sweep_arc, take_center
 from twin.nc.control import Control
-from twin.nc.dialect import Interpolation
+from twin.nc.dialect import Interpolation, PlainArc
 
 CENTER_SHARE = 0.1
 """Share by which start and end radius may differ before the arc becomes a line.
@@ -149,5 +149,14 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-CLOCKWISE = Interpolation(clockwise_arc)
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+def _plain(*, clockwise: bool) -> PlainArc:
+    return PlainArc(
+        clockwise=clockwise,
+        mismatch_share=CENTER_SHARE,
+        shift=SHIFT_WARNING,
+        signed_radius=False,
+    )
+
+
+CLOCKWISE = Interpolation(clockwise_arc, plain=_plain(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=_plain(clockwise=False))

@@ -6,7 +6,7 @@ from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, statements, subroutines, variables
 from twin.nc.dialects.fagor8070.codes import CODES, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
-from twin.nc.dialects.fagor8070.memory import FagorMemory
+from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 
 
 def _prepare(control: Control) -> None:
@@ -100,7 +100,9 @@ FAGOR8070 = Dialect(
         "F": "feed",
         "S": "spindle speed; scale of G72",
         "T": "tool",
-        "D": "tool offset: 1, or 0 for none",
+        "D": "tool offset: 1, or 0 for none; way to the surface of a cycle",
+        "B": "B axis; depth of a pass or of the first peck of a cycle",
+        "L": "subroutine; finishing stock of a cycle",
         "H": "auxiliary function",
         "M": "machine function",
         "NR": "how often the block runs",
@@ -127,4 +129,5 @@ FAGOR8070 = Dialect(
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,
+    disturbed=acts_on_plain_blocks,
 )

@@ -21,13 +21,14 @@ from twin.nc.blocks import Word
 from twin.nc.circular import (
     center_of_radius,
     fitted_center,
+    plain_arc,
     radius_center,
     start_and_end,
     sweep_arc,
     take_center,
 )
 from twin.nc.control import Control
-from twin.nc.dialect import Interpolation
+from twin.nc.dialect import Interpolation, PlainLine
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 
@@ -253,9 +254,11 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-RAPID = Interpolation(rapid_line, rapid=True)
-FEED = Interpolation(feed_line)
-CLOCKWISE = Interpolation(clockwise_arc)
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc)
+RAPID = Interpolation(rapid_line, rapid=True, plain=PlainLine())
+FEED = Interpolation(feed_line, plain=PlainLine())
+CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True, fits_radius=True))
+COUNTER_CLOCKWISE = Interpolation(
+    counter_clockwise_arc, plain=plain_arc(clockwise=False, fits_radius=True)
+)
 TANGENT = Interpolation(tangent_arc)
 THREE_POINTS = Interpolation(three_point_arc)

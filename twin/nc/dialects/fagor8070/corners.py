@@ -6,12 +6,12 @@ from twin.nc.blends import Blend, BlendKind
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 
-_CODES = re.compile(r"G[ \t]*0*3[69](?![0-9])", re.IGNORECASE)
+_CODES = re.compile(rb"G[ \t]*0*3[69](?![0-9])", re.IGNORECASE)
 
 
 def prepare(control: Control) -> None:
     """Hold moves until their successor is known, where the program blends corners at all."""
-    if any(_CODES.search(line) for line in control.flow.lines):
+    if control.flow.lines.any_holds(_CODES):
         control.path.hold_for_blends()
 
 

@@ -1,36 +1,73 @@
-"""Drilling cycles of the Fagor CNC 8070.
+"""Canned cycles of the Fagor CNC 8070.
 
-Z names the reference plane, I the depth: absolute with G90, from the reference plane with G91. K is
-a dwell at the bottom [s]. In G83, I is the depth of one peck and J their number. Every block that
-names a point of the plane drills there, until G80 or another motion code; with G98 the tool goes
-back to the height at which the cycle was called, with G99 to the reference plane.
+Z names the reference plane, I the depth: absolute with G90, from the reference plane with G91; D is
+the distance from the reference plane to the surface of the part. Every block that names a point of
+the plane runs the cycle there, until G80 or another motion code; with G98 the tool goes back to the
+height at which the cycle was called, with G99 to the reference plane.
+
+Decisions, since the manuals are only partly known: K is a dwell at the bottom [s]. In G83, I is the
+depth of one peck and J their number. In G82, B is the first peck, R the factor of each next one, L
+the least; after each the tool lifts by H, after every J of them (or where H is missing) to the
+reference plane, and returns with rapid to C, 1 mm, above where it was.
 """
 
+from collections.abc import Callable
+
 from twin.nc.control import Control
-from twin.nc.dialect import GCode, Interpolation
+from twin.nc.dialect import GCode, Ground, Interpolation
+from twin.nc.dialects.fagor8070.pockets import mill_pocket
 from twin.nc.dialects.fagor8070.polar import take_goal
-from twin.nc.drilling import Drilling, Retract, drill
+from twin.nc.drilling import CHIP_CLEARANCE, Drilling, Retract, drill, pecks
+
+_CLEARANCE = 1.0
+"""G82: C where it is missing [mm]."""
 
 
-def _cycle(number: int, meaning: str, retract: Retract, *, peck: bool = False) -> GCode:
+def _cycle(
+    number: int,
+    meaning: str,
+    words: str,
+    perform: Callable[[Control, str], None],
+    *,
+    lengths: str = "",
+    ground: Ground = "decision",
+) -> GCode:
+    """A cycle by its words besides Z and I; ``lengths`` are those of them that count lengths."""
+
     def start(control: Control) -> None:
         height = control.programmed[control.modal.plane.axes[2]]
-        control.cycle_values.setdefault("start", height)
-        _read_words(control)
+        control.cycle_values = {"start": height}
+        _refuse_corner_type(control, words)
+        for address in words:
+            if (word := control.take(address)) is not None:
+                in_mm = address in lengths
+                value = control.length(word) if in_mm else control.number(word)
+                control.cycle_values[address] = value
+        _read_height(control)
 
-    def perform(control: Control) -> None:
-        _perform(control, f"G{number}", retract, peck=peck)
+    def run(control: Control) -> None:
+        perform(control, f"G{number}")
 
     return GCode(
-        meaning=f"{meaning}: Z I" + (" J" if peck else "") + " K",
+        meaning=f"{meaning}: Z I {' '.join(words)}".rstrip(),
         group="cycle",
-        sets={"cycle": Interpolation(perform)},
+        sets={"cycle": Interpolation(run)},
         action=start,
-        ground="manual",
+        ground=ground,
     )
 
 
-def _read_words(control: Control) -> None:
+def _refuse_corner_type(control: Control, words: str) -> None:
+    """M and Q in a block of G87: rounded and chamfered corners."""
+    if "A" not in words:
+        return
+    for word in control.block.words:
+        if word.address == "Q" or (word.address == "M" and word.value in (0.0, 1.0, 2.0)):
+            message = "corners of a pocket are as round as the tool; M and Q are not followed"
+            control.fail("unsupported-word", message, word, "leave it out of the cycle's block")
+
+
+def _read_height(control: Control) -> None:
     values, axis = control.cycle_values, control.modal.plane.axes[2]
     incremental = control.modal.incremental
     reference = control.take(control.settings.axes.names[axis])
@@ -43,20 +80,68 @@ def _read_words(control: Control) -> None:
         relative = incremental or depth.incremental
         values["I"] = control.length(depth)
         values["bottom"] = control.length(depth) + (values["Z"] if relative else 0.0)
-    for address in "JK":
-        if (word := control.take(address)) is not None:
-            values[address] = control.number(word)
 
 
-def _perform(control: Control, name: str, retract: Retract, *, peck: bool) -> None:
+def _drilling(retract: Retract) -> Callable[[Control, str], None]:
+    def perform(control: Control, name: str) -> None:
+        values = _needed(control, name, "I")
+        _drill(control, name, values["bottom"], retract=retract)
+
+    return perform
+
+
+def _equal_pecks(control: Control, name: str) -> None:
+    values = _needed(control, name, "IJ")
+    depth, surface = abs(values["I"]), values["Z"] - values.get("D", 0.0)
+    bottom = surface - depth * values["J"]
+    if depth <= 0.0:
+        control.fail("cycle-depth", f"{name} needs pecks above 0")
+    _drill(control, name, bottom, stops=pecks(control, surface, bottom, depth))
+
+
+def _variable_pecks(control: Control, name: str) -> None:
+    values = _needed(control, name, "IB")
+    surface, factor = values["Z"] - values.get("D", 0.0), values.get("R", 1.0)
+    every, lift = values.get("J", 0.0), values.get("H", 0.0)
+    if values["B"] <= 0.0 or factor <= 0.0 or lift < 0.0 or every != int(every) or every < 0.0:
+        message = f"{name} needs B and R above 0, H not below 0, and J a count"
+        control.fail("cycle-depth", message)
+    stops = pecks(control, surface, values["bottom"], values["B"], factor, values.get("L", 0.0))
+    full_every = 1 if lift == 0.0 else int(every) or len(stops) + 1
+    clearance = values.get("C", _CLEARANCE)
+    _drill(
+        control,
+        name,
+        values["bottom"],
+        stops=stops,
+        full_every=full_every,
+        lift=lift,
+        clearance=clearance,
+    )
+
+
+def _needed(control: Control, name: str, addresses: str) -> dict[str, float]:
     values = control.cycle_values
-    needed = ["I", "J"] if peck else ["I"]
-    missing = [address for address in needed if address not in values]
+    missing = [address for address in addresses if address not in values]
     if missing:
         control.fail("cycle-word", f"{name} needs {' and '.join(missing)}")
-    depth, reference = values["I"], values["Z"]
-    bottom = reference - abs(depth) * values["J"] if peck else values["bottom"]
-    if bottom >= reference or values.get("K", 0.0) < 0.0:
+    return values
+
+
+def _drill(
+    control: Control,
+    name: str,
+    bottom: float,
+    *,
+    retract: Retract = Retract.RAPID,
+    stops: tuple[float, ...] = (),
+    full_every: int = 1,
+    lift: float = 0.0,
+    clearance: float = CHIP_CLEARANCE,
+) -> None:
+    values = control.cycle_values
+    reference = values["Z"]
+    if bottom >= reference or values.get("K", 0.0) < 0.0 or clearance < 0.0:
         message = f"{name} must drill downwards, from Z{reference:g} to {bottom:g}"
         control.fail("cycle-depth", message)
     back = reference if control.modal.return_to_reference else max(values["start"], reference)
@@ -65,27 +150,33 @@ def _perform(control: Control, name: str, retract: Retract, *, peck: bool) -> No
         bottom=bottom,
         back=back,
         dwell=values.get("K", 0.0),
-        peck=abs(depth) if peck else 0.0,
+        stops=stops,
+        clearance=clearance,
+        full_every=full_every,
+        lift=lift,
         retract=retract,
     )
     drill(control, cycle, take_goal(control, arc=False).target)
 
 
-_POCKET = "pockets are not milled by the twin as cycles; write their path"
+def _rectangle(control: Control, name: str) -> None:
+    mill_pocket(control, name, circular=False)
+
+
+def _circle(control: Control, name: str) -> None:
+    mill_pocket(control, name, circular=True)
+
 
 CYCLES = {
     80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, ground="manual"),
-    81: _cycle(81, "drilling", Retract.RAPID),
-    82: GCode(
-        meaning="drilling with variable peck",
-        group="cycle",
-        refused="its words are not documented well enough to be followed; write G83",
-        ground="manual",
+    81: _cycle(81, "drilling", "K", _drilling(Retract.RAPID), ground="manual"),
+    82: _cycle(82, "drilling in variable pecks", "BDRLHJCK", _variable_pecks, lengths="BDLHC"),
+    83: _cycle(83, "deep drilling in equal pecks", "JDK", _equal_pecks, lengths="D"),
+    84: _cycle(84, "tapping", "K", _drilling(Retract.REVERSED)),
+    85: _cycle(85, "reaming, back with the feed", "K", _drilling(Retract.FEED)),
+    86: _cycle(86, "boring, back with the spindle stopped", "K", _drilling(Retract.STOPPED)),
+    87: _cycle(
+        87, "rectangular pocket", "DAJKBCLHV", _rectangle, lengths="DJKBCLHV", ground="manual"
     ),
-    83: _cycle(83, "deep drilling in equal pecks", Retract.RAPID, peck=True),
-    84: _cycle(84, "tapping", Retract.REVERSED),
-    85: _cycle(85, "reaming, back with the feed", Retract.FEED),
-    86: _cycle(86, "boring, back with the spindle stopped", Retract.STOPPED),
-    87: GCode(meaning="rectangular pocket", group="cycle", refused=_POCKET, ground="manual"),
-    88: GCode(meaning="circular pocket", group="cycle", refused=_POCKET, ground="manual"),
+    88: _cycle(88, "circular pocket", "DJBCLHV", _circle, lengths="DJBCLHV", ground="manual"),
 }

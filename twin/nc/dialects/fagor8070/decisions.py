@@ -7,59 +7,70 @@ DECISIONS = (
         "What do an omitted R or Q keep after a Cartesian move or a new G30?",
         "The current point's polar value about the current origin.",
         "It is identical where the last move was polar and the origin is unchanged.",
+        example="omitted_after_cartesian",
     ),
     Decision(
         "Is R0 allowed?",
         "For G00 and G01; for arcs it is a program error.",
         "The manual's own example ends with R0 Q90; an arc of radius 0 is none.",
+        example="radius_zero",
     ),
     Decision(
         "What if a helix's end point and pitch disagree?",
         "The end point and the height win, whole turns = nearest fit, with a warning.",
         "The end point is what the next block relies on.",
+        example="helix_disagrees",
     ),
     Decision(
         "How does the rotary axis C read G90 targets?",
         "As commanded (linear-like); the machine option module_rotary makes the sign the "
         "direction, by less than one turn.",
         "The axis type is a machine parameter.",
+        example="rotary_as_commanded",
     ),
     Decision(
         "What is R in an arc block?",
         "Beside a coordinate of the plane the circle's radius, without one the polar radius.",
         "The forms of the manual differ in nothing else.",
+        example="radius_of_arc_or_pole",
     ),
     Decision(
         "When does G30 in a motion block take effect?",
         "Before the motion.",
         "It says where the block's R and Q are measured from.",
+        example="pole_in_a_motion_block",
     ),
     Decision(
         "Which sign has a helix's pitch?",
         "None: the height gives the direction.",
         "The manual's height -90 with K17 is legal.",
+        example="pitch_without_sign",
     ),
     Decision(
         "What does G53 do?",
         "Coordinates count from machine zero until the next work offset.",
         "The quick reference calls it the cancelling of offsets.",
+        example="offsets_cancelled",
     ),
     Decision(
         "How does G50 pass corners?",
         "On the exact path; G05 may round them by the machine's tolerance, G07 stops.",
         "G50 goes on when the theoretical move has ended, without waiting for the position.",
+        example="corners",
     ),
     Decision(
         "How does compensation (G137) pass outside corners?",
         "Between lines that turn by 90 degrees or less the parallels are extended until they meet; "
         "other corners are rolled around, and with G136 all of them.",
         "A longer extension leaves the contour without need.",
+        example="square_corners",
     ),
     Decision(
         "How do the leads of compensation go (G138, G139)?",
         "G138 straight to the point beside the contour's first; G139 the same, but around the "
         "contour's first and last point where the straight way would cut them off.",
         "The manual calls the one direct and the other indirect.",
+        example="leads",
     ),
     Decision(
         "What do G36 and G39 do?",
@@ -67,40 +78,64 @@ DECISIONS = (
         "I, G39 cuts both moves at the distance I; I stays for the next of them; compensation acts "
         "on the blended contour.",
         "The quick reference names the codes alone.",
+        example="blends",
     ),
     Decision(
         "Where does an arc end with G264?",
         "Where the direction of the programmed end meets the circle through the start.",
         "The centre is not corrected, and the radius is the start's.",
+        example="centre_not_corrected",
+    ),
+    Decision(
+        "How do G82 and G83 drill?",
+        "G83: J pecks of I each. G82: B is the first peck, R the factor of each next one, L the "
+        "least; after each the tool lifts by H, after every J of them, or where H is missing, to the "
+        "reference plane, and returns with rapid to C (1 mm) above where it was.",
+        "The manuals at hand name the words; these meanings are those of the family.",
+        example="pecks",
+    ),
+    Decision(
+        "Which path mills a pocket (G87, G88)?",
+        "Each depth plunges at the centre and clears outwards along parallels of the wall, C apart "
+        "at most; the finishing pass runs once along the wall at the full depth; corners are as "
+        "round as the tool, and M and Q, which ask for others, are refused.",
+        "The manual gives the pocket and its words, not the path.",
+        example="pockets",
     ),
     Decision(
         "How often does NR run a block?",
         "As often as it says, the block's own run included.",
         "A number of repetitions of 1 is a block that runs.",
+        example="repeated_block",
     ),
     Decision(
         "What if a $CASE runs into the next?",
         "A program error that asks for $BREAK.",
         "The manual's examples all end with $BREAK.",
+        example="case_without_break",
     ),
     Decision(
         "What if a rotation (G73) begins while another is in force?",
         "A program error.",
         "Adding and replacing are both known among controls.",
+        example="rotation_in_rotation",
     ),
     Decision(
         "Which way do arcs turn in G20?",
         "G03 turns from the abscissa towards the ordinate.",
         "It is so in G17, G18 and G19.",
+        example="arcs_in_g20",
     ),
     Decision(
         "What if the program ends without M30?",
         "Its last line ends it, with a warning.",
         "Nothing else can follow.",
+        example="missing_end",
     ),
     Decision(
         "What does D name?",
         "D1 is the tool's own length and radius, D0 none; M06 brings D1.",
         "The job's tools have one offset each.",
+        example="tool_offset",
     ),
 )

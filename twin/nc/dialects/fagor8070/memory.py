@@ -59,3 +59,14 @@ def memory_of(control: Control) -> FagorMemory:
     """The dialect's memory."""
     assert isinstance(control.memory, FagorMemory)
     return control.memory
+
+
+def acts_on_plain_blocks(control: Control) -> bool:
+    """Polar values, a radius in force, a modal call or module axes: plain blocks heed them."""
+    memory = memory_of(control)
+    return (
+        memory.temporary
+        or memory.modal_call is not None
+        or not (memory.radius is memory.angle is memory.circle_radius is None)
+        or control.settings.module_rotary
+    )

@@ -62,7 +62,7 @@ def begin(control: Control) -> None:
     """The main program is the first heading that is no local subroutine's."""
     memory = memory_of(control)
     main = None
-    for line, text in enumerate(control.flow.lines):
+    for line, text in control.flow.lines.holding("%"):
         if not text.lstrip().startswith("%"):
             continue
         match = _SUBROUTINE.match(text)

@@ -1,0 +1,123 @@
+"""Cutting and filming: moves cut per second, frames drawn per second, and what is not drawing."""
+
+import dataclasses
+import statistics
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import numpy as np
+from benches.row import REPEATS, Row, median_seconds
+
+from twin.chain import Run
+from twin.cutting.height_map import blank
+from twin.cutting.sweep_kernels import sweep
+from twin.cutting.tools import profile
+from twin.job import StockTable, ToolTable, VideoTable
+from twin.nc.canonical import FloatArray
+from twin.preparation import prepare
+from twin.progress import no_progress
+from twin.recording import open_recording
+from twin.render.canvas import Canvas, Pixels
+from twin.render.film import film
+from twin.render.stage import Scene
+from twin.replay import scene_of
+from twin.resources import resource_root
+
+FREECAD = "FreeCAD height map, published"
+PUBLISHED = {0.1: 44e3, 0.2: 146e3}
+"""Moves cut per second by FreeCAD's simulator by cell [mm], as published: moves of 0.1 mm, a tool
+of 6 mm. It was not run here: PyPI has no FreeCAD."""
+
+MOVE_MM = 0.1
+PLATE = StockTable(shape="box", size=(60.0, 60.0, 10.0))
+TOOL = ToolTable(number=1, diameter=6.0)
+FRAMES = 50
+
+
+def rows() -> Iterator[Row]:
+    """Cutting at two cells, then a film of the demo's scene."""
+    for cell, published in PUBLISHED.items():
+        yield Row(
+            room="picture",
+            task=f"cut moves of {MOVE_MM} mm, 6 mm tool, cell {cell} mm",
+            figure=moves_per_second(cell),
+            unit="moves/s",
+            peer=FREECAD,
+            peer_figure=published,
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        run = Run(prepare(resource_root("programs") / "mefi" / "helix.toml"))
+        survey = run.survey()
+        run.execute(survey, Path(folder), no_progress)
+        with open_recording(Path(folder) / "recording.h5") as recording:
+            scene = scene_of(recording, run.preparation, survey.notes)
+            yield from _film(scene, run.preparation.job.file.video, Path(folder) / "film.mp4")
+
+
+def _spiral() -> FloatArray:
+    """An Archimedean spiral in steps of ``MOVE_MM``, a third of the tool apart, shape (n, 3) [mm]."""
+    pitch = TOOL.diameter / 3
+    turns = 12.0
+    length = np.pi * turns**2 * pitch
+    share = np.sqrt(np.linspace(0.0, 1.0, round(length / MOVE_MM)))
+    angle, radius = 2 * np.pi * turns * share, turns * pitch * share
+    return np.stack(
+        [radius * np.cos(angle), radius * np.sin(angle), np.full_like(angle, -2.0)], axis=1
+    )
+
+
+def moves_per_second(cell: float) -> float:
+    """Moves of a spiral pocket that are cut per second."""
+    points = _spiral()
+    edge = dataclasses.astuple(profile(TOOL))
+    removed, depth, nothing = np.zeros(len(points)), np.zeros(len(points)), np.zeros((0, 0))
+    part = blank(PLATE, np.zeros(3), cell)
+
+    def cut() -> None:
+        part.heights[:] = part.top
+        sweep(
+            part.heights, part.origin, cell, part.bottom, points, edge,
+            removed[1:], depth[1:], nothing, removed[1:],
+        )  # fmt: skip
+
+    return (len(points) - 1) / median_seconds(cut)
+
+
+def _film(scene: Scene, video: VideoTable, out: Path) -> Iterator[Row]:
+    """Frames per second at 720p, and what a frame costs beside drawing it."""
+    video = video.model_copy(
+        update={"size": (1280, 720), "seconds": FRAMES / video.fps, "quality": "draft"}
+    )
+    drawing = 0.0
+    draw = Canvas.draw
+
+    def timed(self: Canvas, *arguments: Any) -> Pixels:
+        nonlocal drawing
+        begin = time.perf_counter()
+        try:
+            return draw(self, *arguments)
+        finally:
+            drawing += time.perf_counter() - begin
+
+    with mock.patch.object(Canvas, "draw", timed):
+        marks: list[float] = []
+        rates: list[float] = []
+        shares: list[float] = []
+        for _ in range(REPEATS):
+            drawing = 0.0
+            marks.clear()
+            film(scene, video=video, out=out, progress=lambda *_: marks.append(time.perf_counter()))
+            first, last = marks[0], time.perf_counter()
+            rates.append((FRAMES - 1) / (last - first))
+            shares.append((last - first) / (drawing * (FRAMES - 1) / FRAMES) - 1.0)
+    yield Row("picture", "film the helix, 1280 x 720, draft", statistics.median(rates), "frames/s")
+    yield Row(
+        "picture",
+        "cutting, upload, display, encoding beside drawing",
+        100.0 * statistics.median(shares),
+        "%",
+    )

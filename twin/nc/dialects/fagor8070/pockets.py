@@ -1,0 +1,203 @@
+"""Pocket cycles of the Fagor CNC 8070: G87 rectangular, G88 circular.
+
+The words are the manual's: Z reference plane, I depth, D from the reference plane to the surface, J
+half length or radius (its sign is the direction: + clockwise), K half width, A angle of the pocket,
+B depth of a pass, C width of a pass, L finishing stock, H feed of the finishing pass, V feed of
+plunging. Decision, since the manual does not give the path: each pass plunges at the centre and
+clears outwards along parallels of the wall, C apart at most; the finishing pass runs once along the
+wall at the full depth; corners are as round as the tool.
+"""
+
+import dataclasses
+import math
+
+from twin.nc.arcs import Point, turned
+from twin.nc.control import Control
+from twin.nc.dialects.fagor8070.polar import take_goal
+
+_DEFAULT_WIDTH = 0.75
+"""Width of a pass where C is missing, of the tool's diameter (manual)."""
+
+_DEFAULT_PLUNGE = 0.5
+"""Feed of plunging where V is missing, of the feed (manual)."""
+
+_DIAGONAL = 1.7
+"""Rings lie at most this many radii apart, so that nothing stays between their corners.
+
+Two corners of rings s apart are s times the root of 2 apart; the tool in the inner one reaches what
+the outer ring leaves up to s = r (1 + 1 / root of 2).
+"""
+
+_MOST_PASSES = 10_000
+"""Rings and depths of one pocket, so that a slip of the pen does not run for hours."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Pocket:
+    """A pocket in the working plane.
+
+    Attributes:
+        center: In the plane, programmed coordinates [mm].
+        length: Half its length less the tool's radius, or the radius of the tool's widest circle [mm].
+        width: Half its width less the tool's radius; None for a circular pocket [mm].
+        angle: Of its length against the abscissa [deg].
+        clockwise: Direction of machining.
+    """
+
+    center: Point
+    length: float
+    width: float | None
+    angle: float
+    clockwise: bool
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Passes:
+    """How it is cleared.
+
+    Attributes:
+        reference: Height of the reference plane [mm].
+        surface: Height of the part's surface [mm].
+        bottom: Height of the pocket's bottom [mm].
+        depth: Of one pass at most [mm].
+        step: Width of one pass at most [mm].
+        stock: Left for the finishing pass [mm].
+        finish: Feed of the finishing pass, or None for the feed.
+        plunge: Feed of plunging, or None for its default.
+    """
+
+    reference: float
+    surface: float
+    bottom: float
+    depth: float
+    step: float
+    stock: float
+    finish: float | None
+    plunge: float | None
+
+
+def mill_pocket(control: Control, name: str, *, circular: bool) -> None:
+    """Mill a pocket about the point that the block names."""
+    values = control.cycle_values
+    needed = ["I", "J", "B", *([] if circular else ["K"])]
+    missing = [address for address in needed if address not in values]
+    if missing:
+        control.fail("cycle-word", f"{name} needs {' and '.join(missing)}")
+    tool = control.tools.data(control.tools.spindle)
+    if tool is None:
+        control.fail("no-such-tool", f"{name} needs a tool, and the job has none")
+    goal = take_goal(control, arc=False).target
+    passes = _passes(control, name, tool.radius)
+    plane = control.modal.plane
+    pocket = Pocket(
+        plane.local(goal)[:2],
+        abs(values["J"]) - tool.radius,
+        None if circular else values["K"] - tool.radius,
+        values.get("A", 0.0),
+        values["J"] > 0.0,
+    )
+    least = min(pocket.length, math.inf if pocket.width is None else pocket.width)
+    if least - passes.stock < 0.0:
+        message = f"the tool's radius {tool.radius:g} and the stock leave no room in the pocket"
+        control.fail("cycle-size", f"{name}: {message}")
+    rings = math.ceil(least / passes.step) + 1
+    if rings * (passes.surface - passes.bottom) / passes.depth > _MOST_PASSES:
+        control.fail("cycle-size", f"{name} would need more than {_MOST_PASSES} passes")
+    _mill(control, pocket, passes)
+
+
+def _passes(control: Control, name: str, radius: float) -> Passes:
+    values = control.cycle_values
+    reference, surface = values["Z"], values["Z"] - values.get("D", 0.0)
+    width = values.get("C", 0.0) or _DEFAULT_WIDTH * 2.0 * radius
+    passes = Passes(
+        reference,
+        surface,
+        values["bottom"],
+        abs(values["B"]),
+        min(width, _DIAGONAL * radius),
+        abs(values.get("L", 0.0)),
+        values.get("H") or None,
+        values.get("V") or None,
+    )
+    if not passes.bottom < surface <= reference or passes.depth == 0.0:
+        message = f"from the surface {surface:g} to {passes.bottom:g} in passes above 0"
+        control.fail("cycle-depth", f"{name} must mill downwards, {message}")
+    if not 0.0 < width <= 2.0 * radius:
+        message = f"{name}: a pass of {width:g} is wider than the tool, {2.0 * radius:g}"
+        control.fail("cycle-size", message)
+    return passes
+
+
+def _mill(control: Control, pocket: Pocket, passes: Passes) -> None:
+    axis = control.modal.plane.axes[2]
+    start_height = max(control.programmed[axis], passes.reference)
+    feed = control.feed
+    _rise(control, start_height)
+    _go(control, pocket.center, rapid=True)
+    _rise(control, passes.reference)
+    height = passes.surface
+    while height > passes.bottom:
+        height = max(height - passes.depth, passes.bottom)
+        if passes.bottom < height < passes.bottom + 1e-6:
+            height = passes.bottom
+        if feed is not None or passes.plunge is not None:
+            control.feed = passes.plunge or (feed or 0.0) * _DEFAULT_PLUNGE
+        _rise(control, height, rapid=False)
+        control.feed = feed
+        for inset in _insets(pocket, passes.step, passes.stock):
+            _ring(control, pocket, inset)
+        if height > passes.bottom:
+            _go(control, pocket.center, rapid=False)
+    if passes.stock > 0.0:
+        control.feed = passes.finish or feed
+        _ring(control, pocket, 0.0)
+        control.feed = feed
+    back = control.cycle_values["start"]
+    reference_only = control.modal.return_to_reference
+    _rise(control, passes.reference if reference_only else max(back, passes.reference))
+    _go(control, pocket.center, rapid=True)
+
+
+def _insets(pocket: Pocket, step: float, stock: float) -> list[float]:
+    """How far the rings lie from the tool's path along the wall, from inside to outside [mm].
+
+    The innermost ring of a rectangle is the line along its middle; a circle begins with the plunge.
+    """
+    inner = pocket.length if pocket.width is None else min(pocket.length, pocket.width)
+    room = inner - stock
+    count = math.ceil(room / step - 1e-9)
+    if count == 0:
+        return [stock]
+    first = 1 if pocket.width is None else 0
+    return [stock + room * (1.0 - number / count) for number in range(first, count + 1)]
+
+
+def _ring(control: Control, pocket: Pocket, inset: float) -> None:
+    plane, sign = control.modal.plane, -1.0 if pocket.clockwise else 1.0
+    length = pocket.length - inset
+    if pocket.width is None:
+        begin = turned((pocket.center[0] + length, pocket.center[1]), pocket.center, pocket.angle)
+        _go(control, begin, rapid=False)
+        if length > 0.0:
+            height = plane.local(control.programmed).height
+            center = plane.world(*pocket.center, height)
+            control.arc_to(list(control.programmed), center, sign * 360.0)
+        return
+    width = sign * (pocket.width - inset)
+    path = [(length, 0.0), (length, width), (-length, width), (-length, -width), (length, -width)]
+    for along, across in [*path, path[0]]:
+        point = (pocket.center[0] + along, pocket.center[1] + across)
+        _go(control, turned(point, pocket.center, pocket.angle), rapid=False)
+
+
+def _go(control: Control, point: Point, *, rapid: bool) -> None:
+    plane, target = control.modal.plane, list(control.programmed)
+    target[:3] = plane.world(*point, plane.local(target).height)
+    control.line_to(target, rapid=rapid)
+
+
+def _rise(control: Control, height: float, *, rapid: bool = True) -> None:
+    target = list(control.programmed)
+    target[control.modal.plane.axes[2]] = height
+    control.line_to(target, rapid=rapid)

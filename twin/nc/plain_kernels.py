@@ -1,0 +1,241 @@
+"""Runs of plain blocks: words, modal codes, lines and rows of moves in one compiled loop.
+
+Each step is the control's own (``control``, ``control_motion``) for a block in which nothing is
+doubtful, and computes the same bits. The first block in which something is, be it wrong or only
+rare, ends the run untouched; the control runs it and makes its diagnostics.
+"""
+
+import numba
+import numpy as np
+
+from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
+from twin.nc.control_motion import LARGEST_COORDINATE
+from twin.nc.lexer import LONGEST_LINE
+from twin.nc.line_reader import LARGEST_LABEL
+from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
+from twin.nc.plain_state import (
+    ARC,
+    CODES,
+    CORNER,
+    FEED_FACTOR,
+    INCREMENTAL,
+    INTERPOLATION,
+    NO_MOTION,
+    RAPID_LINE,
+    UNIT,
+    BlockTables,
+    Constants,
+    Rows,
+    State,
+)
+from twin.nc.plain_words_kernels import (
+    AXIS,
+    CODE,
+    FEED,
+    MOST_WORDS,
+    NOT_PLAIN,
+    NUMBER,
+    RADIUS,
+    ByteArray,
+    LineTables,
+    line_end,
+    read_words,
+    skip_blanks,
+)
+
+_RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
+_LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
+_STOP = int(Corner.EXACT_STOP)
+
+
+@numba.njit(cache=True)
+def run_blocks(
+    data: ByteArray,
+    starts: IntArray,
+    first: int,
+    last: int,
+    line_tables: LineTables,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    rows: Rows,
+) -> tuple[int, int, int, int]:
+    """Run plain blocks until one is not plain, a line is reached, or the rows are full.
+
+    Args:
+        data: The program as UTF-8.
+        starts: Where each line begins, and where the last one ends, shape (lines + 1,).
+        first: Line to begin with, from 0.
+        last: Line to end before.
+        line_tables: How lines are read.
+        tables: What blocks mean.
+        constants: What stays.
+        state: What changes.
+        rows: Room for the moves.
+
+    Returns:
+        The line reached, moves made, blocks run, and the last line that was not blank or
+        ``NOT_PLAIN``.
+    """
+    roles = np.zeros(MOST_WORDS, np.int64)
+    values = np.zeros(MOST_WORDS)
+    modal = state.modal.copy()
+    line, blocks, inked = first, 0, NOT_PLAIN
+    made = int(np.int64(0))  # a literal would have every function below compiled twice
+    while line < last and made < len(rows.codes):
+        begin = starts[line]
+        end = line_end(data, begin, starts[line + 1])
+        if end - begin > LONGEST_LINE:
+            break
+        count = read_words(data, begin, end, line_tables, roles, values)
+        if count == NOT_PLAIN:
+            break
+        if count > 0:
+            row = _run_block(
+                line + 1, roles[:count], values[:count], tables, constants, state, modal, rows, made
+            )
+            if row == NOT_PLAIN:
+                break
+            made = row
+            blocks += 1
+        if skip_blanks(data, begin, end) < end:
+            inked = line
+        line += 1
+    return line, made, blocks, inked
+
+
+@numba.njit(cache=True)
+def _run_block(
+    line: int,
+    roles: IntArray,
+    values: FloatArray,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    modal: FloatArray,
+    rows: Rows,
+    row: int,
+) -> int:
+    """Run one block; the number of rows after it, or ``NOT_PLAIN`` with the state untouched."""
+    _copy(state.modal, modal)
+    number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
+    feed = state.feed[0]
+    for word in range(len(roles)):
+        role, value = roles[word], values[word]
+        if role == NUMBER:
+            if word > 0 or not 0.0 <= value <= LARGEST_LABEL or value != np.floor(value):
+                return NOT_PLAIN
+            number = int(value)
+        elif role == CODE:
+            if not 0.0 <= value < CODES or value != np.floor(value):
+                return NOT_PLAIN
+            code = int(value)
+            group = 1 << tables.group[code]
+            if tables.field[code] == NOT_PLAIN or groups & group:
+                return NOT_PLAIN
+            groups |= group
+            modal[tables.field[code]] = tables.value[code]
+        else:
+            if seen & (1 << role) or not abs(value) <= LARGEST_COORDINATE:
+                return NOT_PLAIN
+            seen |= 1 << role
+            if role == FEED:
+                if not value > 0.0:
+                    return NOT_PLAIN
+                feed = value
+    after = row
+    if seen >> RADIUS:
+        after = _move(
+            line, number, roles, values, seen, tables, constants, state, modal, feed, rows, row
+        )
+        if after == NOT_PLAIN:
+            return NOT_PLAIN
+    for word in range(len(roles)):
+        if roles[word] == CODE:
+            code = int(values[word])
+            state.in_force[tables.group[code]] = code
+    _copy(modal, state.modal)
+    state.feed[0] = feed
+    if seen >> RADIUS:
+        _copy(rows.positions[row, 1], state.part)
+        _copy(rows.positions[row, 2], state.programmed)
+    return after
+
+
+@numba.njit(cache=True)
+def _copy(source: FloatArray, target: FloatArray) -> None:
+    for index in range(len(target)):
+        target[index] = source[index]
+
+
+@numba.njit(cache=True)
+def _move(
+    line: int,
+    number: int,
+    roles: IntArray,
+    values: FloatArray,
+    seen: int,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    modal: FloatArray,
+    feed: float,
+    rows: Rows,
+    row: int,
+) -> int:
+    """Write the block's move; the number of rows after it, or ``NOT_PLAIN``."""
+    kind = tables.kind[int(modal[INTERPOLATION])]
+    if kind == NO_MOTION:
+        return NOT_PLAIN
+    is_arc = kind == ARC
+    if not is_arc and (seen >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1):
+        return NOT_PLAIN
+    axes = len(state.part)
+    position = rows.positions[row]
+    turning, spatial, other = not is_arc, 0.0, 0.0
+    for axis in range(axes):
+        target = state.programmed[axis]
+        if seen & (1 << (AXIS + axis)):
+            value = value_of(AXIS + axis, roles, values)
+            value *= modal[UNIT] if tables.linear[axis] else 1.0
+            target = value + target if modal[INCREMENTAL] != 0.0 else value
+            if not abs(target) <= LARGEST_COORDINATE:
+                return NOT_PLAIN
+        end = target + constants.total[axis]
+        position[0, axis] = state.part[axis]
+        position[1, axis] = end
+        position[2, axis] = target
+        if end != state.part[axis]:
+            turning = turning and not tables.linear[axis]
+            way = abs(end - state.part[axis])
+            if axis < 3:
+                spatial = max(spatial, way)
+            else:
+                other = max(other, way)
+    if is_arc:
+        if not write_arc(roles, values, seen, tables, constants, state, modal, rows, row):
+            return NOT_PLAIN
+    else:
+        way = spatial if spatial > 0.0 else other
+        if way == 0.0:
+            return row
+        if way < SHORTEST:
+            return NOT_PLAIN
+        rows.values[row, :6] = np.nan
+        rows.values[row, 6] = 0.0
+    pace = constants.rapid_feed
+    if kind != RAPID_LINE:
+        if np.isnan(feed):
+            if not constants.feed_may_lack:
+                return NOT_PLAIN
+            pace = constants.default_rotary_feed if turning else constants.default_feed
+        else:
+            pace = (feed if turning else feed * modal[UNIT]) * modal[FEED_FACTOR]
+    rows.values[row, 7] = pace
+    _copy(constants.last_values, rows.values[row, 8:])
+    rows.codes[row, 0] = _RAPID if kind == RAPID_LINE else _FEED
+    rows.codes[row, 1] = _ARC if is_arc else _LINE
+    rows.codes[row, 2] = line
+    rows.codes[row, 3] = number
+    rows.codes[row, 4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
+    return row + 1

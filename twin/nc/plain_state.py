@@ -1,0 +1,106 @@
+"""What the compiled loop over plain blocks is given, changes and fills, as tuples of columns."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.nc.canonical import FloatArray, IntArray
+
+INTERPOLATION, INCREMENTAL, CENTER_ABSOLUTE, UNIT, CORNER, FEED_FACTOR, NOTHING = range(7)
+"""Places in the modal state; ``NOTHING`` takes what codes without effect set."""
+
+NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
+"""Kinds of interpolation."""
+
+CODES = 1000
+"""G codes are below this number."""
+
+
+class BlockTables(NamedTuple):
+    """What plain blocks mean in a dialect, on a machine.
+
+    Attributes:
+        field: Which place of the modal state each G code sets, shape (``CODES``,); ``NOT_PLAIN``
+            for codes that do more.
+        value: To what it sets it, shape (``CODES``,).
+        group: Its modal group, shape (``CODES``,).
+        kind: Kind of each interpolation, shape (i,).
+        clockwise: Of arcs, shape (i,).
+        mismatch: How far start and end radius of an arc may differ, shape (i,) [mm].
+        mismatch_share: The same as a share of the larger one, shape (i,).
+        shift: How far its centre may be moved to fit, shape (i,) [mm].
+        signed_radius: A negative radius asks for the larger arc, shape (i,).
+        fits_radius: A centre found by its radius is fitted like a given one, shape (i,).
+        linear: Which axes are linear, shape (k,).
+    """
+
+    field: IntArray
+    value: FloatArray
+    group: IntArray
+    kind: IntArray
+    clockwise: npt.NDArray[np.bool_]
+    mismatch: FloatArray
+    mismatch_share: FloatArray
+    shift: FloatArray
+    signed_radius: npt.NDArray[np.bool_]
+    fits_radius: npt.NDArray[np.bool_]
+    linear: npt.NDArray[np.bool_]
+
+
+class Constants(NamedTuple):
+    """What stays as it is during a run.
+
+    Attributes:
+        total: From programmed to part coordinates, shape (k,) [mm or deg].
+        plane: Columns of abscissa, ordinate and normal, shape (3,).
+        default_feed: Where none is programmed [mm/min].
+        default_rotary_feed: The same for rotary axes alone [deg/min].
+        feed_may_lack: A feed move without a programmed feed was warned of already.
+        rapid_feed: [mm/min]; NaN: the machine's.
+        last_values: Corner tolerance, acceleration and deceleration of every move, shape (3,).
+    """
+
+    total: FloatArray
+    plane: IntArray
+    default_feed: float
+    default_rotary_feed: float
+    feed_may_lack: bool
+    rapid_feed: float
+    last_values: FloatArray
+
+
+class State(NamedTuple):
+    """What changes during a run; the arrays are written to.
+
+    Attributes:
+        modal: The modal state, shape (7,).
+        in_force: G code set in each group during the run, ``NOT_PLAIN`` for none, shape (g,).
+        feed: F as programmed, NaN for none, shape (1,).
+        programmed: Programmed position, shape (k,) [mm or deg].
+        part: Part position, shape (k,) [mm or deg].
+    """
+
+    modal: FloatArray
+    in_force: IntArray
+    feed: FloatArray
+    programmed: FloatArray
+    part: FloatArray
+
+
+class Rows(NamedTuple):
+    """Room for the moves of a run, as ``MoveColumns`` keeps them.
+
+    Attributes:
+        codes: Shape (n, 5).
+        values: Shape (n, 11).
+        positions: Start, end and display, shape (n, 3, k).
+    """
+
+    codes: IntArray
+    values: FloatArray
+    positions: FloatArray
+
+    def first(self, count: int) -> "Rows":
+        """The first rows, as columns again."""
+        return Rows(self.codes[:count], self.values[:count], self.positions[:count])

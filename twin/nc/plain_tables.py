@@ -1,0 +1,181 @@
+"""What the fast way through plain blocks knows: tables made of a dialect's declaration.
+
+Nothing is said here of any dialect: a code, a letter or an interpolation that the declaration does
+not describe completely is not plain.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from twin.nc import iso
+from twin.nc.canonical import FloatArray
+from twin.nc.dialect import Comment, Dialect, FeedMode, GCode, Interpolation, Modal, PlainArc
+from twin.nc.plain_state import (
+    ARC,
+    CENTER_ABSOLUTE,
+    CODES,
+    CORNER,
+    FEED_FACTOR,
+    FEED_LINE,
+    INCREMENTAL,
+    INTERPOLATION,
+    NO_MOTION,
+    NOTHING,
+    RAPID_LINE,
+    UNIT,
+    BlockTables,
+)
+from twin.nc.plain_words_kernels import (
+    AXIS,
+    CENTER,
+    CODE,
+    FEED,
+    NOT_PLAIN,
+    NUMBER,
+    OTHER,
+    RADIUS,
+    LineTables,
+)
+from twin.nc.settings import ControlSettings
+
+FEED_FACTORS = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
+"""By what F is multiplied to count per minute; other modes need more than F."""
+
+_FIELDS: Mapping[str, int] = {
+    "interpolation": INTERPOLATION,
+    "incremental": INCREMENTAL,
+    "center_absolute": CENTER_ABSOLUTE,
+    "unit": UNIT,
+    "corner": CORNER,
+    "feed_mode": FEED_FACTOR,
+}
+"""The fields of ``Modal`` that plain codes may set, and their places."""
+
+
+class PlainTables:
+    """The tables of one dialect on one machine.
+
+    Attributes:
+        lines: How lines are read.
+        blocks: What blocks mean.
+        groups: The modal groups in the order of their numbers in ``blocks``.
+    """
+
+    def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
+        self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
+        self._interpolations = _interpolations(dialect)
+        self.lines = _line_tables(dialect, settings)
+        self.blocks = self._block_tables(dialect, settings)
+
+    def modal(self, modal: Modal) -> FloatArray:
+        """The modal state as the kernel keeps it, shape (7,)."""
+        state = np.zeros(len(_FIELDS) + 1)
+        for name, place in _FIELDS.items():
+            value = self._number(name, getattr(modal, name))
+            state[place] = 0.0 if value is None else value
+        return state
+
+    def _number(self, name: str, value: object) -> float | None:
+        """A value of the modal state as a number; None where the kernel has none for it."""
+        if isinstance(value, FeedMode):
+            return FEED_FACTORS.get(value)
+        if name == "interpolation":
+            places = (i for i, each in enumerate(self._interpolations) if each == value)
+            return next(map(float, places), None)
+        assert isinstance(value, (bool, int, float))
+        return float(value)
+
+    def _block_tables(self, dialect: Dialect, settings: ControlSettings) -> BlockTables:
+        field = np.full(CODES, NOT_PLAIN, np.int64)
+        value = np.zeros(CODES)
+        group = np.zeros(CODES, np.int64)
+        for number, code in dialect.g.items():
+            meant = self._meaning(code)
+            if meant is not None:
+                field[number], value[number] = meant
+                group[number] = self.groups.index(code.group)
+        plain = [each.plain if each else None for each in self._interpolations]
+        arcs = [each if isinstance(each, PlainArc) else PlainArc(clockwise=False) for each in plain]
+        return BlockTables(
+            field=field,
+            value=value,
+            group=group,
+            kind=np.array([_kind(each) for each in self._interpolations]),
+            clockwise=np.array([arc.clockwise for arc in arcs]),
+            mismatch=np.array([arc.mismatch for arc in arcs]),
+            mismatch_share=np.array([arc.mismatch_share for arc in arcs]),
+            shift=np.array([arc.shift for arc in arcs]),
+            fits_radius=np.array([arc.fits_radius for arc in arcs]),
+            signed_radius=np.array([arc.signed_radius for arc in arcs]),
+            linear=np.array([kind == "linear" for kind in settings.axes.kinds]),
+        )
+
+    def _meaning(self, code: GCode) -> tuple[int, float] | None:
+        """Which place a code sets, and to what; None for a code that does more than that."""
+        does = (code.action, code.perform, code.after)
+        if any(does) or code.once or code.alone or code.refused or not code.group:
+            return None
+        sets = {name: value for name, value in code.sets.items() if name != "cycle"}
+        if len(sets) > 1 or code.sets.get("cycle") is not None:
+            return None
+        for name, value in sets.items():
+            number = self._number(name, value) if name in _FIELDS else None
+            return None if number is None else (_FIELDS[name], number)
+        return NOTHING, 0.0
+
+
+def _interpolations(dialect: Dialect) -> list[Interpolation | None]:
+    """None, which stands for any that is not plain, then the plain ones of the dialect."""
+    found: list[Interpolation | None] = [None]
+    for code in dialect.g.values():
+        value = code.sets.get("interpolation")
+        if isinstance(value, Interpolation) and value.plain is not None and value not in found:
+            found.append(value)
+    return found
+
+
+def _kind(interpolation: Interpolation | None) -> int:
+    if interpolation is None:
+        return NO_MOTION
+    if isinstance(interpolation.plain, PlainArc):
+        return ARC
+    return RAPID_LINE if interpolation.rapid else FEED_LINE
+
+
+def _line_tables(dialect: Dialect, settings: ControlSettings) -> LineTables:
+    roles = np.full(26, OTHER, np.int64)
+    for letter, role in _roles(dialect, settings).items():
+        roles[ord(letter) - ord("A")] = role
+    comments = dialect.syntax.comments
+    return LineTables(
+        roles,
+        _marks([comment.opening for comment in comments]),
+        _marks([comment.closing for comment in comments]),
+        _whole_line(comments),
+    )
+
+
+def _roles(dialect: Dialect, settings: ControlSettings) -> dict[str, int]:
+    """Letters with a plain meaning; those that a dialect uses otherwise as well have none."""
+    center = {letter: CENTER + index for index, letter in enumerate("IJK")}
+    axes = {name: AXIS + index for index, name in enumerate(settings.axes.names)}
+    roles = {
+        letter: role
+        for letter, role in {"R": RADIUS, **center, **axes}.items()
+        if letter in dialect.motion_words and (role < AXIS or letter in dialect.axis_letters)
+    }
+    taken = {*dialect.words, *dialect.references, *dialect.signed, *dialect.series}
+    roles = {letter: role for letter, role in roles.items() if letter not in taken}
+    if dialect.words.get("F") is iso.set_feed:
+        roles["F"] = FEED
+    return {**roles, "N": NUMBER, "G": CODE}
+
+
+def _marks(texts: list[str]) -> np.ndarray[tuple[int, int], np.dtype[np.uint8]]:
+    """Texts of one or two ASCII characters, shape (n, 2); 0 where there is none."""
+    return np.array([[*text.encode("ascii"), 0, 0][:2] for text in texts], np.uint8).reshape(-1, 2)
+
+
+def _whole_line(comments: tuple[Comment, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    return np.array([comment.whole_line for comment in comments], np.bool_)
