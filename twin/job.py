@@ -218,6 +218,8 @@ class JobFile(Table):
     """The first is in the spindle at the start."""
     fixtures: tuple[FixtureTable, ...] = ()
     """What holds the part, beside what the machine file puts on its table."""
+    cutting_load: bool = False
+    """The cutting force pushes the axes; the stock's material and a spindle speed must be known."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
     variables: dict[str, float] = Field(default_factory=dict)
