@@ -193,6 +193,9 @@ def check(
     update_baseline: Annotated[
         bool, typer.Option("--update-baseline", help="Store baselines instead.")
     ] = False,
+    reports: Annotated[
+        Path | None, typer.Option("--reports", help="Write a report on every program there.")
+    ] = None,
     jobs: Annotated[
         int | None, typer.Option("--jobs", min=1, help="How many at a time; default: all cores.")
     ] = None,
@@ -206,7 +209,7 @@ def check(
 
     settings = CheckSettings(
         dialect=dialect, machine=machine, strict=strict, baseline=baseline,
-        update_baseline=update_baseline,
+        update_baseline=update_baseline, reports=reports,
     )  # fmt: skip
     code = check_and_print(paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs)
     raise typer.Exit(code)
