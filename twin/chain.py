@@ -12,9 +12,11 @@ from twin import __version__
 from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
 from twin.compare.verdict import judge
+from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.part import write_stl
 from twin.cutting.spindle import Spindle, speaks_of_spindle
+from twin.errors import ConfigError
 from twin.machine.alarms import Alarm
 from twin.machine.config import Machine
 from twin.machine.model import build_spec, spindle_over_table_mm
@@ -181,6 +183,14 @@ class Run:
         end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
         return samples[:end], alarm
 
+    def _load(self, notes: ProgramNotes) -> AxisLoad | None:
+        job = self.preparation.job.file
+        if not job.cutting_load:
+            return None
+        if job.stock is None:
+            raise ConfigError("cutting_load needs a [stock] to cut")
+        return AxisLoad(job.stock, notes, self.part_frame, self.part_zero)
+
     def _simulation(self, comparison: Comparison, notes: ProgramNotes) -> Simulation:
         machine = self.preparation.machine
         period = machine.file.servo_period_s
@@ -192,7 +202,8 @@ class Run:
             start=self.preparation.start + self.part_zero,
         )
         settled = self.clock.watch("plan", settle(self._planned(setpoints), period))
-        return simulate(machine, self.spec, settled, notes.tools)
+        load = self._load(notes)
+        return simulate(machine, self.spec, settled, notes.tools, load)
 
     def _planned(self, setpoints: Iterator[Setpoints]) -> Iterator[Setpoints]:
         for chunk in setpoints:

@@ -187,6 +187,7 @@ def check(
     jobs: Annotated[
         int | None, typer.Option("--jobs", min=1, help="How many at a time; default: all cores.")
     ] = None,
+    dialect: DialectOption = None,
     machine: MachineOption = None,
     strict: StrictOption = False,
 ) -> None:
@@ -195,8 +196,9 @@ def check(
     from twin.commands.check import check_and_print
 
     settings = CheckSettings(
-        machine=machine, strict=strict, baseline=baseline, update_baseline=update_baseline
-    )
+        dialect=dialect, machine=machine, strict=strict, baseline=baseline,
+        update_baseline=update_baseline,
+    )  # fmt: skip
     code = check_and_print(paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs)
     raise typer.Exit(code)
 

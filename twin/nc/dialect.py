@@ -47,7 +47,7 @@ class PlainArc:
         mismatch: How far the distances of start and end from the centre may differ [mm].
         mismatch_share: The same as a share of the larger one.
         shift: How far the centre may be moved to fit [mm].
-        signed_radius: A negative radius asks for the larger arc.
+        signed_radius: A negative radius asks for the larger arc; else it is not plain.
         fits_radius: A centre found by its radius is fitted to both points like a given one.
     """
 
@@ -180,6 +180,7 @@ class Syntax:
         comments: Kinds of comments.
         expressions: How values are computed; None where only numbers are written.
         statement: Regular expression of what begins a statement; its group 1 is the keyword.
+        trailing_prose: Words of prose behind a block's words are left out with a warning.
         several_blocks: A further N begins a further block on the same line.
         named_labels: ``[NAME]`` at its begin names a block.
         incremental_suffix: ``X20I`` makes one word incremental.
@@ -192,6 +193,7 @@ class Syntax:
     comments: tuple[Comment, ...]
     expressions: ExpressionSyntax | None = None
     statement: str | None = None
+    trailing_prose: bool = False
     several_blocks: bool = False
     named_labels: bool = False
     incremental_suffix: bool = False
@@ -242,6 +244,7 @@ class Dialect:
         g: G codes by number.
         start: G codes in force when a program starts.
         m: M codes by number.
+        instead: What to write in place of G codes that other controls have, by number.
         any_m: M codes outside the table are functions too.
         axis_letters: Addresses that name axes.
         motion_words: Addresses that make a block move, the axes among them.
@@ -277,6 +280,7 @@ class Dialect:
     g: Mapping[int, GCode]
     start: tuple[int, ...]
     m: Mapping[int, MCode]
+    instead: Mapping[int, str] = dataclasses.field(default_factory=dict)
     any_m: bool = False
     axis_letters: frozenset[str] = frozenset("XYZABCUVW")
     motion_words: frozenset[str] = frozenset("XYZABCUVWIJKR")

@@ -4,7 +4,7 @@ from twin.nc import iso
 from twin.nc.control import Control
 from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, statements, subroutines, variables
-from twin.nc.dialects.fagor8070.codes import CODES, auxiliary, plain_dwell
+from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 
@@ -49,6 +49,7 @@ FAGOR8070 = Dialect(
         "cycle",
     ),
     g=CODES,
+    instead=INSTEAD,
     start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
     m={
         **iso.M_CODES,

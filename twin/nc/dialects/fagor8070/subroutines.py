@@ -16,6 +16,7 @@ DEEPEST_CALL = 20
 
 
 _NAME = re.compile(r"[ \t]*([A-Z_]\w*)[ \t]*", re.IGNORECASE)
+_TITLE = re.compile(r"[ \t]*[^,;(]*(?:\([^)]*\)[ \t]*)?")
 _RANGE = re.compile(
     r"[ \t]*\[[ \t]*(N?[A-Z_0-9]+)[ \t]*,[ \t]*(N?[A-Z_0-9]+)[ \t]*(?:,(.*))?\][ \t]*",
     re.IGNORECASE,
@@ -33,6 +34,10 @@ def repeat_range(control: Control, statement: Statement) -> None:
         control.flow.find_label(_range_label(match[group]), _span(statement), "#RPT")
         for group in (1, 2)
     )
+    blocks = control.flow.lexer.blocks(control.flow.lines[last.line], last.line + 1)
+    if len(blocks) != 1 or blocks[0].words or blocks[0].statement is not None:
+        message = "the last label must stand alone in its block"
+        refuse(control, statement, "repeat-range", message, "give it a block of its own behind")
     column = statement.text_column
     count = (
         1.0
@@ -80,6 +85,10 @@ def heading(control: Control, statement: Statement) -> None:
     if control.block.line - 1 != memory_of(control).main:
         message = "a heading can stand only before the program or a local subroutine"
         refuse(control, statement, "heading", message, hint="end a subroutine by M17")
+    if _TITLE.fullmatch(statement.text) is None:
+        message = "nothing but a comment may follow the program's name"
+        hint = "the 8070's heading is %NAME; what follows a comma is the CNC 8055's"
+        refuse(control, statement, "heading", message, hint)
 
 
 def call_local(control: Control, statement: Statement) -> None:
