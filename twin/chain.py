@@ -113,7 +113,7 @@ class Run:
         alarm, near_miss = survey.alarm, None
         if alarm is None:
             with record(out / "recording.h5", self.header()) as writer:
-                simulation = self._simulation(comparison, self._load(survey.notes))
+                simulation = self._simulation(comparison, survey.notes)
                 for simulated in self.clock.watch("simulate", simulation):
                     with self.clock.stage("cut"):
                         clear, touched = _keep_clear(guard, simulated)
@@ -194,7 +194,7 @@ class Run:
             raise ConfigError("cutting_load needs a [stock] to cut")
         return AxisLoad(job.stock, notes, self.part_frame, self.part_zero)
 
-    def _simulation(self, comparison: Comparison, load: AxisLoad | None) -> Simulation:
+    def _simulation(self, comparison: Comparison, notes: ProgramNotes) -> Simulation:
         machine = self.preparation.machine
         period = machine.file.servo_period_s
         setpoints = plan(
@@ -205,7 +205,8 @@ class Run:
             start=self.preparation.start + self.part_zero,
         )
         settled = self.clock.watch("plan", settle(self._planned(setpoints), period))
-        return simulate(machine, self.spec, settled, load)
+        load = self._load(notes)
+        return simulate(machine, self.spec, settled, notes.tools, load)
 
     def _planned(self, setpoints: Iterator[Setpoints]) -> Iterator[Setpoints]:
         for chunk in setpoints:

@@ -167,6 +167,8 @@ class BaselineTable(Table):
 
     path_um: Positive = 1.0
     """Start, end or centre of a block [µm or mdeg]."""
+    feed_percent: Annotated[float, Field(ge=0)] = 0.1
+    """Commanded feed of a block, either way."""
     cycle_time_percent: Annotated[float, Field(ge=0)] = 1.0
     """Change of the cycle time, either way."""
     contour_um: Annotated[float, Field(ge=0)] = 1.0
@@ -246,9 +248,10 @@ class Job:
         folder: What relative paths in it are relative to.
         file: Its checked content; the file of an STL stock is a whole path.
         program: The NC program.
+        path: The job file; None where a program has none.
     """
 
-    def __init__(self, folder: Path, file: JobFile) -> None:
+    def __init__(self, folder: Path, file: JobFile, path: Path | None = None) -> None:
         if file.stock is not None and file.stock.file is not None:
             whole = str((folder / file.stock.file).absolute())
             stock = file.stock.model_copy(update={"file": whole})
@@ -256,6 +259,11 @@ class Job:
         self.folder = folder
         self.file = file
         self.program = folder / file.program
+        self.path = path
+
+
+def _runs(job: Job, program: Path) -> bool:
+    return job.program.resolve() == program.resolve()
 
 
 def read_job(path: Path) -> Job:
@@ -271,8 +279,10 @@ def read_job(path: Path) -> Job:
     """
     beside = path.with_suffix(".toml")
     if path.suffix == ".toml":
-        job = Job(path.parent, read_toml(path, JobFile))
-    elif beside.is_file() and (job := Job(path.parent, read_toml(beside, JobFile))).program == path:
+        job = Job(path.parent, read_toml(path, JobFile), path)
+    elif beside.is_file() and _runs(
+        job := Job(path.parent, read_toml(beside, JobFile), beside), path
+    ):
         pass
     else:
         job = Job(path.parent, JobFile(program=path.name))

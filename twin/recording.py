@@ -2,7 +2,8 @@
 
 Sample i of ``joint`` and of ``setpoint`` belong to the same instant ``time[i]``. The file is
 written under a temporary name and renamed when the run has ended, so that a file under its own
-name is whole.
+name is whole. Until then it can be read under its temporary name, ``.recording.*.part.h5`` in the
+same folder, for HDF5 writes it so that others may read it (single writer, multiple readers).
 """
 
 import contextlib
@@ -85,6 +86,8 @@ _JOINT_COLUMNS: Mapping[str, tuple[str, str]] = {
 CONTOUR = "contour"
 """Dataset of the contour error, shape (n,) [µm]; missing where nobody compared."""
 _ROWS_PER_CHUNK = 4096
+_FORMAT = ("v110", "v110")
+"""The oldest format of HDF5 that can be read while it is written."""
 
 
 class RecordingWriter:
@@ -128,6 +131,7 @@ class RecordingWriter:
         for path, (name, _) in _JOINT_COLUMNS.items():
             self._put(path, getattr(samples, name), end)
         self._count = end
+        self._file.flush()
 
     def _put(self, path: str, values: np.ndarray[Any, Any], end: int) -> None:
         dataset = self._file[path]
@@ -173,13 +177,17 @@ def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
         path: The file to be.
         header: What the recording says about itself.
     """
-    with complete_or_absent(path) as temporary, h5py.File(temporary, "w") as file:
-        yield RecordingWriter(file, header)
-        file.attrs["complete"] = True
+    with complete_or_absent(path) as temporary:
+        with h5py.File(temporary, "w", libver=_FORMAT) as file:
+            writer = RecordingWriter(file, header)
+            file.swmr_mode = True
+            yield writer
+        with h5py.File(temporary, "r+", libver=_FORMAT) as file:
+            file.attrs["complete"] = True
 
 
 class Recording:
-    """A complete recording, open for reading in chunks.
+    """A recording, open for reading in chunks.
 
     Attributes:
         path: The file.
@@ -190,9 +198,19 @@ class Recording:
         self.path = path
         self._file = file
         self.header = _read_header(file)
+        self._length = len(self._dataset("time"))
 
     def __len__(self) -> int:
-        return len(self._dataset("time"))
+        return self._length
+
+    def refresh(self) -> int:
+        """See what has been appended since; how many samples there are now."""
+        datasets = [self._dataset(name) for name in (*_COLUMNS, *_JOINT_COLUMNS)]
+        for dataset in datasets:
+            dataset.refresh()
+        # The columns grow one after the other: only what all of them have is whole.
+        self._length = min(len(dataset) for dataset in datasets)
+        return self._length
 
     def _dataset(self, name: str) -> h5py.Dataset:
         dataset = self._file[name]
@@ -202,7 +220,7 @@ class Recording:
 
     def column(self, name: str) -> np.ndarray[Any, Any]:
         """One whole dataset, such as ``joint/position``."""
-        return self._dataset(name)[:]
+        return self._dataset(name)[: len(self)]
 
     @property
     def alarms(self) -> tuple[tuple[float, str], ...]:
@@ -217,7 +235,7 @@ class Recording:
     def chunks(self, rows: int = 65536) -> Iterator[Samples]:
         """Samples in order, at most ``rows`` at a time."""
         for first in range(0, len(self), rows):
-            here = slice(first, first + rows)
+            here = slice(first, min(first + rows, len(self)))
             setpoint = Setpoints(
                 **{name: self._dataset(path)[here] for path, (name, _) in _COLUMNS.items()}
             )
@@ -252,15 +270,44 @@ def open_recording(path: Path) -> Iterator[Recording]:
     Raises:
         RecordingError: The file is missing, torn, incomplete or not a recording.
     """
+    with _opened(path) as file:
+        if not file.attrs.get("complete", False):
+            raise RecordingError(f"{path}: the recording is not complete")
+        yield _recording(path, file)
+
+
+@contextlib.contextmanager
+def open_growing(path: Path) -> Iterator[Recording]:
+    """Open a recording that a run is writing; ``Recording.refresh`` sees what has been appended.
+
+    Args:
+        path: The name that it will have. When it is there already, it is opened as it is.
+
+    Raises:
+        RecordingError: No run is writing it, or it has only begun.
+    """
+    parts = sorted(
+        path.parent.glob(f".{path.stem}.*.part{path.suffix}"), key=lambda part: part.stat().st_mtime
+    )
+    found = path if path.is_file() or not parts else parts[-1]
+    with _opened(found, swmr=True) as file:
+        recording = _recording(found, file)
+        recording.refresh()
+        yield recording
+
+
+@contextlib.contextmanager
+def _opened(path: Path, *, swmr: bool = False) -> Iterator[h5py.File]:
     try:
-        file = h5py.File(path, "r")
+        file = h5py.File(path, "r", swmr=swmr)
     except OSError as error:
         raise RecordingError(f"{path}: is not a readable recording: {error}") from error
     with file:
-        if not file.attrs.get("complete", False):
-            raise RecordingError(f"{path}: the recording is not complete")
-        try:
-            recording = Recording(path, file)
-        except (KeyError, ValueError, IndexError) as error:
-            raise RecordingError(f"{path}: is not a recording of this twin: {error}") from error
-        yield recording
+        yield file
+
+
+def _recording(path: Path, file: h5py.File) -> Recording:
+    try:
+        return Recording(path, file)
+    except (KeyError, ValueError, IndexError) as error:
+        raise RecordingError(f"{path}: is not a recording of this twin: {error}") from error

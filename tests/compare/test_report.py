@@ -52,7 +52,10 @@ def report_of(
         cut={"removed_mm3": 12.5, "gouges": []}, commanded={}, simulated={},
     )  # fmt: skip
     content = result(summary, figures, table, verdict)
-    return Report(header=header, figures=figures, verdict=verdict, trace=trace, result=content)
+    return Report(
+        header=header, figures=figures, verdict=verdict, tolerance=table, trace=trace,
+        result=content,
+    )  # fmt: skip
 
 
 class Page(html.parser.HTMLParser):

@@ -30,7 +30,7 @@ def loops() -> tuple[Drive, ...]:
 def run(chunks: list[Setpoints], load: Load | None = constant, **changes: float) -> list[Samples]:
     machine = shipped_machine(**changes)
     model = physics_model(machine, build_spec(machine))
-    return list(simulate(machine, model, chunks, load))
+    return list(simulate(machine, model, chunks, load=load))
 
 
 def test_a_constant_load_bends_the_position_loop_by_force_over_gain() -> None:

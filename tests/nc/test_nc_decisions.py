@@ -559,7 +559,7 @@ def test_fagor_subroutines_have_their_own_parameters() -> None:
 
 
 def test_fagor_repeats() -> None:
-    text = "G91 G00\nN10 X1\nN20 Y1\n#RPT[N10,N20,3]\nZ1 NR4"
+    text = "G91 G00\nN10 X1\nN15 Y1\nN20\n#RPT[N10,N20,3]\nZ1 NR4"
     assert fagor(text).position == pytest.approx({"X": 4.0, "Y": 4.0, "Z": 4.0, "C": 0.0})
 
 

@@ -88,10 +88,12 @@ def _print(outcomes: Sequence[CheckOutcome]) -> None:
 
 def _tell_server(outcomes: Sequence[CheckOutcome], environment: Mapping[str, str]) -> None:
     if environment.get("GITHUB_ACTIONS") == "true":
-        for command in forms.github_annotations(outcomes):
+        root = Path(environment.get("GITHUB_WORKSPACE") or ".")
+        for command in forms.github_annotations(outcomes, root):
             typer.echo(command)
         if summary := environment.get("GITHUB_STEP_SUMMARY"):
             with Path(summary).open("a", encoding="utf-8") as file:
                 file.write(forms.markdown_summary(outcomes))
     if environment.get("GITLAB_CI") == "true":
-        write_text(Path(CODE_QUALITY_FILE), forms.gitlab_code_quality(outcomes))
+        root = Path(environment.get("CI_PROJECT_DIR") or ".")
+        write_text(Path(CODE_QUALITY_FILE), forms.gitlab_code_quality(outcomes, root))

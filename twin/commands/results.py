@@ -13,8 +13,6 @@ from twin.outcome import Outcome
 def write_results(run: Run, outcome: Outcome, folder: Path) -> None:
     """Write the verdict and every figure behind it, for programs and for people.
 
-    A run that never moved has a result and no report.
-
     Args:
         run: The run.
         outcome: What it came to.
@@ -25,17 +23,17 @@ def write_results(run: Run, outcome: Outcome, folder: Path) -> None:
     content = result(
         _summary(run, outcome), outcome.figures, tolerance, outcome.verdict, outcome.alarms
     )
-    if outcome.samples:
-        still = folder / STILL_NAME
-        page = Report(
-            header=run.header(),
-            figures=outcome.figures,
-            verdict=outcome.verdict,
-            trace=run.trace,
-            result=content,
-            stills=[("The end of the run", still)] if still.is_file() else [],
-        )
-        write_report(folder / "report.html", page)
+    still = folder / STILL_NAME
+    page = Report(
+        header=run.header(),
+        figures=outcome.figures,
+        verdict=outcome.verdict,
+        tolerance=tolerance,
+        trace=run.trace,
+        result=content,
+        stills=[("The end of the run", still)] if still.is_file() else [],
+    )
+    write_report(folder / "report.html", page)
     write_result(folder / "result.json", content)
 
 

@@ -12,6 +12,7 @@ from twin.errors import ExitCode
 from twin.outcome import Outcome
 from twin.preparation import prepare
 from twin.progress import shown_progress
+from twin.reason_text import reason_text
 
 RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
 """What a run may leave; an earlier run's files of these names are removed when one begins."""
@@ -70,7 +71,7 @@ def _print_findings(run: Run, outcome: Outcome) -> None:
         typer.echo(str(alarm_diagnostic(alarm, run.preparation.source)), err=True)
     if not outcome.alarms:
         for reason in outcome.verdict.reasons:
-            typer.echo(f"{run.preparation.source.name}: {reason}", err=True)
+            typer.echo(reason_text(reason, run.preparation.source), err=True)
 
 
 def _summary(run: Run, outcome: Outcome, folder: Path) -> str:

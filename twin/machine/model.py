@@ -63,7 +63,8 @@ def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec
     _set_inertia(spec, machine)
     _set_drives(spec, machine)
     _add_fixtures(spec, machine)
-    add_tool(spec, tool or DefaultTool(), machine.file.spindle.flange_diameter)
+    flange = machine.file.spindle.flange_diameter
+    add_tool(spec, tool or DefaultTool(holder=flange / 2.0), flange)
     return spec
 
 

@@ -10,6 +10,8 @@ from twin.machine.clearance import Clearance
 from twin.machine.config import Machine
 from twin.machine.model import clearance_model, physics_model
 from twin.machine.servo import Servo
+from twin.machine.tool_changes import ToolClearances
+from twin.machine.tool_shape import ToolSchedule
 from twin.machine.watch import Watch
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
@@ -33,7 +35,7 @@ class Simulation:
         self,
         machine: Machine,
         model: mujoco.MjModel,
-        clearance: Clearance | None,
+        clearance: Clearance | ToolClearances | None,
         setpoints: Iterable[Setpoints],
         load: Load | None = None,
     ) -> None:
@@ -84,6 +86,7 @@ def simulate(
     machine: Machine,
     model: mujoco.MjModel | mujoco.MjSpec,
     setpoints: Iterable[Setpoints],
+    tools: ToolSchedule | None = None,
     load: Load | None = None,
 ) -> Simulation:
     """Run the machine along setpoints.
@@ -96,6 +99,7 @@ def simulate(
         model: What ``build_spec`` made: the run then also watches for collisions. Or a model
             compiled from it, of which the motion alone is simulated.
         setpoints: Chunks of setpoints at the servo period, machine coordinates [mm or deg].
+        tools: Which tool is in the spindle during which move; by default that of the specification.
         load: Called with every chunk in turn: what pushes the axes from outside during the period
             that ends with each setpoint, shape (n, k) [N or N m]; None: nothing.
 
@@ -107,5 +111,9 @@ def simulate(
     """
     if isinstance(model, mujoco.MjModel):
         return Simulation(machine, model, None, setpoints, load)
-    clearance = Clearance(machine, clearance_model(machine, model))
+    clearance = (
+        Clearance(machine, clearance_model(machine, model))
+        if tools is None
+        else ToolClearances(machine, tools)
+    )
     return Simulation(machine, physics_model(machine, model), clearance, setpoints, load)

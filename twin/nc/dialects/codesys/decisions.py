@@ -103,6 +103,12 @@ DECISIONS = (
         example="loop_cut_out",
     ),
     Decision(
+        "What does G92 do?",
+        "Where the machine stands becomes the given coordinates; nothing moves.",
+        "The manual lets the path jump there; a machine cannot, and the program's shape is the same.",
+        example="position_set",
+    ),
+    Decision(
         "What does G56 do?",
         "The place where the machine stands gets the given coordinates.",
         "The manual calls it set reference.",
