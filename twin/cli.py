@@ -339,6 +339,11 @@ def main() -> None:
         # Whoever read our output has gone (``twin interpret ... | head``): no word helps.
         sys.stderr.close()
         raise SystemExit(ExitCode.OK) from None
+    except MemoryError:
+        _leave(
+            "not enough memory: a coarser stock.cell, smaller pictures or the draft quality need less",
+            ExitCode.USAGE,
+        )
     except OSError as error:
         _leave(f"{error.filename or 'a file'}: {error.strerror or error}", ExitCode.USAGE)
     except SystemExit as leaving:
