@@ -11,6 +11,7 @@ Every function raises ``twin.errors.TwinError`` where the command would end with
 """
 
 import dataclasses
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -69,16 +70,19 @@ def plan(
     program: str | Path, *, dialect: str | None = None, machine: str | None = None
 ) -> Setpoints:
     """The setpoints of a program or job at the servo period, in machine coordinates."""
-    run = Run(prepare(Path(program), dialect=dialect, machine=machine))
+    return join(list(setpoints(Run(prepare(Path(program), dialect=dialect, machine=machine)))))
+
+
+def setpoints(run: Run) -> Iterator[Setpoints]:
+    """The same in chunks, for a run that is prepared already."""
     preparation = run.preparation
-    chunks = plan_chunks(
+    return plan_chunks(
         preparation.interpretation().chunks(),
         motion_limits(preparation.machine),
         period_s=preparation.machine.file.servo_period_s,
         part_zero=run.part_zero,
         start=preparation.start + run.part_zero,
     )
-    return join(list(chunks))
 
 
 def run(

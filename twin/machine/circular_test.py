@@ -136,7 +136,11 @@ def _deviation_um(path: CirclePath, model: mujoco.MjModel, angle: FloatArray) ->
         raise UsageError(f"the circle stopped with an alarm: {run.alarm.message}")
     along = path.direction * np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
     begin = along[-1] - 2.0 * np.pi
-    assert begin > RUN_IN / 2
+    if begin < RUN_IN / 2:
+        raise UsageError(
+            f"the axes followed {np.rad2deg(along[-1] - along[0]):.0f} degrees of the circle and no "
+            "more: see kv, dry_friction and force_limit"
+        )
     kept = along >= begin - 0.1
     radius = np.hypot(points[kept, 0], points[kept, 1])
     wanted = begin + np.mod(path.direction * np.deg2rad(angle) - begin, 2.0 * np.pi)
