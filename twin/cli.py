@@ -26,13 +26,9 @@ ProgramOrJob = Annotated[
         show_default=False,
     ),
 ]
-DialectOption = Annotated[
-    str | None,
-    typer.Option("--dialect", help="Language of the program; default: told by its words."),
-]
-MachineOption = Annotated[
-    str | None, typer.Option("--machine", help="A shipped machine's name, or a machine.toml.")
-]
+DialectOption = Annotated[str | None, typer.Option("--dialect", help="Default: told by its words.")]
+OutOption = Annotated[Path | None, typer.Option("--out", help="Folder; default out/<program>.")]
+MachineOption = Annotated[str | None, typer.Option("--machine", help="Name, or a machine.toml.")]
 MachineArgument = Annotated[
     str, typer.Argument(help="A shipped machine's name, or a machine.toml.", show_default=False)
 ]
@@ -75,9 +71,7 @@ def interpret(
 @app.command()
 def run(
     job: ProgramOrJob,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="Folder; default out/<program>.")
-    ] = None,
+    out: OutOption = None,
     video: Annotated[bool, typer.Option("--video", help="Film the run as video.mp4.")] = False,
     dialect: DialectOption = None,
     machine: MachineOption = None,
@@ -174,6 +168,21 @@ def render(
 
 
 @app.command()
+def plan(
+    job: ProgramOrJob,
+    out: OutOption = None,
+    dialect: DialectOption = None,
+    machine: MachineOption = None,
+    form: FormatOption = "text",
+    strict: StrictOption = False,
+) -> None:
+    """Print the cycle time and where it is lost, and draw feed and axis speeds."""
+    from twin.commands.plan import plan_and_print
+
+    plan_and_print(job, out, dialect=dialect, machine=machine, form=form, strict=strict)
+
+
+@app.command()
 def check(
     paths: Annotated[list[str], typer.Argument(help="Programs, job files, folders, globs.")],
     junit: Annotated[Path | None, typer.Option("--junit", help="Write JUnit XML there.")] = None,
@@ -184,6 +193,9 @@ def check(
     update_baseline: Annotated[
         bool, typer.Option("--update-baseline", help="Store baselines instead.")
     ] = False,
+    reports: Annotated[
+        Path | None, typer.Option("--reports", help="Write a report on every program there.")
+    ] = None,
     jobs: Annotated[
         int | None, typer.Option("--jobs", min=1, help="How many at a time; default: all cores.")
     ] = None,
@@ -197,7 +209,7 @@ def check(
 
     settings = CheckSettings(
         dialect=dialect, machine=machine, strict=strict, baseline=baseline,
-        update_baseline=update_baseline,
+        update_baseline=update_baseline, reports=reports,
     )  # fmt: skip
     code = check_and_print(paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs)
     raise typer.Exit(code)
