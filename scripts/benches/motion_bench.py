@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -24,6 +25,7 @@ NO_JERK_LIMIT = 1e9
 """In the place of every jerk limit, for peers that know none."""
 
 PERIOD_S = 0.001
+ROOT = Path(__file__).parents[2]
 HEAD = "G90 G17 G05"
 SHAPES = {
     "square": "G01 X50 F3000\nG01 Y50\nG01 X0\nG01 Y0\n",
@@ -60,6 +62,7 @@ def rows() -> Iterator[Row]:
         folder = Path(name)
         yield from _rates(folder)
         yield from _single_moves(folder)
+        yield from _chains()
         yield from _beside_linuxcnc(folder)
 
 
@@ -111,7 +114,7 @@ def _single_moves(folder: Path) -> Iterator[Row]:
     task.max_velocity = [50.0]
     task.max_acceleration = [limits.path_acceleration]
     task.max_jerk = [limits.path_jerk]
-    worst, ours, theirs = 0.0, 0.0, 0.0
+    worst, ours, theirs = (1.0, 1.0), 0.0, 0.0
     for length in lengths:
         preparation = prepared(folder, f"G90\nG01 X{length:.6f} F3000\n")
         chunks = list(preparation.interpretation().chunks())
@@ -122,11 +125,40 @@ def _single_moves(folder: Path) -> Iterator[Row]:
         generator.calculate(task, trajectory)
         theirs += time.perf_counter() - between
         ours += between - begin
-        worst = max(worst, abs(taken / trajectory.duration - 1.0))
+        pair = (taken, float(trajectory.duration))
+        worst = max(worst, pair, key=lambda times: abs(times[0] / times[1] - 1.0))
     name = f"Ruckig {version('ruckig')}"
-    yield Row("motion", "largest difference of a single move's time", worst, "of it", name, 0.0)
+    off = abs(worst[0] / worst[1] - 1.0)
+    yield Row(
+        "motion",
+        f"single move, worst of {len(lengths)}: {off:.0e} off",
+        worst[0],
+        "s",
+        name,
+        worst[1],
+    )
     rates = len(lengths) / ours, len(lengths) / theirs
     yield Row("motion", "programs of a single move", rates[0], "1/s", name, rates[1])
+
+
+def _chains() -> Iterator[Row]:
+    """The tests' chains of tangent moves beside TOPP-RA's bound, with and without a jerk limit."""
+    sys.path.insert(0, str(ROOT / "tests" / "motion"))
+    try:
+        import test_time_optimality as oracle
+    except ImportError:
+        return
+    name = f"TOPP-RA {version('toppra')} (no jerk limit)"
+    for task, program in (
+        ("slot of 20 mm", oracle.slot(1e7, 10.0, 50.0)),
+        ("slot of 2 mm", oracle.slot(1e7, 1.0, 5.0)),
+        ("wave of arcs", oracle.wave(1e7)),
+    ):
+        for kind, jerk in (("no jerk limit", 1e10), ("jerk 50000 mm/s³", 5e4)):
+            machine = oracle.fast_machine(jerk)
+            bound = oracle.bound(program, machine, 1e7 / 60.0)
+            taken = cycle_s(program.chunks(), machine)
+            yield Row("motion", f"{task}, {kind}", taken, "s", name, bound)
 
 
 def _beside_linuxcnc(folder: Path) -> Iterator[Row]:
