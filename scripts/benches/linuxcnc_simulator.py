@@ -17,6 +17,7 @@ from twin.nc.canonical import FloatArray
 PERIOD_S = 0.001
 AXES = "XYZC"
 TIMEOUT_S = 300
+"""Its programs run in real time; it takes some seconds to start."""
 
 CONFIGURATION = """[EMC]
 VERSION = 1.1
@@ -75,6 +76,7 @@ HOME_SEQUENCE = 0
 WIRING = """loadrt trivkins coordinates=XYZC
 loadrt motmod servo_period_nsec=1000000 num_joints=4
 loadrt sampler depth=60000 cfg=ffff
+setp sampler.0.enable 0
 addf motion-command-handler servo-thread
 addf motion-controller servo-thread
 addf sampler.0 servo-thread
@@ -114,11 +116,14 @@ for program in sorted(pathlib.Path(__file__).parent.glob("*.ngc")):
     with program.with_suffix(".samples").open("w") as out:
         sampling = subprocess.Popen(["halsampler"], stdout=out)
         time.sleep(0.3)
+        subprocess.run(["halcmd", "setp", "sampler.0.enable", "1"], check=True)
         command.program_open(str(program))
         command.wait_complete()
         command.auto(linuxcnc.AUTO_RUN, 0)
         time.sleep(0.3)
         wait(lambda: status.interp_state == linuxcnc.INTERP_IDLE and status.inpos)
+        time.sleep(0.3)
+        subprocess.run(["halcmd", "setp", "sampler.0.enable", "0"], check=True)
         time.sleep(0.3)
         sampling.send_signal(signal.SIGINT)
         sampling.wait()
@@ -173,11 +178,19 @@ def commanded(programs: dict[str, str], limits: MotionLimits) -> dict[str, Float
             command, check=True, capture_output=True, timeout=TIMEOUT_S
         )
         return {
-            program: _moving(np.loadtxt(folder / f"{program}.samples", ndmin=2))
+            program: _moving((folder / f"{program}.samples").read_text(encoding="utf-8"))
             for program in programs
         }
 
 
-def _moving(position: FloatArray) -> FloatArray:
+def _moving(samples: str) -> FloatArray:
+    """The samples from the first that moves to the last."""
+    lines = samples.splitlines()
+    if lines and lines[0] == "overrun":
+        # The sampler counts what nobody asked for before it was listened to.
+        del lines[0]
+    if "overrun" in lines:
+        raise subprocess.SubprocessError("LinuxCNC's sampler lost samples")
+    position = np.array([[float(word) for word in line.split()] for line in lines])
     moves = np.flatnonzero(np.any(np.diff(position, axis=0) != 0.0, axis=1))
     return position[moves[0] : moves[-1] + 2]

@@ -8,7 +8,7 @@ turn after that is measured. From the measured points, seen from the commanded c
   both directions, here about their common least-squares centre;
 * circular hysteresis H: the largest radial difference between the directions at one angle;
 * mean radius error: how much the least-squares circle of both differs from the commanded one;
-* quadrant peaks: how far the path leaps out where an axis turns round, over its surroundings.
+* quadrant peaks: how far the path leaps out where an axis turns round, over both its sides.
 """
 
 import dataclasses
@@ -155,12 +155,25 @@ def _least_squares_circle(angle: FloatArray, deviation: FloatArray) -> tuple[flo
 
 
 def _quadrant_peaks(angle: FloatArray, both: FloatArray) -> tuple[float, float, float, float]:
+    """How far each direction leaps out of what lies on either side of a quadrant's border.
+
+    A step across the border, as backlash leaves it, is no peak: outward counts from the higher
+    side, inward from the lower.
+    """
     peaks = []
     for quadrant in (0.0, 90.0, 180.0, 270.0):
-        away = np.abs((angle - quadrant + 180.0) % 360.0 - 180.0)
-        around = both[:, (away > _PEAK) & (away < _AROUND)].mean(axis=1, keepdims=True)
-        leap = (both[:, away <= _PEAK] - around).ravel()
-        peaks.append(float(leap[np.argmax(np.abs(leap))]))
+        off = (angle - quadrant + 180.0) % 360.0 - 180.0
+        inside = both[:, np.abs(off) <= _PEAK]
+        sides = np.stack(
+            [
+                both[:, (side * off > _PEAK) & (side * off < _AROUND)].mean(axis=1)
+                for side in (-1, 1)
+            ]
+        )
+        out = np.maximum(0.0, inside.max(axis=1) - sides.max(axis=0))
+        into = np.minimum(0.0, inside.min(axis=1) - sides.min(axis=0))
+        leaps = np.concatenate([out, into])
+        peaks.append(float(leaps[np.argmax(np.abs(leaps))]))
     return (peaks[0], peaks[1], peaks[2], peaks[3])
 
 

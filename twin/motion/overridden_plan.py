@@ -96,10 +96,12 @@ class OverriddenPlan:
             stretch = int(self._state[0])
             window, drive = self._window, self._drive
             self.at_block_end = stretch == drive.block_end
-            if self._wishes.held or self.at_block_end or stretch == drive.stop < window.due:
+            if self.at_block_end:
                 self._stand_until(time)
             elif stretch >= window.due:
                 self._open()
+            elif self._wishes.held or stretch == drive.stop:
+                self._stand_until(time)
             else:
                 stop = min(drive.stop, window.due)
                 rows, stretches = find_phases(

@@ -46,7 +46,9 @@ class Window:
         return self.due == len(self.pause)
 
     def piece_at(self, stretch: int, x: float) -> tuple[int, float]:
-        """The piece at x within a stretch, and x within the piece."""
+        """The piece at x within a stretch, and x within the piece; n, 0 after the last."""
+        if stretch == len(self.pause):
+            return len(self.pieces), 0.0
         piece = int(self.begins[stretch])
         while piece + 1 < self.begins[stretch + 1] and x >= self.pieces.length[piece]:
             x -= float(self.pieces.length[piece])
