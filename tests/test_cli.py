@@ -140,3 +140,10 @@ def test_a_dull_drive_fails_the_tolerance_and_names_the_line(twin: Twin, tmp_pat
     assert result["verdict"] == "fail"
     assert result["contour_um"]["worst_line"] in (3, 4, 5)
     assert f"helix.nc:{result['contour_um']['worst_line']}:1: error contour_um: " in done.stderr
+
+
+def test_help_says_units_and_loses_no_word(twin: Twin) -> None:
+    """Square brackets in a help text would be taken for markup and vanish."""
+    for command in ("render", "compare", "machine circle", "machine show"):
+        text = twin(*command.split(), "--help").stdout
+        assert "(mm" in text or "(s)" in text, command

@@ -13,6 +13,7 @@ from twin.compare.trace import Trace
 from twin.compare.verdict import judge
 from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import CutResult, Cutter
+from twin.cutting.fixtures import FixtureGuard
 from twin.cutting.part import write_stl
 from twin.cutting.spindle import Spindle, speaks_of_spindle
 from twin.errors import ConfigError
@@ -33,7 +34,7 @@ from twin.program_notes import NoteTaker, ProgramNotes
 from twin.progress import Progress
 from twin.recording import RecordingHeader, Samples, record
 from twin.stages import StageClock
-from twin.stock_alarm import stock_alarm
+from twin.stock_alarm import fixture_alarm, stock_alarm
 from twin.toolpath.part_frame import PartFrame
 
 
@@ -104,7 +105,7 @@ class Run:
         """
         preparation = self.preparation
         comparison = Comparison(preparation.machine.axes, self.part_frame, self.part_zero)
-        cutter = self._cutter(survey.notes)
+        cutter, guard = self._cutter(survey.notes), self._guard(survey.notes)
         track = _Track(self.part_zero, preparation.start)
         self._spindle = Spindle(held_to_program=survey.speaks_of_spindle)
         alarm, near_miss = survey.alarm, None
@@ -113,7 +114,9 @@ class Run:
                 simulation = self._simulation(comparison, survey.notes)
                 for simulated in self.clock.watch("simulate", simulation):
                     with self.clock.stage("cut"):
-                        samples, alarm = self._cut(cutter, simulated, survey.notes)
+                        clear, touched = _keep_clear(guard, simulated)
+                        samples, alarm = self._cut(cutter, clear, survey.notes)
+                        alarm = alarm or touched
                     track.add(samples)
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
@@ -221,6 +224,14 @@ class Run:
             return None
         return Cutter(job.stock, notes.tools, self.part_frame, self.part_zero, halts=True)
 
+    def _guard(self, notes: ProgramNotes) -> FixtureGuard | None:
+        """What keeps the cutter off the fixtures; without a turning table nobody knows where."""
+        machine = self.preparation.machine
+        if not machine.file.fixtures or machine.part_frame.rotary is None:
+            return None
+        height = notes.tools.tools[0].length - spindle_over_table_mm(machine)
+        return FixtureGuard(machine.file.fixtures, notes.tools, self.part_frame, height)
+
     def _finish_part(self, cutter: Cutter, out: Path) -> CutResult:
         with self.clock.stage("cut"):
             write_stl(cutter.map, out / "part.stl")
@@ -244,6 +255,15 @@ class Run:
             job=preparation.job.file.model_dump_json(exclude_unset=True),
             machine_file=str(preparation.machine.path.resolve()),
         )
+
+
+def _keep_clear(guard: FixtureGuard | None, samples: Samples) -> tuple[Samples, Alarm | None]:
+    """What is left of a chunk where the cutter touched a fixture, and the alarm."""
+    found = None if guard is None else guard.look(samples)
+    if found is None:
+        return samples, None
+    row, event, name = found
+    return samples[: row + 1], fixture_alarm(event, name)
 
 
 class _Track:

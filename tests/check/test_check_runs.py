@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from twin.check.outcome import CheckOutcome
-from twin.check.program import CheckSettings, baseline_file, check_program
+from twin.check.program import CheckSettings, check_program, file_of
 from twin.check.runner import check_all
 from twin.commands.check import CODE_QUALITY_FILE, check_and_print
 from twin.errors import ExitCode, UsageError
@@ -44,7 +44,7 @@ def test_programs_pass_fail_and_break_beside_each_other(
         "GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(summary), "GITLAB_CI": "true",
     }  # fmt: skip
     code = check_and_print(
-        ["."], settings=CheckSettings(), junit=tmp_path / "junit.xml",
+        ["."], settings=CheckSettings(reports=Path("reports")), junit=tmp_path / "junit.xml",
         json_file=tmp_path / "check.json", jobs=1, environment=environment,
     )  # fmt: skip
     assert code is ExitCode.FAILED
@@ -63,6 +63,9 @@ def test_programs_pass_fail_and_break_beside_each_other(
     assert "tight.toml" in summary.read_text(encoding="utf-8")
     assert len(json.loads((tmp_path / CODE_QUALITY_FILE).read_text(encoding="utf-8"))) == 3
     assert (tmp_path / "junit.xml").is_file()
+    pages = {page.name: page.read_text(encoding="utf-8") for page in Path("reports").iterdir()}
+    assert set(pages) == {"good.html", "tight.html"}
+    assert "exceeds contour_um = 0.001" in pages["tight.html"]
 
 
 MISTAKES = {
@@ -115,9 +118,10 @@ def test_a_baseline_lies_under_the_jobs_own_path(tmp_path: Path, monkeypatch: py
         tmp_path / "a" / "part.nc": "stored/a/part.baseline",
         Path("a/part.tap"): "stored/a/part.tap.baseline",
     }.items():
-        assert baseline_file(folder, read_job(path)) == Path(stored)
+        assert file_of(folder, read_job(path), ".baseline") == Path(stored)
     monkeypatch.chdir(tmp_path / "a" / "..")
-    outside = baseline_file(folder, Job(Path("/elsewhere"), JobFile(program="part.nc")))
+    elsewhere = Job(Path("/elsewhere"), JobFile(program="part.nc"))
+    outside = file_of(folder, elsewhere, ".baseline")
     assert outside == Path("stored/elsewhere/part.nc.baseline")
 
 

@@ -30,6 +30,7 @@ class CheckSettings:
         strict: Warnings of the interpreter are errors.
         baseline: Folder of the baselines that runs are held to, or None.
         update_baseline: Store baselines there instead of holding runs to them.
+        reports: Folder for a report on every program that was run, or None.
     """
 
     machine: str | None = None
@@ -37,6 +38,7 @@ class CheckSettings:
     strict: bool = False
     baseline: Path | None = None
     update_baseline: bool = False
+    reports: Path | None = None
 
 
 def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
@@ -49,8 +51,8 @@ def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
     return dataclasses.replace(outcome, wall_s=time.perf_counter() - began)
 
 
-def baseline_file(folder: Path, job: Job) -> Path:
-    """Where the baseline of a job lies: in the folder, under the job's own path.
+def file_of(folder: Path, job: Job, suffix: str) -> Path:
+    """Where a job's baseline or report lies: in the folder, under the job's own path.
 
     A path is taken relative to the working folder where it lies below that, so that a baseline is
     found again from another checkout. A program without a job file keeps its whole name, so that
@@ -62,11 +64,13 @@ def baseline_file(folder: Path, job: Job) -> Path:
         resolved.relative_to(here) if resolved.is_relative_to(here) else Path(*resolved.parts[1:])
     )
     name = parts.name if job.path is None else parts.stem
-    return folder / parts.with_name(f"{name}.baseline")
+    return folder / parts.with_name(name + suffix)
 
 
 def _run(path: Path, settings: CheckSettings) -> CheckOutcome:
     from twin.chain import Run
+    from twin.compare.report import write_report
+    from twin.results import report_of, result_of
 
     preparation = prepare(
         path, dialect=settings.dialect, machine=settings.machine, strict=settings.strict
@@ -79,6 +83,9 @@ def _run(path: Path, settings: CheckSettings) -> CheckOutcome:
     except ProgramError as error:
         differing = _baseline_reasons(preparation, None, settings)
         return _not_run(path, error, _findings(preparation, differing))
+    if settings.reports is not None:
+        page = report_of(run, outcome, result_of(run, outcome))
+        write_report(file_of(settings.reports, preparation.job, ".html"), page)
     contour = outcome.figures.contour
     alarmed = outcome.verdict.outcome == "alarm"
     figures = None if alarmed else RunFigures(outcome.duration_s, contour.max)
@@ -106,7 +113,7 @@ def _baseline_reasons(
     """Hold the run to its baseline, or store it; only a run that came to its end is stored."""
     if settings.baseline is None:
         return []
-    file = baseline_file(settings.baseline, preparation.job)
+    file = file_of(settings.baseline, preparation.job, ".baseline")
     axes, chunks = preparation.machine.axes, preparation.interpretation().chunks()
     if not settings.update_baseline:
         limits = preparation.job.file.baseline

@@ -61,11 +61,11 @@ def check_and_print(
             progress("check", len(outcomes) / len(programs))
     order = {str(path): index for index, path in enumerate(programs)}
     outcomes.sort(key=lambda outcome: order[outcome.program])
+    _print(outcomes)
     if junit is not None:
         forms.write_junit(junit, outcomes)
     if json_file is not None:
         write_text(json_file, forms.json_text(outcomes))
-    _print(outcomes)
     _tell_server(outcomes, environment)
     return ExitCode.OK if all(outcome.passed for outcome in outcomes) else ExitCode.FAILED
 

@@ -7,15 +7,12 @@ import typer
 from twin.alarm_text import alarm_diagnostic, near_miss_diagnostic
 from twin.chain import Run
 from twin.commands.pictures import film_run
-from twin.commands.results import write_results
 from twin.errors import ExitCode
 from twin.outcome import Outcome
 from twin.preparation import prepare
 from twin.progress import shown_progress
 from twin.reason_text import reason_text
-
-RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
-"""What a run may leave; an earlier run's files of these names are removed when one begins."""
+from twin.results import clear_results, write_results
 
 
 def run_and_print(
@@ -44,7 +41,7 @@ def run_and_print(
     folder = out or Path("out") / preparation.job.program.stem
     run = Run(preparation)
     survey = run.survey()
-    _clear(folder)
+    clear_results(folder)
     with shown_progress() as progress:
         outcome = run.execute(survey, folder, progress)
         if video and outcome.samples:
@@ -54,11 +51,6 @@ def run_and_print(
     _print_findings(run, outcome)
     typer.echo(_summary(run, outcome, folder))
     return outcome.verdict.exit_code
-
-
-def _clear(folder: Path) -> None:
-    for name in RESULT_FILES:
-        (folder / name).unlink(missing_ok=True)
 
 
 def _print_findings(run: Run, outcome: Outcome) -> None:

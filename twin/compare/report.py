@@ -3,6 +3,7 @@
 import base64
 import dataclasses
 import json
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -27,10 +28,14 @@ _HEADINGS = {
     "fail": ("✖", "Fail", "a tolerance does not hold"),
     "alarm": ("▲", "Alarm", "the machine stopped"),
 }
+_LINE_END = re.compile(r"\r\n|\r|\n")
+"""What ends a program line for the interpreter too; form feeds and the like do not."""
 _HOVER_POINTS = 2000
 _HOVER_TEXT = 80
 """Characters of a program line that hovering shows."""
 _CONTEXT_LINES = 2
+_LINE_SHOWN = 200
+"""Characters of a program line that are shown."""
 _WORST_SHOWN = 6
 _SMALLEST_SHARE = 0.05
 _TABLE_ROWS = 100
@@ -80,7 +85,7 @@ def render_report(report: Report) -> str:
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["fixed"] = _fixed
-    source = report.header.program_text.splitlines()
+    source = _LINE_END.split(report.header.program_text)
     symbol, heading, meaning = _HEADINGS[report.verdict.outcome]
     cut = report.result["cut"] or {}
     return environment.get_template("report.html.j2").render(
@@ -183,14 +188,20 @@ def _safe(text: str) -> markupsafe.Markup:
 
 
 def _line_text(source: list[str], line: int) -> str:
-    return source[line - 1].strip() if 0 < line <= len(source) else ""
+    return _shown(source[line - 1].strip()) if 0 < line <= len(source) else ""
+
+
+def _shown(text: str) -> str:
+    """A program line, cut where it is longer than anybody reads."""
+    return text if len(text) <= _LINE_SHOWN else text[: _LINE_SHOWN - 1] + "…"
 
 
 def _excerpt(source: list[str], line: int) -> list[tuple[int, str]]:
     """The source line with its neighbours."""
     first = max(1, line - _CONTEXT_LINES)
     last = min(len(source), line + _CONTEXT_LINES)
-    return [(number, source[number - 1]) for number in range(first, last + 1)] if line else []
+    numbers = range(first, last + 1) if line else ()
+    return [(number, _shown(source[number - 1])) for number in numbers]
 
 
 def _data_address(path: Path) -> str:

@@ -108,6 +108,13 @@ class Cylinder:
     bottom: float
 
 
+MATERIALS = {
+    "tool_steel": (0.42, 0.43, 0.45, 1.0),
+    "carbide": (0.78, 0.68, 0.40, 1.0),
+    "steel": (0.52, 0.54, 0.56, 1.0),
+}
+"""Colours of holder, cutter and fixtures where the machine's model has no materials so called."""
+
 _HOLDER = ("tool_flange", "tool_nut")
 _COLLISION_NAMES = {
     "tool_flange": "holder's flange",
@@ -136,6 +143,14 @@ def tool_cylinders(tool: ToolShape, flange_diameter: float) -> tuple[Cylinder, .
         Cylinder("tool_cutter", cutter, -above, -tool.length),
     )
     return tuple(piece for piece in pieces if piece.top > piece.bottom)
+
+
+def add_materials(spec: mujoco.MjSpec) -> None:
+    """Give the model those of ``MATERIALS`` that it lacks."""
+    known = {material.name for material in spec.materials}
+    for name, colour in MATERIALS.items():
+        if name not in known:
+            spec.add_material(name=name, rgba=colour, specular=0.8, shininess=0.8)
 
 
 def add_tool(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) -> None:

@@ -4,6 +4,7 @@ import dataclasses
 import enum
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from twin.nc.canonical import Corner
@@ -13,6 +14,7 @@ from twin.nc.planes import XY, Plane
 if TYPE_CHECKING:
     from twin.nc.blocks import Statement, Word
     from twin.nc.control import Control
+    from twin.nc.source import Source
 
 Action = Callable[["Control"], None]
 WordAction = Callable[["Control", "Word"], None]
@@ -265,6 +267,7 @@ class Dialect:
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
         place_switches: Reports the block's switch points, told the length of its move.
+        library: Adds files that the program calls, looked for in the folder of the program.
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
@@ -301,6 +304,7 @@ class Dialect:
     before_motion: Callable[["Control", bool], None] | None = None
     read_variable: Callable[["Control", str, float | None], float] | None = None
     place_switches: Callable[["Control", float], None] | None = None
+    library: Callable[["Source", Path], "Source"] | None = None
     prepare: Action | None = None
     after_motion: Action | None = None
     finish: Action | None = None

@@ -14,7 +14,7 @@ from twin.nc.dialect import (
     MCode,
     Syntax,
 )
-from twin.nc.dialects.codesys import codes, program
+from twin.nc.dialects.codesys import codes, program, subprograms
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
@@ -257,11 +257,11 @@ CODESYS = Dialect(
     },
     statements={
         "LET": program.let,
-        "SUBPROGRAM": program.define,
-        "END_SUBPROGRAM": program.leave_subprogram,
-        "RETURN": program.leave_subprogram,
+        "SUBPROGRAM": subprograms.define,
+        "END_SUBPROGRAM": subprograms.leave_subprogram,
+        "RETURN": subprograms.leave_subprogram,
     },
-    other_statement=program.assign_or_call,
+    other_statement=subprograms.assign_or_call,
     word_meanings={
         "N": "block number",
         "G": "preparatory code",
@@ -301,7 +301,11 @@ CODESYS = Dialect(
         Mark(r"\bE[ \t]*[-+]?\d", "E, the acceleration"),
         Mark(r"\$[A-Z_]\w*\$", "$variable$"),
         Mark(r"\bLET[ \t]+#|\bSUBPROGRAM\b", "LET, SUBPROGRAM"),
-        Mark(r"\bG20[ \t]+L", "G20 L"),
+        Mark(r"\bG20[ \t]+L|\bL[?!][ \t]*\d", "G20 L, L?, L!"),
+        Mark(r"\bG5[12][ \t]*D|\bG1[56]\b|\bG3[67]\b.*\bD", "G51 D, G52 D, G15, G16, G36 D"),
+        Mark(r"\b(?:FF|P[ABC])[ \t]*\d", "FF, PA, PB, PC"),
+        Mark(r"\bH[ \t]*-?\d+[ \t]*[OL][ \t]*-?[\d.]", "a switch point H with O or L"),
+        Mark(r"[XYZ][^ \t;$\"]*\b(?:SIN|COS|SQRT|PI)\b(?!\[)", "functions with round brackets"),
     ),
     memory=program.Variables,
     before_motion=codes.before_motion,

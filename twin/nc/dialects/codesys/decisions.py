@@ -67,8 +67,8 @@ DECISIONS = (
     ),
     Decision(
         "How do additional axes move?",
-        "Linearly with the path, A B C too.",
-        "Without slopes and smoothing a polynomial of third degree has nothing to bend for.",
+        "Linearly with the path, A B C too; their slopes U V W are refused.",
+        "A polynomial of third degree with the slopes of the straight way at both ends is the line.",
         example="additional_axes",
     ),
     Decision(
