@@ -95,7 +95,7 @@ def open_room(
     writer = SheetWriter(session, words, out)
     driver = RoomPlugin(session, plain=plain, changed=writer.write)
     panel = Panel(scene.file, words, trainer=trainer)
-    shown = PanelPlugin(panel, driver.display, scene.file.picture.camera)
+    shown = PanelPlugin(panel, driver.display, scene.file.picture.camera, plain=plain)
     title = f"{in_language(scene.file.title, words.language)} - {words['title']}"
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="twin-train-")))

@@ -269,8 +269,8 @@ class Room:
                 # A jog is kept within the travel by itself, and leads back into it.
                 soft_limits=what != "jog",
             )
-            self.run, self.running, self.waiting = run, what, False
             run.begin(self.standing_setpoint, self.tables.program_zero)
+            self.run, self.running, self.waiting = run, what, False
         except TwinError as error:
             self.raise_alarm("program", str(error))
 

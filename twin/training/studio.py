@@ -30,6 +30,8 @@ PICTURE_S = 1.0 / 60.0
 """How often states are sent and requests are heard [s]."""
 MOST_BEHIND_S = 0.25
 """How far machine time may fall behind the wall's before it is given up [s]."""
+_COSTLY = ("SHADOW", "REFLECTION", "HAZE", "POST_PROCESSING")
+"""Effects that a plain picture does without."""
 REPLAY_SPEED = 4.0
 """Times faster than it was, a session is shown again."""
 
@@ -163,8 +165,9 @@ class PanelPlugin(plugin.ViewerPlugin):
         now: The last snapshot.
     """
 
-    def __init__(self, panel: Panel, display: Display, camera: str) -> None:
+    def __init__(self, panel: Panel, display: Display, camera: str, *, plain: bool) -> None:
         self.panel = panel
+        self._plain = plain
         self.now: Snapshot | None = None
         self._frame = display.frame
         self._camera = camera
@@ -174,6 +177,10 @@ class PanelPlugin(plugin.ViewerPlugin):
     def on_model(self, _event: messages.PostModelEvent) -> None:
         """Look at the machine through the scene's camera, in dark colours."""
         ux.setup_theme(ux.GuiTheme.DARK)
+        if self._plain:
+            flags = self.viewer.render_flags
+            costly = [int(getattr(mujoco.mjtRndFlag, f"mjRND_{name}")) for name in _COSTLY]
+            flags.flags = [0 if flag in costly else on for flag, on in enumerate(flags.flags)]
         model, data, camera = self.viewer.model, self.viewer.data, self.viewer.camera
         number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, self._camera)
         if number < 0:
