@@ -102,10 +102,17 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
     found = read_machine(machine_file(machine or beside)).with_fixtures(file.fixtures)
     job = Job(Path(), file)
     dialect = dialect_named(header.dialect)
+    source = source_from_text(header.program_text, header.program)
+    if not header.program_text:
+        source = read_source(
+            file.program if file.program.is_absolute() else Path(header.program), dialect
+        )
+        if source.sha256 != header.program_sha256:
+            raise RecordingError(f"{source.name}: is not the program that was recorded")
     return Preparation(
         job=job,
         machine=found,
-        source=source_from_text(header.program_text, header.program),
+        source=source,
         dialect=dialect,
         settings=_control_settings(job, found, strict=False),
     )

@@ -57,6 +57,7 @@ class RecordingHeader:
     part_frame: PartFrame
     program: str
     program_text: str
+    """Empty where the program is longer than ``LONGEST_TEXT``."""
     program_sha256: str
     dialect: str
     machine: str
@@ -85,6 +86,26 @@ _JOINT_COLUMNS: Mapping[str, tuple[str, str]] = {
 CONTOUR = "contour"
 """Dataset of the contour error, shape (n,) [µm]; missing where nobody compared."""
 _ROWS_PER_CHUNK = 4096
+
+_STEPS: Mapping[str, float] = {
+    "fraction": 2.0**-24,
+    "setpoint/position": 2.0**-24,
+    "setpoint/velocity": 2.0**-20,
+    "setpoint/acceleration": 2.0**-10,
+    "joint/position": 2.0**-24,
+    "joint/velocity": 2.0**-20,
+    "drive/force": 2.0**-14,
+    CONTOUR: 2.0**-14,
+}
+"""What columns are rounded to, in their units: positions to 0.06 nm.
+
+It is far below what any figure shows, and the zero bits behind it leave a third of the file and
+half of the time that writing takes.
+"""
+
+LONGEST_TEXT = 16 << 20
+"""Bytes of a program up to which its text is kept in the recording."""
+_TEXT = "program_text"
 
 
 class RecordingWriter:
@@ -133,7 +154,8 @@ class RecordingWriter:
         dataset = self._file[path]
         assert isinstance(dataset, h5py.Dataset)
         dataset.resize(end, axis=0)
-        dataset[self._count : end] = values
+        step = _STEPS.get(path)
+        dataset[self._count : end] = values if step is None else np.rint(values / step) * step
 
 
 def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
@@ -149,12 +171,14 @@ def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
     attributes["table_zero"] = header.part_frame.turn_zero
     for name in (*_TEXT_ATTRIBUTES, *_LATER_ATTRIBUTES):
         attributes[name] = getattr(header, name)
+    text = np.frombuffer(header.program_text.encode("utf-8", "surrogatepass"), np.uint8)
+    compression = "gzip" if len(text) else None
+    file.create_dataset(_TEXT, data=text, compression=compression)
     attributes["complete"] = False
 
 
 _TEXT_ATTRIBUTES = (
     "program",
-    "program_text",
     "program_sha256",
     "dialect",
     "machine",
@@ -240,9 +264,17 @@ def _read_header(file: h5py.File) -> RecordingHeader:
             center=tuple(values["table_center"]),
             turn_zero=values["table_zero"],
         ),
+        program_text=_program_text(file),
         **{name: values[name] for name in _TEXT_ATTRIBUTES},
         **{name: values.get(name, "") for name in _LATER_ATTRIBUTES},
     )
+
+
+def _program_text(file: h5py.File) -> str:
+    kept = file.get(_TEXT)
+    if isinstance(kept, h5py.Dataset):
+        return kept[:].tobytes().decode("utf-8", "surrogatepass")
+    return str(file.attrs[_TEXT])  # recordings of earlier versions
 
 
 @contextlib.contextmanager
