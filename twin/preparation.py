@@ -104,9 +104,7 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
     dialect = dialect_named(header.dialect)
     source = source_from_text(header.program_text, header.program)
     if not header.program_text:
-        source = read_source(
-            file.program if file.program.is_absolute() else Path(header.program), dialect
-        )
+        source = read_source(Path(header.program), dialect)
         if source.sha256 != header.program_sha256:
             raise RecordingError(f"{source.name}: is not the program that was recorded")
     return Preparation(
