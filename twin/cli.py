@@ -1,5 +1,6 @@
 """The command line: each command reads its arguments, calls the rooms, and returns an exit code."""
 
+import signal
 import sys
 from pathlib import Path
 from typing import Annotated, NoReturn
@@ -7,6 +8,17 @@ from typing import Annotated, NoReturn
 import typer
 
 from twin import __version__
+from twin.cli_options import (
+    ClusterOption,
+    DialectOption,
+    FormatOption,
+    JobsOption,
+    MachineArgument,
+    MachineOption,
+    Program,
+    ProgramOrJob,
+    StrictOption,
+)
 from twin.errors import ExitCode, TwinError
 
 app = typer.Typer(
@@ -16,28 +28,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     add_completion=False,
 )
-
-Program = Annotated[Path, typer.Argument(help="NC program.", show_default=False)]
-ProgramOrJob = Annotated[
-    Path,
-    typer.Argument(
-        metavar="PROGRAM|JOB.toml",
-        help="NC program (run by the job file of the same name beside it, if any) or job file.",
-        show_default=False,
-    ),
-]
-DialectOption = Annotated[
-    str | None,
-    typer.Option("--dialect", help="Language of the program; default: told by its words."),
-]
-MachineOption = Annotated[
-    str | None, typer.Option("--machine", help="A shipped machine's name, or a machine.toml.")
-]
-MachineArgument = Annotated[
-    str, typer.Argument(help="A shipped machine's name, or a machine.toml.", show_default=False)
-]
-FormatOption = Annotated[str, typer.Option("--format", help="text or json.")]
-StrictOption = Annotated[bool, typer.Option("--strict", help="Turn warnings into errors.")]
 
 
 def _print_version(value: bool) -> None:
@@ -184,9 +174,8 @@ def check(
     update_baseline: Annotated[
         bool, typer.Option("--update-baseline", help="Store baselines instead.")
     ] = False,
-    jobs: Annotated[
-        int | None, typer.Option("--jobs", min=1, help="How many at a time; default: all cores.")
-    ] = None,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
     machine: MachineOption = None,
     strict: StrictOption = False,
 ) -> None:
@@ -197,7 +186,40 @@ def check(
     settings = CheckSettings(
         machine=machine, strict=strict, baseline=baseline, update_baseline=update_baseline
     )
-    code = check_and_print(paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs)
+    code = check_and_print(
+        paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs, cluster=cluster
+    )
+    raise typer.Exit(code)
+
+
+@app.command()
+def sweep(
+    job: ProgramOrJob,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            "--vary",
+            help="machine.KEY=VALUES or job.KEY=VALUES: a,b,c or FROM:TO:COUNT; again for more.",
+        ),
+    ],
+    json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
+    machine: MachineOption = None,
+    strict: StrictOption = False,
+) -> None:
+    """Run a job for every combination of values; exit 1 if any falls short."""
+    from twin.check.program import CheckSettings
+    from twin.commands.sweep import sweep_and_print
+
+    code = sweep_and_print(
+        job,
+        vary,
+        settings=CheckSettings(machine=machine, strict=strict),
+        json_file=json_file,
+        jobs=jobs,
+        cluster=cluster,
+    )
     raise typer.Exit(code)
 
 
@@ -317,6 +339,8 @@ def machine_circle(
 
 def main() -> None:
     """Run the command line and exit with the code that the contract promises."""
+    # Asked to end, by a batch system say, is the same as Ctrl-C: files are left whole or absent.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         app()
     except TwinError as error:
@@ -327,6 +351,8 @@ def main() -> None:
         raise SystemExit(ExitCode.OK) from None
     except OSError as error:
         _leave(f"{error.filename or 'a file'}: {error.strerror or error}", ExitCode.USAGE)
+    except MemoryError:
+        _leave("there is not enough memory; what was complete is kept", ExitCode.USAGE)
     except SystemExit as leaving:
         if leaving.code == ExitCode.INTERRUPTED:
             _leave("interrupted: what was complete is kept, nothing is torn", ExitCode.INTERRUPTED)

@@ -1,10 +1,12 @@
 """From a job to everything that a run needs: the program, its dialect, the machine, the places."""
 
 import dataclasses
+from collections.abc import Sequence
 from pathlib import Path
 
 import pydantic
 
+from twin.changes import Change
 from twin.errors import RecordingError, UsageError
 from twin.job import Job, JobFile, read_job
 from twin.machine.config import Machine, read_machine
@@ -47,7 +49,12 @@ class Preparation:
 
 
 def prepare(
-    path: Path, *, dialect: str | None = None, machine: str | None = None, strict: bool = False
+    path: Path,
+    *,
+    dialect: str | None = None,
+    machine: str | None = None,
+    strict: bool = False,
+    changes: Sequence[Change] = (),
 ) -> Preparation:
     """Read a job, or a program with its job beside it, and all that it names.
 
@@ -56,6 +63,7 @@ def prepare(
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine; a path is relative to the working folder.
         strict: Warnings of the interpreter are errors.
+        changes: Values of the job (``job.``) and the machine file (``machine.``) to change.
 
     Raises:
         UsageError: A file is missing or wrong, or the dialect cannot be told.
@@ -64,12 +72,12 @@ def prepare(
         raise UsageError(f"{path}: a folder; twin check runs the programs in a folder")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
-    job = read_job(path)
+    job = read_job(path, changes)
     if machine is None:
         found = machine_file(job.file.machine, beside=job.folder)
     else:
         found = machine_file(machine)
-    twin_machine = read_machine(found).with_fixtures(job.file.fixtures)
+    twin_machine = read_machine(found, changes).with_fixtures(job.file.fixtures)
     name = dialect or job.file.dialect
     named = None if name is None else dialect_named(name)
     source = read_source(job.program, named)

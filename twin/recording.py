@@ -17,6 +17,7 @@ import numpy as np
 
 from twin.errors import RecordingError
 from twin.files import complete_or_absent
+from twin.forgiving_file import ForgivingFile
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -111,8 +112,9 @@ _TEXT = "program_text"
 class RecordingWriter:
     """Appends chunks of samples to an open recording."""
 
-    def __init__(self, file: h5py.File, header: RecordingHeader) -> None:
+    def __init__(self, file: h5py.File, header: RecordingHeader, disk: ForgivingFile) -> None:
         self._file = file
+        self._disk = disk
         self._count = 0
         width = len(header.axes)
         for path, (name, unit) in {**_COLUMNS, **_JOINT_COLUMNS}.items():
@@ -138,6 +140,9 @@ class RecordingWriter:
         Args:
             samples: n samples.
             contour_um: Their contour errors, shape (n,) [µm]; for all chunks or for none.
+
+        Raises:
+            OSError: The disk is full.
         """
         end = self._count + len(samples)
         if contour_um is not None:
@@ -149,6 +154,7 @@ class RecordingWriter:
         for path, (name, _) in _JOINT_COLUMNS.items():
             self._put(path, getattr(samples, name), end)
         self._count = end
+        self._disk.check()
 
     def _put(self, path: str, values: np.ndarray[Any, Any], end: int) -> None:
         dataset = self._file[path]
@@ -196,10 +202,15 @@ def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
     Args:
         path: The file to be.
         header: What the recording says about itself.
+
+    Raises:
+        OSError: It cannot be written.
     """
-    with complete_or_absent(path) as temporary, h5py.File(temporary, "w") as file:
-        yield RecordingWriter(file, header)
-        file.attrs["complete"] = True
+    with complete_or_absent(path) as temporary, ForgivingFile(temporary) as disk:
+        with h5py.File(disk, "w") as file:
+            yield RecordingWriter(file, header, disk)
+            file.attrs["complete"] = True
+        disk.check()
 
 
 class Recording:

@@ -49,6 +49,7 @@ class CheckOutcome:
         cycle_time_s: Machine time of the program [s]; None when it was not run.
         wall_s: How long the check took [s].
         findings: Why it does not pass; empty when it does.
+        changes: What a sweep changed for it, keys of job or machine and their values.
     """
 
     program: str
@@ -59,6 +60,7 @@ class CheckOutcome:
     cycle_time_s: float | None = None
     wall_s: float = 0.0
     findings: tuple[Finding, ...] = ()
+    changes: tuple[tuple[str, Any], ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -70,4 +72,16 @@ class CheckOutcome:
         content = dataclasses.asdict(self)
         content["exit_code"] = int(self.exit_code)
         content["findings"] = [dataclasses.asdict(finding) for finding in self.findings]
+        content["changes"] = dict(self.changes)
         return content
+
+
+def died(task: str) -> CheckOutcome:
+    """What became of a task whose process died."""
+    message = "the process that ran it died; out of memory?"
+    return CheckOutcome(
+        program=task,
+        verdict="error",
+        exit_code=ExitCode.FAILED,
+        findings=(Finding("process-died", message, task),),
+    )

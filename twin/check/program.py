@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from twin.check.outcome import CheckOutcome, Finding
+from twin.check.variation import Variant
 from twin.compare.baseline import RunFigures, compare_baseline, write_baseline
 from twin.compare.verdict import Reason
 from twin.errors import ExitCode, TwinError
@@ -35,9 +36,14 @@ class CheckSettings:
 
 def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
     """Run a job or a program and say how it came out; what is wrong with it becomes a finding."""
-    began = time.perf_counter()
+    return check_variant(Variant(path, ()), settings)
+
+
+def check_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
+    """The same with some values of the job or the machine changed."""
+    began, path = time.perf_counter(), variant.path
     try:
-        outcome = _run(path, settings)
+        outcome = _run(variant, settings)
     except TwinError as error:
         outcome = CheckOutcome(
             program=str(path),
@@ -45,7 +51,7 @@ def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
             exit_code=error.exit_code,
             findings=(_finding_of(error, path),),
         )
-    return dataclasses.replace(outcome, wall_s=time.perf_counter() - began)
+    return dataclasses.replace(outcome, wall_s=time.perf_counter() - began, changes=variant.changes)
 
 
 def baseline_file(folder: Path, path: Path) -> Path:
@@ -62,10 +68,13 @@ def baseline_file(folder: Path, path: Path) -> Path:
     return folder / parts.with_suffix(".baseline")
 
 
-def _run(path: Path, settings: CheckSettings) -> CheckOutcome:
+def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     from twin.chain import Run
 
-    preparation = prepare(path, machine=settings.machine, strict=settings.strict)
+    path = variant.path
+    preparation = prepare(
+        path, machine=settings.machine, strict=settings.strict, changes=variant.changes
+    )
     run = Run(preparation)
     survey = run.survey()
     with tempfile.TemporaryDirectory(prefix="twin-check-") as folder:

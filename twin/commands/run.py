@@ -12,9 +12,13 @@ from twin.errors import ExitCode
 from twin.outcome import Outcome
 from twin.preparation import prepare
 from twin.progress import shown_progress
+from twin.run_folder import run_folder
 
 RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
-"""What a run may leave; an earlier run's files of these names are removed when one begins."""
+"""What a run may leave; an earlier run's files of these names are removed when one begins.
+
+The result, written last, is removed first: where it stands, everything that it speaks of is whole.
+"""
 
 
 def run_and_print(
@@ -43,21 +47,16 @@ def run_and_print(
     folder = out or Path("out") / preparation.job.program.stem
     run = Run(preparation)
     survey = run.survey()
-    _clear(folder)
-    with shown_progress() as progress:
-        outcome = run.execute(survey, folder, progress)
-        if video and outcome.samples:
-            with run.clock.stage("render"):
-                film_run(run, survey, folder, progress)
-    write_results(run, outcome, folder)
+    with run_folder(folder, RESULT_FILES):
+        with shown_progress() as progress:
+            outcome = run.execute(survey, folder, progress)
+            if video and outcome.samples:
+                with run.clock.stage("render"):
+                    film_run(run, survey, folder, progress)
+        write_results(run, outcome, folder)
     _print_findings(run, outcome)
     typer.echo(_summary(run, outcome, folder))
     return outcome.verdict.exit_code
-
-
-def _clear(folder: Path) -> None:
-    for name in RESULT_FILES:
-        (folder / name).unlink(missing_ok=True)
 
 
 def _print_findings(run: Run, outcome: Outcome) -> None:
