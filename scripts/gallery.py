@@ -12,9 +12,11 @@ from pathlib import Path
 from PIL import Image
 
 from twin.chain import Run
+from twin.job import VideoTable
 from twin.preparation import prepare
 from twin.progress import no_progress
 from twin.recording import open_recording
+from twin.render.film import film
 from twin.render.still import Shot, stills
 from twin.replay import scene_of
 from twin.resources import resource_root
@@ -38,6 +40,7 @@ PICTURES = {
     "mill": Picture(program="mefi/helix", camera="overview", share=0.03),
     "helix": Picture(program="mefi/helix", camera="part", share=0.045),
     "scroll": Picture(program="fagor8070/scroll", camera="part", share=0.8),
+    "scroll_film": Picture(program="fagor8070/scroll", camera="part"),
     "bolt_hole_ring": Picture(program="fagor8070/bolt_hole_ring", camera="part", share=0.8),
     "turning": Picture(program="gost/recalculation_3", camera="table", share=0.5),
     "light_mill": Picture(
@@ -47,8 +50,16 @@ PICTURES = {
 }
 
 
+FILMS = {
+    "scroll_film": VideoTable(
+        cameras=("part",), seconds=4.0, fps=12, size=(480, 270), quality="draft"
+    )
+}
+"""Of the picture of the same stem's program, as WebP: pages play it."""
+
+
 def draw(picture: Picture, out: Path) -> None:
-    """Run the picture's program and draw its moment."""
+    """Run the picture's program and draw its moment, or film it where ``FILMS`` says so."""
     job_file = resource_root("programs") / f"{picture.program}.toml"
     run = Run(prepare(job_file, machine=picture.machine))
     survey = run.survey()
@@ -56,13 +67,18 @@ def draw(picture: Picture, out: Path) -> None:
         run.execute(survey, Path(folder), no_progress)
         with open_recording(Path(folder) / "recording.h5") as recording:
             scene = scene_of(recording, run.preparation, survey.notes)
+            if out.stem in FILMS:
+                film(scene, video=FILMS[out.stem], out=out)
+                return
             end = round(picture.share * len(recording))
             stills(scene, [Shot(out, end)], cameras=(picture.camera,))
     shrink(out)
 
 
 def shrink(path: Path) -> None:
-    """Take colours out of a PNG until it is small enough."""
+    """Take colours out of a PNG where it is too large, until it is small enough."""
+    if path.stat().st_size <= LARGEST_BYTES:
+        return
     with Image.open(path) as picture:
         full = picture.convert("RGB")
     for colours in COLOURS:
@@ -80,7 +96,7 @@ def main() -> None:
         raise SystemExit(f"no picture {', '.join(unknown)}: there are {', '.join(PICTURES)}")
     RENDERS.mkdir(exist_ok=True)
     for name in names:
-        out = RENDERS / f"{name}.png"
+        out = RENDERS / f"{name}.{'webp' if name in FILMS else 'png'}"
         draw(PICTURES[name], out)
         print(f"{out}: {out.stat().st_size / 1000:.0f} kB")
 

@@ -50,3 +50,8 @@ setup_environment() {
     fi
     PATH="$PWD/.venv/bin:$PATH"
 }
+
+setup_browser() {
+    # For the test of the report's page, which is left out without one.
+    command -v chromium >/dev/null || _need_packages chromium || true
+}

@@ -79,7 +79,10 @@ def test_a_target_outside_the_travel_is_an_alarm_before_anything_moves(twin: Twi
     result = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))
     assert result["verdict"] == "alarm"
     assert [(alarm["code"], alarm["line"]) for alarm in result["alarms"]] == [("soft-limit", 2)]
-    assert [item.name for item in (tmp_path / "out").iterdir()] == ["result.json"]
+    left = {item.name for item in (tmp_path / "out").iterdir()}
+    assert left == {"result.json", "report.html"}
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "outside its travel" in page
 
 
 @pytest.mark.parametrize(
@@ -136,4 +139,11 @@ def test_a_dull_drive_fails_the_tolerance_and_names_the_line(twin: Twin, tmp_pat
     result = json.loads((tmp_path / "out" / "result.json").read_text(encoding="utf-8"))
     assert result["verdict"] == "fail"
     assert result["contour_um"]["worst_line"] in (3, 4, 5)
-    assert f"line {result['contour_um']['worst_line']}" in done.stderr
+    assert f"helix.nc:{result['contour_um']['worst_line']}:1: error contour_um: " in done.stderr
+
+
+def test_help_says_units_and_loses_no_word(twin: Twin) -> None:
+    """Square brackets in a help text would be taken for markup and vanish."""
+    for command in ("render", "compare", "machine circle", "machine show"):
+        text = twin(*command.split(), "--help").stdout
+        assert "(mm" in text or "(s)" in text, command

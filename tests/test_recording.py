@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from pathlib import Path
 
 import h5py
@@ -7,7 +9,7 @@ import pytest
 from twin.errors import RecordingError
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Axes
-from twin.recording import Recording, RecordingHeader, Samples, open_recording, record
+from twin.recording import Recording, RecordingHeader, Samples, open_growing, open_recording, record
 from twin.toolpath.part_frame import PartFrame
 
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
@@ -75,6 +77,48 @@ def test_the_file_follows_the_contract(tmp_path: Path):
         assert file["setpoint/position"].attrs["unit"] == "mm or deg"
         assert np.asarray(file.attrs["axes"]).tolist() == ["X", "Y", "Z", "C"]
         assert file.attrs["complete"]
+
+
+READER = """
+import sys
+from pathlib import Path
+from twin.recording import open_growing
+
+with open_growing(Path(sys.argv[1])) as recording:
+    print(len(recording), flush=True)
+    sys.stdin.readline()
+    print(recording.refresh(), recording.column("joint/position")[-1, 0], flush=True)
+    print([len(chunk) for chunk in recording.chunks(5)], recording.header.program, flush=True)
+"""
+
+
+def test_it_is_read_while_it_is_written(tmp_path: Path):
+    path = tmp_path / "recording.h5"
+    with record(path, header()) as writer:
+        writer.append(samples(0, 7))
+        # Another process, as HDF5 demands of readers.
+        reader = subprocess.Popen(
+            [sys.executable, "-c", READER, path], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            text=True, encoding="utf-8",
+        )  # fmt: skip
+        with reader:
+            assert reader.stdin is not None
+            assert reader.stdout is not None
+            assert reader.stdout.readline() == "7\n"
+            writer.append(samples(7, 6))
+            print(file=reader.stdin, flush=True)
+            last = samples(7, 6).joint_position[-1, 0]
+            assert reader.stdout.readline() == f"13 {last}\n"
+            assert reader.stdout.readline() == "[5, 5, 3] ось.nc\n"
+        assert reader.returncode == 0
+        assert not path.exists()
+    with open_growing(path) as recording:
+        assert len(recording) == 13
+    with (
+        pytest.raises(RecordingError, match="not a readable recording"),
+        open_growing(tmp_path / "other.h5"),
+    ):
+        pass
 
 
 def test_an_interrupted_recording_is_absent(tmp_path: Path):

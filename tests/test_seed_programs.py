@@ -38,4 +38,4 @@ def test_it_passes_ends_where_it_shall_and_fails_with_half_the_gain(
     assert dull.code == 1, dull.stderr
     result = json.loads((tmp_path / "half" / "result.json").read_text(encoding="utf-8"))
     assert result["verdict"] == "fail"
-    assert f"line {result['reasons'][0]['line']}" in dull.stderr
+    assert f"{job.stem}.nc:{result['reasons'][0]['line']}:" in dull.stderr

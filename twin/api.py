@@ -1,27 +1,34 @@
 """The twin from Python: the same rooms as the command line, with plain NumPy columns.
 
-    from twin import api
+    import twin
 
-    moves = api.interpret("programs/mefi/helix.nc")
-    setpoints = api.plan("programs/mefi/helix.nc")
-    done = api.run("programs/mefi/helix.nc", out="out/helix")
-    difference = api.compare("out/helix/recording.h5", "log.csv")
+    moves = twin.interpret("programs/mefi/helix.nc")
+    setpoints = twin.plan("programs/mefi/helix.nc")
+    done = twin.run("programs/mefi/helix.nc", out="out/helix")
+    difference = twin.compare("out/helix/recording.h5", "log.csv")
 
 Every function raises ``twin.errors.TwinError`` where the command would end with a message.
 """
 
 import dataclasses
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+import numpy.typing as npt
 
 from twin.chain import Run, motion_limits
-from twin.compare.track_comparison import TrackDifference, compare_tracks
-from twin.compare.tracks import read_track
+from twin.compare.track_comparison import compare_files
+from twin.errors import RecordingError
 from twin.motion.planner import plan as plan_chunks
 from twin.motion.setpoints import Setpoints, join
 from twin.nc.canonical import Moves, concatenate
 from twin.outcome import Outcome
 from twin.preparation import prepare
 from twin.progress import no_progress
+from twin.recording import open_recording
+from twin.results import RESULT_FILES, write_results
+from twin.run_folder import run_folder
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +42,20 @@ class FinishedRun:
 
     outcome: Outcome
     recording: Path | None
+
+    def column(self, name: str) -> npt.NDArray[Any]:
+        """One dataset of the recording, such as ``joint/position``, shape (n,) or (n, k).
+
+        Raises:
+            RecordingError: Nothing moved, so that there is none.
+        """
+        if self.recording is None:
+            raise RecordingError("nothing moved: there is no recording")
+        with open_recording(self.recording) as recording:
+            return recording.column(name)
+
+
+compare = compare_files
 
 
 def interpret(
@@ -50,16 +71,19 @@ def plan(
     program: str | Path, *, dialect: str | None = None, machine: str | None = None
 ) -> Setpoints:
     """The setpoints of a program or job at the servo period, in machine coordinates."""
-    run = Run(prepare(Path(program), dialect=dialect, machine=machine))
+    return join(list(setpoints(Run(prepare(Path(program), dialect=dialect, machine=machine)))))
+
+
+def setpoints(run: Run) -> Iterator[Setpoints]:
+    """The same in chunks, for a run that is prepared already."""
     preparation = run.preparation
-    chunks = plan_chunks(
+    return plan_chunks(
         preparation.interpretation().chunks(),
         motion_limits(preparation.machine),
         period_s=preparation.machine.file.servo_period_s,
         part_zero=run.part_zero,
         start=preparation.start + run.part_zero,
     )
-    return join(list(chunks))
 
 
 def run(
@@ -69,20 +93,15 @@ def run(
     dialect: str | None = None,
     machine: str | None = None,
 ) -> FinishedRun:
-    """Simulate, compare and cut a program or job; write its recording and part into a folder."""
+    """Simulate, compare and cut a program or job.
+
+    Writes what ``twin run`` writes into the folder ``out``: result, report, recording, part.
+    """
+    folder = Path(out)
     chain = Run(prepare(Path(program), dialect=dialect, machine=machine))
-    outcome = chain.execute(chain.survey(), Path(out), no_progress)
-    recording = Path(out) / "recording.h5"
+    survey = chain.survey()
+    with run_folder(folder, RESULT_FILES):
+        outcome = chain.execute(survey, folder, no_progress)
+        write_results(chain, outcome, folder)
+    recording = folder / "recording.h5"
     return FinishedRun(outcome=outcome, recording=recording if recording.is_file() else None)
-
-
-def compare(
-    first: str | Path,
-    second: str | Path,
-    *,
-    period_s: float | None = None,
-    offset_s: float | None = None,
-) -> TrackDifference:
-    """How two recordings, or a recording and a CSV log, differ after they are aligned in time."""
-    one, other = (read_track(Path(path), period_s=period_s) for path in (first, second))
-    return compare_tracks(one, other, offset_s=offset_s)

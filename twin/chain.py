@@ -12,9 +12,12 @@ from twin import __version__
 from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
 from twin.compare.verdict import judge
+from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import CutResult, Cutter
+from twin.cutting.fixtures import FixtureGuard
 from twin.cutting.part import write_stl
 from twin.cutting.spindle import Spindle, speaks_of_spindle
+from twin.errors import ConfigError
 from twin.machine.alarms import Alarm
 from twin.machine.config import Machine
 from twin.machine.model import build_spec, spindle_over_table_mm
@@ -34,7 +37,7 @@ from twin.program_notes import NoteTaker, ProgramNotes
 from twin.progress import Progress
 from twin.recording import LONGEST_TEXT, RecordingHeader, Samples, record
 from twin.stages import StageClock
-from twin.stock_alarm import stock_alarm
+from twin.stock_alarm import fixture_alarm, stock_alarm
 from twin.toolpath.part_frame import PartFrame
 
 
@@ -105,16 +108,18 @@ class Run:
         """
         preparation = self.preparation
         comparison = Comparison(preparation.machine.axes, self.part_frame, self.part_zero)
-        cutter = self._cutter(survey.notes)
+        cutter, guard = self._cutter(survey.notes), self._guard(survey.notes)
         track = _Track(self.part_zero, preparation.start)
         self._spindle = Spindle(held_to_program=survey.speaks_of_spindle)
         alarm, near_miss = survey.alarm, None
         if alarm is None:
             with record(out / "recording.h5", self.header()) as writer:
-                simulation = self._simulation(comparison)
+                simulation = self._simulation(comparison, survey.notes)
                 for simulated in self.clock.watch("simulate", simulation):
                     with self.clock.stage("cut"):
-                        samples, alarm = self._cut(cutter, simulated, survey.notes)
+                        clear, touched = _keep_clear(guard, simulated)
+                        samples, alarm = self._cut(cutter, clear, survey.notes)
+                        alarm = alarm or touched
                     track.add(samples)
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
@@ -182,7 +187,15 @@ class Run:
         end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
         return samples[:end], alarm
 
-    def _simulation(self, comparison: Comparison) -> Simulation:
+    def _load(self, notes: ProgramNotes) -> AxisLoad | None:
+        job = self.preparation.job.file
+        if not job.cutting_load:
+            return None
+        if job.stock is None:
+            raise ConfigError("cutting_load needs a [stock] to cut")
+        return AxisLoad(job.stock, notes, self.part_frame, self.part_zero)
+
+    def _simulation(self, comparison: Comparison, notes: ProgramNotes) -> Simulation:
         machine = self.preparation.machine
         period = machine.file.servo_period_s
         setpoints = plan(
@@ -192,9 +205,9 @@ class Run:
             part_zero=self.part_zero,
             start=self.preparation.start + self.part_zero,
         )
-        return simulate(
-            machine, self.spec, self.clock.watch("plan", settle(self._planned(setpoints), period))
-        )
+        settled = self.clock.watch("plan", settle(self._planned(setpoints), period))
+        load = self._load(notes)
+        return simulate(machine, self.spec, settled, notes.tools, load)
 
     def _planned(self, setpoints: Iterator[Setpoints]) -> Iterator[Setpoints]:
         for chunk in setpoints:
@@ -213,6 +226,14 @@ class Run:
         if job.stock is None:
             return None
         return Cutter(job.stock, notes.tools, self.part_frame, self.part_zero, halts=True)
+
+    def _guard(self, notes: ProgramNotes) -> FixtureGuard | None:
+        """What keeps the cutter off the fixtures; without a turning table nobody knows where."""
+        machine = self.preparation.machine
+        if not machine.file.fixtures or machine.part_frame.rotary is None:
+            return None
+        height = notes.tools.tools[0].length - spindle_over_table_mm(machine)
+        return FixtureGuard(machine.file.fixtures, notes.tools, self.part_frame, height)
 
     def _finish_part(self, cutter: Cutter, out: Path) -> CutResult:
         with self.clock.stage("cut"):
@@ -241,6 +262,15 @@ class Run:
 
 def _text_to_keep(source: Source) -> str:
     return source.text if source.lines.data.nbytes <= LONGEST_TEXT else ""
+
+
+def _keep_clear(guard: FixtureGuard | None, samples: Samples) -> tuple[Samples, Alarm | None]:
+    """What is left of a chunk where the cutter touched a fixture, and the alarm."""
+    found = None if guard is None else guard.look(samples)
+    if found is None:
+        return samples, None
+    row, event, name = found
+    return samples[: row + 1], fixture_alarm(event, name)
 
 
 class _Track:

@@ -169,6 +169,8 @@ class BaselineTable(Table):
 
     path_um: Positive = 1.0
     """Start, end or centre of a block [µm or mdeg]."""
+    feed_percent: Annotated[float, Field(ge=0)] = 0.1
+    """Commanded feed of a block, either way."""
     cycle_time_percent: Annotated[float, Field(ge=0)] = 1.0
     """Change of the cycle time, either way."""
     contour_um: Annotated[float, Field(ge=0)] = 1.0
@@ -218,6 +220,8 @@ class JobFile(Table):
     """The first is in the spindle at the start."""
     fixtures: tuple[FixtureTable, ...] = ()
     """What holds the part, beside what the machine file puts on its table."""
+    cutting_load: bool = False
+    """The cutting force pushes the axes; the stock's material and a spindle speed must be known."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
     variables: dict[str, float] = Field(default_factory=dict)
@@ -246,9 +250,10 @@ class Job:
         folder: What relative paths in it are relative to.
         file: Its checked content; the file of an STL stock is a whole path.
         program: The NC program.
+        path: The job file; None where a program has none.
     """
 
-    def __init__(self, folder: Path, file: JobFile) -> None:
+    def __init__(self, folder: Path, file: JobFile, path: Path | None = None) -> None:
         if file.stock is not None and file.stock.file is not None:
             whole = str((folder / file.stock.file).absolute())
             stock = file.stock.model_copy(update={"file": whole})
@@ -256,6 +261,11 @@ class Job:
         self.folder = folder
         self.file = file
         self.program = folder / file.program
+        self.path = path
+
+
+def _runs(job: Job, program: Path) -> bool:
+    return job.program.resolve() == program.resolve()
 
 
 def read_job(path: Path, changes: Sequence[Change] = ()) -> Job:
@@ -276,10 +286,9 @@ def read_job(path: Path, changes: Sequence[Change] = ()) -> Job:
 
     beside = path.with_suffix(".toml")
     if path.suffix == ".toml":
-        job = Job(path.parent, read_toml(path, JobFile, prepare=change))
-    elif (
-        beside.is_file()
-        and (job := Job(path.parent, read_toml(beside, JobFile, prepare=change))).program == path
+        job = Job(path.parent, read_toml(path, JobFile, prepare=change), path)
+    elif beside.is_file() and _runs(
+        job := Job(path.parent, read_toml(beside, JobFile, prepare=change), beside), path
     ):
         pass
     else:

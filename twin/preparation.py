@@ -81,11 +81,14 @@ def prepare(
     name = dialect or job.file.dialect
     named = None if name is None else dialect_named(name)
     source = read_source(job.program, named)
+    language = named or recognise(source)
+    if language.library is not None:
+        source = language.library(source, job.program.parent)
     return Preparation(
         job=job,
         machine=twin_machine,
         source=source,
-        dialect=named or recognise(source),
+        dialect=language,
         settings=_control_settings(job, twin_machine, strict=strict),
     )
 

@@ -2,122 +2,74 @@
 
 Sample i of ``joint`` and of ``setpoint`` belong to the same instant ``time[i]``. The file is
 written under a temporary name and renamed when the run has ended, so that a file under its own
-name is whole.
+name is whole. Until then it can be read under its temporary name, ``.recording.*.part.h5`` in the
+same folder, for HDF5 writes it so that others may read it (single writer, multiple readers).
 """
 
 import contextlib
-import dataclasses
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
+from twin.disk_room import DiskRoom
 from twin.errors import RecordingError
 from twin.files import complete_or_absent
-from twin.forgiving_file import ForgivingFile
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray
+from twin.recording_form import (
+    COLUMNS,
+    CONTOUR,
+    JOINT_COLUMNS,
+    LATER_ATTRIBUTES,
+    LONGEST_TEXT,
+    STEPS,
+    TEXT_ATTRIBUTES,
+    RecordingHeader,
+    Samples,
+)
 from twin.toolpath.part_frame import PartFrame
 
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Samples:
-    """A chunk of n samples over k axes: what was asked for and what the joints did.
-
-    Attributes:
-        setpoint: The setpoints of the same instants, machine coordinates.
-        joint_position: Shape (n, k) [mm or deg], machine coordinates.
-        joint_velocity: Shape (n, k) [mm/s or deg/s].
-        drive_force: Shape (n, k) [N or N m].
-    """
-
-    setpoint: Setpoints
-    joint_position: FloatArray
-    joint_velocity: FloatArray
-    drive_force: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.setpoint)
-
-    def __getitem__(self, index: slice) -> "Samples":
-        """A run of samples, as columns again."""
-        return Samples(*(getattr(self, field.name)[index] for field in dataclasses.fields(self)))
+__all__ = [
+    "CONTOUR",
+    "LONGEST_TEXT",
+    "Recording",
+    "RecordingHeader",
+    "RecordingWriter",
+    "Samples",
+    "open_growing",
+    "open_recording",
+    "record",
+]
 
 
-@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class RecordingHeader:
-    """What a recording says about itself; the attributes of the file."""
-
-    axes: Axes
-    period_s: float
-    part_zero: FloatArray
-    """Machine coordinates of program zero, shape (k,) [mm or deg]."""
-    part_frame: PartFrame
-    program: str
-    program_text: str
-    """Empty where the program is longer than ``LONGEST_TEXT``."""
-    program_sha256: str
-    dialect: str
-    machine: str
-    twin_version: str
-    mujoco_version: str
-    job: str = ""
-    """The job as JSON, files in it as whole paths; empty in recordings that were made without."""
-    machine_file: str = ""
-    """Where the machine file lay."""
-
-
-_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "time": ("time", "s"),
-    "line": ("line", ""),
-    "move": ("move", ""),
-    "fraction": ("fraction", ""),
-    "setpoint/position": ("position", "mm or deg"),
-    "setpoint/velocity": ("velocity", "mm/s or deg/s"),
-    "setpoint/acceleration": ("acceleration", "mm/s^2 or deg/s^2"),
-}
-_JOINT_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "joint/position": ("joint_position", "mm or deg"),
-    "joint/velocity": ("joint_velocity", "mm/s or deg/s"),
-    "drive/force": ("drive_force", "N or N m"),
-}
-CONTOUR = "contour"
-"""Dataset of the contour error, shape (n,) [µm]; missing where nobody compared."""
 _ROWS_PER_CHUNK = 4096
+_FORMAT = ("v110", "v110")
+"""The oldest format of HDF5 that can be read while it is written."""
 
-_STEPS: Mapping[str, float] = {
-    "fraction": 2.0**-24,
-    "setpoint/position": 2.0**-24,
-    "setpoint/velocity": 2.0**-20,
-    "setpoint/acceleration": 2.0**-10,
-    "joint/position": 2.0**-24,
-    "joint/velocity": 2.0**-20,
-    "drive/force": 2.0**-14,
-    CONTOUR: 2.0**-14,
-}
-"""What columns are rounded to, in their units: positions to 0.06 nm.
-
-It is far below what any figure shows, and the zero bits behind it leave a third of the file and
-half of the time that writing takes.
-"""
-
-LONGEST_TEXT = 16 << 20
-"""Bytes of a program up to which its text is kept in the recording."""
 _TEXT = "program_text"
+
+_BOOKKEEPING = 1 << 20
+"""What HDF5 may write besides columns [bytes]: attributes, and where the chunks lie."""
+_MOST_OF_A_LETTER = 4
+"""In UTF-8 [bytes]."""
 
 
 class RecordingWriter:
     """Appends chunks of samples to an open recording."""
 
-    def __init__(self, file: h5py.File, header: RecordingHeader, disk: ForgivingFile) -> None:
+    def __init__(self, file: h5py.File, header: RecordingHeader) -> None:
         self._file = file
-        self._disk = disk
         self._count = 0
         width = len(header.axes)
-        for path, (name, unit) in {**_COLUMNS, **_JOINT_COLUMNS}.items():
+        self._room = DiskRoom(file.id.get_vfd_handle(), Path(file.filename))
+        self._hold_room(len(header.program_text) * _MOST_OF_A_LETTER)
+        values = sum(width if "/" in path else 1 for path in (*COLUMNS, *JOINT_COLUMNS, CONTOUR))
+        self._row_bytes = values * np.dtype(np.float64).itemsize
+        for path, (name, unit) in {**COLUMNS, **JOINT_COLUMNS}.items():
             kind = np.int64 if name in ("line", "move") else np.float64
             self._create(path, (0, width) if "/" in path else (0,), kind, unit)
         _write_attributes(file, header)
@@ -145,22 +97,27 @@ class RecordingWriter:
             OSError: The disk is full.
         """
         end = self._count + len(samples)
+        # The last chunk of each column is written once more when it was not full.
+        self._hold_room((len(samples) + _ROWS_PER_CHUNK) * self._row_bytes)
         if contour_um is not None:
             if CONTOUR not in self._file:
                 self._create(CONTOUR, (0,), np.float64, "um")
             self._put(CONTOUR, contour_um, end)
-        for path, (name, _) in _COLUMNS.items():
+        for path, (name, _) in COLUMNS.items():
             self._put(path, getattr(samples.setpoint, name), end)
-        for path, (name, _) in _JOINT_COLUMNS.items():
+        for path, (name, _) in JOINT_COLUMNS.items():
             self._put(path, getattr(samples, name), end)
         self._count = end
-        self._disk.check()
+        self._file.flush()
+
+    def _hold_room(self, size: int) -> None:
+        self._room.hold(self._file.id.get_filesize() + size + _BOOKKEEPING)
 
     def _put(self, path: str, values: np.ndarray[Any, Any], end: int) -> None:
         dataset = self._file[path]
         assert isinstance(dataset, h5py.Dataset)
         dataset.resize(end, axis=0)
-        step = _STEPS.get(path)
+        step = STEPS.get(path)
         dataset[self._count : end] = values if step is None else np.rint(values / step) * step
 
 
@@ -175,24 +132,12 @@ def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
     )
     attributes["table_center"] = header.part_frame.center
     attributes["table_zero"] = header.part_frame.turn_zero
-    for name in (*_TEXT_ATTRIBUTES, *_LATER_ATTRIBUTES):
+    for name in (*TEXT_ATTRIBUTES, *LATER_ATTRIBUTES):
         attributes[name] = getattr(header, name)
     text = np.frombuffer(header.program_text.encode("utf-8", "surrogatepass"), np.uint8)
     compression = "gzip" if len(text) else None
     file.create_dataset(_TEXT, data=text, compression=compression)
     attributes["complete"] = False
-
-
-_TEXT_ATTRIBUTES = (
-    "program",
-    "program_sha256",
-    "dialect",
-    "machine",
-    "twin_version",
-    "mujoco_version",
-)
-_LATER_ATTRIBUTES = ("job", "machine_file")
-"""Recordings of earlier versions lack them."""
 
 
 @contextlib.contextmanager
@@ -206,15 +151,18 @@ def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
     Raises:
         OSError: It cannot be written.
     """
-    with complete_or_absent(path) as temporary, ForgivingFile(temporary) as disk:
-        with h5py.File(disk, "w") as file:
-            yield RecordingWriter(file, header, disk)
+    with complete_or_absent(path) as temporary:
+        with h5py.File(temporary, "w", libver=_FORMAT) as file:
+            writer = RecordingWriter(file, header)
+            file.swmr_mode = True
+            yield writer
+        # Opened again, HDF5 also gives the room back that was held and not needed.
+        with h5py.File(temporary, "r+", libver=_FORMAT) as file:
             file.attrs["complete"] = True
-        disk.check()
 
 
 class Recording:
-    """A complete recording, open for reading in chunks.
+    """A recording, open for reading in chunks.
 
     Attributes:
         path: The file.
@@ -225,9 +173,19 @@ class Recording:
         self.path = path
         self._file = file
         self.header = _read_header(file)
+        self._length = len(self._dataset("time"))
 
     def __len__(self) -> int:
-        return len(self._dataset("time"))
+        return self._length
+
+    def refresh(self) -> int:
+        """See what has been appended since; how many samples there are now."""
+        datasets = [self._dataset(name) for name in (*COLUMNS, *JOINT_COLUMNS)]
+        for dataset in datasets:
+            dataset.refresh()
+        # The columns grow one after the other: only what all of them have is whole.
+        self._length = min(len(dataset) for dataset in datasets)
+        return self._length
 
     def _dataset(self, name: str) -> h5py.Dataset:
         dataset = self._file[name]
@@ -237,7 +195,7 @@ class Recording:
 
     def column(self, name: str) -> np.ndarray[Any, Any]:
         """One whole dataset, such as ``joint/position``."""
-        return self._dataset(name)[:]
+        return self._dataset(name)[: len(self)]
 
     @property
     def alarms(self) -> tuple[tuple[float, str], ...]:
@@ -252,13 +210,13 @@ class Recording:
     def chunks(self, rows: int = 65536) -> Iterator[Samples]:
         """Samples in order, at most ``rows`` at a time."""
         for first in range(0, len(self), rows):
-            here = slice(first, first + rows)
+            here = slice(first, min(first + rows, len(self)))
             setpoint = Setpoints(
-                **{name: self._dataset(path)[here] for path, (name, _) in _COLUMNS.items()}
+                **{name: self._dataset(path)[here] for path, (name, _) in COLUMNS.items()}
             )
             yield Samples(
                 setpoint,
-                **{name: self._dataset(path)[here] for path, (name, _) in _JOINT_COLUMNS.items()},
+                **{name: self._dataset(path)[here] for path, (name, _) in JOINT_COLUMNS.items()},
             )
 
 
@@ -276,8 +234,8 @@ def _read_header(file: h5py.File) -> RecordingHeader:
             turn_zero=values["table_zero"],
         ),
         program_text=_program_text(file),
-        **{name: values[name] for name in _TEXT_ATTRIBUTES},
-        **{name: values.get(name, "") for name in _LATER_ATTRIBUTES},
+        **{name: values[name] for name in TEXT_ATTRIBUTES},
+        **{name: values.get(name, "") for name in LATER_ATTRIBUTES},
     )
 
 
@@ -295,15 +253,44 @@ def open_recording(path: Path) -> Iterator[Recording]:
     Raises:
         RecordingError: The file is missing, torn, incomplete or not a recording.
     """
+    with _opened(path) as file:
+        if not file.attrs.get("complete", False):
+            raise RecordingError(f"{path}: the recording is not complete")
+        yield _recording(path, file)
+
+
+@contextlib.contextmanager
+def open_growing(path: Path) -> Iterator[Recording]:
+    """Open a recording that a run is writing; ``Recording.refresh`` sees what has been appended.
+
+    Args:
+        path: The name that it will have. When it is there already, it is opened as it is.
+
+    Raises:
+        RecordingError: No run is writing it, or it has only begun.
+    """
+    parts = sorted(
+        path.parent.glob(f".{path.stem}.*.part{path.suffix}"), key=lambda part: part.stat().st_mtime
+    )
+    found = path if path.is_file() or not parts else parts[-1]
+    with _opened(found, swmr=True) as file:
+        recording = _recording(found, file)
+        recording.refresh()
+        yield recording
+
+
+@contextlib.contextmanager
+def _opened(path: Path, *, swmr: bool = False) -> Iterator[h5py.File]:
     try:
-        file = h5py.File(path, "r")
+        file = h5py.File(path, "r", swmr=swmr)
     except OSError as error:
         raise RecordingError(f"{path}: is not a readable recording: {error}") from error
     with file:
-        if not file.attrs.get("complete", False):
-            raise RecordingError(f"{path}: the recording is not complete")
-        try:
-            recording = Recording(path, file)
-        except (KeyError, ValueError, IndexError) as error:
-            raise RecordingError(f"{path}: is not a recording of this twin: {error}") from error
-        yield recording
+        yield file
+
+
+def _recording(path: Path, file: h5py.File) -> Recording:
+    try:
+        return Recording(path, file)
+    except (KeyError, ValueError, IndexError) as error:
+        raise RecordingError(f"{path}: is not a recording of this twin: {error}") from error

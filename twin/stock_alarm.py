@@ -18,3 +18,14 @@ def stock_alarm(event: CutEvent, tool: ToolTable) -> Alarm:
         return Alarm("rapid-into-stock", event.line, event.time_s, "", message)
     message = f"tool {tool.number} feeds {depth} with the spindle off"
     return Alarm("spindle-off", event.line, event.time_s, "", message)
+
+
+def fixture_alarm(event: CutEvent, name: str) -> Alarm:
+    """The alarm of a cutter that met what holds the part.
+
+    Args:
+        event: Where and how deep.
+        name: Of the fixture.
+    """
+    message = f"the cutter meets the {name} ({event.depth_mm:.2f} mm deep)"
+    return Alarm("collision", event.line, event.time_s, "", message)

@@ -74,14 +74,15 @@ def moves_per_second(cell: float) -> float:
     """Moves of a spiral pocket that are cut per second."""
     points = _spiral()
     edge = dataclasses.astuple(profile(TOOL))
-    removed, depth, nothing = np.zeros(len(points)), np.zeros(len(points)), np.zeros((0, 0))
+    removed, depth, aside = np.zeros((3, len(points)))
+    nothing = np.zeros((0, 0))
     part = blank(PLATE, np.zeros(3), cell)
 
     def cut() -> None:
         part.heights[:] = part.top
         sweep(
             part.heights, part.origin, cell, part.bottom, points, edge,
-            removed[1:], depth[1:], nothing, removed[1:],
+            removed[1:], depth[1:], aside[1:], nothing, removed[1:],
         )  # fmt: skip
 
     return (len(points) - 1) / median_seconds(cut)

@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 
 from twin.check.outcome import CheckOutcome
-from twin.check.program import CheckSettings, baseline_file, check_program
+from twin.check.program import CheckSettings, check_program, file_of
 from twin.check.runner import check_all
 from twin.commands.check import CODE_QUALITY_FILE, check_and_print
 from twin.errors import ExitCode, UsageError
+from twin.job import Job, JobFile, read_job
 
 PROGRAM = """N10 X0 Y0 Z0 G00
 N20 G01 X10.5 F3000
@@ -43,7 +44,7 @@ def test_programs_pass_fail_and_break_beside_each_other(
         "GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(summary), "GITLAB_CI": "true",
     }  # fmt: skip
     code = check_and_print(
-        ["."], settings=CheckSettings(), junit=tmp_path / "junit.xml",
+        ["."], settings=CheckSettings(reports=Path("reports")), junit=tmp_path / "junit.xml",
         json_file=tmp_path / "check.json", jobs=1, environment=environment,
     )  # fmt: skip
     assert code is ExitCode.FAILED
@@ -62,13 +63,20 @@ def test_programs_pass_fail_and_break_beside_each_other(
     assert "tight.toml" in summary.read_text(encoding="utf-8")
     assert len(json.loads((tmp_path / CODE_QUALITY_FILE).read_text(encoding="utf-8"))) == 3
     assert (tmp_path / "junit.xml").is_file()
+    pages = {page.name: page.read_text(encoding="utf-8") for page in Path("reports").iterdir()}
+    assert set(pages) == {"good.html", "tight.html"}
+    assert "exceeds contour_um = 0.001" in pages["tight.html"]
 
 
 MISTAKES = {
-    "shifted by 0.02 mm": (PROGRAM.replace("Y-4.25", "Y-4.27"), 4),
-    "G02 for G03": (PROGRAM.replace("G02", "G03"), 3),
-    "sign dropped": (PROGRAM.replace("Y-4.25", "Y4.25"), 4),
-    "decimal lost": (PROGRAM.replace("Y-4.25", "Y-42.5"), 4),
+    "shifted by 0.02 mm": (PROGRAM.replace("Y-4.25", "Y-4.27"), 4, "baseline-path", "fail"),
+    "G02 for G03": (PROGRAM.replace("G02", "G03"), 3, "baseline-path", "fail"),
+    "sign dropped": (PROGRAM.replace("Y-4.25", "Y4.25"), 4, "baseline-path", "fail"),
+    "decimal lost": (PROGRAM.replace("Y-4.25", "Y-425"), 4, "baseline-path", "alarm"),
+    "decimal shifted": (PROGRAM.replace("Y-4.25", "Y-42.5"), 4, "baseline-path", "fail"),
+    "centre's sign dropped": (PROGRAM.replace("I5", "I-5"), 3, "baseline-path", "error"),
+    "line lost": (PROGRAM.replace("N40 G01 Y-4.25\n", ""), 4, "baseline-path", "fail"),
+    "feed lost": (PROGRAM.replace("F3000", "F300"), 2, "baseline-feed", "fail"),
 }
 
 
@@ -81,23 +89,40 @@ def test_a_broken_post_processor_is_caught_at_its_line(
     assert check_program(job, held).findings[0].code == "baseline-missing"
     assert check_program(job, CheckSettings(baseline=held.baseline, update_baseline=True)).passed
     assert check_program(job, held).passed
-    for what, (text, line_number) in MISTAKES.items():
+    for what, (text, line, code, verdict) in MISTAKES.items():
         assert text != PROGRAM
         outcome = check_program(write_job(tmp_path, "part", text), held)
-        assert outcome.verdict == "fail", what
-        found = outcome.findings[0]
-        assert (found.code, found.line) == ("baseline-path", line_number), what
+        assert outcome.verdict == verdict, what
+        found = [(finding.code, finding.line) for finding in outcome.findings]
+        assert (code, line) in found, (what, found)
 
 
-def test_a_baseline_lies_under_the_programs_own_path(
+def test_what_fails_or_breaks_is_not_taken_for_a_baseline(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.chdir(tmp_path)
+    update = CheckSettings(baseline=Path("baselines"), update_baseline=True)
+    for text in (PROGRAM.replace("Y-4.25", "Y-4250"), "N10 X1 QQ5"):
+        assert not check_program(write_job(tmp_path, "part", text), update).passed
+    assert not Path("baselines").exists()
+
+
+def test_a_baseline_lies_under_the_jobs_own_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a").mkdir()
+    write_job(tmp_path / "a", "part")
+    (tmp_path / "a" / "part.tap").touch()
     folder = Path("stored")
-    assert baseline_file(folder, Path("a/part.toml")) == Path("stored/a/part.baseline")
-    assert baseline_file(folder, tmp_path / "a" / "part.nc") == Path("stored/a/part.baseline")
-    outside = baseline_file(folder, Path("/elsewhere/part.nc"))
-    assert outside == Path("stored/elsewhere/part.baseline")
+    for path, stored in {
+        Path("a/part.toml"): "stored/a/part.baseline",
+        tmp_path / "a" / "part.nc": "stored/a/part.baseline",
+        Path("a/part.tap"): "stored/a/part.tap.baseline",
+    }.items():
+        assert file_of(folder, read_job(path), ".baseline") == Path(stored)
+    monkeypatch.chdir(tmp_path / "a" / "..")
+    elsewhere = Job(Path("/elsewhere"), JobFile(program="part.nc"))
+    outside = file_of(folder, elsewhere, ".baseline")
+    assert outside == Path("stored/elsewhere/part.nc.baseline")
 
 
 def test_updating_needs_a_folder(tmp_path: Path):

@@ -1,11 +1,14 @@
 """Sweeps: which runs they ask for, and that the changes reach job and machine."""
 
 import functools
+import os
+import signal
 from pathlib import Path
 
 import pytest
 
 from twin.changes import changed
+from twin.check.outcome import CheckOutcome
 from twin.check.program import CheckSettings, check_variant
 from twin.check.runner import run_tasks
 from twin.check.variation import Variant, variants
@@ -62,6 +65,25 @@ def test_an_unknown_key_is_a_finding_of_its_run() -> None:
     assert outcome.exit_code is ExitCode.USAGE
     assert "unknown key 'axes.X.kw'" in outcome.findings[0].message
     assert outcome.as_json()["changes"] == {"machine.axes.X.kw": 3}
+
+
+def check_that_loses_its_worker_once(task: Variant) -> CheckOutcome:
+    marker = Path(str(dict(task.changes)["job.marker"]))
+    if not marker.exists():
+        marker.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return CheckOutcome(
+        program=str(task.path), verdict="pass", exit_code=ExitCode.OK, changes=task.changes
+    )
+
+
+def test_a_lost_worker_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("ray", reason="the extra 'cluster' is not installed")
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
+    task = Variant(JOB, (("job.marker", str(tmp_path / "died")),))
+    found = run_tasks([task], check_that_loses_its_worker_once, jobs=None, cluster="local")
+    assert [outcome.verdict for outcome in found] == ["pass"]
+    assert (tmp_path / "died").exists()
 
 
 def test_a_cluster_on_this_computer_gives_the_same_outcomes() -> None:

@@ -1,19 +1,21 @@
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree as ET
 
-from tests.check.test_check_runs import write_job
+from tests.check.test_check_runs import PROGRAM, write_job
 
 ROOT = Path(__file__).parents[2]
 
 
-def pytest_in(folder: Path, *arguments: str) -> tuple[int, str]:
+def pytest_in(path: Path, *arguments: str) -> tuple[int, str]:
+    root = path if path.is_dir() else path.parent
     done = subprocess.run(
         [
             sys.executable, "-m", "pytest", "-p", "twin.pytest_plugin", "-p", "no:cacheprovider",
-            "-c", "/dev/null", "--rootdir", str(folder), str(folder), *arguments,
+            "-c", "/dev/null", "--rootdir", str(root), str(path), *arguments,
         ],
-        capture_output=True, text=True, check=False, cwd=folder,
+        capture_output=True, text=True, check=False, cwd=root,
         # Named by -p, for an installed package's entry point would register the module again.
         env={"PYTHONPATH": str(ROOT), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
     )  # fmt: skip
@@ -24,14 +26,57 @@ def test_jobs_are_tests_with_their_diagnostics_as_failures(tmp_path: Path):
     write_job(tmp_path, "good")
     write_job(tmp_path, "tight", tolerance=0.001)
     write_job(tmp_path, "wrong", "N10 X1 QQ5")
-    (tmp_path / "machine.toml").write_text('name = "no job"')
-    (tmp_path / "broken.toml").write_text("program =")
-    code, shown = pytest_in(tmp_path)
+    write_job(tmp_path, "torn").write_text("program =", encoding="utf-8")
+    (tmp_path / "machine.toml").write_text('name = "no job"', encoding="utf-8")
+    (tmp_path / "broken.toml").write_text("program =", encoding="utf-8")
+    code, shown = pytest_in(tmp_path, f"--junitxml={tmp_path / 'junit.xml'}")
     assert code == 1
     assert "1 passed" in shown
-    assert "2 failed" in shown
+    assert "3 failed" in shown
     assert "exceeds contour_um = 0.001" in shown
+    assert "torn.toml: is not TOML" in shown
+    assert "^" in shown
     assert "Traceback" not in shown
-    code, shown = pytest_in(tmp_path, "-k", "good", "--twin-baseline", "none")
+    properties = {
+        one.get("name"): one.get("value")
+        for one in ET.parse(tmp_path / "junit.xml").iter("property")  # noqa: S314 (made here)
+    }
+    assert properties["worst_line"] in {"2", "3", "4"}
+    assert float(properties["contour_um"] or 0) > 0.0
+
+
+def test_tests_are_chosen_spread_and_held_to_baselines(tmp_path: Path):
+    write_job(tmp_path, "good")
+    write_job(tmp_path, "wrong", "N10 X1 QQ5")
+    arguments = ("-k", "good", "-m", "twin", "--twin-baseline", "stored")
+    code, shown = pytest_in(tmp_path, *arguments)
     assert code == 1
     assert "--update-baseline stores one" in shown
+    # Two processes, as a build server would.
+    spread = ("-p", "xdist", "-n", "2")
+    code, shown = pytest_in(tmp_path, *arguments, *spread, "--twin-update-baseline")
+    assert code == 0, shown
+    assert (tmp_path / "stored" / "good.baseline").is_file()
+    write_job(tmp_path, "good", PROGRAM.replace("Y-4.25", "Y-4.27"))
+    code, shown = pytest_in(tmp_path, *arguments)
+    assert code == 1
+    assert "good.nc:4:1: error baseline-path: ends at Y-4.27, baseline Y-4.25" in shown
+
+
+def test_an_nc_program_that_is_named_is_a_test_too(tmp_path: Path):
+    write_job(tmp_path, "good")
+    plain = tmp_path / "plain.nc"
+    plain.write_text(PROGRAM.replace("F3000", ""), encoding="utf-8")
+    mefi = ("--twin-dialect", "mefi")
+    code, shown = pytest_in(plain, *mefi)
+    assert (code, "1 passed" in shown) == (0, True)
+    code, shown = pytest_in(plain, *mefi, "--twin-strict")
+    assert code == 1
+    assert "error no-feed" in shown
+    code, shown = pytest_in(tmp_path / "good.nc")
+    assert (code, "1 passed" in shown) == (0, True)
+
+
+def test_storing_baselines_needs_a_folder(tmp_path: Path):
+    code, _ = pytest_in(tmp_path, "--twin-update-baseline")
+    assert code == 4

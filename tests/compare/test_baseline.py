@@ -1,15 +1,21 @@
 import dataclasses
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from tests.compare.paths import UP, arc, line, moves_of
-from twin.compare.baseline import RunFigures, compare_baseline, write_baseline
+from tests.compare.paths import AXES, UP, arc, line, moves_of
+from twin.compare.baseline import compare_baseline, write_baseline
+from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
 from twin.job import BaselineTable
-from twin.nc.canonical import Moves
+from twin.nc.canonical import Axes, Chunk, Dwell, Function, Moves
+from twin.nc.diagnostics import Diagnostic, ProgramError
 
 CORNER = np.array([50.0, 0, 0, 0])
 ROWS = [
@@ -18,32 +24,52 @@ ROWS = [
     line(CORNER, np.array([50.0, -30.0, -5.0, 90.0])),
 ]
 MOVES = moves_of(*ROWS)
+EVENTS = (Function(0, 1, "M3", {"S": 3000.0}), Dwell(1, 2, 0.5), Function(3, 3, "M30", {}))
+PROGRAM = Chunk(MOVES, EVENTS)
 FIGURES = RunFigures(cycle_time_s=20.0, contour_um=5.0)
 
 
 @pytest.fixture
 def stored(tmp_path: Path) -> Path:
-    write_baseline(tmp_path / "part.baseline", FIGURES, [MOVES])
+    write_baseline(tmp_path / "part.baseline", FIGURES, AXES, [PROGRAM])
     return tmp_path / "part.baseline"
 
 
-def reasons(stored: Path, moves: Moves, figures: RunFigures = FIGURES) -> list[Reason]:
-    return compare_baseline(stored, figures, [moves], BaselineTable())
+def reasons(
+    stored: Path, moves: Moves, figures: RunFigures | None = FIGURES, *, events: tuple = EVENTS
+) -> list[Reason]:
+    program = [Chunk(moves, events)]
+    return compare_baseline(stored, figures, AXES, program, BaselineTable())
 
 
 def test_the_same_run_holds_however_it_is_chunked(stored: Path):
     assert reasons(stored, MOVES) == []
-    assert compare_baseline(stored, FIGURES, [MOVES[:1], MOVES[1:]], BaselineTable()) == []
+    later = tuple(dataclasses.replace(event, before=event.before - 1) for event in EVENTS[1:])
+    chunks = [Chunk(MOVES[:1], EVENTS[:1]), Chunk(MOVES[1:], later)]
+    assert compare_baseline(stored, FIGURES, AXES, chunks, BaselineTable()) == []
 
 
-def test_the_file_is_text_with_a_line_a_move(stored: Path):
-    lines = stored.read_text(encoding="utf-8").splitlines()
-    assert lines[:4] == [
-        "twin baseline 1", "cycle_time_s 20.000000", "contour_um 5.000", "axes X Y Z C",
-    ]  # fmt: skip
-    assert lines[4] == "1 | feed line | 0 0 0 0 | 50 0 0 0"
-    assert lines[5] == "2 | feed arc | 50 0 0 0 | 50 0 0 0 | 50 20 0 0 0 1 360"
-    assert len(lines) == 7
+def test_the_file_is_text_with_a_line_an_entry_and_no_word_twice(stored: Path):
+    assert stored.read_text(encoding="utf-8").splitlines() == [
+        "twin baseline 2",
+        "cycle_time_s 20.000000",
+        "contour_um 5.000",
+        "axes X Y Z C",
+        "M3 S3000",
+        "start X0 Y0 Z0 C0",
+        "feed X50 F1000",
+        "dwell 0.5",
+        "arc center 50 20 0 normal 0 0 1 sweep 360",
+        "feed Y-30 Z-5 C90",
+        "M30",
+    ]
+
+
+def test_lines_that_move_in_the_program_change_nothing(stored: Path, tmp_path: Path):
+    moved = dataclasses.replace(MOVES, line=MOVES.line + 7, block=MOVES.block + 70)
+    assert reasons(stored, moved) == []
+    write_baseline(tmp_path / "moved", FIGURES, AXES, [Chunk(moved, EVENTS)])
+    assert (tmp_path / "moved").read_bytes() == stored.read_bytes()
 
 
 def changed(column: str, row: int, value: object) -> Moves:
@@ -61,9 +87,7 @@ def changed(column: str, row: int, value: object) -> Moves:
         (changed("sweep", 1, -360.0), 2, "arc of -360 degrees, baseline 360"),
         (changed("sweep", 1, 720.0), 2, "arc of 720 degrees, baseline 360"),
         (changed("center", 1, [30.0, 0, 0]), 2, "arc about (30 0 0), baseline (50 20 0)"),
-        (changed("motion", 0, 0), 1, "rapid line, baseline feed line"),
-        (MOVES[:2], 0, "ends before what was line 3"),
-        (moves_of(*ROWS, ROWS[0]), 4, "does not have"),
+        (changed("motion", 0, 0), 1, "rapid X50, baseline feed X50"),
     ],
 )
 def test_the_first_block_that_differs_is_named(
@@ -72,6 +96,76 @@ def test_the_first_block_that_differs_is_named(
     (reason,) = reasons(stored, moves)
     assert (reason.what, reason.line) == ("baseline-path", line_number)
     assert told in reason.message
+
+
+def test_a_move_more_or_less_is_told_with_what_there_was(stored: Path):
+    (fewer,) = reasons(stored, MOVES[:2], events=EVENTS[:2])
+    assert (fewer.what, fewer.line) == ("baseline-path", 2)
+    assert fewer.message == "its end, baseline feed Y-30 Z-5 C90"
+    (more,) = reasons(stored, moves_of(*ROWS, ROWS[0]), events=(*EVENTS[:2],))
+    assert (more.what, more.line) == ("baseline-function", 4)
+    assert more.message.endswith(", baseline M30")
+
+
+def test_functions_dwells_and_feeds_are_held_too(stored: Path):
+    (slow,) = reasons(stored, MOVES, events=(Function(0, 1, "M3", {"S": 300.0}), *EVENTS[1:]))
+    assert (slow.what, slow.message) == ("baseline-function", "M3 S300, baseline M3 S3000")
+    (off,) = reasons(stored, MOVES, events=EVENTS[1:])
+    assert (off.what, off.line) == ("baseline-function", 1)
+    (long,) = reasons(stored, MOVES, events=(EVENTS[0], Dwell(1, 2, 5.0), EVENTS[2]))
+    assert (long.what, long.message) == ("baseline-path", "dwell 5 s, baseline 0.5 s")
+    feed = MOVES.feed.copy()
+    feed[1] = 1002.0
+    (fast,) = reasons(stored, dataclasses.replace(MOVES, feed=feed))
+    assert (fast.what, fast.line) == ("baseline-feed", 2)
+    assert "feed 1002, baseline 1000" in fast.message
+    feed[1] = 1000.5
+    assert reasons(stored, dataclasses.replace(MOVES, feed=feed)) == []
+
+
+def broken_program(moves: Moves, line: int) -> Iterator[Chunk]:
+    yield Chunk(moves, EVENTS[:1])
+    raise ProgramError(Diagnostic("error", "unknown-word", "no word", "a.nc", line, 1))
+
+
+def test_a_program_that_no_longer_interprets_is_told_with_what_was_there(stored: Path):
+    """The dwell that follows the first move is the first thing that is missing."""
+    program = broken_program(MOVES[:1], 2)
+    (broken,) = compare_baseline(stored, None, AXES, program, BaselineTable())
+    assert (broken.what, broken.line) == ("baseline-path", 2)
+    assert broken.message == "no longer interprets, baseline dwell 0.5"
+    program = broken_program(changed("end", 0, [51.0, 0, 0, 0])[:1], 2)
+    (earlier,) = compare_baseline(stored, None, AXES, program, BaselineTable())
+    assert (earlier.line, earlier.message) == (1, "ends at X51, baseline X50")
+
+
+def test_another_machine_is_no_traceback(stored: Path):
+    axes = Axes(("X", "Y", "Z"), ("linear",) * 3)
+    (other,) = compare_baseline(stored, FIGURES, axes, [], BaselineTable())
+    assert other.message == "axes X Y Z, baseline X Y Z C"
+
+
+@settings(max_examples=25, derandomize=True, deadline=None)
+@given(st.integers(0, 2**31), st.integers(1, 12))
+def test_what_is_stored_is_what_comes_back(seed: int, count: int):
+    random = np.random.default_rng(seed)
+    position, rows = random.uniform(-200, 200, 4), []
+    for _ in range(count):
+        end = np.where(random.random(4) < 0.5, position, random.uniform(-200, 200, 4))
+        row = line(position, end)
+        if random.random() < 0.4:
+            normal = np.eye(3)[random.integers(3)]
+            row = arc(position, position[:3] + 9.0 * np.roll(normal, 1), normal, 200.0, lead=1.0)
+        rows.append(row)
+        position = row["end"]
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "x.baseline"
+        write_baseline(file, FIGURES, AXES, [Chunk(moves_of(*rows))])
+        assert reasons(file, moves_of(*rows), events=()) == []
+        index = int(random.integers(count))
+        rows[index] = rows[index] | {"end": rows[index]["end"] + np.array([0, 0.0011, 0, 0])}
+        (found,) = reasons(file, moves_of(*rows), events=())
+        assert (found.what, found.line) == ("baseline-path", index + 1)
 
 
 def test_a_normal_and_a_sweep_turned_over_together_are_the_same_arc(stored: Path):
@@ -84,6 +178,7 @@ def test_less_than_the_tolerance_is_no_difference(stored: Path):
 
 
 def test_time_and_error_are_held_too(stored: Path):
+    assert reasons(stored, MOVES, None) == []
     (slow,) = reasons(stored, MOVES, RunFigures(20.3, 5.0))
     assert (slow.what, "20.300 s, baseline 20.000 s" in slow.message) == (
         "baseline-cycle-time",
@@ -101,8 +196,10 @@ def test_a_missing_baseline_is_told_with_what_to_do(tmp_path: Path):
 
 @pytest.mark.parametrize(
     "text",
-    ["", "else\n", "twin baseline 1\ncycle_time_s x\ncontour_um 1\n", "twin baseline 1\naxes X\n",
-     "twin baseline 1\ncycle_time_s 1\ncontour_um 1\naxes X Y Z C\nbroken\n"],
+    ["", "else\n", "twin baseline 2\ncycle_time_s x\ncontour_um 1\n", "twin baseline 2\naxes X\n",
+     "twin baseline 1\ncycle_time_s 1\ncontour_um 1\naxes X Y Z C\n",
+     *(f"twin baseline 2\ncycle_time_s 1\ncontour_um 1\naxes X Y Z C\n{line}\n"
+       for line in ("feed Q5", "feed X5,5", "arc center 1 2", "dwell", "dwell x", "feed X"))],
 )  # fmt: skip
 def test_what_is_no_baseline_is_refused(tmp_path: Path, text: str):
     (tmp_path / "x.baseline").write_text(text, encoding="utf-8")
@@ -111,5 +208,5 @@ def test_what_is_no_baseline_is_refused(tmp_path: Path, text: str):
 
 
 def test_a_program_without_moves_has_a_baseline(tmp_path: Path):
-    write_baseline(tmp_path / "x.baseline", FIGURES, [])
-    assert compare_baseline(tmp_path / "x.baseline", FIGURES, [], BaselineTable()) == []
+    write_baseline(tmp_path / "x.baseline", FIGURES, AXES, [])
+    assert compare_baseline(tmp_path / "x.baseline", FIGURES, AXES, [], BaselineTable()) == []

@@ -52,7 +52,10 @@ def report_of(
         cut={"removed_mm3": 12.5, "gouges": []}, commanded={}, simulated={},
     )  # fmt: skip
     content = result(summary, figures, table, verdict)
-    return Report(header=header, figures=figures, verdict=verdict, trace=trace, result=content)
+    return Report(
+        header=header, figures=figures, verdict=verdict, tolerance=table, trace=trace,
+        result=content,
+    )  # fmt: skip
 
 
 class Page(html.parser.HTMLParser):
@@ -130,3 +133,13 @@ def test_a_run_of_hardly_anything_has_a_page(count: int):
 
 def test_the_same_run_gives_the_same_page():
     assert render_report(report_of(MOVES[:1])) == render_report(report_of(MOVES[:1]))
+
+
+def test_lines_are_counted_and_shown_as_the_interpreter_counts_them():
+    """A form feed ends no line; a line longer than anybody reads is cut."""
+    text = "G1\x0cX50\r\nG2 J20" + "0" * 5000 + "\rG1 Y-30\nG1 X20\n"
+    page = render_report(report_of(tolerance=5.0, text=text))
+    shown = re.findall(r'<span(?: class="at")?> +(\d)  (.*?)</span>', page)
+    assert ("3", "G1 Y-30") in shown
+    assert ("4", "G1 X20") in shown
+    assert max(len(line) for _, line in shown) == 200

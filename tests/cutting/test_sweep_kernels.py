@@ -38,15 +38,17 @@ def swept(
     points: FloatArray, cutter: Profile, shape: tuple[int, int]
 ) -> tuple[FloatArray, FloatArray, FloatArray, tuple[int, int, int, int]]:
     heights = np.zeros(shape)
-    removed, depth = np.zeros(len(points) - 1), np.zeros(len(points) - 1)
+    removed, depth, aside = np.zeros((3, len(points) - 1))
     profile = dataclasses.astuple(cutter)
     marks = np.zeros(shape)
     mark = np.arange(1, len(removed) + 1, dtype=np.float64)
-    changed = sweep(heights, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, marks, mark)
+    changed = sweep(
+        heights, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, aside, marks, mark
+    )
     np.testing.assert_array_equal(marks > 0, heights < 0)
     unmarked = np.zeros(shape)
     none = np.zeros((0, 0))
-    sweep(unmarked, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, none, mark)
+    sweep(unmarked, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, aside, none, mark)
     np.testing.assert_array_equal(unmarked, heights)
     return heights, removed, depth, changed
 
@@ -101,7 +103,7 @@ def test_what_is_passed_over_was_cut_before(
         volume, deepest = np.zeros(1), np.zeros(1)
         sweep(
             heights, (0.0, 0.0), CELL, BOTTOM, np.array(line), dataclasses.astuple(cutter),
-            volume, deepest, none, nothing,
+            volume, deepest, np.zeros(1), none, nothing,
         )  # fmt: skip
         assert removed[i] == pytest.approx(volume[0], abs=1e-9)
         assert depth[i] == pytest.approx(deepest[0], abs=1e-9)

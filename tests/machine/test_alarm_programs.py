@@ -18,6 +18,7 @@ EXPECTED = {
     "drive_saturation": ("drive-saturation", 5, "the drive of Y has been at its limit of 3500 N"),
     "collision_faceplate": ("collision", 5, "the tool's shank meets the faceplate"),
     "collision_vise": ("collision", 6, "the holder's nut meets the fixed jaw"),
+    "collision_second_tool": ("collision", 9, "the holder's nut meets the "),
     "rapid_into_stock": (
         "rapid-into-stock",
         6,
@@ -36,13 +37,13 @@ def test_a_near_miss_is_told_and_stops_nothing(twin: Twin, tmp_path: Path):
     done = twin("run", FOLDER / f"{NO_ALARM}.toml", "--out", tmp_path)
     assert done.code == 0, done.stderr
     assert (
-        "near_miss.nc:5:1: warning near-miss: the holder's nut passes the fixed jaw" in done.stderr
+        "near_miss.nc:6:1: warning near-miss: the holder's nut passes the fixed jaw" in done.stderr
     )
     result = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))
     assert result["alarms"] == []
-    assert result["near_miss"]["line"] == 5
+    assert result["near_miss"]["line"] == 6
     assert result["near_miss"]["between"] == ["holder's nut", "fixed jaw"]
-    assert result["near_miss"]["clearance_mm"] == pytest.approx(30.0 - 12.0 - 15.75, abs=0.1)
+    assert result["near_miss"]["clearance_mm"] == pytest.approx(30.0 - 12.0 - 16.0, abs=0.1)
 
 
 @pytest.mark.parametrize(

@@ -90,6 +90,14 @@ def test_friction_with_integral_action_gives_peaks_that_fade():
     assert result.quadrant_names == ("+X", "+Y", "-X", "-Y")
 
 
+def test_a_step_is_no_peak():
+    """Backlash shifts one side against the other; friction leaps out of both."""
+    play = shipped_machine(backlash=0.02, dry_friction=100.0, **PERFECT)
+    result = circular_test(play, 50.0, 1000.0)
+    assert result.hysteresis_um > 15.0
+    assert max(np.abs(result.quadrant_peaks_um)) < 0.25 * result.hysteresis_um
+
+
 def test_a_table_that_turns_late_is_seen_in_xyc():
     """C later than X and Y by d: the followed point trails by v d, seen along the bar's direction."""
     machine = changed(shipped_machine(), "C", kv=7.5 * 0.9)

@@ -47,8 +47,8 @@ def test_continuous_path_keeps_tolerance_and_limits(
 ) -> None:
     setpoints = run(program, machine)
     assert np.array_equal(setpoints.position[-1], program.position + ZERO)
-    # Where two roundings are too narrow to be, the border is a knee as in exact path.
-    assert_within_limits(setpoints, machine, PERIOD, knees=True)
+    assert_within_limits(setpoints, machine, PERIOD)
+    assert_consistent(setpoints, machine, PERIOD)
     moving = setpoints.move >= 0
     tolerance = max(0.3, machine.corner_tolerance)
     if np.any(moving):
@@ -149,17 +149,21 @@ def test_tangent_blocks_run_through() -> None:
     assert duration(program, mill()) == pytest.approx(single, rel=1e-6)
 
 
-def test_stop_just_outside_the_window_is_seen_in_time() -> None:
+@pytest.mark.parametrize("stop", [1999, 2000, 2001, 3999, 4000, 4001])
+@pytest.mark.parametrize("same_line", [True, False])
+def test_stop_at_the_end_of_a_window_is_seen_in_time(stop: int, same_line: bool) -> None:
     """Moves of 10 µm at 500 mm/s: the way to brake is longer than any window."""
     program = with_corner(Corner.EXACT_PATH)
-    machine = mill(path_acceleration=200.0, path_jerk=2000.0)
-    for i in range(1, 9001):
-        program.corner = Corner.EXACT_STOP if i == 4097 else Corner.EXACT_PATH
-        program.line(0.01 * i, 0.0, 0.0, 0.0, feed=30000.0)
+    machine = mill(path_acceleration=200.0, path_jerk=2000.0, junction_velocity_step=0.5)
+    for i in range(1, 4501):
+        program.corner = Corner.EXACT_STOP if i == stop else Corner.EXACT_PATH
+        aside = 0.0 if same_line else 1e-5 * (i % 2)
+        program.line(0.01 * i, aside, 0.0, 0.0, feed=30000.0)
     setpoints = run(program, machine)
-    assert_within_limits(setpoints, machine, PERIOD)
-    at_stop = np.argmin(np.abs(setpoints.position[:, 0] - ZERO[0] - 40.97))
+    assert_within_limits(setpoints, machine, PERIOD, knees=True)
+    at_stop = np.argmin(np.abs(setpoints.position[:, 0] - ZERO[0] - 0.01 * stop))
     assert np.abs(setpoints.velocity[at_stop]).max() < 200.0 * PERIOD
+    assert setpoints.velocity[: at_stop - 300].max() > 10.0
 
 
 @pytest.mark.parametrize("corner", list(Corner))

@@ -96,6 +96,17 @@ def test_any_operator_keeps_path_and_limits(
     assert np.array_equal(setpoints.time, np.arange(len(setpoints)) * PERIOD)
 
 
+@SETTINGS
+@given(programs(most=8, corners=(Corner.CONTINUOUS,)), limits(), BUTTONS)
+def test_any_operator_keeps_the_limits_of_a_continuous_path(
+    program: Program, machine: MotionLimits, buttons: list[tuple[int, str, float]]
+) -> None:
+    setpoints = operate(live(program, machine), buttons)
+    assert_within_limits(setpoints, machine, PERIOD)
+    assert_consistent(setpoints, machine, PERIOD)
+    assert np.array_equal(setpoints.position[-1], program.position + ZERO)
+
+
 @FEWER
 @given(programs(most=8, corners=tuple(Corner)), limits(), BUTTONS, st.integers(1, 40))
 def test_slices_do_not_matter(
@@ -279,3 +290,27 @@ def test_values_off_the_panel_are_refused() -> None:
         motion.rapid_override = math.nan
     with pytest.raises(ValueError, match="largest_override"):
         live(LONG, mill(), largest_override=0.5)
+
+
+def test_long_program_under_many_wishes() -> None:
+    """Many windows, parted by single blocks, with changes at odd places."""
+    program = Program()
+    program.corner = Corner.EXACT_PATH
+    for i in range(1, 9001):
+        program.line(0.01 * i, 1e-5 * (i // 50 % 2), 0.0, 0.0, feed=6000.0)
+    machine = mill(junction_velocity_step=0.5)
+    motion = live(program, machine)
+    rng = np.random.default_rng(2)
+    parts: list[Setpoints] = []
+    while not motion.finished:
+        parts.append(motion.advance(int(rng.integers(1, 60))))
+        motion.feed_override = float(rng.choice([0.1, 0.5, 1.0, 1.5]))
+        motion.single_block = bool(rng.integers(0, 2))
+        if rng.integers(0, 4) == 0:
+            motion.hold()
+        else:
+            motion.start()
+    setpoints = join(parts)
+    assert_on_path(setpoints, program.moves, ZERO)
+    assert_within_limits(setpoints, machine, PERIOD, knees=True)
+    assert np.array_equal(setpoints.position[-1], program.position + ZERO)

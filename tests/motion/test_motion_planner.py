@@ -86,6 +86,12 @@ def test_rapid_runs_at_the_limit_of_its_slowest_axis() -> None:
     assert np.allclose(setpoints.velocity.max(axis=0), [300.0, 300.0, 300.0, 0.0], rtol=1e-9)
 
 
+def test_rapid_keeps_a_feed_that_the_program_gives_it() -> None:
+    program = Program().line(50.0, 0.0, 0.0, 0.0)
+    program.parts[0] = dataclasses.replace(program.parts[0], feed=np.array([1200.0]))
+    assert run(program, mill()).velocity[:, 0].max() == pytest.approx(20.0)
+
+
 def test_feed_counts_the_length_of_the_move() -> None:
     turning = run(Program().line(0.0, 0.0, 0.0, 90.0, feed=1800.0), mill())
     assert turning.velocity[:, 3].max() == pytest.approx(30.0)

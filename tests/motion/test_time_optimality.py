@@ -72,6 +72,15 @@ def bound(program: Program, machine: MotionLimits, feed: float) -> float:
     return float(np.sum(np.diff(grid) / mean))
 
 
+def fast_machine(jerk: float) -> MotionLimits:
+    """A machine that its axes' accelerations bound, and a jerk."""
+    return mill(
+        velocity=np.full(4, 2000.0), acceleration=np.array([3000.0, 2500.0, 2000.0, 4000.0]),
+        jerk=np.full(4, jerk), path_acceleration=np.inf, path_jerk=np.inf,
+        junction_velocity_step=1e-6, junction_acceleration_step=1e9,
+    )  # fmt: skip
+
+
 def slot(feed: float, radius: float, straight: float) -> Program:
     program = Program()
     program.corner = Corner.EXACT_PATH
@@ -106,11 +115,7 @@ def test_chain_comes_near_the_bound(name: str) -> None:
         "circle": lambda: Program().arc((10.0, 0.0, 0.0), (0.0, 0.0, 1.0), 720.0, feed=feed),
         "straight chain": lambda: Program().line(5.0, 1.0, 0.0, 0.0, feed=feed),
     }[name]()
-    machine = mill(
-        velocity=np.full(4, 2000.0), acceleration=np.array([3000.0, 2500.0, 2000.0, 4000.0]),
-        jerk=np.full(4, 1e10), path_acceleration=np.inf, path_jerk=np.inf,
-        junction_velocity_step=1e-6, junction_acceleration_step=1e9,
-    )  # fmt: skip
+    machine = fast_machine(1e10)
     fastest = bound(program, machine, feed / 60.0)
     taken = duration(program, machine)
     assert fastest * 0.99 <= taken <= fastest * SLACK

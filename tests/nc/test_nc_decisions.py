@@ -559,7 +559,7 @@ def test_fagor_subroutines_have_their_own_parameters() -> None:
 
 
 def test_fagor_repeats() -> None:
-    text = "G91 G00\nN10 X1\nN20 Y1\n#RPT[N10,N20,3]\nZ1 NR4"
+    text = "G91 G00\nN10 X1\nN15 Y1\nN20\n#RPT[N10,N20,3]\nZ1 NR4"
     assert fagor(text).position == pytest.approx({"X": 4.0, "Y": 4.0, "Z": 4.0, "C": 0.0})
 
 
@@ -584,3 +584,39 @@ def test_fagor_g137_extends_corners_and_g136_rounds_them() -> None:
 
 def test_mill_has_the_axes_of_these_tests() -> None:
     assert MILL.names == ("X", "Y", "Z", "C")
+
+
+def test_codesys_slopes_of_additional_axes_are_refused() -> None:
+    error = bad("N10 G1 X100 C100 W1.5 F10", "codesys")
+    assert (error.code, error.column, error.width) == ("unsupported-word", 18, 4)
+
+
+def test_fagor_exist_tells_whether_a_parameter_has_a_value() -> None:
+    text = "P1=3\n$IF EXIST[P1]==1\nG00 X1\n$ENDIF\n$IF EXIST[P2]==1\nY1\n$ENDIF"
+    assert fagor(text).position == {"X": 1.0, "Y": 0.0, "Z": 0.0, "C": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("G53 G00 R5 Q0", "polar-origin"),
+        ("G31\nG01 X1 F100", "temporary-origin"),
+        ("G93 I5 J5", "polar-origin"),
+        ("%PART,MX,\nG00 X1", "heading"),
+        ("N10 G01 X1 F100\nN20 Y1\n#RPT[N10,N20,2]", "repeat-range"),
+    ],
+)
+def test_fagor_refuses_what_the_error_list_refuses(text: str, code: str) -> None:
+    assert bad(f"{text}\nM30", "fagor8070", machine_zero={"Z": 300.0}).code == code
+
+
+def test_codesys_rapids_have_accelerations_of_their_own() -> None:
+    moves = good("N10 G0 X1 E5 E-6 EF7 EF-8 N20 G1 X2 F1 N30 G0 X3 EF0", "codesys").moves
+    assert moves.acceleration.tolist() == [7.0, 5.0, 5.0]
+    assert moves.deceleration.tolist() == [8.0, 6.0, 6.0]
+
+
+def test_prose_behind_a_block_is_left_out_with_a_warning() -> None:
+    outcome = good("N10 G1 X10 F10 first straight line N20 Y5", "codesys")
+    assert outcome.codes == ["trailing-prose"]
+    assert (outcome.position["X"], outcome.position["Y"]) == (10.0, 5.0)

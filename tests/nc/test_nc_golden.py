@@ -84,6 +84,12 @@ def test_every_decision_has_its_golden_file(name: str) -> None:
     assert shown == sorted(path.stem for path in (GOLDEN / name / "decisions").glob("*.nc"))
 
 
+@pytest.mark.parametrize("path", RULES, ids=lambda path: f"{path.parts[-3]}/{path.stem}")
+def test_only_decisions_are_shown_by_refusals(path: Path) -> None:
+    text = golden_of(path).read_text(encoding="utf-8")
+    assert path.parent.name == "decisions" or '"severity": "error"' not in text
+
+
 def write_all() -> None:
     for path in [*PROGRAMS, *RULES]:
         golden = golden_of(path)

@@ -42,6 +42,10 @@ def test_a_diagnostic_within_a_second(name: str, dialect: str) -> None:
     assert len(str(raised.value)) < 2000
 
 
+def test_a_line_beyond_any_block_is_refused_before_it_is_read() -> None:
+    assert bad("G1 X1 " * 20_000, "gost").code == "line-too-long"
+
+
 @pytest.mark.parametrize(
     ("dialect", "text"),
     [
@@ -49,7 +53,7 @@ def test_a_diagnostic_within_a_second(name: str, dialect: str) -> None:
         ("codesys", "N1 G0 X1\nN2 X2\nN3 G20 L1 K1"),
         ("fagor8070", "N1 $GOTO N1"),
         ("fagor8070", "$WHILE 1\nG0 X1\n$ENDWHILE"),
-        ("fagor8070", "N1 G0 X1\nN2 X2\n#RPT[N1,N2,99999999]\nM30"),
+        ("fagor8070", "N1 G0 X1\nX2\nN2\n#RPT[N1,N2,99999999]\nM30"),
         ("fagor8070", "G91 G0 X1 NR9999999"),
     ],
 )

@@ -191,6 +191,8 @@ def test_long_runs_cross_the_border_of_chunks(dialect: str) -> None:
     lines += [
         arc(random_) if index % 3 else f"G90 G1 X{index % 7} Y{index}.5" for index in range(9000)
     ]
+    if dialect == "mefi":  # which refuses the larger arc
+        lines = [line.replace("R-", "R") for line in lines]
     result = assert_same(source_from_text("\n".join(lines)), dialect)
     assert result.error is None
     assert len(result.moves) > 8000

@@ -1,8 +1,11 @@
+from pathlib import Path
+
 import pytest
 
+from tests.nc.nc_running import ROOT
 from twin.errors import UsageError
 from twin.nc.dialects import DIALECTS, dialect_named, recognise
-from twin.nc.source import source_from_text
+from twin.nc.source import read_source, source_from_text
 
 OWN = {
     "gost": ["G102 C360", "G0 X1 $ подход", "G0 X1 $ approach", "G1 C5 F100 $"],
@@ -46,3 +49,12 @@ def test_words_of_two_dialects_ask() -> None:
 def test_an_unknown_dialect_names_the_known() -> None:
     with pytest.raises(UsageError, match="gost, codesys, fagor8070, mefi"):
         dialect_named("fanuc")
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "tests/golden").glob("*/*/*.nc")), ids=str)
+def test_no_program_is_taken_for_another_dialects(path: Path) -> None:
+    try:
+        found = recognise(read_source(path)).name
+    except UsageError as error:
+        found = path.parts[-3] if "could be any dialect" in str(error) else str(error)
+    assert found == path.parts[-3]

@@ -17,6 +17,19 @@ def test_doctor_finds_opengl_and_encoder() -> None:
     assert facts.encoder == "libx264"
 
 
+def test_doctor_says_what_to_free(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    low = tmp_path / "meminfo"
+    low.write_text("MemTotal: 8000000 kB\nMemAvailable: 100000 kB\n")
+    monkeypatch.setattr(doctor, "_MEMORY_FILE", low)
+    monkeypatch.setattr(doctor, "LEAST_DISK_MB", 1e12)
+    memory, disk = doctor.render_facts().problems
+    assert "102 MB of memory are free" in memory
+    assert "draft quality" in memory
+    assert "--out" in disk
+    monkeypatch.setattr(doctor, "_MEMORY_FILE", tmp_path / "none")
+    assert doctor.free_memory_mb() is None
+
+
 def test_probe_of_a_backend_that_cannot_work_says_why() -> None:
     found = gl.probe("no_such_backend")
     assert found.error

@@ -222,6 +222,16 @@ def test_a_hole_through_the_stock_shows_the_table(scene: Scene) -> None:
     assert after > before + 100
 
 
+def test_a_stock_that_is_cut_away_is_seen_no_more(scene: Scene) -> None:
+    sliver = StockTable(shape="box", size=(60.0, 6.0, 3.0), position=(0.0, 0.0, -1.0), cell=0.5)
+    with stage(dataclasses.replace(scene, stock=sliver), SIZE, DRAFT) as play:
+        before = stock_pixels(play, "top").sum()
+        play_to(play, scene.recording, moment(scene.recording, line=3))
+        after = stock_pixels(play, "top").sum()
+    assert before > 50
+    assert after == 0
+
+
 def test_shadows_fall(scene: Scene) -> None:
     pictures = []
     for quality in (DRAFT, dataclasses.replace(DRAFT, shadows=True)):

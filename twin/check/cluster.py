@@ -34,8 +34,8 @@ def check_on_cluster(
     """
     ray = _connected(address)
     try:
-        run = ray.remote(max_retries=RETRIES)(check)
-        waiting = {run.remote(task): task for task in tasks}
+        run = ray.remote(max_retries=RETRIES)(_checked)
+        waiting = {run.remote(check, task): task for task in tasks}
         while waiting:
             (ready, *_), _ = ray.wait(list(waiting), num_returns=1)
             task = waiting.pop(ready)
@@ -45,6 +45,10 @@ def check_on_cluster(
                 yield died(str(task))
     finally:
         ray.shutdown()
+
+
+def _checked(check: Callable[[TaskT], CheckOutcome], task: TaskT) -> CheckOutcome:
+    return check(task)
 
 
 def _connected(address: str) -> Any:

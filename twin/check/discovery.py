@@ -68,13 +68,13 @@ def _programs_in(folder: Path) -> list[Path]:
                 jobs.append(path)
             elif path.suffix.lower() in NC_SUFFIXES:
                 programs.append(path)
-    run_by = {job: _program_of(job) for job in jobs}
+    run_by = {job: program_of(job) for job in jobs}
     taken = {program for program in run_by.values() if program is not None}
     jobs = [job for job in jobs if run_by[job] is not None]
     return sorted([*jobs, *(path for path in programs if path.resolve() not in taken)])
 
 
-def _program_of(path: Path) -> Path | None:
+def program_of(path: Path) -> Path | None:
     """The program that a job file runs; None for a TOML file that is no job.
 
     A file that cannot be read is left to the run, which says what is wrong with it, as long as a

@@ -1,6 +1,8 @@
 """Outcomes in the forms that build servers read."""
 
+import hashlib
 import json
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -26,17 +28,31 @@ def table_rows(outcomes: Sequence[CheckOutcome]) -> list[tuple[str, str, str, st
     ]
 
 
+def figures(outcome: CheckOutcome) -> list[tuple[str, object]]:
+    """Name and value of what a run came to; empty for a program that was not run."""
+    if outcome.contour_um is None:
+        return []
+    return [
+        ("contour_um", round(outcome.contour_um, 3)),
+        ("worst_line", outcome.worst_line),
+        ("cycle_time_s", outcome.cycle_time_s),
+    ]
+
+
 def summary_line(outcomes: Sequence[CheckOutcome]) -> str:
-    """How many programs came out how."""
+    """How many programs came out how, and how many warnings there were."""
     counts = dict.fromkeys(("pass", "fail", "alarm", "error"), 0)
     for outcome in outcomes:
         counts[outcome.verdict] += 1
     told = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
-    return f"{len(outcomes)} programs: {told or 'none'}"
+    warnings = sum(len(outcome.warnings) for outcome in outcomes)
+    noun = "program" if len(outcomes) == 1 else "programs"
+    beside = f"; {warnings} {'warning' if warnings == 1 else 'warnings'}" if warnings else ""
+    return f"{len(outcomes)} {noun}: {told or 'none'}{beside}"
 
 
 def junit_xml(outcomes: Sequence[CheckOutcome]) -> str:
-    """JUnit XML as Jenkins, GitLab and others read it: a test case for each program.
+    """JUnit XML as Jenkins (``junit-10.xsd``), GitLab and others read it: a test case a program.
 
     A tolerance or an alarm is a failure, a program that could not be run an error.
     """
@@ -52,29 +68,30 @@ def junit_xml(outcomes: Sequence[CheckOutcome]) -> str:
     root = ET.Element("testsuites", totals)
     suite = ET.SubElement(root, "testsuite", totals)
     for outcome in outcomes:
-        path = Path(outcome.program)
-        case = ET.SubElement(
-            suite,
-            "testcase",
-            {
-                "name": path.name,
-                "classname": ".".join(part for part in path.parent.parts if part != "/"),
-                "file": outcome.program,
-                "time": f"{outcome.wall_s:.3f}",
-            },
-        )
-        if outcome.passed:
-            continue
-        first = outcome.findings[0] if outcome.findings else None
-        kind = "error" if outcome.verdict == "error" else "failure"
-        problem = ET.SubElement(
-            case,
-            kind,
-            {"type": first.code, "message": _printable(first.message)} if first else {},
-        )
-        problem.text = _printable("\n".join(str(finding) for finding in outcome.findings))
+        _add_case(suite, outcome)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def _add_case(suite: ET.Element, outcome: CheckOutcome) -> None:
+    path = Path(outcome.program)
+    name = {
+        "name": _printable(path.name),
+        "classname": _printable(".".join(part for part in path.parent.parts if part != "/")),
+        "time": f"{outcome.wall_s:.3f}",
+    }
+    case = ET.SubElement(suite, "testcase", name)
+    if not outcome.passed:
+        first = outcome.findings[0]
+        kind = "error" if outcome.verdict == "error" else "failure"
+        about = {"type": first.code, "message": _printable(first.message)}
+        problem = ET.SubElement(case, kind, about)
+        problem.text = _printable("\n".join(str(finding) for finding in outcome.findings))
+    if told := figures(outcome):
+        ET.SubElement(case, "system-out").text = "\n".join(f"{k}: {v}" for k, v in told)
+    if outcome.warnings:
+        text = "\n".join(str(warning) for warning in outcome.warnings)
+        ET.SubElement(case, "system-err").text = _printable(text)
 
 
 def _printable(text: str) -> str:
@@ -88,13 +105,20 @@ def json_text(outcomes: Sequence[CheckOutcome]) -> str:
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
-def github_annotations(outcomes: Sequence[CheckOutcome]) -> list[str]:
-    """Workflow commands that GitHub Actions shows at the program's line."""
-    return [_github_command(finding) for outcome in outcomes for finding in outcome.findings]
+def github_annotations(outcomes: Sequence[CheckOutcome], root: Path) -> list[str]:
+    """Workflow commands that GitHub Actions shows at the program's line.
+
+    Args:
+        outcomes: How the programs came out.
+        root: Folder of the repository, which GitHub's paths are relative to.
+    """
+    errors = [("error", finding) for outcome in outcomes for finding in outcome.findings]
+    warnings = [("warning", finding) for outcome in outcomes for finding in outcome.warnings]
+    return [_github_command(kind, finding, root) for kind, finding in errors + warnings]
 
 
-def _github_command(finding: Finding) -> str:
-    place = {"file": finding.file}
+def _github_command(kind: str, finding: Finding, root: Path) -> str:
+    place = {"file": _within(finding.file, root)}
     if finding.line:
         place["line"] = str(finding.line)
     if finding.column:
@@ -104,7 +128,13 @@ def _github_command(finding: Finding) -> str:
         f"{key}={_escaped(value).replace(':', '%3A').replace(',', '%2C')}"
         for key, value in place.items()
     )
-    return f"::error {properties}::{_escaped(finding.message)}"
+    return f"::{kind} {properties}::{_escaped(finding.message)}"
+
+
+def _within(file: str, root: Path) -> str:
+    """A path as a server knows it: relative to the repository where it lies there."""
+    path, root = Path(file).resolve(), root.resolve()
+    return path.relative_to(root).as_posix() if path.is_relative_to(root) else file
 
 
 def _escaped(text: str) -> str:
@@ -130,20 +160,32 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def gitlab_code_quality(outcomes: Sequence[CheckOutcome]) -> str:
-    """GitLab's code quality report, which it shows at the lines of a merge request."""
-    return json.dumps(
-        [_quality(finding) for outcome in outcomes for finding in outcome.findings], indent=2
-    )
+def gitlab_code_quality(outcomes: Sequence[CheckOutcome], root: Path) -> str:
+    """GitLab's code quality report, which it shows at the lines of a merge request.
+
+    Args:
+        outcomes: How the programs came out.
+        root: Folder of the repository, which GitLab's paths are relative to.
+    """
+    major = [("major", finding) for outcome in outcomes for finding in outcome.findings]
+    minor = [("minor", finding) for outcome in outcomes for finding in outcome.warnings]
+    entries = [_quality(severity, finding, root) for severity, finding in major + minor]
+    # GitLab drops what has a fingerprint that it has seen; one program may run in two jobs.
+    distinct = {entry["fingerprint"]: entry for entry in entries}
+    return json.dumps(list(distinct.values()), indent=2, ensure_ascii=False) + "\n"
 
 
-def _quality(finding: Finding) -> dict[str, Any]:
+def _quality(severity: str, finding: Finding, root: Path) -> dict[str, Any]:
+    file = _within(finding.file, root)
+    # Without the values, so that the same finding is known again when it has grown.
+    about = re.sub(r"[\d.]+", "", finding.message)
+    what = f"{file}:{finding.line}:{finding.column}:{finding.code}:{about}"
     return {
         "description": finding.message,
         "check_name": finding.code,
-        "fingerprint": f"{finding.file}:{finding.line}:{finding.code}",
-        "severity": "major",
-        "location": {"path": finding.file, "lines": {"begin": max(finding.line, 1)}},
+        "fingerprint": hashlib.sha256(what.encode()).hexdigest(),
+        "severity": severity,
+        "location": {"path": file, "lines": {"begin": max(finding.line, 1)}},
     }
 
 

@@ -49,6 +49,7 @@ class CheckOutcome:
         cycle_time_s: Machine time of the program [s]; None when it was not run.
         wall_s: How long the check took [s].
         findings: Why it does not pass; empty when it does.
+        warnings: What the interpreter had to say beside that.
         changes: What a sweep changed for it, keys of job or machine and their values.
     """
 
@@ -60,6 +61,7 @@ class CheckOutcome:
     cycle_time_s: float | None = None
     wall_s: float = 0.0
     findings: tuple[Finding, ...] = ()
+    warnings: tuple[Finding, ...] = ()
     changes: tuple[tuple[str, Any], ...] = ()
 
     @property
@@ -71,7 +73,6 @@ class CheckOutcome:
         """The outcome as plain values."""
         content = dataclasses.asdict(self)
         content["exit_code"] = int(self.exit_code)
-        content["findings"] = [dataclasses.asdict(finding) for finding in self.findings]
         content["changes"] = dict(self.changes)
         return content
 

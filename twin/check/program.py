@@ -3,18 +3,22 @@
 import dataclasses
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable
 from pathlib import Path
 
+from twin.alarm_text import alarm_diagnostic
 from twin.check.outcome import CheckOutcome, Finding
 from twin.check.variation import Variant
-from twin.compare.baseline import RunFigures, compare_baseline, write_baseline
+from twin.compare.baseline import compare_baseline, write_baseline
+from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import ExitCode, TwinError
-from twin.nc.canonical import Moves
-from twin.nc.diagnostics import ProgramError
+from twin.job import Job
+from twin.machine.alarms import Alarm
+from twin.nc.diagnostics import Diagnostic, ProgramError
 from twin.preparation import Preparation, prepare
 from twin.progress import no_progress
+from twin.reason_text import reason_text
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,15 +27,19 @@ class CheckSettings:
 
     Attributes:
         machine: Overrides the jobs' machines.
+        dialect: Overrides the jobs' dialects.
         strict: Warnings of the interpreter are errors.
         baseline: Folder of the baselines that runs are held to, or None.
         update_baseline: Store baselines there instead of holding runs to them.
+        reports: Folder for a report on every program that was run, or None.
     """
 
     machine: str | None = None
+    dialect: str | None = None
     strict: bool = False
     baseline: Path | None = None
     update_baseline: bool = False
+    reports: Path | None = None
 
 
 def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
@@ -45,82 +53,110 @@ def check_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     try:
         outcome = _run(variant, settings)
     except TwinError as error:
-        outcome = CheckOutcome(
-            program=str(path),
-            verdict="alarm" if error.exit_code is ExitCode.ALARM else "error",
-            exit_code=error.exit_code,
-            findings=(_finding_of(error, path),),
-        )
+        outcome = _not_run(path, error)
     return dataclasses.replace(outcome, wall_s=time.perf_counter() - began, changes=variant.changes)
 
 
-def baseline_file(folder: Path, path: Path) -> Path:
-    """Where the baseline of a program lies: in the folder, under the program's own path.
+def file_of(folder: Path, job: Job, suffix: str) -> Path:
+    """Where a job's baseline or report lies: in the folder, under the job's own path.
 
     A path is taken relative to the working folder where it lies below that, so that a baseline is
-    found again from another checkout.
+    found again from another checkout. A program without a job file keeps its whole name, so that
+    two of the same stem do not share one.
     """
-    resolved = path.resolve()
+    resolved = (job.path or job.program).resolve()
     here = Path.cwd().resolve()
     parts = (
         resolved.relative_to(here) if resolved.is_relative_to(here) else Path(*resolved.parts[1:])
     )
-    return folder / parts.with_suffix(".baseline")
+    name = parts.name if job.path is None else parts.stem
+    return folder / parts.with_name(name + suffix)
 
 
 def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     from twin.chain import Run
+    from twin.compare.report import write_report
+    from twin.results import report_of, result_of
 
     path = variant.path
     preparation = prepare(
-        path, machine=settings.machine, strict=settings.strict, changes=variant.changes
+        path,
+        dialect=settings.dialect,
+        machine=settings.machine,
+        strict=settings.strict,
+        changes=variant.changes,
     )
     run = Run(preparation)
-    survey = run.survey()
-    with tempfile.TemporaryDirectory(prefix="twin-check-") as folder:
-        outcome = run.execute(survey, Path(folder), no_progress)
-    figures = RunFigures(outcome.duration_s, outcome.figures.contour.max)
-    reasons = list(outcome.verdict.reasons)
-    verdict, exit_code = outcome.verdict.outcome, outcome.verdict.exit_code
-    if settings.baseline is not None and verdict != "alarm":
-        differing = _hold_to_baseline(path, preparation, figures, settings, settings.baseline)
-        if differing:
-            reasons += differing
-            verdict, exit_code = "fail", ExitCode.FAILED
+    try:
+        survey = run.survey()
+        with tempfile.TemporaryDirectory(prefix="twin-check-") as folder:
+            outcome = run.execute(survey, Path(folder), no_progress)
+    except ProgramError as error:
+        differing = _baseline_reasons(preparation, None, settings)
+        return _not_run(path, error, _findings(preparation, differing))
+    if settings.reports is not None:
+        page = report_of(run, outcome, result_of(run, outcome))
+        write_report(file_of(settings.reports, preparation.job, ".html"), page)
     contour = outcome.figures.contour
+    alarmed = outcome.verdict.outcome == "alarm"
+    figures = None if alarmed else RunFigures(outcome.duration_s, contour.max)
+    differing = _baseline_reasons(preparation, figures, settings)
+    failed = bool(differing) and not alarmed
     return CheckOutcome(
         program=str(path),
-        verdict=verdict,
-        exit_code=exit_code,
+        verdict="fail" if failed else outcome.verdict.outcome,
+        exit_code=ExitCode.FAILED if failed else outcome.verdict.exit_code,
         contour_um=contour.max,
         worst_line=contour.worst_line,
         cycle_time_s=outcome.duration_s,
-        findings=tuple(
-            Finding(reason.what, reason.message, str(preparation.job.program), reason.line)
-            for reason in reasons
+        findings=(
+            *(_alarm_finding(preparation, alarm) for alarm in outcome.alarms),
+            *_findings(preparation, outcome.verdict.reasons[len(outcome.alarms) :]),
+            *_findings(preparation, differing),
         ),
+        warnings=tuple(_diagnostic_finding(found) for found in outcome.warnings),
     )
 
 
-def _hold_to_baseline(
-    path: Path, preparation: Preparation, figures: RunFigures, settings: CheckSettings, folder: Path
+def _baseline_reasons(
+    preparation: Preparation, figures: RunFigures | None, settings: CheckSettings
 ) -> list[Reason]:
-    file = baseline_file(folder, path)
-    if settings.update_baseline:
-        write_baseline(file, figures, _moves(preparation))
+    """Hold the run to its baseline, or store it; only a run that came to its end is stored."""
+    if settings.baseline is None:
         return []
-    return compare_baseline(file, figures, _moves(preparation), preparation.job.file.baseline)
+    file = file_of(settings.baseline, preparation.job, ".baseline")
+    axes, chunks = preparation.machine.axes, preparation.interpretation().chunks()
+    if not settings.update_baseline:
+        limits = preparation.job.file.baseline
+        return compare_baseline(file, figures, axes, chunks, limits)
+    if figures is not None:
+        write_baseline(file, figures, axes, chunks)
+    return []
 
 
-def _moves(preparation: Preparation) -> Iterator[Moves]:
-    for chunk in preparation.interpretation().chunks():
-        yield chunk.moves
-
-
-def _finding_of(error: TwinError, path: Path) -> Finding:
+def _not_run(path: Path, error: TwinError, differing: tuple[Finding, ...] = ()) -> CheckOutcome:
     if isinstance(error, ProgramError):
-        found = error.diagnostic
-        return Finding(
-            found.code, found.message, found.file, found.line, found.column, text=str(found)
-        )
-    return Finding("cannot-run", str(error), str(path))
+        finding = _diagnostic_finding(error.diagnostic)
+    else:
+        finding = Finding("cannot-run", str(error).removeprefix(f"{path}: "), str(path))
+    return CheckOutcome(
+        program=str(path),
+        verdict="alarm" if error.exit_code is ExitCode.ALARM else "error",
+        exit_code=error.exit_code,
+        findings=(finding, *differing),
+    )
+
+
+def _findings(preparation: Preparation, reasons: Iterable[Reason]) -> tuple[Finding, ...]:
+    program, source = str(preparation.job.program), preparation.source
+    return tuple(
+        Finding(r.what, r.message, program, r.line, text=reason_text(r, source)) for r in reasons
+    )
+
+
+def _alarm_finding(preparation: Preparation, alarm: Alarm) -> Finding:
+    return _diagnostic_finding(alarm_diagnostic(alarm, preparation.source))
+
+
+def _diagnostic_finding(found: Diagnostic) -> Finding:
+    return Finding(found.code, found.message, found.file, found.line, found.column, str(found))

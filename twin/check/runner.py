@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import os
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.context import SpawnContext
@@ -32,16 +33,18 @@ def check_all(
         return
     # Fresh processes: a fork of one that has run threads or OpenGL may hang.
     context = SpawnContext()
-    waiting = list(programs)
-    with concurrent.futures.ProcessPoolExecutor(workers, mp_context=context) as pool:
-        futures = {pool.submit(check, path): path for path in waiting}
-        crashed = []
-        for future in concurrent.futures.as_completed(futures):
-            path = futures[future]
-            try:
-                yield future.result()
-            except BrokenProcessPool:
-                crashed.append(path)
+    crashed = []
+    with _pool(workers, context) as pool:
+        futures = {pool.submit(check, path): path for path in programs}
+        try:
+            for future in concurrent.futures.as_completed(futures):
+                try:
+                    yield future.result()
+                except BrokenProcessPool:
+                    crashed.append(futures[future])
+        finally:
+            # When interrupted, what has not begun shall not begin.
+            pool.shutdown(wait=False, cancel_futures=True)
     # A process that died took every waiting program with it: each gets a process of its own.
     for path in crashed:
         yield _check_alone(path, check, context)
@@ -62,6 +65,17 @@ def run_tasks(
     return check_on_cluster(tasks, check, address=cluster)
 
 
+def _pool(workers: int, context: SpawnContext) -> concurrent.futures.ProcessPoolExecutor:
+    return concurrent.futures.ProcessPoolExecutor(
+        workers, mp_context=context, initializer=_end_when_interrupted
+    )
+
+
+def _end_when_interrupted() -> None:
+    """An interrupt from the keyboard ends a process at once; the first one tells the user."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def available_cores() -> int:
     """Cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
@@ -72,7 +86,7 @@ def available_cores() -> int:
 def _check_alone(
     task: TaskT, check: Callable[[TaskT], CheckOutcome], context: SpawnContext
 ) -> CheckOutcome:
-    with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
+    with _pool(1, context) as pool:
         try:
             return pool.submit(check, task).result()
         except BrokenProcessPool:

@@ -63,11 +63,11 @@ def check_and_print(
             progress("check", len(outcomes) / len(programs))
     order = {str(path): index for index, path in enumerate(programs)}
     outcomes.sort(key=lambda outcome: order[outcome.program])
+    _print(outcomes)
     if junit is not None:
         forms.write_junit(junit, outcomes)
     if json_file is not None:
         write_text(json_file, forms.json_text(outcomes))
-    _print(outcomes)
     _tell_server(outcomes, environment)
     return ExitCode.OK if all(outcome.passed for outcome in outcomes) else ExitCode.FAILED
 
@@ -90,10 +90,12 @@ def _print(outcomes: Sequence[CheckOutcome]) -> None:
 
 def _tell_server(outcomes: Sequence[CheckOutcome], environment: Mapping[str, str]) -> None:
     if environment.get("GITHUB_ACTIONS") == "true":
-        for command in forms.github_annotations(outcomes):
+        root = Path(environment.get("GITHUB_WORKSPACE") or ".")
+        for command in forms.github_annotations(outcomes, root):
             typer.echo(command)
         if summary := environment.get("GITHUB_STEP_SUMMARY"):
             with Path(summary).open("a", encoding="utf-8") as file:
                 file.write(forms.markdown_summary(outcomes))
     if environment.get("GITLAB_CI") == "true":
-        write_text(Path(CODE_QUALITY_FILE), forms.gitlab_code_quality(outcomes))
+        root = Path(environment.get("CI_PROJECT_DIR") or ".")
+        write_text(Path(CODE_QUALITY_FILE), forms.gitlab_code_quality(outcomes, root))

@@ -8,8 +8,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from twin.compare.track_comparison import TrackDifference, compare_tracks
-from twin.compare.tracks import read_track
+from twin.compare.track_comparison import TrackDifference, compare_files
 from twin.errors import ExitCode, UsageError
 
 
@@ -40,8 +39,7 @@ def compare_and_print(
     """
     if form not in ("text", "json"):
         raise UsageError(f"--format {form}: use text or json")
-    one, other = (read_track(path, period_s=period_s) for path in (first, second))
-    found = compare_tracks(one, other, offset_s=offset_s)
+    found = compare_files(first, second, period_s=period_s, offset_s=offset_s)
     if form == "json":
         typer.echo(json.dumps(dataclasses.asdict(found), indent=2))
     else:

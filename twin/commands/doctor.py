@@ -23,6 +23,9 @@ def print_doctor() -> ExitCode:
     facts = render_facts()
     typer.echo(f"OpenGL     {facts.backend or 'none'} {facts.renderer}".rstrip())
     typer.echo(f"video      {facts.encoder or 'none'}")
+    memory = "unknown" if facts.memory_mb is None else f"{facts.memory_mb:.0f} MB free"
+    typer.echo(f"memory     {memory}")
+    typer.echo(f"disk       {facts.disk_mb:.0f} MB free")
     for problem in facts.problems:
         typer.echo(f"problem: {problem}", err=True)
     typer.echo("all rooms work here" if facts.ready else "all rooms but the pictures work here")

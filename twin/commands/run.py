@@ -7,18 +7,13 @@ import typer
 from twin.alarm_text import alarm_diagnostic, near_miss_diagnostic
 from twin.chain import Run
 from twin.commands.pictures import film_run
-from twin.commands.results import write_results
 from twin.errors import ExitCode
 from twin.outcome import Outcome
 from twin.preparation import prepare
 from twin.progress import shown_progress
+from twin.reason_text import reason_text
+from twin.results import RESULT_FILES, write_results
 from twin.run_folder import run_folder
-
-RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
-"""What a run may leave; an earlier run's files of these names are removed when one begins.
-
-The result, written last, is removed first: where it stands, everything that it speaks of is whole.
-"""
 
 
 def run_and_print(
@@ -69,7 +64,7 @@ def _print_findings(run: Run, outcome: Outcome) -> None:
         typer.echo(str(alarm_diagnostic(alarm, run.preparation.source)), err=True)
     if not outcome.alarms:
         for reason in outcome.verdict.reasons:
-            typer.echo(f"{run.preparation.source.name}: {reason}", err=True)
+            typer.echo(reason_text(reason, run.preparation.source), err=True)
 
 
 def _summary(run: Run, outcome: Outcome, folder: Path) -> str:

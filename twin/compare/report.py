@@ -3,6 +3,7 @@
 import base64
 import dataclasses
 import json
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,19 +12,15 @@ import jinja2
 import markupsafe
 import numpy as np
 
+from twin.compare.cut_rows import cut_events, cut_figures
 from twin.compare.figures import ArcFigures, Figures, WorstPlace
-from twin.compare.plots import (
-    Plot,
-    error_plot,
-    following_plot,
-    path_plot,
-    polar_plot,
-    speed_plot,
-)
+from twin.compare.plot_style import Plot, theme_css
+from twin.compare.plots import error_plot, following_plot, path_plot, polar_plot, speed_plot
 from twin.compare.trace import Trace
 from twin.compare.verdict import Verdict
 from twin.files import write_text
-from twin.nc.canonical import IntArray
+from twin.job import ToleranceTable
+from twin.nc.canonical import FloatArray, IntArray
 from twin.recording import RecordingHeader
 
 _HEADINGS = {
@@ -31,10 +28,18 @@ _HEADINGS = {
     "fail": ("✖", "Fail", "a tolerance does not hold"),
     "alarm": ("▲", "Alarm", "the machine stopped"),
 }
+_LINE_END = re.compile(r"\r\n|\r|\n")
+"""What ends a program line for the interpreter too; form feeds and the like do not."""
 _HOVER_POINTS = 2000
+_HOVER_TEXT = 80
+"""Characters of a program line that hovering shows."""
 _CONTEXT_LINES = 2
+_LINE_SHOWN = 200
+"""Characters of a program line that are shown."""
 _WORST_SHOWN = 6
 _SMALLEST_SHARE = 0.05
+_TABLE_ROWS = 100
+"""A table shows so many arcs or events; all of them are in result.json."""
 _MEDIA = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 
 
@@ -46,7 +51,8 @@ class Report:
         header: Header of the recording: program text, machine, versions.
         figures: What the comparison found.
         verdict: How the run came out.
-        trace: The run, thinned.
+        tolerance: What it was held to.
+        trace: The run, thinned; empty for a run in which nothing moved.
         result: The content of ``result.json``.
         stills: Pictures of the run, PNG or JPEG, with a caption each.
     """
@@ -54,6 +60,7 @@ class Report:
     header: RecordingHeader
     figures: Figures
     verdict: Verdict
+    tolerance: ToleranceTable
     trace: Trace
     result: Mapping[str, Any]
     stills: Sequence[tuple[str, Path]] = ()
@@ -71,40 +78,50 @@ def write_report(path: Path, report: Report) -> None:
 def render_report(report: Report) -> str:
     """The page as text; it needs nothing beside itself, no network and no other file."""
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("twin.compare", "."),
+        loader=jinja2.PackageLoader("twin.compare", "page"),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["fixed"] = _fixed
-    tolerance = float(report.result["tolerance"]["contour_um"])
-    source = report.header.program_text.splitlines()
-    arcs = _arcs_by_line(report.figures.arcs)
+    source = _LINE_END.split(report.header.program_text)
     symbol, heading, meaning = _HEADINGS[report.verdict.outcome]
+    cut = report.result["cut"] or {}
     return environment.get_template("report.html.j2").render(
-        report=report,
         header=report.header,
         figures=report.figures,
+        verdict=report.verdict,
         result=report.result,
-        verdict={"symbol": symbol, "heading": heading, "meaning": meaning},
-        tolerance_um=tolerance,
-        hover=markupsafe.Markup(_hover_table(report.trace)),  # noqa: S704 (numbers alone)
-        above=_inline(path_plot(report.trace, 0, 1, tolerance), report.trace),
-        side=_inline(path_plot(report.trace, 0, 2, tolerance), report.trace),
-        error=_inline(error_plot(report.trace, tolerance), report.trace),
-        following=_inline(following_plot(report.trace), report.trace),
-        speed=_inline(speed_plot(report.trace), report.trace),
-        arcs=arcs,
-        polars=[
-            (arc, _inline(polar_plot(arc, tolerance), report.trace))
-            for _, arc in arcs
-            if len(arc.polar)
-        ],
-        worst=[(place, _excerpt(source, place.line)) for place in _worth_showing(report.figures)],
-        reason_texts=[_line_text(source, reason.line) for reason in report.verdict.reasons],
+        outcome={"symbol": symbol, "heading": heading, "meaning": meaning},
+        tolerance_um=report.tolerance.contour_um,
+        theme={"light": _safe(theme_css(dark=False)), "dark": _safe(theme_css(dark=True))},
+        source_line=lambda line: _line_text(source, line),
+        excerpt=lambda line: _excerpt(source, line),
+        worst=_worth_showing(report.figures),
+        arcs=_arcs_by_line(report.figures.arcs)[:_TABLE_ROWS],
+        cut_figures=cut_figures(cut),
+        cut_events=cut_events(cut)[:_TABLE_ROWS],
         stills=[(caption, _data_address(path)) for caption, path in report.stills],
+        hover=_safe(_hover_data(report.trace, source)) if len(report.trace.time) else None,
+        plots=_plots(report) if len(report.trace.time) else None,
     )
+
+
+def _plots(report: Report) -> dict[str, Any]:
+    trace, tolerance = report.trace, report.tolerance
+    rows = _hover_rows(trace)
+    drawn = {
+        "above": path_plot(trace, 0, 1, tolerance.contour_um),
+        "side": path_plot(trace, 0, 2, tolerance.contour_um),
+        "error": error_plot(trace, tolerance),
+        "following": following_plot(trace),
+        "speed": speed_plot(trace),
+    }
+    limit = tolerance.circular_deviation_um or tolerance.contour_um
+    arcs = [arc for _, arc in _arcs_by_line(report.figures.arcs) if len(arc.polar)]
+    polars = [(arc, _safe(polar_plot(arc, limit).svg)) for arc in arcs]
+    return {name: _inline(plot, rows) for name, plot in drawn.items()} | {"polars": polars}
 
 
 def _worth_showing(figures: Figures) -> list[WorstPlace]:
@@ -128,37 +145,63 @@ def _hover_rows(trace: Trace) -> IntArray:
     """Rows of the trace that hovering tells about; the worst ones among them."""
     count = len(trace.time)
     step = max(1, -(-count // _HOVER_POINTS))
-    rows = np.arange(0, count, step)
     error = trace.error_um
-    worst = [first + int(error[first : first + step].argmax()) for first in rows]
+    worst = [first + int(error[first : first + step].argmax()) for first in range(0, count, step)]
     return np.array(worst, np.int64)
 
 
-def _hover_table(trace: Trace) -> str:
+def _hover_data(trace: Trace, source: list[str]) -> str:
+    """What hovering tells: columns by point, units of the axes, and the program lines met."""
     rows = _hover_rows(trace)
-    table = zip(trace.time[rows], trace.line[rows], trace.error_um[rows], strict=True)
-    return json.dumps(
-        [[round(float(t), 4), int(line), round(float(e), 2)] for t, line, e in table],
-        separators=(",", ":"),
-    )
+    line = trace.line[rows]
+    texts = {int(number): _line_text(source, int(number))[:_HOVER_TEXT] for number in set(line)}
+    content = {
+        "axes": [
+            [name, "µm" if kind == "linear" else "mdeg"]
+            for name, kind in zip(trace.axes.names, trace.axes.kinds, strict=True)
+        ],
+        "time": _column(trace.time[rows], 4),
+        "line": line.tolist(),
+        "error": _column(trace.error_um[rows], 2),
+        "lag": [_column(row, 1) for row in trace.lag[rows] * 1e3],
+        "speed": _column(trace.path_speed[rows] * 60.0, 0),
+        "text": texts,
+    }
+    # A program may hold what ends a script.
+    text = json.dumps(content, separators=(",", ":"), ensure_ascii=False)
+    return text.replace("<", "\\u003c").replace("\u2028", " ").replace("\u2029", " ")
 
 
-def _inline(plot: Plot, trace: Trace) -> dict[str, Any]:
+def _column(values: FloatArray, digits: int) -> list[float]:
+    return [round(float(value), digits) + 0.0 for value in values]
+
+
+def _inline(plot: Plot, rows: IntArray) -> dict[str, markupsafe.Markup]:
     """A plot for the template: the drawing, and where the points to hover over lie."""
-    points = plot.points[_hover_rows(trace)] if len(plot.points) else plot.points
-    places = json.dumps(np.round(points, 1).tolist(), separators=(",", ":"))
-    return {"svg": markupsafe.Markup(plot.svg), "places": markupsafe.Markup(places)}  # noqa: S704 (numbers, and drawings made here, whose texts matplotlib escapes)
+    places = json.dumps(np.round(plot.points[rows], 1).tolist(), separators=(",", ":"))
+    return {"svg": _safe(plot.svg), "places": _safe(places)}
+
+
+def _safe(text: str) -> markupsafe.Markup:
+    """Text that goes into the page as it is: made here, its strings escaped where they come in."""
+    return markupsafe.Markup(text)  # noqa: S704 (numbers; JSON without '<'; SVG by matplotlib)
 
 
 def _line_text(source: list[str], line: int) -> str:
-    return source[line - 1].strip() if 0 < line <= len(source) else ""
+    return _shown(source[line - 1].strip()) if 0 < line <= len(source) else ""
+
+
+def _shown(text: str) -> str:
+    """A program line, cut where it is longer than anybody reads."""
+    return text if len(text) <= _LINE_SHOWN else text[: _LINE_SHOWN - 1] + "…"
 
 
 def _excerpt(source: list[str], line: int) -> list[tuple[int, str]]:
     """The source line with its neighbours."""
     first = max(1, line - _CONTEXT_LINES)
     last = min(len(source), line + _CONTEXT_LINES)
-    return [(number, source[number - 1]) for number in range(first, last + 1)] if line else []
+    numbers = range(first, last + 1) if line else ()
+    return [(number, _shown(source[number - 1])) for number in numbers]
 
 
 def _data_address(path: Path) -> str:

@@ -76,6 +76,7 @@ def result(
         "machine": summary.machine,
         "verdict": verdict.outcome,
         "reasons": [dataclasses.asdict(reason) for reason in verdict.reasons],
+        "checks": [dataclasses.asdict(c) | {"holds": c.holds} for c in verdict.checks],
         "duration_s": summary.duration_s,
         "samples": figures.samples,
         "wall_s": summary.wall_s,

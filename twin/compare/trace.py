@@ -116,6 +116,11 @@ class Trace:
         """Commanded, shape (m, k) [mm/s or deg/s]."""
         return self._columns(2)
 
+    @property
+    def path_speed(self) -> FloatArray:
+        """Commanded speed of X Y Z together, shape (m,) [mm/s]."""
+        return np.linalg.norm(self.velocity[:, :3], axis=1)
+
     def _columns(self, block: int) -> FloatArray:
         width = len(self.axes)
         return self._rows()[:, _FIRST_AXIS_COLUMN + block * width :][:, :width]

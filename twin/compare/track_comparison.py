@@ -2,10 +2,11 @@
 
 import dataclasses
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 
-from twin.compare.tracks import Track
+from twin.compare.tracks import Track, read_track
 from twin.errors import UsageError
 from twin.nc.canonical import FloatArray
 
@@ -49,6 +50,28 @@ class TrackDifference:
     offset_s: float
     overlap_s: float
     axes: Mapping[str, AxisDifference]
+
+
+def compare_files(
+    first: str | Path,
+    second: str | Path,
+    *,
+    period_s: float | None = None,
+    offset_s: float | None = None,
+) -> TrackDifference:
+    """How two recordings, or a recording and a CSV log, differ after they are aligned in time.
+
+    Args:
+        first: Recording (``.h5``) or CSV log.
+        second: The same.
+        period_s: Time between the samples of logs without a time column [s].
+        offset_s: Known offset in time [s]; found by the commanded positions by default.
+
+    Raises:
+        UsageError: A file cannot be read, or the two have nothing in common.
+    """
+    one, other = (read_track(Path(path), period_s=period_s) for path in (first, second))
+    return compare_tracks(one, other, offset_s=offset_s)
 
 
 def compare_tracks(

@@ -1,7 +1,7 @@
 """The verdict: pass, fail or alarm, with every reason."""
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Literal, Protocol
 
 import numpy as np
@@ -39,6 +39,48 @@ class AlarmLike(Protocol):
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
+class Check:
+    """One figure held to one tolerance.
+
+    Attributes:
+        what: The key of the tolerance.
+        figure: Name of the figure, such as ``contour error``.
+        value: Its worst value.
+        limit: What is allowed; a value equal to it is within it.
+        unit: Of both.
+        line: Program line of the worst value; 0 where none applies.
+        time_s: When [s].
+    """
+
+    what: str
+    figure: str
+    value: float
+    limit: float
+    unit: str
+    line: int
+    time_s: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether the tolerance is kept."""
+        return self.value <= self.limit
+
+    @property
+    def message(self) -> str:
+        """One sentence with value, limit and unit."""
+        digits = 3 if self.unit == "s" else 1
+        while round(self.value, digits) <= self.limit < self.value and digits < _MOST_DIGITS:
+            digits += 1
+        relation = "is within" if self.holds else "exceeds"
+        value = f"{self.value:.{digits}f} {self.unit}"
+        return f"{self.figure} {value} {relation} {self.what} = {self.limit:g}"
+
+
+_MOST_DIGITS = 9
+"""A value hardly above its limit is written with so many digits at most."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class Reason:
     """Why a run does not pass.
 
@@ -55,7 +97,9 @@ class Reason:
     time_s: float
 
     def __str__(self) -> str:
-        return f"line {self.line}, {self.time_s:.3f} s: {self.message}"
+        return (
+            f"line {self.line}, {self.time_s:.3f} s: {self.message}" if self.line else self.message
+        )
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -65,10 +109,12 @@ class Verdict:
     Attributes:
         outcome: ``alarm`` outweighs ``fail``, which outweighs ``pass``.
         reasons: Alarms first, then tolerances; empty when the run passed.
+        checks: Every figure that was held to a tolerance, whether it is kept or not.
     """
 
     outcome: Outcome
     reasons: tuple[Reason, ...]
+    checks: tuple[Check, ...] = ()
 
     @property
     def exit_code(self) -> ExitCode:
@@ -85,8 +131,7 @@ def judge(
 ) -> Verdict:
     """Hold a run to its tolerances.
 
-    A value equal to its tolerance is within it. Each tolerance gives at most one reason, its worst
-    place.
+    Each tolerance gives one check, of its worst place.
 
     Args:
         figures: What the comparison found.
@@ -96,19 +141,22 @@ def judge(
             holds the settling at the end too [s].
     """
     alarmed = [Reason(a.code, a.message, a.line, a.time_s) for a in alarms]
-    cycle_time = figures.duration_s if cycle_time_s is None else cycle_time_s
-    failed = [
-        *_contour_reasons(figures, tolerance),
-        *_corner_reasons(figures, tolerance),
-        *_circular_reasons(figures, tolerance),
-        *_following_reasons(figures, tolerance),
-        *_cycle_time_reasons(cycle_time, tolerance),
+    checks = [
+        *_contour_checks(figures, tolerance),
+        *_corner_checks(figures, tolerance),
+        *_circular_checks(figures, tolerance),
+        *_following_checks(figures, tolerance),
     ]
+    if tolerance.cycle_time_s is not None:
+        cycle_time = figures.duration_s if cycle_time_s is None else cycle_time_s
+        limit = tolerance.cycle_time_s
+        checks.append(Check("cycle_time_s", "cycle time", cycle_time, limit, "s", 0, cycle_time))
+    failed = [Reason(c.what, c.message, c.line, c.time_s) for c in checks if not c.holds]
     outcome: Outcome = "alarm" if alarmed else "fail" if failed else "pass"
-    return Verdict(outcome, (*alarmed, *failed))
+    return Verdict(outcome, (*alarmed, *failed), tuple(checks))
 
 
-def _contour_reasons(figures: Figures, tolerance: ToleranceTable) -> list[Reason]:
+def _contour_checks(figures: Figures, tolerance: ToleranceTable) -> Iterator[Check]:
     """Every block is held to the last range that holds it, to the rapids' limit, or the program's."""
     blocks = figures.blocks
     limits = {"contour_um": tolerance.contour_um}
@@ -120,53 +168,34 @@ def _contour_reasons(figures: Figures, tolerance: ToleranceTable) -> list[Reason
         first, last = part.lines
         key_of[(blocks.line >= first) & (blocks.line <= last)] = len(limits)
         limits[f"blocks[{number}].contour_um"] = part.contour_um
-    reasons = []
     for index, (key, limit) in enumerate(limits.items()):
-        rows = np.flatnonzero((key_of == index) & (blocks.max_um > limit))
+        rows = np.flatnonzero(key_of == index)
         if len(rows):
             row = int(rows[blocks.max_um[rows].argmax()])
-            message = f"contour error {blocks.max_um[row]:.1f} µm exceeds {key} = {limit:g}"
-            reasons.append(Reason(key, message, int(blocks.line[row]), float(blocks.time_s[row])))
-    return reasons
+            place = int(blocks.line[row]), float(blocks.time_s[row])
+            yield Check(key, "contour error", float(blocks.max_um[row]), limit, "µm", *place)
 
 
-def _corner_reasons(figures: Figures, tolerance: ToleranceTable) -> list[Reason]:
+def _corner_checks(figures: Figures, tolerance: ToleranceTable) -> Iterator[Check]:
     corners, limit = figures.corners, tolerance.corner_um
-    if limit is None or corners.rounding_um <= limit:
-        return []
-    message = f"corner rounded by {corners.rounding_um:.1f} µm exceeds corner_um = {limit:g}"
-    return [Reason("corner_um", message, corners.line, corners.time_s)]
+    if limit is not None and corners.count:
+        place = corners.line, corners.time_s
+        yield Check("corner_um", "corner rounding", corners.rounding_um, limit, "µm", *place)
 
 
-def _circular_reasons(figures: Figures, tolerance: ToleranceTable) -> list[Reason]:
+def _circular_checks(figures: Figures, tolerance: ToleranceTable) -> Iterator[Check]:
     limit = tolerance.circular_deviation_um
-    if limit is None or not figures.arcs:
-        return []
-    worst = max(figures.arcs, key=lambda arc: arc.circular_deviation_um)
-    if worst.circular_deviation_um <= limit:
-        return []
-    message = (
-        f"circular deviation {worst.circular_deviation_um:.1f} µm exceeds "
-        f"circular_deviation_um = {limit:g}"
-    )
-    return [Reason("circular_deviation_um", message, worst.line, worst.time_s)]
+    if limit is not None and figures.arcs:
+        worst = max(figures.arcs, key=lambda arc: arc.circular_deviation_um)
+        value, place = worst.circular_deviation_um, (worst.line, worst.time_s)
+        yield Check("circular_deviation_um", "circular deviation", value, limit, "µm", *place)
 
 
-def _cycle_time_reasons(cycle_time_s: float, tolerance: ToleranceTable) -> list[Reason]:
-    limit = tolerance.cycle_time_s
-    if limit is None or cycle_time_s <= limit:
-        return []
-    message = f"cycle time {cycle_time_s:.3f} s exceeds cycle_time_s = {limit:g}"
-    return [Reason("cycle_time_s", message, 0, cycle_time_s)]
-
-
-def _following_reasons(figures: Figures, tolerance: ToleranceTable) -> list[Reason]:
-    reasons = []
+def _following_checks(figures: Figures, tolerance: ToleranceTable) -> Iterator[Check]:
     for name, axis in figures.tracking.items():
         linear = axis.kind == "linear"
         key, unit = ("following_um", "µm") if linear else ("following_mdeg", "mdeg")
         limit = tolerance.following_um if linear else tolerance.following_mdeg
-        if limit is not None and axis.max > limit:
-            message = f"following error of {name} {axis.max:.1f} {unit} exceeds {key} = {limit:g}"
-            reasons.append(Reason(key, message, axis.line, axis.time_s))
-    return reasons
+        if limit is not None:
+            figure = f"following error of {name}"
+            yield Check(key, figure, axis.max, limit, unit, axis.line, axis.time_s)

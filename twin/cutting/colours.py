@@ -25,8 +25,8 @@ Colours = npt.NDArray[np.uint8]
 
 
 def surface_colours(height_map: HeightMap) -> Colours:
-    """Raw where the blank's top is untouched, machined elsewhere, shape (ny, nx, 3)."""
-    machined = height_map.heights < height_map.top
+    """Raw where the blank's own surface is untouched, machined elsewhere, shape (ny, nx, 3)."""
+    machined = height_map.machined()
     return np.where(machined[..., None], MACHINED_RGB, RAW_RGB).astype(np.uint8)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from twin.cutting.events import SCRAPE_MM, CutEvent, EventLog, StockWatch, Stretches, meets_material
 from twin.cutting.force import cutting_load, cutting_width, kienzle
+from twin.cutting.force_direction import tool_force
 from twin.cutting.height_map import BoolArray, blank
 from twin.cutting.ledger import BlockCut, Ledger
 from twin.cutting.sweep_kernels import overlap, sweep
@@ -77,6 +78,8 @@ class Cutter:
         changed: Cells that changed in the last ``add``: row, row end, column, column end; none
             when the rows end before they begin.
         tool: What is in the spindle after the last ``add``.
+        force: Mean cutting force on the tool during each sample of the last ``add``, in the part's
+            frame, shape (n, 3) [N]; 0 in the air and where it is not known.
         marks: Way of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
             the marks that a cutter leaves. Of no size unless asked for.
         halted: The rapid or the feed with the spindle off at which cutting ended, if it shall.
@@ -114,6 +117,7 @@ class Cutter:
         corner = np.asarray(part_zero[:3]) - np.array([*part_frame.center, 0.0])
         self.map = blank(stock, corner, stock.cell or default_cell(self._plan.tools))
         self.changed = (0, 0, 0, 0)
+        self.force = np.zeros((0, 3))
         self.marks = np.zeros(self.map.heights.shape if keep_marks else (0, 0))
         self._travelled = 0.0
         self._material = kienzle(stock)
@@ -145,6 +149,7 @@ class Cutter:
         """
         before = self._removed
         self.changed = (0, 0, 0, 0)
+        self.force = np.zeros((len(samples), 3))
         if not len(samples):
             return 0.0
         setpoint = samples.setpoint
@@ -162,7 +167,8 @@ class Cutter:
             if tool.number != self.tool.number:
                 self._last = None
             self.tool = tool
-            self._cut(way[run].lowered(self._plan.longer(tool)))
+            force = self._cut(way[run].lowered(self._plan.longer(tool)))
+            self.force[run.start : run.start + len(force)] = force
         return self._removed - before
 
     def events(self) -> tuple[CutEvent, ...]:
@@ -186,8 +192,12 @@ class Cutter:
             power_w=self._power,
         )
 
-    def _cut(self, way: "_Way") -> None:
-        """Cut with one tool from the last point of the run before through all of this one's."""
+    def _cut(self, way: "_Way") -> FloatArray:
+        """Cut with one tool from the last point of the run before through all of this one's.
+
+        Returns:
+            Force on the tool during each sample that was cut along, shape (m, 3) [N].
+        """
         before, since = (way.points[:1], way.time[0]) if self._last is None else self._last
         self._last = way.points[-1:].copy(), float(way.time[-1])
         points = np.concatenate([before, way.points])
@@ -209,7 +219,7 @@ class Cutter:
         uncut = None
         if self._halts and suspect.any():
             uncut = self.map.heights.copy(), self.marks.copy()
-        removed, depth = self._sweep(points, edge)
+        removed, depth, aside = self._sweep(points, edge)
         hits = suspect & meets_material(removed, depth, edge.radius, self.map.cell)
         if uncut is not None and hits.any():
             end = int(np.argmax(hits)) + 1
@@ -217,10 +227,11 @@ class Cutter:
             points, sample = points[: end + 1], sample[:end]
             rapid, rapids, standing, hits = rapid[:end], rapids[:end], standing[:end], hits[:end]
             overlaps = {what: excess[:end] for what, excess in overlaps.items()}
-            removed, depth = self._sweep(points, edge)
+            removed, depth, aside = self._sweep(points, edge)
         self._travelled += float(_lengths(points).sum())
         self._removed += float(removed.sum())
-        stretches = Stretches(points, way.time[sample], way.line[sample], rapid, removed, depth)
+        time, line = way.time[sample], way.line[sample]
+        stretches = Stretches(points, time, line, rapid, removed, depth, aside)
         overlaps["flute"] = depth - self.tool.flute
         for what, excess in overlaps.items():
             for i in np.flatnonzero(excess > SCRAPE_MM):
@@ -230,11 +241,12 @@ class Cutter:
         self._standing.add(stretches, standing, hits)
         if self._halts and hits.any():
             (self.halted,) = (*self._rapids.events(), *self._standing.events())
-        self._note(stretches, np.diff(stretches.time, prepend=since))
+        force = self._note(stretches, np.diff(stretches.time, prepend=since))
+        return np.repeat(force, np.diff(sample, prepend=-1), axis=0)
 
-    def _sweep(self, points: FloatArray, edge: Profile) -> tuple[FloatArray, FloatArray]:
-        """Take off what lies in the way; give volume [mm³] and depth [mm] by stretch."""
-        removed, depth = np.zeros(len(points) - 1), np.zeros(len(points) - 1)
+    def _sweep(self, points: FloatArray, edge: Profile) -> FloatArray:
+        """Take off what lies in the way; volume [mm³], depth and place aside [mm] by stretch."""
+        removed, depth, aside = found = np.zeros((3, len(points) - 1))
         changed = sweep(
             self.map.heights,
             self.map.origin,
@@ -244,11 +256,12 @@ class Cutter:
             dataclasses.astuple(edge),
             removed,
             depth,
+            aside,
             self.marks,
             self._travelled + np.cumsum(_lengths(points)),
         )
         self.changed = union(self.changed, changed)
-        return removed, depth
+        return found
 
     def _overlaps(self, points: FloatArray) -> dict[str, FloatArray]:
         """How deep shank and holder go into the material along each stretch [mm]."""
@@ -271,19 +284,25 @@ class Cutter:
             )
         return found
 
-    def _note(self, stretches: Stretches, duration: FloatArray) -> None:
-        """Enter air and removal, and the force where it can be reckoned."""
+    def _note(self, stretches: Stretches, duration: FloatArray) -> FloatArray:
+        """Enter air and removal, and the force where it can be reckoned.
+
+        Returns:
+            Mean force on the tool along each stretch, shape (n, 3) [N]; 0 where it is not known.
+        """
         path = stretches.path
         air = stretches.removed < AIR_MM * self.map.cell**2
         self._feed_path += float(path[~stretches.rapid].sum())
         self._air_path += float(path[~stretches.rapid & air].sum())
-        force = None
+        force, pushed = None, np.zeros((len(path), 3))
         if self._material is not None and self.tool.speed is not None and len(duration):
             load = cutting_load(stretches, duration, self.tool, self._material)
             force = load.force
             self._force = max(self._force or 0.0, float(force.max()))
             self._power = max(self._power or 0.0, float(load.power.max()))
+            pushed = tool_force(stretches, force, self.tool, self._material)
         self._ledger.add(stretches, cutting_width(stretches, self.tool.diameter), force)
+        return pushed
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

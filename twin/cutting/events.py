@@ -54,6 +54,7 @@ class Stretches:
         rapid: Which belong to rapids, shape (n,).
         removed: Material taken off, shape (n,) [mm³].
         depth: Greatest depth of it, shape (n,) [mm].
+        aside: How far left of the way it lay in the mean, shape (n,) [mm].
     """
 
     points: FloatArray
@@ -62,6 +63,7 @@ class Stretches:
     rapid: BoolArray
     removed: FloatArray
     depth: FloatArray
+    aside: FloatArray
 
     @property
     def path(self) -> FloatArray:

@@ -32,6 +32,7 @@ class HeightMap:
             none. This is what cutting changes.
         top: Z of the blank's top face [mm].
         outline: Where the blank ends sideways.
+        uncut: Z of the blank's own surface over each cell, shape (ny, nx) [mm].
     """
 
     origin: tuple[float, float]
@@ -40,6 +41,7 @@ class HeightMap:
     heights: FloatArray
     top: float
     outline: Outline
+    uncut: FloatArray
 
     @property
     def volume(self) -> float:
@@ -65,6 +67,10 @@ class HeightMap:
     def solid(self) -> BoolArray:
         """Cells that hold any material, shape (ny, nx)."""
         return self.heights > self.bottom
+
+    def machined(self) -> BoolArray:
+        """Cells that lie lower than the blank's own surface, shape (ny, nx)."""
+        return self.heights < self.uncut
 
     def copy(self) -> "HeightMap":
         """A map that can be cut without touching this one."""
@@ -100,7 +106,10 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
     )
     top, bottom = float(center[2]), float(center[2]) - height
     edge = outline(stock, (float(center[0]), float(center[1])))
-    result = HeightMap(origin, cell, bottom, np.full((count_y, count_x), top), top, edge)
+    shape = (count_y, count_x)
+    result = HeightMap(
+        origin, cell, bottom, np.full(shape, top), top, edge, np.broadcast_to(top, shape)
+    )
     result.heights[~edge.contains(*np.meshgrid(result.x, result.y))] = bottom
     if stock.file is not None:
         mesh = read_stl(Path(stock.file))
@@ -109,4 +118,5 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
         triangles = np.ascontiguousarray(mesh.triangles - middle + center, dtype=np.float64)
         result.heights[:] = bottom
         drape(result.heights, result.origin, cell, triangles)
+        result.uncut = result.heights.copy()
     return result

@@ -92,7 +92,7 @@ def inspect(part: HeightMap, nominal: HeightMap, tolerance_um: float) -> Inspect
         raise ConfigError("the two parts do not lie at the same place")
     steepness = np.maximum(_steepness(part), _steepness(nominal))
     gentle = (steepness <= STEEPEST) & part.solid() & nominal.solid()
-    touched = (part.heights < part.top) | (nominal.heights < nominal.top)
+    touched = part.machined() | nominal.machined()
     cosine = 1.0 / np.sqrt(1.0 + _steepness(nominal) ** 2)
     deviation = (part.heights - nominal.heights) * cosine
     off = (part.heights - nominal.heights) * part.cell**2

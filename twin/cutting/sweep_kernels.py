@@ -23,6 +23,7 @@ def sweep(
     profile: tuple[float, float, float, float],
     removed: FloatArray,
     depth: FloatArray,
+    aside: FloatArray,
     marks: FloatArray,
     mark: FloatArray,
 ) -> tuple[int, int, int, int]:
@@ -40,6 +41,8 @@ def sweep(
         profile: Radius, flat, corner, slope of ``twin.cutting.tools.Profile``.
         removed: Set to the material removed by each line, shape (n - 1,) [mm³].
         depth: Set to the greatest depth of material removed by each line, shape (n - 1,) [mm].
+        aside: Set to how far left of the way of each line its material lay in the mean, shape
+            (n - 1,) [mm]; 0 for a line straight down.
         marks: Set to the line's ``mark`` where it cut, shape (ny, nx); of no size, if nobody asks.
         mark: What each line leaves in ``marks``, shape (n - 1,).
 
@@ -50,7 +53,7 @@ def sweep(
     radius = profile[0]
     rows, columns = heights.shape
     for i in range(len(points) - 1):
-        volume, deepest = 0.0, 0.0
+        volume, deepest, across, along = 0.0, 0.0, 0.0, 0.0
         ax, ay = points[i, 0], points[i, 1]
         bx, by = points[i + 1, 0], points[i + 1, 1]
         low = max(0, math.ceil((min(ay, by) - radius - origin[1]) / cell))
@@ -76,9 +79,13 @@ def sweep(
                 line = heights[row, begin:stop]
                 x = origin[0] + begin * cell
                 before = line.copy() if marks.size else line
-                cut, most = _cut_row(line, x, y, cell, bottom, points[i], points[i + 1], profile)
+                cut, most, moment = _cut_row(
+                    line, x, y, cell, bottom, points[i], points[i + 1], profile
+                )
                 if cut > 0.0:
                     volume += cut
+                    across += cut * (x - ax) + moment * cell
+                    along += cut * (y - ay)
                     deepest = max(deepest, most)
                     row_first, row_end = min(row_first, row), max(row_end, row + 1)
                     column_first, column_end = min(column_first, begin), max(column_end, stop)
@@ -86,6 +93,10 @@ def sweep(
                         for k in range(len(line)):
                             if line[k] < before[k]:
                                 marks[row, begin + k] = mark[i]
+        length = math.hypot(bx - ax, by - ay)
+        aside[i] = 0.0
+        if volume > 0.0 and length > 0.0:
+            aside[i] = (along * (bx - ax) - across * (by - ay)) / (volume * length)
         removed[i] = volume * cell * cell
         depth[i] = deepest
     return row_first, row_end, column_first, column_end
@@ -197,17 +208,23 @@ def _cut_row(
     a: FloatArray,
     b: FloatArray,
     profile: tuple[float, float, float, float],
-) -> tuple[float, float]:
-    """Lower one run of cells; returns the sum and the greatest of what was taken off [mm]."""
-    volume, deepest = 0.0, 0.0
+) -> tuple[float, float, float]:
+    """Lower one run of cells.
+
+    Returns:
+        The sum and the greatest of what was taken off [mm], and the sum weighted with the number
+        of the cell.
+    """
+    volume, deepest, moment = 0.0, 0.0, 0.0
     if profile[1] >= profile[0] and a[2] == b[2]:
         z = max(a[2], bottom)
         for i in range(len(line)):
             cut = max(line[i] - z, 0.0)
             line[i] = min(line[i], z)
             volume += cut
+            moment += cut * i
             deepest = max(deepest, cut)
-        return volume, deepest
+        return volume, deepest, moment
     lowest = max(min(a[2], b[2]), bottom)
     ball = profile[1] == 0.0 and profile[2] == profile[0]
     for i in range(len(line)):
@@ -220,8 +237,9 @@ def _cut_row(
         if cut > 0.0:
             line[i] = z
             volume += cut
+            moment += cut * i
             deepest = max(deepest, cut)
-    return volume, deepest
+    return volume, deepest, moment
 
 
 @numba.njit(cache=True)

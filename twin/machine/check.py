@@ -16,7 +16,7 @@ from twin.errors import TwinError
 from twin.machine.alarms import SimulationError
 from twin.machine.config import Machine
 from twin.machine.drives import reflected_inertia
-from twin.machine.model import build_spec, drives, physics_model
+from twin.machine.model import build_spec, compiled, drives, physics_model
 from twin.machine.simulate import simulate
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
@@ -122,10 +122,22 @@ def _compiles(machine: Machine) -> list[str]:
     spec = build_spec(machine)
     cameras = [camera.name for camera in spec.cameras]
     faults = [f"camera '{name}' is missing" for name in CAMERAS if name not in cameras]
-    seen, lean = spec.compile(), physics_model(machine, spec)
+    seen, lean = compiled(spec, machine), physics_model(machine, spec)
     if not np.array_equal(seen.body_mass, lean.body_mass):
         faults.append('geoms add to the masses of the bodies; give them mass="0"')
-    return faults
+    return faults + _undriven(machine)
+
+
+def _undriven(machine: Machine) -> list[str]:
+    """Joints and actuators that no axis owns: nothing holds the one or moves with the other."""
+    spec = mujoco.MjSpec.from_file(str(machine.model_path))
+    owned = {machine.axis(name).joint for name in machine.axes.names}
+    coupled = {name for equality in spec.equalities for name in (equality.name1, equality.name2)}
+    loose = [joint.name for joint in spec.joints if joint.name not in owned | coupled]
+    idle = [motor.name for motor in spec.actuators if motor.name not in machine.axes.names]
+    return [f"joint '{name}' belongs to no axis: it moves as it likes" for name in loose] + [
+        f"actuator '{name}' belongs to no axis" for name in idle
+    ]
 
 
 def _gains(machine: Machine) -> list[str]:
@@ -135,8 +147,8 @@ def _gains(machine: Machine) -> list[str]:
     for name, loop in zip(machine.axes.names, loops, strict=True):
         axis, actuator = machine.axis(name), written.actuator(name)
         pairs = (
-            ("kp", -float(actuator.biasprm[1]), loop.position_gain),
-            ("kv", -float(actuator.biasprm[2]), loop.velocity_gain),
+            ("kp", 0.0 - float(actuator.biasprm[1]), loop.position_gain),
+            ("kv", 0.0 - float(actuator.biasprm[2]), loop.velocity_gain),
             ("armature", float(written.joint(axis.joint).armature), reflected_inertia(axis)),
         )
         faults += [
@@ -148,7 +160,9 @@ def _gains(machine: Machine) -> list[str]:
 
 
 def _holds_still(machine: Machine) -> list[str]:
-    joints = _run(machine, np.zeros((2000, len(machine.axes))))
+    travel = [machine.axis(name).travel or (-np.inf, np.inf) for name in machine.axes.names]
+    lowest, highest = np.array(travel).T
+    joints = _run(machine, np.tile(np.clip(0.0, lowest, highest), (2000, 1)))
     drift = np.ptp(joints, axis=0)
     return [
         f"{name} drifts by {value:.4f}"

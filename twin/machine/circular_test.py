@@ -8,7 +8,7 @@ turn after that is measured. From the measured points, seen from the commanded c
   both directions, here about their common least-squares centre;
 * circular hysteresis H: the largest radial difference between the directions at one angle;
 * mean radius error: how much the least-squares circle of both differs from the commanded one;
-* quadrant peaks: how far the path leaps out where an axis turns round, over its surroundings.
+* quadrant peaks: how far the path leaps out where an axis turns round, over both its sides.
 """
 
 import dataclasses
@@ -136,7 +136,11 @@ def _deviation_um(path: CirclePath, model: mujoco.MjModel, angle: FloatArray) ->
         raise UsageError(f"the circle stopped with an alarm: {run.alarm.message}")
     along = path.direction * np.unwrap(np.arctan2(points[:, 1], points[:, 0]))
     begin = along[-1] - 2.0 * np.pi
-    assert begin > RUN_IN / 2
+    if begin < RUN_IN / 2:
+        raise UsageError(
+            f"the axes followed {np.rad2deg(along[-1] - along[0]):.0f} degrees of the circle and no "
+            "more: see kv, dry_friction and force_limit"
+        )
     kept = along >= begin - 0.1
     radius = np.hypot(points[kept, 0], points[kept, 1])
     wanted = begin + np.mod(path.direction * np.deg2rad(angle) - begin, 2.0 * np.pi)
@@ -151,12 +155,25 @@ def _least_squares_circle(angle: FloatArray, deviation: FloatArray) -> tuple[flo
 
 
 def _quadrant_peaks(angle: FloatArray, both: FloatArray) -> tuple[float, float, float, float]:
+    """How far each direction leaps out of what lies on either side of a quadrant's border.
+
+    A step across the border, as backlash leaves it, is no peak: outward counts from the higher
+    side, inward from the lower.
+    """
     peaks = []
     for quadrant in (0.0, 90.0, 180.0, 270.0):
-        away = np.abs((angle - quadrant + 180.0) % 360.0 - 180.0)
-        around = both[:, (away > _PEAK) & (away < _AROUND)].mean(axis=1, keepdims=True)
-        leap = (both[:, away <= _PEAK] - around).ravel()
-        peaks.append(float(leap[np.argmax(np.abs(leap))]))
+        off = (angle - quadrant + 180.0) % 360.0 - 180.0
+        inside = both[:, np.abs(off) <= _PEAK]
+        sides = np.stack(
+            [
+                both[:, (side * off > _PEAK) & (side * off < _AROUND)].mean(axis=1)
+                for side in (-1, 1)
+            ]
+        )
+        out = np.maximum(0.0, inside.max(axis=1) - sides.max(axis=0))
+        into = np.minimum(0.0, inside.min(axis=1) - sides.min(axis=0))
+        leaps = np.concatenate([out, into])
+        peaks.append(float(leaps[np.argmax(np.abs(leaps))]))
     return (peaks[0], peaks[1], peaks[2], peaks[3])
 
 

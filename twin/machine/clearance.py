@@ -47,14 +47,18 @@ class Clearance:
         self._last: FloatArray | None = None
         self._bearable = 0.0
 
+    def begin(self) -> None:
+        """Look anew at the next sample: the axes have moved since the last one."""
+        self._last, self._due = None, 0.0
+
     def acknowledge(self, position: FloatArray) -> None:
         """Raise again only what gets worse than it is: what has met may be driven apart.
 
         Args:
             position: Where the axes stand, shape (k,) [mm or deg].
         """
+        self.begin()
         if self._pairs:
-            self._last, self._due = None, 0.0
             self._bearable = min(0.0, self._measure(position)[0] - RESOLUTION)
 
     def _reaches(self, machine: Machine) -> FloatArray:

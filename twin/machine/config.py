@@ -17,9 +17,11 @@ from twin.toml_file import Data, Table, checked, read_toml
 from twin.toolpath.part_frame import PartFrame
 from twin.units import AxisKind, to_si
 
-Positive = Annotated[float, Field(gt=0)]
-NonNegative = Annotated[float, Field(ge=0)]
-Share = Annotated[float, Field(ge=0, le=1)]
+Positive = Annotated[float, Field(gt=0, strict=True)]
+NonNegative = Annotated[float, Field(ge=0, strict=True)]
+Share = Annotated[float, Field(ge=0, le=1, strict=True)]
+Coordinate = Annotated[float, Field(strict=True)]
+ServoPeriod = Annotated[float, Field(ge=1e-4, le=0.02, strict=True)]
 
 
 class LuGreTable(Table):
@@ -49,9 +51,9 @@ class AxisTable(Table):
     """Sign of the joint against the machine coordinate."""
     periodic: bool = False
     """Rotary only: turns without end and may be declared periodic to the control."""
-    travel: tuple[float, float] | None = None
+    travel: tuple[Coordinate, Coordinate] | None = None
     """Lowest and highest machine coordinate [mm or deg]; none: endless."""
-    limit_switches: tuple[float, float] | None = None
+    limit_switches: tuple[Coordinate, Coordinate] | None = None
     """Where the axis runs onto its limit switches [mm or deg]; none: 2 beyond its travel."""
     velocity: Positive
     """Rapid velocity, never exceeded [mm/s or deg/s]."""
@@ -133,7 +135,7 @@ class TableTable(Table):
 
     axis: str
     """Name of the rotary axis that turns the part about +Z."""
-    center: tuple[float, float] = (0.0, 0.0)
+    center: tuple[Coordinate, Coordinate] = (0.0, 0.0)
     """Machine X and Y at which the tool stands over the axis of rotation [mm]."""
 
 
@@ -171,8 +173,8 @@ class MachineFile(Table):
     name: str
     model: str
     """MJCF file, relative to the machine file (to that of ``base``, where it comes from there)."""
-    servo_period_s: Positive = 0.001
-    """Clock of setpoints, drives and recording [s]."""
+    servo_period_s: ServoPeriod = 0.001
+    """Clock of setpoints, drives and recording [s], from 0.1 to 20 ms."""
     axes: dict[str, AxisTable]
     """By axis name; must hold X, Y and Z."""
     path: PathTable
@@ -194,6 +196,8 @@ class MachineFile(Table):
                 raise ValueError(f"axes.{name}.limit_switches must rise from lowest to highest")
             if axis.periodic and axis.kind != "rotary":
                 raise ValueError(f"axes.{name} is periodic but not rotary")
+            if axis.periodic and axis.travel is not None:
+                raise ValueError(f"axes.{name} is periodic, that is endless, but has a travel")
         if self.table is not None and self.table.axis not in self.axes:
             raise ValueError(f"table.axis '{self.table.axis}' is not an axis")
         if self.table is not None and self.axes[self.table.axis].kind != "rotary":

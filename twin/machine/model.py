@@ -14,6 +14,7 @@ from twin.machine.tool_shape import (
     VISUAL_GROUP,
     DefaultTool,
     ToolShape,
+    add_materials,
     add_tool,
 )
 from twin.machine.transmission import (
@@ -59,12 +60,21 @@ def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec
     _require(machine, "site", SPINDLE_NOSE, [site.name for site in spec.sites])
     _require(machine, "site", TABLE_TOP, [site.name for site in spec.sites])
     _require(machine, "body", ROTARY_TABLE, [body.name for body in spec.bodies])
+    try:
+        _complete(spec, machine, tool)
+    except ValueError as error:
+        raise ConfigError(f"{machine.model_path}: cannot be completed: {error}") from error
+    return spec
+
+
+def _complete(spec: mujoco.MjSpec, machine: Machine, tool: ToolShape | None) -> None:
+    add_materials(spec)
     _set_clock(spec, machine)
     _set_inertia(spec, machine)
     _set_drives(spec, machine)
     _add_fixtures(spec, machine)
-    add_tool(spec, tool or DefaultTool(), machine.file.spindle.flange_diameter)
-    return spec
+    flange = machine.file.spindle.flange_diameter
+    add_tool(spec, tool or DefaultTool(holder=flange / 2.0), flange)
 
 
 def _require(machine: Machine, what: str, name: str, known: list[str]) -> None:
@@ -97,7 +107,7 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
     known = [actuator.name for actuator in spec.actuators]
     for name in machine.axes.names:
         _require(machine, "actuator", name, known)
-    found = drives(machine, _compile(spec, machine))
+    found = drives(machine, compiled(spec, machine))
     for name, drive in zip(machine.axes.names, found, strict=True):
         axis = machine.axis(name)
         _refuse_what_outruns_the_clock(machine, name, drive)
@@ -180,7 +190,12 @@ def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
             )
 
 
-def _compile(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
+def compiled(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
+    """Compile a specification.
+
+    Raises:
+        ConfigError: It does not compile; the message names the model.
+    """
     try:
         return spec.compile()
     except ValueError as error:
@@ -234,12 +249,12 @@ def _without(spec: mujoco.MjSpec, machine: Machine, *groups: int) -> mujoco.MjMo
     for unseen in [*lean.meshes, *lean.cameras, *lean.lights]:
         lean.delete(unseen)
     lean.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
-    return _compile(lean, machine)
+    return compiled(lean, machine)
 
 
 def spindle_over_table_mm(machine: Machine) -> float:
     """Height of the spindle nose over the work-holding surface with all axes at zero [mm]."""
-    model = _compile(build_spec(machine), machine)
+    model = compiled(build_spec(machine), machine)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     nose, table = data.site(SPINDLE_NOSE).xpos, data.site(TABLE_TOP).xpos

@@ -18,6 +18,8 @@ from twin.recording import Samples
 from twin.units import kv_per_second
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
+_CONTROL = int(mujoco.mjtState.mjSTATE_CTRL)
+_PUSH = int(mujoco.mjtState.mjSTATE_QFRC_APPLIED)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -94,12 +96,14 @@ class Servo:
         assert self._last is not None, "the machine has not followed anything"
         return self._last
 
-    def follow(self, chunk: Setpoints) -> Samples:
+    def follow(self, chunk: Setpoints, load: FloatArray | None = None) -> Samples:
         """Step through one chunk and give its samples.
 
         Args:
             chunk: Setpoints that go on one period after the last; the first chunk of all begins
                 with the machine at rest.
+            load: What pushes each axis from outside during the period that ends with each
+                setpoint, shape (n, k) [N or N m]; None: nothing.
 
         Raises:
             SimulationError: MuJoCo warned, or a setpoint is not finite.
@@ -110,9 +114,10 @@ class Servo:
             raise SimulationError("a setpoint is not a finite number")
         if self._last is None:
             self._begin(chunk)
-            states = np.concatenate([self._state[None], self._roll(chunk)])
+            after = None if load is None else load[1:]
+            states = np.concatenate([self._state[None], self._roll(chunk, after)])
         else:
-            states = self._roll(join([self._last, chunk]))
+            states = self._roll(join([self._last, chunk]), load)
         self._last, self._chunk, self._states = chunk[-1:], chunk, states
         return self._samples(chunk, states)
 
@@ -209,16 +214,20 @@ class Servo:
         self._state = np.zeros(mujoco.mj_stateSize(model, _STATE))
         mujoco.mj_getState(model, data, self._state, _STATE)
 
-    def _roll(self, setpoints: Setpoints) -> FloatArray:
+    def _roll(self, setpoints: Setpoints, load: FloatArray | None) -> FloatArray:
         steps = len(setpoints) - 1
         if steps == 0:
             return np.zeros((0, len(self._state)))
         self._data.warning.number[:] = 0
+        controls, held = self._controls(setpoints), _CONTROL
+        if load is not None:
+            controls, held = np.hstack([controls, self._pushes(load)]), _CONTROL | _PUSH
         with Rollout(nthread=0) as rollout:
             states, _ = rollout.rollout(
-                self.model, self._data, self._state[None], self._controls(setpoints)[None],
-                initial_warmstart=self._warmstart,
+                self.model, self._data, self._state[None], controls[None],
+                control_spec=held, initial_warmstart=self._warmstart,
             )  # fmt: skip
+        self._data.qfrc_applied[:] = 0.0
         self._refuse_warnings()
         self._state = states[0, -1].copy()
         self._warmstart = self._data.qacc_warmstart[None].copy()
@@ -241,6 +250,13 @@ class Servo:
             meant = ((nodes[1:] + nodes[:-1]) / 2 - self._trail * velocity) * self._scale
             controls[:, self._position_input] = meant[:, self._integrates]
         return controls
+
+    def _pushes(self, load: FloatArray) -> FloatArray:
+        """A load on the axes as generalised forces, shape (n, nv); it acts beyond what gives."""
+        pushes = np.zeros((len(load), self.model.nv))
+        pushes[:, self._dof] = load * np.sign(self._scale)
+        pushes[:, self._give_dof] = pushes[:, self._dof[self._gives]]
+        return pushes
 
     def _told(self, velocity: FloatArray, acceleration: FloatArray) -> FloatArray:
         """Force that the drives add in advance [N or N m]."""

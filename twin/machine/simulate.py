@@ -1,6 +1,6 @@
 """Setpoints through the simulated drives: an open-loop run in chunks of ``mujoco.rollout``."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import mujoco
 import numpy as np
@@ -10,9 +10,14 @@ from twin.machine.clearance import Clearance
 from twin.machine.config import Machine
 from twin.machine.model import clearance_model, physics_model
 from twin.machine.servo import Servo
+from twin.machine.tool_changes import ToolClearances
+from twin.machine.tool_shape import ToolSchedule
 from twin.machine.watch import Watch
 from twin.motion.setpoints import Setpoints
+from twin.nc.canonical import FloatArray
 from twin.recording import Samples
+
+Load = Callable[[Setpoints], FloatArray]
 
 
 class Simulation:
@@ -30,12 +35,14 @@ class Simulation:
         self,
         machine: Machine,
         model: mujoco.MjModel,
-        clearance: Clearance | None,
+        clearance: Clearance | ToolClearances | None,
         setpoints: Iterable[Setpoints],
+        load: Load | None = None,
     ) -> None:
         self.alarm: Alarm | None = None
         self._clearance = clearance
         self._setpoints = setpoints
+        self._load = load
         self._servo = Servo(machine, model)
         self._watch = Watch(machine)
 
@@ -57,7 +64,7 @@ class Simulation:
         for chunk in self._setpoints:
             if not len(chunk):
                 continue
-            samples = self._servo.follow(chunk)
+            samples = self._servo.follow(chunk, None if self._load is None else self._load(chunk))
             self.alarm = self._look(samples)
             if self.alarm is None:
                 yield samples
@@ -76,7 +83,11 @@ class Simulation:
 
 
 def simulate(
-    machine: Machine, model: mujoco.MjModel | mujoco.MjSpec, setpoints: Iterable[Setpoints]
+    machine: Machine,
+    model: mujoco.MjModel | mujoco.MjSpec,
+    setpoints: Iterable[Setpoints],
+    tools: ToolSchedule | None = None,
+    load: Load | None = None,
 ) -> Simulation:
     """Run the machine along setpoints.
 
@@ -88,6 +99,9 @@ def simulate(
         model: What ``build_spec`` made: the run then also watches for collisions. Or a model
             compiled from it, of which the motion alone is simulated.
         setpoints: Chunks of setpoints at the servo period, machine coordinates [mm or deg].
+        tools: Which tool is in the spindle during which move; by default that of the specification.
+        load: Called with every chunk in turn: what pushes the axes from outside during the period
+            that ends with each setpoint, shape (n, k) [N or N m]; None: nothing.
 
     Returns:
         The run: iterate it for the samples, then ask its ``alarm``.
@@ -96,6 +110,10 @@ def simulate(
         ConfigError: The specification does not compile.
     """
     if isinstance(model, mujoco.MjModel):
-        return Simulation(machine, model, None, setpoints)
-    clearance = Clearance(machine, clearance_model(machine, model))
-    return Simulation(machine, physics_model(machine, model), clearance, setpoints)
+        return Simulation(machine, model, None, setpoints, load)
+    clearance = (
+        Clearance(machine, clearance_model(machine, model))
+        if tools is None
+        else ToolClearances(machine, tools)
+    )
+    return Simulation(machine, physics_model(machine, model), clearance, setpoints, load)

@@ -1,10 +1,12 @@
 """The tool in the spindle, as bodies of revolution in the model."""
 
 import dataclasses
+from collections.abc import Sequence
 from typing import Protocol
 
 import mujoco
 
+from twin.nc.canonical import IntArray
 from twin.units import MM
 
 VISUAL_GROUP = 2
@@ -29,7 +31,7 @@ class ToolShape(Protocol):
 
     @property
     def kind(self) -> str:
-        """``flat`` or ``ball``."""
+        """``flat``, ``ball`` or another."""
         ...
 
     @property
@@ -47,6 +49,29 @@ class ToolShape(Protocol):
         """Length of the cutting part [mm]."""
         ...
 
+    @property
+    def shank(self) -> float | None:
+        """Diameter above the flutes [mm]; None: that of the cutting edge."""
+        ...
+
+    @property
+    def holder(self) -> float:
+        """Diameter of the holder's nut [mm]."""
+        ...
+
+    @property
+    def below_holder(self) -> float:
+        """From the holder to the tip [mm]."""
+        ...
+
+
+class ToolSchedule(Protocol):
+    """Which tool is in the spindle when; the cutting room's plan fits."""
+
+    def runs(self, move: IntArray) -> Sequence[tuple[slice, ToolShape]]:
+        """Split samples where the tool changes, by their move numbers."""
+        ...
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class DefaultTool:
@@ -56,6 +81,14 @@ class DefaultTool:
     diameter: float = 10.0
     length: float = 60.0
     flute: float = 25.0
+    shank: float | None = None
+    holder: float = 32.0
+
+    @property
+    def below_holder(self) -> float:
+        """From the holder to the tip [mm]."""
+        flute = min(self.flute, 0.8 * self.length)
+        return flute + 0.375 * (self.length - flute)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -75,36 +108,49 @@ class Cylinder:
     bottom: float
 
 
+MATERIALS = {
+    "tool_steel": (0.42, 0.43, 0.45, 1.0),
+    "carbide": (0.78, 0.68, 0.40, 1.0),
+    "steel": (0.52, 0.54, 0.56, 1.0),
+}
+"""Colours of holder, cutter and fixtures where the machine's model has no materials so called."""
+
 _HOLDER = ("tool_flange", "tool_nut")
 _COLLISION_NAMES = {
     "tool_flange": "holder's flange",
     "tool_nut": "holder's nut",
     "tool_shank": "tool's shank",
 }
-_FLANGE_HEIGHT = 0.3
-_COLLET_RADIUS = 4.0
-_HOLDER_SHARE = 0.55
-"""Share of the length above the flutes that the holder takes; the rest is free shank."""
-_NUT_SHARE = 0.5
-"""Of the flange's radius: what the collet nut has at least."""
+_FLANGE_SHARE = 0.3
+"""Of the length above the flutes: what the holder's flange takes."""
 
 
 def tool_cylinders(tool: ToolShape, flange_diameter: float) -> tuple[Cylinder, ...]:
     """Flange, collet nut, shank and cutter, from the spindle nose down.
 
-    The cutter's bottom is the tip, ``tool.length`` below the nose.
+    The nut ends ``tool.below_holder`` above the tip, and the cutter's bottom is the tip,
+    ``tool.length`` below the nose. A piece of no height is left out.
     """
-    flute = min(tool.flute, 0.8 * tool.length)
-    above = tool.length - flute
-    flange = _FLANGE_HEIGHT * above
-    nut = _HOLDER_SHARE * above + 0.25 * flange
-    shank, rim = tool.diameter / 2.0, flange_diameter / 2.0
-    return (
+    nut = tool.length - tool.below_holder
+    above = tool.length - min(tool.flute, 0.8 * tool.length, tool.below_holder)
+    flange = min(_FLANGE_SHARE * above, nut)
+    cutter, rim = tool.diameter / 2.0, flange_diameter / 2.0
+    shank = cutter * 0.98 if tool.shank is None else tool.shank / 2.0
+    pieces = (
         Cylinder("tool_flange", max(rim, shank), 0.0, -flange),
-        Cylinder("tool_nut", max(shank + _COLLET_RADIUS, _NUT_SHARE * rim), -flange, -nut),
-        Cylinder("tool_shank", shank * 0.98, -nut, -above),
-        Cylinder("tool_cutter", shank, -above, -tool.length),
+        Cylinder("tool_nut", max(tool.holder / 2.0, shank), -flange, -nut),
+        Cylinder("tool_shank", shank, -nut, -above),
+        Cylinder("tool_cutter", cutter, -above, -tool.length),
     )
+    return tuple(piece for piece in pieces if piece.top > piece.bottom)
+
+
+def add_materials(spec: mujoco.MjSpec) -> None:
+    """Give the model those of ``MATERIALS`` that it lacks."""
+    known = {material.name for material in spec.materials}
+    for name, colour in MATERIALS.items():
+        if name not in known:
+            spec.add_material(name=name, rgba=colour, specular=0.8, shininess=0.8)
 
 
 def add_tool(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) -> None:

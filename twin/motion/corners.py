@@ -66,6 +66,9 @@ def find_borders(blocks: Blocks, limits: MotionLimits) -> Borders:
     by_bend = np.sqrt(_allowed(limits.junction_acceleration_step, bend))
     entry = np.minimum(by_knee, by_bend)
     entry[width > 0.0] = np.inf
+    # A continuous path has no steps at all: where there is no room to round them, it stops.
+    stepping = np.any(knee != 0.0, axis=1) | np.any(bend != 0.0, axis=1)
+    entry[rounded & (width == 0.0) & stepping] = 0.0
     entry[corner == Corner.EXACT_STOP] = 0.0
     return Borders(knee, bend, width, entry)
 

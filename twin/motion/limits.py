@@ -1,4 +1,14 @@
-"""What the axes and the path of a machine can do."""
+"""What the axes and the path of a machine can do.
+
+**Where the junction steps come from.** A drive with velocity feed-forward and a position loop of
+natural frequency w, critically damped (w twice the loop gain), answers a step dv of the commanded
+velocity with an error ``dv t exp(-w t)``, whose peak is ``dv / (e w)``. With w = 250 1/s (a gain of
+125 1/s, 7.5 (m/min)/mm), 1 mm/s costs 1.5 µm at the knee, and 0.5 deg/s of a table 0.74 mdeg, 1.3
+µm at a radius of 100 mm: as much as a good machine's own geometry. A step da of the acceleration,
+fed forward, is a step of the drive's force by m da; a tenth of the axis's acceleration takes a
+tenth of the force that the drive has for it, well within what its current loop follows in a servo
+period. A machine's README derives its own from its own gains by these rules.
+"""
 
 import dataclasses
 import math
@@ -49,7 +59,8 @@ class MotionLimits:
     """Of a continuous corner whose program names none: distance from the path [mm]."""
 
     further_corner_tolerance: float = 0.01
-    """Of axes other than X Y Z in any continuous corner [mm or deg]."""
+    """Of axes other than X Y Z in any continuous corner [mm or deg]; the default is that of the path:
+    a hundredth of a degree is a hundredth of a millimetre at a radius of 57 mm."""
 
     def __post_init__(self) -> None:
         for field in dataclasses.fields(self):

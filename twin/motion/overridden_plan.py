@@ -7,14 +7,14 @@ from collections.abc import Iterable
 import numpy as np
 
 from twin.motion.phase_kernels import put_brake
-from twin.motion.phases import Phases
+from twin.motion.phases import Phases, no_phases, phases_of, ways_on
 from twin.motion.pieces import Pieces
 from twin.motion.profile_kernels import STATE_AT_REST, find_phases
 from twin.motion.reach_kernels import ROUNDING, SLOWEST, find_brake, find_reach
 from twin.motion.sampling_kernels import state_at
 from twin.motion.transition_kernels import find_transition
-from twin.motion.windows import BATCH, entry_velocities, limit_table, windows
-from twin.nc.canonical import FloatArray, IntArray
+from twin.motion.windows import Window, windows
+from twin.nc.canonical import FloatArray
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,41 +35,20 @@ class Wishes:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class _Window:
-    """The pieces that are planned at present.
-
-    Attributes:
-        pieces: The window's.
-        first: How many of the window's pieces lay behind when it was opened.
-        end: Piece at which the next window is due, or the program over.
-        whole: Whether the program ends with it.
-        table: As ``limit_table``: what must not be passed.
-        pause: What is left of each dwell [s].
-    """
-
-    pieces: Pieces
-    first: int
-    end: int
-    whole: bool
-    table: FloatArray
-    pause: FloatArray
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
 class _Drive:
-    """What a window of n pieces is driven by under the wishes.
+    """What a window of n stretches is driven by under the wishes.
 
     Attributes:
-        table: As ``limit_table``, velocities as wanted.
-        entry: As ``entry_velocities``, 0 where a block is to stop.
-        reach: Highest safe velocity at each border.
-        block_end: Piece before which a single block stops; -1: none.
-        stop: First piece that must not be driven on, or n.
+        limits: As the window's, velocities as wanted.
+        entry: As the window's, 0 where a block is to stop.
+        ways: From ``find_reach``.
+        block_end: Stretch before which a single block stops; -1: none.
+        stop: First stretch that must not be driven on, or n.
     """
 
-    table: FloatArray
+    limits: FloatArray
     entry: FloatArray
-    reach: FloatArray
+    ways: FloatArray
     block_end: int
     stop: int
 
@@ -94,14 +73,15 @@ class OverriddenPlan:
         self.phases: list[Phases] = []
         self.standing_since = math.inf
         self.at_block_end = False
-        self._window: _Window
+        self._window: Window
         self._drive: _Drive
+        self._stretches = 0
         self._empty = not self._open()
 
     @property
     def ended(self) -> bool:
         """Whether the plan reaches the program's end."""
-        return self._empty or (self._window.whole and int(self._state[0]) >= self._window.end)
+        return self._empty or (self._window.whole and int(self._state[0]) >= self._window.due)
 
     def forget(self, time: float) -> None:
         """Drop phases that end before a time [s]."""
@@ -113,19 +93,21 @@ class OverriddenPlan:
     def plan_until(self, time: float) -> None:
         """Plan on to a time [s], or to the program's end."""
         while self._state[4] < time and not self.ended:
-            piece = int(self._state[0])
+            stretch = int(self._state[0])
             window, drive = self._window, self._drive
-            self.at_block_end = piece == drive.block_end
-            if self._wishes.held or self.at_block_end or piece == drive.stop < window.end:
+            self.at_block_end = stretch == drive.block_end
+            if self.at_block_end:
                 self._stand_until(time)
-            elif piece >= window.end:
+            elif stretch >= window.due:
                 self._open()
+            elif self._wishes.held or stretch == drive.stop:
+                self._stand_until(time)
             else:
-                stop = min(drive.stop, window.end)
-                rows, pieces = find_phases(
-                    drive.table, drive.entry, drive.reach, window.pause, stop, time, self._state
+                stop = min(drive.stop, window.due)
+                rows, stretches = find_phases(
+                    drive.limits, drive.entry, drive.ways, window.pause, stop, time, self._state
                 )
-                self._append(rows, pieces)
+                self._append(phases_of(window, rows, stretches))
 
     def wish(self, wishes: Wishes, time: float) -> bool:
         """Change the wishes; what is planned for later is dropped.
@@ -139,105 +121,126 @@ class OverriddenPlan:
         """
         if self.ended and self._state[4] <= time:
             return True
-        piece, x, v, a, pause = self._state_at(time)
-        window = self._window
-        if piece >= len(window.pieces):
-            # Between two windows; the next begins with the next sample.
+        place = self._state_at(time)
+        if place is None:
             return False
-        drive = self._make_drive(wishes, piece)
-        tables = drive.table, drive.entry, drive.reach
+        stretch, x, v, a, pause = place
+        window, drive = _drive(self._window, wishes, stretch, x)
+        tables = drive.limits, drive.entry, drive.ways[0]
         brake = None
-        if a < 0.0 or find_brake(*tables, piece, x, v, a, ROUNDING, 0) < 0:
-            brake = find_transition(window.table, *tables, piece, x, v, a)
+        if a < 0.0 or find_brake(*tables, stretch, x, v, a, ROUNDING, 0) < 0:
+            brake = find_transition(window.limits, *tables, stretch, x, v, a)
             if brake[0] < 0:
                 return False
-        self._wishes, self._drive = wishes, drive
+        self._wishes, self._window, self._drive = wishes, window, drive
         self.standing_since = math.inf
-        window.pause[piece] = pause
-        self._state[:] = piece, x, v, a, time, -1.0, -1.0
-        self.phases = [_no_phases(window.pieces)]
+        window.pause[stretch] = pause
+        self._state[:5] = stretch, x, v, a, time
+        self._state[5:] = STATE_AT_REST[5:]
+        self.phases = [no_phases(window.pieces)]
         if brake is not None:
             end, x_end, w, deceleration, jerk = brake
-            rows, pieces = np.zeros((3, 6)), np.zeros((3, 2), np.int64)
+            rows, stretches = np.zeros((3, 6)), np.zeros((3, 2), np.int64)
             count, _, end_time, _ = put_brake(
-                rows, pieces, 0, window.pieces.length, piece, end, time, x, v, a, w,
+                rows, stretches, 0, window.limits[0], stretch, end, time, x, v, a, w,
                 deceleration, jerk,
             )  # fmt: skip
-            self._append(rows[:count], pieces[:count])
-            self._state[:] = end, x_end, w, 0.0, end_time, -1.0, -1.0
+            self._append(phases_of(window, rows[:count], stretches[:count]))
+            self._state[:5] = end, x_end, w, 0.0, end_time
         return True
 
-    def _state_at(self, time: float) -> tuple[int, float, float, float, float]:
-        """Piece, x, v, a at a time, and how long the piece still pauses [s]."""
-        phases = self.phases[-1]
-        window = self._window
+    def _state_at(self, time: float) -> tuple[int, float, float, float, float] | None:
+        """Stretch, x, v, a at a time, and how long the stretch still pauses [s].
+
+        None between two windows: the next begins with the next sample.
+        """
+        phases, window = self.phases[-1], self._window
         i, x, v, a, row = state_at(phases.rows, phases.rows_pieces, window.pieces.length, time)
         if row < 0 or self.standing_since <= time:
-            i, (x, v, a) = int(self._state[0]), self._state[1:4].tolist()
-            return i, x, v, a, float(window.pause[i]) if i < len(window.pause) else 0.0
-        pause = float(window.pause[i])
-        if window.pieces.length[i] == 0.0:
+            stretch, (x, v, a) = int(self._state[0]), self._state[1:4].tolist()
+            if stretch >= len(window.pause):
+                return None
+            return stretch, x, v, a, float(window.pause[stretch])
+        stretch, x = window.stretch_at(i, x)
+        pause = float(window.pause[stretch])
+        if window.limits[0, stretch] == 0.0:
             pause = max(0.0, float(phases.rows[row, :2].sum()) - time)
-        return i, x, v, a, pause
+        return stretch, x, v, a, pause
 
     def _open(self) -> bool:
-        """Go to the next window, from the piece of the state on; whether there is one."""
-        window, whole = next(self._windows, (None, True))
+        """Go to the next window; whether there is one."""
+        window = next(self._windows, None)
         if window is None:
             return False
-        first = 0
+        known = np.zeros((3, 0))
         if self.phases:
-            first = self._window.first + int(self._state[0]) - BATCH
-        pieces = window[first:]
-        end = len(pieces) if whole else BATCH - first
-        self._window = _Window(pieces, first, end, whole, limit_table(pieces), pieces.pause.copy())
-        self._state[0] = 0.0
-        self._state[5:] = STATE_AT_REST[5:]
-        self._drive = self._make_drive(self._wishes, 0)
-        self.phases.append(_no_phases(pieces))
+            last = self._window
+            if len(last.pause) == self._stretches:
+                self._state[[0, 5, 6, 7]] -= last.due
+                known = ways_on(self._drive.ways, last.due)
+            else:
+                # The window has been parted since: stretches have other numbers.
+                piece, x = last.piece_at(int(self._state[0]), self._state[1])
+                self._state[:2] = window.stretch_at(piece - int(last.begins[last.due]), x)
+                self._state[5:] = STATE_AT_REST[5:]
+        self._stretches = len(window.pause)
+        self._window, self._drive = _drive(
+            window, self._wishes, int(self._state[0]), self._state[1], known
+        )
+        self.phases.append(no_phases(window.pieces))
         return True
-
-    def _make_drive(self, wishes: Wishes, piece: int) -> _Drive:
-        pieces = self._window.pieces
-        override = np.where(pieces.rapid, wishes.rapid_override, wishes.feed_override)
-        wanted = override * np.where(pieces.rapid, pieces.velocity, pieces.feed)
-        table = self._window.table.copy()
-        table[1] = 0.0 if wishes.held else np.minimum(pieces.velocity, wanted)
-        entry = entry_velocities(pieces)
-        block_end = -1
-        if wishes.single_block:
-            others = np.flatnonzero(pieces.line[piece:] != pieces.line[piece])
-            if len(others) > 0:
-                block_end = piece + int(others[0])
-                entry[block_end] = 0.0
-        closed = (table[1] < SLOWEST) & (pieces.length > 0.0)
-        closed[:piece] = False
-        stop = int(np.argmax(closed)) if np.any(closed) else len(pieces)
-        if block_end >= 0:
-            stop = min(stop, block_end)
-        reach = np.zeros(len(pieces) + 1)
-        reach[piece:] = find_reach(table[:, piece:], entry[piece:], np.zeros(0))
-        return _Drive(table, entry, reach, block_end, stop)
 
     def _stand_until(self, time: float) -> None:
         """Add a phase at rest; between two blocks it belongs to the one that has ended."""
-        piece, x, now = int(self._state[0]), self._state[1], self._state[4]
-        self.standing_since = min(self.standing_since, float(now))
+        stretch, x, now = int(self._state[0]), float(self._state[1]), float(self._state[4])
+        self.standing_since = min(self.standing_since, now)
         lengths = self._window.pieces.length
+        piece, x = self._window.piece_at(stretch, x)
         if x == 0.0 and piece > 0 and lengths[piece] > 0.0:
             piece -= 1
-            x = lengths[piece]
-        self._append(np.array([[now, time - now, x, 0.0, 0.0, 0.0]]), np.array([[piece, piece]]))
+            x = float(lengths[piece])
+        row = np.array([[now, time - now, x, 0.0, 0.0, 0.0]])
+        self._append(Phases(self._window.pieces, row, np.array([[piece, piece]])))
         self._state[4] = time
 
-    def _append(self, rows: FloatArray, rows_pieces: IntArray) -> None:
+    def _append(self, more: Phases) -> None:
         last = self.phases[-1]
         self.phases[-1] = Phases(
-            last.pieces,
-            np.concatenate([last.rows, rows]),
-            np.concatenate([last.rows_pieces, rows_pieces]),
+            more.pieces,
+            np.concatenate([last.rows, more.rows]),
+            np.concatenate([last.rows_pieces, more.rows_pieces]),
         )
 
 
-def _no_phases(pieces: Pieces) -> Phases:
-    return Phases(pieces, np.zeros((0, 6)), np.zeros((0, 2), np.int64))
+def _drive(
+    window: Window, wishes: Wishes, stretch: int, x: float, known: FloatArray | None = None
+) -> tuple[Window, _Drive]:
+    """What a window is driven by from a place on; the window, parted where a block is to stop."""
+    pieces = window.pieces
+    block_end = -1
+    if wishes.single_block:
+        piece, _ = window.piece_at(stretch, x)
+        others = np.flatnonzero(pieces.line[piece:] != pieces.line[piece])
+        if len(others) > 0:
+            window = window.parted_at(piece + int(others[0]))
+            block_end, _ = window.stretch_at(piece + int(others[0]), 0.0)
+    first = window.begins[:-1]
+    rapid, feed = pieces.rapid[first], pieces.feed[first]
+    override = np.where(rapid, wishes.rapid_override, wishes.feed_override)
+    limits, entry = window.limits.copy(), window.entry.copy()
+    wanted = np.minimum(limits[1], override * np.where(rapid, limits[1], feed))
+    limits[1] = 0.0 if wishes.held else wanted
+    closed = (limits[1] < SLOWEST) & (limits[0] > 0.0)
+    closed[:stretch] = False
+    stop = int(np.argmax(closed)) if np.any(closed) else len(first)
+    if block_end >= 0:
+        entry[block_end] = 0.0
+        stop = min(stop, block_end)
+        known = None
+    ways = np.zeros((3, len(entry)))
+    ways[:, stretch:] = find_reach(
+        limits[:, stretch:], entry[stretch:],
+        np.zeros((3, 0)) if known is None else known[:, stretch:] - [[0.0], [stretch], [0.0]],
+    )  # fmt: skip
+    ways[1] += stretch
+    return window, _Drive(limits, entry, ways, block_end, stop)

@@ -9,7 +9,8 @@ from twin.motion.limits import MotionLimits
 from twin.motion.pieces import Pieces, pieces_of_chunks
 from twin.motion.profile_kernels import STATE_AT_REST, find_phases
 from twin.motion.reach_kernels import find_reach
-from twin.motion.windows import BATCH, entry_velocities, limit_table, windows
+from twin.motion.stretch_kernels import place_phases
+from twin.motion.windows import Window, windows
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 
 
@@ -44,18 +45,32 @@ def plan_phases(
         start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
     """
     state = STATE_AT_REST.copy()
-    known = np.zeros(0)
-    for window, whole in windows(pieces_of_chunks(chunks, limits, start)):
-        first = int(state[0])
-        pieces = window[first:]
-        table, entry = limit_table(pieces), entry_velocities(pieces)
-        reach = find_reach(table, entry, known)
-        stop = len(pieces) if whole else BATCH - first
-        state[0] = 0.0
-        rows, rows_pieces = find_phases(table, entry, reach, pieces.pause, stop, np.inf, state)
-        known = reach[int(state[0]) : -1]
-        state[0] += first - BATCH
-        # What a brake was compared with lies behind.
-        state[5:] = STATE_AT_REST[5:]
+    known = np.zeros((3, 0))
+    for window in windows(pieces_of_chunks(chunks, limits, start)):
+        ways = find_reach(window.limits, window.entry, known)
+        rows, stretches = find_phases(
+            window.limits, window.entry, ways, window.pause, window.due, np.inf, state
+        )
         if len(rows) > 0:
-            yield Phases(pieces, rows, rows_pieces)
+            yield phases_of(window, rows, stretches)
+        known = ways_on(ways, window.due)
+        state[[0, 5, 6, 7]] -= window.due
+
+
+def phases_of(window: Window, rows: FloatArray, stretches: IntArray) -> Phases:
+    """Phases by pieces; ``rows`` are overwritten."""
+    lengths = window.pieces.length
+    return Phases(window.pieces, rows, place_phases(rows, stretches, window.begins, lengths))
+
+
+def no_phases(pieces: Pieces) -> Phases:
+    """The beginning of phases over pieces."""
+    return Phases(pieces, np.zeros((0, 6)), np.zeros((0, 2), np.int64))
+
+
+def ways_on(ways: FloatArray, due: int) -> FloatArray:
+    """What is known of the next window: the result of ``find_reach`` from ``due`` on."""
+    known = ways[:, due:].copy()
+    known[1] -= due
+    # The window's end was taken to be a stop.
+    return known[:, :-1]

@@ -1,4 +1,4 @@
-"""Velocity profiles along pieces: phases of constant jerk, as fast as the limits allow.
+"""Velocity profiles along stretches: phases of constant jerk, as fast as the limits allow.
 
 Each phase lasts as long as its end is safe (``reach_kernels``): first the jerk is positive, then
 zero; when neither is safe any more, the brake that made the state safe is carried out. For one move
@@ -8,196 +8,283 @@ this gives the well-known seven phases of minimum time.
 import numba
 import numpy as np
 
-from twin.motion.brake_kernels import brake_distance, time_to
+from twin.motion.brake_kernels import brake_distance, brake_need, time_to
 from twin.motion.early_brake_kernels import better_to_brake
 from twin.motion.phase_kernels import put_brake, put_phase
 from twin.motion.reach_kernels import BISECTIONS, ROUNDING, SLOWEST, find_brake
 from twin.nc.canonical import FloatArray, IntArray
 
-STATE_AT_REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0])
-"""Piece, x within it, v, a, time; the piece in which an early brake was chosen, and that in which
-one was weighed, -1: none."""
+STATE_AT_REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, -1.0, 0.0])
+"""Stretch, x within it, v, a, time; the stretch in which an early brake was chosen, and that in
+which one was weighed, -1: none; the border to which the state can brake, -1: to be found, and the
+velocity there."""
 
 SHORTEST_PHASE = 1e-10
 """Phases below this are rounding [s]."""
 
-MOST_PHASES = 4096
-"""Of one piece; more would mean that rounding keeps the path from going on."""
+TIME_PRECISION = 1e-14
+"""Of the end of a phase, relative to the time looked at."""
+
+MOST_PHASES = 256
+"""Of one stretch; where rounding asks for more, the brake that is known is carried out."""
 
 SHORTEST_HOLD = 1e-7
 """Of an acceleration that is held: shorter ones only creep up to a limit [s]."""
 
 
 @numba.njit(cache=True)
-def _can_last(
+def _brake_after(
     limits: FloatArray, entry: FloatArray, reach: FloatArray,
     i: int, x: float, v: float, a: float, j: float, t: float, to_border: bool,
-) -> bool:  # fmt: skip
-    """Whether the state after t of jerk j is safe; ``to_border``: t ends at the piece's end."""
+) -> int:  # fmt: skip
+    """Border to which the state after t of jerk j can brake, -1: none.
+
+    Args:
+        limits: As in ``find_brake``, and so on to ``a``.
+        entry: See above.
+        reach: See above.
+        i: See above.
+        x: See above.
+        v: See above.
+        a: See above.
+        j: Jerk.
+        t: Time [s].
+        to_border: Whether t ends at the stretch's end.
+    """
     new_x = x + ((j / 6.0 * t + 0.5 * a) * t + v) * t
     new_v = v + (0.5 * j * t + a) * t
     new_a = a + j * t
     if not to_border:
-        return find_brake(limits, entry, reach, i, new_x, new_v, new_a, 0.0, 0) >= 0
+        return find_brake(limits, entry, reach, i, new_x, new_v, new_a, 0.0, 0)
     if new_v > min(limits[1, i], entry[i + 1]) or i + 1 >= limits.shape[1]:
-        return False
+        return -1
     if limits[0, i + 1] == 0.0:
-        return False
-    return find_brake(limits, entry, reach, i + 1, 0.0, new_v, new_a, 0.0, 0) >= 0
+        return -1
+    return find_brake(limits, entry, reach, i + 1, 0.0, new_v, new_a, 0.0, 0)
+
+
+@numba.njit(cache=True)
+def _last_chance(
+    limits: FloatArray, i: int, x: float, v: float, a: float, j: float, k: int, w: float,
+    low: float, high: float,
+) -> float:  # fmt: skip
+    """How long jerk j may last if only the way to brake to w at border k counts, within bounds."""
+    deceleration, jerk, distance = limits[3, i], limits[4, i], limits[0, i] - x
+    for last in range(i + 1, k):
+        deceleration = min(deceleration, limits[3, last])
+        jerk = min(jerk, limits[4, last])
+        distance += limits[0, last]
+    for _ in range(BISECTIONS):
+        t = 0.5 * (low + high)
+        gone = ((j / 6.0 * t + 0.5 * a) * t + v) * t
+        need = brake_need(v + (0.5 * j * t + a) * t, a + j * t, w, deceleration, jerk)
+        if gone + need <= distance:
+            low = t
+        else:
+            high = t
+        if high - low <= TIME_PRECISION * high:
+            break
+    return low
 
 
 @numba.njit(cache=True)
 def _longest(
     limits: FloatArray, entry: FloatArray, reach: FloatArray,
-    i: int, x: float, v: float, a: float, j: float, latest: float,
-) -> tuple[float, bool]:  # fmt: skip
-    """How long jerk j may last, at most ``latest`` or to the piece's end; whether it gets there."""
+    i: int, x: float, v: float, a: float, j: float, latest: float, brake: int,
+) -> tuple[float, bool, int]:  # fmt: skip
+    """How long jerk j may last, at most ``latest`` or to the stretch's end.
+
+    Args:
+        limits: As in ``_brake_after``, and so on to ``j``.
+        entry: See above.
+        reach: See above.
+        i: See above.
+        x: See above.
+        v: See above.
+        a: See above.
+        j: See above.
+        latest: [s]
+        brake: Border to which the state can brake.
+
+    Returns:
+        Time [s], whether it ends at the border, border to which the state can brake then.
+    """
     rest = limits[0, i] - x
-    if ((j / 6.0 * latest + 0.5 * a) * latest + v) * latest >= rest:
+    at_border = ((j / 6.0 * latest + 0.5 * a) * latest + v) * latest >= rest
+    if at_border:
         latest = time_to(rest, v, a, j, latest)
-        if _can_last(limits, entry, reach, i, x, v, a, j, latest, True):
-            return latest, True
-    elif _can_last(limits, entry, reach, i, x, v, a, j, latest, False):
-        return latest, False
+    found = _brake_after(limits, entry, reach, i, x, v, a, j, latest, at_border)
+    if found >= 0:
+        return latest, at_border, found
     low, high = 0.0, latest
+    precision = TIME_PRECISION * latest
+    guess = True
     for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        if _can_last(limits, entry, reach, i, x, v, a, j, middle, False):
-            low = middle
+        t = 0.5 * (low + high)
+        if guess:
+            # What bounds the time is most often the brake that is known.
+            t = _last_chance(limits, i, x, v, a, j, brake, reach[brake], low, high)
+            t = min(max(t, low + 0.25 * precision), high - 0.25 * precision)
+        found = _brake_after(limits, entry, reach, i, x, v, a, j, t, False)
+        if found >= 0:
+            low = t
+            guess = found != brake
+            brake = found
+            if not guess and high - low > precision:
+                # Then it is at its end here.
+                t = low + precision
+                found = _brake_after(limits, entry, reach, i, x, v, a, j, t, False)
+                if found < 0:
+                    break
+                low, brake = t, found
         else:
-            high = middle
-    return low, False
+            high = t
+            guess = False
+        if high - low <= precision:
+            break
+    return low, False, brake
+
+
+@numba.njit(cache=True)
+def _known_brake(
+    limits: FloatArray, entry: FloatArray, ways: FloatArray, i: int, x: float, v: float, a: float
+) -> tuple[int, float]:
+    """Border to which a state can brake, and the velocity there."""
+    k = find_brake(limits, entry, ways[0], i, x, v, a, ROUNDING, 0)
+    if k >= 0:
+        return k, ways[0, k]
+    # At a border that was reached by a brake: as it was found.
+    return int(ways[1, i]), ways[2, i]
 
 
 @numba.njit(cache=True)
 def find_phases(
-    limits: FloatArray, entry: FloatArray, reach: FloatArray, pause: FloatArray,
+    limits: FloatArray, entry: FloatArray, ways: FloatArray, pause: FloatArray,
     stop: int, until: float, state: FloatArray,
 ) -> tuple[FloatArray, IntArray]:  # fmt: skip
-    """Drive from ``state`` to a piece or a time, on to the end of a phase or brake.
+    """Drive from ``state`` to a stretch or a time, on to the end of a phase or brake.
 
-    However often the drive is broken off and gone on with, the phases are the same.
+    However often the drive is broken off and gone on with, the phases are the same. With every
+    state goes the brake that makes it safe, so that there is always a way on.
 
     Args:
         limits: As in ``find_brake``.
         entry: As in ``find_brake``.
-        reach: From ``find_reach``.
-        pause: How long each piece waits, shape (n,) [s].
-        stop: Piece at which to end.
+        ways: From ``find_reach``.
+        pause: How long each stretch waits, shape (n,) [s].
+        stop: Stretch at which to end.
         until: Time at which to end [s].
-        state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (7,).
+        state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (9,).
 
     Returns:
-        Rows begin [s], duration [s], x, v, a, j, and the first and last piece of each phase.
+        Rows begin [s], duration [s], x, v, a, j, and the first and last stretch of each phase.
     """
     count = limits.shape[1]
+    reach = ways[0]
     phases = np.zeros((256, 6))
-    pieces = np.zeros((256, 2), np.int64)
+    stretches = np.zeros((256, 2), np.int64)
     used = 0
     i, x, v, a, now = int(state[0]), state[1], state[2], state[3], state[4]
-    phases_here = 0
-    brake_in, compared_in = int(state[5]), int(state[6])
-    last_i = i
+    brake_in, compared_in, k, w = int(state[5]), int(state[6]), int(state[7]), state[8]
+    phases_here, last_i = 0, i
     while i < stop and i < count and now < until:
         phases_here = phases_here + 1 if i == last_i else 0
         last_i = i
-        if phases_here > MOST_PHASES:
-            raise RuntimeError("motion: the path does not go on")
-        if used + 8 > len(pieces):
+        if used + 8 > len(stretches):
             phases = np.concatenate((phases, np.zeros_like(phases)))
-            pieces = np.concatenate((pieces, np.zeros_like(pieces)))
+            stretches = np.concatenate((stretches, np.zeros_like(stretches)))
         if limits[0, i] == 0.0:
-            put_phase(phases, pieces, used, i, i, now, pause[i], 0.0, 0.0, 0.0, 0.0)
+            put_phase(phases, stretches, used, i, i, now, pause[i], 0.0, 0.0, 0.0, 0.0)
             used += 1
             now += pause[i]
-            i += 1
+            i, x, v, a, k = i + 1, 0.0, 0.0, 0.0, -1
             continue
-
-        if v < SLOWEST and limits[0, i] - x <= ROUNDING * limits[0, i]:
+        rest = limits[0, i] - x
+        if v < SLOWEST and rest <= ROUNDING * limits[0, i]:
             # All but arrived; what is left is too little to speed up for.
-            i, x, v, a = i + 1, 0.0, min(v, reach[i + 1]), 0.0
+            i, x, v, a, k = i + 1, 0.0, min(v, reach[i + 1]), 0.0, -1
             continue
+        if k <= i:
+            k, w = _known_brake(limits, entry, ways, i, x, v, a)
 
         highest_v, highest_a, jerk = limits[1, i], limits[2, i], limits[4, i]
-        j, duration, latest, at_border = 0.0, 0.0, 0.0, False
+        j, duration, latest, at_border, then = 0.0, 0.0, 0.0, False, k
         gap = highest_v - (v + a * a / (2.0 * jerk))
-        extend = brake_in != i or v <= 0.0
+        extend = v <= 0.0 or (brake_in != i and phases_here < MOST_PHASES)
         if extend and a < highest_a * (1.0 - ROUNDING) and gap > ROUNDING * highest_v:
             j = jerk
             latest = (highest_a - a) / jerk
-            duration, at_border = _longest(limits, entry, reach, i, x, v, a, j, latest)
+            duration, at_border, then = _longest(limits, entry, reach, i, x, v, a, j, latest, k)
         holds = a == 0.0 or gap > ROUNDING * highest_v
         if extend and holds and duration < SHORTEST_PHASE and v > 0.0:
             j = 0.0
-            latest = 2.0 * (limits[0, i] - x) / v
-            duration, at_border = _longest(limits, entry, reach, i, x, v, a, j, latest)
+            latest = 2.0 * rest / v
+            duration, at_border, then = _longest(limits, entry, reach, i, x, v, a, j, latest, k)
             if a > 0.0 and duration < SHORTEST_HOLD and not at_border:
                 duration = 0.0
         if SHORTEST_PHASE <= duration < latest and not at_border and compared_in != i:
             sooner = better_to_brake(limits, entry, reach, i, x, v, a, j, duration)
             if sooner < duration:
-                duration, brake_in = sooner, i
-                # Once per piece: what rounding leaves over must not be weighed again.
+                duration, brake_in, then = sooner, i, i + 1
+                # Once per stretch: what rounding leaves over must not be weighed again.
                 compared_in = i
         if duration > 0.0 and (duration >= SHORTEST_PHASE or at_border):
-            put_phase(phases, pieces, used, i, i, now, duration, x, v, a, j)
+            put_phase(phases, stretches, used, i, i, now, duration, x, v, a, j)
             used += 1
             now += duration
             x += ((j / 6.0 * duration + 0.5 * a) * duration + v) * duration
             v += (0.5 * j * duration + a) * duration
             a += j * duration
+            k = then
             if at_border:
                 i, x = i + 1, 0.0
+            if k >= 0:
+                w = reach[k]
             continue
 
-        k = find_brake(limits, entry, reach, i, x, v, a, ROUNDING, 0)
-        if k < 0:
-            raise RuntimeError("motion: no way to brake from a state that was safe")
-        deceleration = limits[3, i]
-        distance = limits[0, i] - x
-        for piece in range(i + 1, k):
-            deceleration = min(deceleration, limits[3, piece])
-            jerk = min(jerk, limits[4, piece])
-            distance += limits[0, piece]
+        deceleration, distance = limits[3, i], rest
+        for last in range(i + 1, k):
+            deceleration = min(deceleration, limits[3, last])
+            jerk = min(jerk, limits[4, last])
+            distance += limits[0, last]
         if a > 0.0:
-            # Only down to a = 0, or to the next piece: there may be something better to do then.
+            # Only down to a = 0, or to the next border: there may be something better to do then.
             duration = a / jerk
-            rest = limits[0, i] - x
             length = (v + a * duration / 3.0) * duration
             at_border = length >= rest
             if at_border:
                 duration = time_to(rest, v, a, -jerk, duration)
-            put_phase(phases, pieces, used, i, i, now, duration, x, v, a, -jerk)
+            put_phase(phases, stretches, used, i, i, now, duration, x, v, a, -jerk)
             used += 1
             now += duration
             v += (a - 0.5 * jerk * duration) * duration
             a -= jerk * duration
             if at_border:
-                i, x, a = i + 1, 0.0, max(0.0, a)
+                i, x = i + 1, 0.0
+                if i == k or a <= 0.0:
+                    a = 0.0
             else:
                 x, a = x + length, 0.0
                 if v <= highest_v * (1.0 + ROUNDING):
                     # Above the limit by rounding alone, it would never be held.
                     v = min(v, highest_v)
             continue
-
-        w = reach[k]
         if v <= w and brake_in == i:
             brake_in = -1
             continue
         if v <= w:
             # Only rounding has kept the state from going on as it is.
-            duration = (limits[0, i] - x) / v
-            put_phase(phases, pieces, used, i, i, now, duration, x, v, 0.0, 0.0)
+            duration = rest / v
+            put_phase(phases, stretches, used, i, i, now, duration, x, v, 0.0, 0.0)
             used += 1
             now += duration
-            i, x, v = i + 1, 0.0, min(v, entry[i + 1])
+            i, x = i + 1, 0.0
             continue
         spare = distance - brake_distance(v, w, deceleration, jerk)
         to_border = spare <= ROUNDING * distance
         if to_border and spare > 0.0:
             duration = spare / v
-            put_phase(phases, pieces, used, i, k - 1, now, duration, x, v, 0.0, 0.0)
+            put_phase(phases, stretches, used, i, k - 1, now, duration, x, v, 0.0, 0.0)
             used += 1
             now += duration
             x += v * duration
@@ -205,12 +292,12 @@ def find_phases(
                 x -= limits[0, i]
                 i += 1
         used, i, now, x = put_brake(
-            phases, pieces, used, limits[0], i, k - 1, now, x, v, 0.0, w, deceleration, jerk
+            phases, stretches, used, limits[0], i, k - 1, now, x, v, 0.0, w, deceleration, jerk
         )
         v, a = w, 0.0
         brake_in = -1
         if to_border:
-            i, x = k, 0.0
+            i, x, k = k, 0.0, -1
     state[0], state[1], state[2], state[3], state[4] = i, x, v, a, now
-    state[5], state[6] = brake_in, compared_in
-    return phases[:used], pieces[:used]
+    state[5], state[6], state[7], state[8] = brake_in, compared_in, k, w
+    return phases[:used], stretches[:used]

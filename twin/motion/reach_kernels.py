@@ -1,7 +1,7 @@
 """From which states one can still brake in time, and how fast each border may be passed.
 
-The state on the path is (piece, x within it, v, a). It is *safe* if from it one can brake to a
-later border of pieces, arriving there with a = 0 and no faster than that border's ``reach``, within
+The state on the path is (stretch, x within it, v, a). It is *safe* if from it one can brake to a
+later border of stretches, arriving there with a = 0 and no faster than that border's ``reach``, within
 all limits on the way. ``reach`` is the highest velocity that is itself safe at the border with
 a = 0, so that a safe state has a safe way to the end of the window, where v = 0. It is found
 backwards from the end.
@@ -12,7 +12,7 @@ import math
 import numba
 import numpy as np
 
-from twin.motion.brake_kernels import brake_distance, brake_state
+from twin.motion.brake_kernels import brake_distance, brake_need, brake_state
 from twin.nc.canonical import FloatArray
 
 BISECTIONS = 52
@@ -27,6 +27,9 @@ REACH_PRECISION = 1e-9
 SLOWEST = 1e-6
 """A border that must be passed more slowly than this is passed from a stop [mm/s or deg/s]."""
 
+REACH_HALVINGS = 16
+"""Where a limit on the way bounds the velocity: what is lost is a hundred thousandth of it."""
+
 FAILED_BRAKES = 4
 """Brakes that fit their distance but break a limit on the way before the search gives up."""
 
@@ -36,7 +39,7 @@ def holds_on_the_way(
     limits: FloatArray, entry: FloatArray, i: int, x: float, v: float, a: float,
     k: int, w: float, deceleration: float, jerk: float, wide: float,
 ) -> bool:  # fmt: skip
-    """Whether the brake to border k keeps the velocities and accelerations of pieces i to k - 1."""
+    """Whether the brake to border k keeps the velocities and accelerations of stretches i to k - 1."""
     top = v + a * a / (2.0 * jerk)
     distance = limits[0, i] - x
     now_v, now_a = brake_state(distance, v, a, w, deceleration, jerk)
@@ -61,13 +64,14 @@ def find_brake(
     limits: FloatArray, entry: FloatArray, reach: FloatArray,
     i: int, x: float, v: float, a: float, slack: float, nearest: int,
 ) -> int:  # fmt: skip
-    """The border to which a safe state can brake; -1 if the state is not safe.
+    """The border to which a safe state can brake; -1 if none is found.
 
     Args:
-        limits: Rows length, velocity, acceleration, deceleration, jerk of n pieces, shape (5, n).
+        limits: Rows length, velocity, acceleration, deceleration, jerk of n stretches, shape
+            (5, n).
         entry: Highest v at each border, shape (n + 1,).
         reach: As above; entries up to i are not looked at, shape (n + 1,).
-        i: Piece of the state.
+        i: Stretch of the state.
         x: Place within it.
         v: Velocity.
         a: Acceleration, not negative.
@@ -83,94 +87,127 @@ def find_brake(
     softest = math.inf
     distance = limits[0, i] - x
     own_distance = distance
-    nearer = 0.0
     failed = 0
     lowest = math.inf
     for k in range(i + 1, count + 1):
         if k > i + 1:
-            piece = k - 1
-            if limits[0, piece] == 0.0:
+            last = k - 1
+            if limits[0, last] == 0.0 or brake_need(v, a, 0.0, deceleration, jerk) < distance:
+                # A stop would come earlier: if even that does not do, nothing further on does.
                 return -1
-            nearer = distance
-            distance += limits[0, piece]
-            deceleration = min(deceleration, limits[3, piece])
-            jerk = min(jerk, limits[4, piece])
-            ceiling = min(ceiling, limits[1, piece], entry[piece])
-            softest = min(softest, limits[2, piece])
-        if k < nearest:
-            continue
+            distance += limits[0, last]
+            deceleration = min(deceleration, limits[3, last])
+            jerk = min(jerk, limits[4, last])
+            ceiling = min(ceiling, limits[1, last], entry[last])
+            softest = min(softest, limits[2, last])
         w = reach[k]
-        lift_time = a / jerk
-        lift = (v + a * lift_time / 3.0) * lift_time
-        top = v + 0.5 * a * lift_time
-        need = lift
-        if top > w:
-            need += brake_distance(top, w, deceleration, jerk)
-            if need * wide < nearer:
-                # It would end before the last border but one, lower than that border asks for.
-                continue
-        if need <= distance * wide + slack * 1e-3 and w < lowest:
-            if top <= ceiling * wide and (lift <= own_distance or a <= softest):
-                return k
-            if holds_on_the_way(limits, entry, i, x, v, a, k, w, deceleration, jerk, wide):
-                return k
-            lowest = w
-            failed += 1
-            if failed >= FAILED_BRAKES:
-                return -1
+        if k >= nearest and w < lowest:
+            lift_time = a / jerk
+            lift = (v + a * lift_time / 3.0) * lift_time
+            top = v + 0.5 * a * lift_time
+            need = lift
+            if top > w:
+                need += brake_distance(top, w, deceleration, jerk)
+            if need <= distance * wide + slack * 1e-3:
+                if top <= ceiling * wide and (lift <= own_distance or a <= softest):
+                    return k
+                if holds_on_the_way(limits, entry, i, x, v, a, k, w, deceleration, jerk, wide):
+                    return k
+                lowest = w
+                failed += 1
+                if failed >= FAILED_BRAKES:
+                    return -1
         if entry[k] < SLOWEST:
             return -1
     return -1
 
 
 @numba.njit(cache=True)
+def _fastest_start(distance: float, w: float, deceleration: float, jerk: float) -> float:
+    """The highest v from which a brake to w takes no more than ``distance``."""
+    # Eased all the way the drop is jerk s², over (2 w + jerk s²) s.
+    s = min((distance / jerk) ** (1.0 / 3.0), distance / (2.0 * w) if w > 0.0 else math.inf)
+    for _ in range(60):
+        step = ((jerk * s * s + 2.0 * w) * s - distance) / (3.0 * jerk * s * s + 2.0 * w)
+        s -= step
+        if abs(step) <= 1e-15 * s:
+            break
+    if jerk * s <= deceleration:
+        return w + jerk * s * s
+    # (v + w) / 2 ((v - w) / deceleration + deceleration / jerk) = distance
+    half = 0.5 * deceleration * deceleration / jerk
+    return -half + math.sqrt(max(0.0, (w - half) * (w - half) + 2.0 * deceleration * distance))
+
+
+@numba.njit(cache=True)
 def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> FloatArray:
-    """The highest safe velocity at every border, a = 0.
+    """The highest safe velocity at every border with a = 0, and the brake that makes it safe.
 
     Args:
         limits: As in ``find_brake``.
         entry: As in ``find_brake``; the last must be 0.
-        known: Velocities that are known to be safe from a shorter window, shape (m <= n + 1,).
+        known: The same result of a window that ended earlier, for the first borders of this one,
+            shape (3, m <= n + 1).
+
+    Returns:
+        Rows reach, border to which to brake, velocity there; shape (3, n + 1).
     """
     count = limits.shape[1]
-    reach = np.zeros(count + 1)
-    nearest = 0
+    out = np.zeros((3, count + 1))
+    reach = out[0]
+    for i in range(count + 1):
+        out[1, i] = min(i + 1, count)
     for i in range(count - 1, -1, -1):
         if entry[i] < SLOWEST or limits[0, i] == 0.0:
-            nearest = 0
             continue
         highest = min(entry[i], limits[1, i])
         if i > 0:
             highest = min(highest, limits[1, i - 1])
-        if find_brake(limits, entry, reach, i, 0.0, highest, 0.0, 0.0, 0) >= 0:
-            reach[i] = highest
-            nearest = 0
-            continue
-        # The border after this one says where to look: a little above what is safe there.
-        low, step = 0.0, highest
-        if i < len(known):
-            low = known[i]
-        if i + 2 <= count and reach[i + 1] > 0.0:
-            step = max(abs(reach[i + 1] - reach[i + 2]), 1e-6 * highest)
-            guess = min(reach[i + 1], highest)
-            found = find_brake(limits, entry, reach, i, 0.0, guess, 0.0, 0.0, nearest - 3)
-            if guess > low and found >= 0:
-                low = guess
-        high = min(highest, low + step)
-        while high < highest:
-            if find_brake(limits, entry, reach, i, 0.0, high, 0.0, 0.0, nearest - 3) < 0:
+        best, to = 0.0, i + 1
+        if i < known.shape[1]:
+            best, to = known[0, i], int(known[1, i])
+        at = known[2, i] if best > 0.0 else reach[to]
+        deceleration, jerk, ceiling = math.inf, math.inf, math.inf
+        distance, lowest = 0.0, math.inf
+        failed = 0
+        for k in range(i + 1, count + 1):
+            last = k - 1
+            if limits[0, last] == 0.0 or best >= highest * (1.0 - REACH_PRECISION):
                 break
-            low = high
-            step *= 4.0
-            high = min(highest, low + step)
-        for _ in range(BISECTIONS):
-            if high - low <= REACH_PRECISION * high:
+            if k > i + 1 and brake_distance(highest, 0.0, deceleration, jerk) < distance:
                 break
-            middle = 0.5 * (low + high)
-            found = find_brake(limits, entry, reach, i, 0.0, middle, 0.0, 0.0, nearest - 3)
-            if found >= 0:
-                low, nearest = middle, found
-            else:
-                high = middle
-        reach[i] = low if low >= SLOWEST else 0.0
-    return reach
+            distance += limits[0, last]
+            deceleration = min(deceleration, limits[3, last])
+            jerk = min(jerk, limits[4, last])
+            ceiling = min(ceiling, limits[1, last])
+            if last > i:
+                ceiling = min(ceiling, entry[last])
+            w = reach[k]
+            if w < lowest:
+                v = highest
+                if w < v and brake_distance(v, w, deceleration, jerk) > distance:
+                    v = min(v, _fastest_start(distance, w, deceleration, jerk))
+                if v > best:
+                    holds = v <= ceiling or holds_on_the_way(
+                        limits, entry, i, 0.0, v, 0.0, k, w, deceleration, jerk, 1.0
+                    )
+                    if not holds:
+                        lowest = w
+                        failed += 1
+                        low, high = best, v
+                        for _ in range(REACH_HALVINGS):
+                            v = 0.5 * (low + high)
+                            if holds_on_the_way(
+                                limits, entry, i, 0.0, v, 0.0, k, min(w, v), deceleration, jerk, 1.0
+                            ):
+                                low = v
+                            else:
+                                high = v
+                        v = low
+                    if v > best:
+                        best, to, at = v, k, min(w, v)
+            if entry[k] < SLOWEST or failed >= FAILED_BRAKES:
+                break
+        if best >= SLOWEST:
+            reach[i], out[1, i], out[2, i] = best, to, at
+    return out

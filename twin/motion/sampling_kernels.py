@@ -30,6 +30,7 @@ def sample_path(
     """
     row = cursor[0]
     count = 0
+    i, behind, placed = 0, 0.0, -1
     while row < len(phase_pieces) and count < len(piece):
         t = (first_tick + count) * period - phases[row, 0]
         if t >= phases[row, 1]:
@@ -38,12 +39,13 @@ def sample_path(
         t = max(t, 0.0)
         v, a, j = phases[row, 3], phases[row, 4], phases[row, 5]
         x = phases[row, 2] + ((j / 6.0 * t + 0.5 * a) * t + v) * t
-        i = phase_pieces[row, 0]
-        while i < phase_pieces[row, 1] and x >= lengths[i]:
-            x -= lengths[i]
+        if placed != row:
+            i, behind, placed = phase_pieces[row, 0], 0.0, row
+        while i < phase_pieces[row, 1] and x - behind >= lengths[i]:
+            behind += lengths[i]
             i += 1
         piece[count] = i
-        path[count, 0] = min(x, lengths[i])
+        path[count, 0] = min(x - behind, lengths[i])
         path[count, 1] = max(0.0, v + (0.5 * j * t + a) * t)
         path[count, 2] = a + j * t
         count += 1
@@ -72,11 +74,11 @@ def state_at(
             continue
         v, a, j = phases[row, 3], phases[row, 4], phases[row, 5]
         x = phases[row, 2] + ((j / 6.0 * t + 0.5 * a) * t + v) * t
-        i = phase_pieces[row, 0]
-        while i < phase_pieces[row, 1] and x >= lengths[i]:
-            x -= lengths[i]
+        i, behind = phase_pieces[row, 0], 0.0
+        while i < phase_pieces[row, 1] and x - behind >= lengths[i]:
+            behind += lengths[i]
             i += 1
-        return i, min(x, lengths[i]), max(0.0, v + (0.5 * j * t + a) * t), a + j * t, row
+        return i, min(x - behind, lengths[i]), max(0.0, v + (0.5 * j * t + a) * t), a + j * t, row
     return 0, 0.0, 0.0, 0.0, -1
 
 

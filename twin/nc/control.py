@@ -137,13 +137,16 @@ class Control(ControlMotion):
         return any(word.address == self.dialect.series[0] for word in block.words)
 
     def _g_code(self, word: Word) -> GCode:
-        code = self.dialect.g.get(integer_of(number_of(word)))
+        number = integer_of(number_of(word))
+        code = self.dialect.g.get(number)
         if code is None:
+            known = ", ".join(f"G{number}" for number in sorted(self.dialect.g))
+            instead = self.dialect.instead.get(number)
             self.fail(
                 "unknown-g",
                 f"{word.text} is unknown to {self.dialect.name}",
                 word,
-                hint=f"known: {', '.join(f'G{number}' for number in sorted(self.dialect.g))}",
+                hint=f"known: {known}" if instead is None else instead,
             )
         if code.refused:
             self.fail("unsupported-g", f"{word.text} ({code.meaning}): {code.refused}", word)
@@ -219,7 +222,10 @@ class Control(ControlMotion):
             return
         interpolation = self.modal.cycle or self.modal.interpolation
         if interpolation is None:
-            word = next(iter(words.values()))
+            word = next(each for each in words.values() if each.address in motion_words)
+            if word.address not in self.dialect.axis_letters:
+                message = f"'{word.text}' belongs to a motion, and no motion code is in force"
+                self.fail("no-motion-code", message, word, self._meaning_of(word.address))
             self.fail(
                 "no-motion-code",
                 f"'{word.text}' would move, but no motion code is in force",
@@ -236,11 +242,17 @@ class Control(ControlMotion):
         word = next(iter(self.words.values()), None) or self.series[0]
         if word.address in self.dialect.word_meanings:
             message = f"nothing in this block uses '{word.text}'"
-        else:
-            message = f"'{word.address}' is no word of {self.dialect.name}"
+            self.fail("unused-word", message, word, self._meaning_of(word.address))
         known = ", ".join(self.dialect.word_meanings)
-        code = "unused-word" if word.address in self.dialect.word_meanings else "unknown-word"
-        self.fail(code, message, word, hint=f"words of {self.dialect.name}: {known}")
+        self.fail(
+            "unknown-word",
+            f"'{word.address}' is no word of {self.dialect.name}",
+            word,
+            hint=f"words of {self.dialect.name}: {known}",
+        )
+
+    def _meaning_of(self, address: str) -> str:
+        return f"{address} in {self.dialect.name}: {self.dialect.word_meanings[address]}"
 
     def place_switches(self, length: float) -> None:
         """Report the block's switch points, told the length of its move."""

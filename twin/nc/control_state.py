@@ -1,6 +1,7 @@
 """What a control remembers while it runs a program, and how it refuses."""
 
 import dataclasses
+import re
 from typing import NoReturn
 
 from twin.nc.blocks import Block, Word
@@ -131,12 +132,19 @@ class ControlState:
 
     def _refuse_move(self, move: Segment, code: str, message: str) -> NoReturn:
         self.report.line = move.line
-        self.report.fail(code, message)
+        self.report.fail(code, message, *self._span_of(move))
 
     def _warn_of_move(self, move: Segment, code: str, message: str) -> None:
         line, self.report.line = self.report.line, move.line
-        self.report.warn(code, message)
+        self.report.warn(code, message, *self._span_of(move))
         self.report.line = line
+
+    def _span_of(self, move: Segment) -> tuple[int, int]:
+        """Column and width of a move's block number; without one of the line's first word."""
+        text = self.flow.lines[move.line - 1]
+        number = rf"N[ \t]*0*{move.block}(?![0-9])" if move.block >= 0 else r"\S+"
+        match = re.search(number, text, re.IGNORECASE)
+        return (0, 1) if match is None else (match.start(), len(match[0]))
 
 
 def number_of(word: Word) -> float:

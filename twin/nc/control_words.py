@@ -84,7 +84,9 @@ class ControlWords(ControlState, abc.ABC):
             self.report.fail(error.code, str(error), at, 1, error.hint)
         if text[end:].strip() or (count is not None and len(found) != count):
             wanted = "values" if count is None else f"{count} value" + "s" * (count > 1)
-            self.report.fail("expression", f"{wanted} must stand here and no more", column + end)
+            hint = "equal is written ==" if text[end:].lstrip().startswith("=") else None
+            message = f"{wanted} must stand here and no more"
+            self.report.fail("expression", message, column + end, 1, hint)
         return found
 
     def compute(self, expression: Expression, column: int) -> float:

@@ -4,6 +4,7 @@ import dataclasses
 import enum
 import math
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from twin.nc.canonical import Corner
@@ -13,6 +14,7 @@ from twin.nc.planes import XY, Plane
 if TYPE_CHECKING:
     from twin.nc.blocks import Statement, Word
     from twin.nc.control import Control
+    from twin.nc.source import Source
 
 Action = Callable[["Control"], None]
 WordAction = Callable[["Control", "Word"], None]
@@ -47,7 +49,7 @@ class PlainArc:
         mismatch: How far the distances of start and end from the centre may differ [mm].
         mismatch_share: The same as a share of the larger one.
         shift: How far the centre may be moved to fit [mm].
-        signed_radius: A negative radius asks for the larger arc.
+        signed_radius: A negative radius asks for the larger arc; else it is not plain.
         fits_radius: A centre found by its radius is fitted to both points like a given one.
     """
 
@@ -180,6 +182,7 @@ class Syntax:
         comments: Kinds of comments.
         expressions: How values are computed; None where only numbers are written.
         statement: Regular expression of what begins a statement; its group 1 is the keyword.
+        trailing_prose: Words of prose behind a block's words are left out with a warning.
         several_blocks: A further N begins a further block on the same line.
         named_labels: ``[NAME]`` at its begin names a block.
         incremental_suffix: ``X20I`` makes one word incremental.
@@ -192,6 +195,7 @@ class Syntax:
     comments: tuple[Comment, ...]
     expressions: ExpressionSyntax | None = None
     statement: str | None = None
+    trailing_prose: bool = False
     several_blocks: bool = False
     named_labels: bool = False
     incremental_suffix: bool = False
@@ -242,6 +246,7 @@ class Dialect:
         g: G codes by number.
         start: G codes in force when a program starts.
         m: M codes by number.
+        instead: What to write in place of G codes that other controls have, by number.
         any_m: M codes outside the table are functions too.
         axis_letters: Addresses that name axes.
         motion_words: Addresses that make a block move, the axes among them.
@@ -262,6 +267,7 @@ class Dialect:
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
         place_switches: Reports the block's switch points, told the length of its move.
+        library: Adds files that the program calls, looked for in the folder of the program.
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
@@ -277,6 +283,7 @@ class Dialect:
     g: Mapping[int, GCode]
     start: tuple[int, ...]
     m: Mapping[int, MCode]
+    instead: Mapping[int, str] = dataclasses.field(default_factory=dict)
     any_m: bool = False
     axis_letters: frozenset[str] = frozenset("XYZABCUVW")
     motion_words: frozenset[str] = frozenset("XYZABCUVWIJKR")
@@ -297,6 +304,7 @@ class Dialect:
     before_motion: Callable[["Control", bool], None] | None = None
     read_variable: Callable[["Control", str, float | None], float] | None = None
     place_switches: Callable[["Control", float], None] | None = None
+    library: Callable[["Source", Path], "Source"] | None = None
     prepare: Action | None = None
     after_motion: Action | None = None
     finish: Action | None = None

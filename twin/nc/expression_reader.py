@@ -10,6 +10,7 @@ from twin.nc.expressions import (
     Expression,
     ExpressionError,
     ExpressionSyntax,
+    Scope,
     checked,
 )
 
@@ -149,6 +150,9 @@ class _Reading:
         if name in self._syntax.indexed and self._text[after : after + 1] == opening:
             (index,) = self._arguments(name, after, 1, depth)
             return lambda scope: scope.read_variable(name, index(scope))
+        if name in self._syntax.existence:
+            (value,) = self._arguments(name, after, 1, depth)
+            return lambda scope: _exists(value, scope)
         if name in self._syntax.prefixes:
             self._count()
             self.at = after
@@ -209,6 +213,14 @@ class _Reading:
 
 def _joined(compute: Callable[[float, float], float], left: Evaluate, right: Evaluate) -> Evaluate:
     return lambda scope: _computed(compute, left(scope), right(scope))
+
+
+def _exists(value: Evaluate, scope: Scope) -> float:
+    try:
+        value(scope)
+    except ExpressionError:
+        return 0.0
+    return 1.0
 
 
 def _computed(compute: Callable[..., float], *values: float) -> float:

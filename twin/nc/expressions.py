@@ -99,6 +99,7 @@ class ExpressionSyntax:
         variable: Regular expression of a variable's name.
         indexed: Names that may be followed by an index in brackets, such as ``P``.
         brackets: Opening and closing character.
+        existence: Functions that tell whether their value is defined.
         prefixes: Operators before one value, besides + and -.
     """
 
@@ -108,6 +109,7 @@ class ExpressionSyntax:
     variable: str
     brackets: str
     indexed: tuple[str, ...] = ()
+    existence: tuple[str, ...] = ()
     prefixes: Mapping[str, Callable[[float], float]] = dataclasses.field(default_factory=dict)
 
 

@@ -178,13 +178,23 @@ class Flow:
         """
         self.go(self.find_label(number, fail_at, word))
 
-    def find_label(self, label: int | str, fail_at: tuple[int, int], word: str) -> Place:
+    def find_label(
+        self,
+        label: int | str,
+        fail_at: tuple[int, int],
+        word: str,
+        within: range | None = None,
+    ) -> Place:
         """Where the block with an N number or a name stands; arguments as for ``jump``.
+
+        ``within``, where it is given, holds the lines, from 0, that may have it.
 
         Raises:
             ProgramError: No block or more than one has it.
         """
         places = self.labels().get(label, [])
+        if within is not None:
+            places = [place for place in places if place.line in within]
         if len(places) != 1:
             self._refuse_label(label, len(places), fail_at, word)
         return places[0]

@@ -111,6 +111,16 @@ FEEDS = {
     ),
 }
 
+INSTEAD = {
+    20: "inches are G70",
+    21: "millimetres are G71",
+    28: "write G53 and the axes",
+    30: "write G53 and the axes",
+    52: "write G92, or a work offset of the job",
+    93: "F is a feed per minute (G94) or per revolution (G95)",
+}
+"""Codes of other controls, and what the base has for them."""
+
 BASE = {
     **MOTION,
     **DWELL,

@@ -34,8 +34,10 @@ DECISIONS = (
         "How does radius compensation pass corners?",
         "Outside corners are rolled around, inside corners end where the parallel paths meet; the "
         "straight lead-in ends square to the contour, the straight lead-out starts square to it; "
-        "what does not fit is refused.",
-        "It keeps the tool's edge on the contour and leaves it nowhere.",
+        "what does not fit is refused, and so is a neck of the contour that is narrower than the "
+        "tool, as far as 50 elements lie between its sides; a lead that cuts into the contour is "
+        "driven with a warning.",
+        "It keeps the tool's edge on the contour and leaves it nowhere; leads are the programmer's.",
         example="compensation_corners",
     ),
     Decision(

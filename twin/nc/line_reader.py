@@ -15,6 +15,9 @@ LARGEST_LABEL = 4_294_967_295
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
 _BLANKS = re.compile(r"[ \t]*")
+_PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t]+[^\W\d_]+)+[ \t]*[.!?]?[ \t]*(?=$|N[ \t]*[0-9])")
+"""At least two words of letters alone, up to the end of the line or the next block."""
+
 _LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
 """Cyrillic letters that look like Latin ones: a keyboard left in the wrong layout."""
 
@@ -80,8 +83,25 @@ class LineReader:
                 not comment.whole_line or not self._line[: self._at].strip()
             ):
                 return self._comment(comment.opening, comment.closing)
-        if not (self._block_skip() or self._named_label() or self._computed_word()):
+        if self._block_skip() or self._named_label():
+            return True
+        if self._syntax.trailing_prose and self._prose():
+            return True
+        if not self._computed_word():
             self._refuse(self._at)
+        return True
+
+    def _prose(self) -> bool:
+        """Leave out several words of prose behind the words of a block, with a warning."""
+        match = _PROSE.match(self._line, self._at) if self._words else None
+        if match is None:
+            return False
+        self._report.line = self._line_number
+        message = "this is no part of the block and is left out"
+        self._report.warn(
+            "trailing-prose", message, self._at, len(match[0]), "write it in brackets: ( ... )"
+        )
+        self._at = match.end()
         return True
 
     def _comment(self, opening: str, closing: str) -> bool:
@@ -203,7 +223,16 @@ class LineReader:
             message = f"'{address[1]}' has no value"
             self._fail("missing-value", message, address.start(1), hint="write a number after it")
         message = f"'{character}' begins no word of {self._grammar.dialect.name}"
-        self._fail("unreadable", message, at)
+        self._fail("unreadable", message, at, hint=self._hint_for(character))
+
+    def _hint_for(self, character: str) -> str | None:
+        if character == ",":
+            return "decimals begin with a point"
+        comments = [each for each in self._syntax.comments if not each.whole_line]
+        if character in ";$\"('/":
+            shown = " or ".join(f"{each.opening} {each.closing}".strip() for each in comments)
+            return f"comments are written {shown}"
+        return None
 
     def _fail(self, code: str, message: str, column: int, *, hint: str | None = None) -> NoReturn:
         self._report.line = self._line_number

@@ -13,6 +13,8 @@ from twin.nc.dialect import GCode
 
 LEFT, RIGHT = 1.0, -1.0
 
+NO_TOOL = "give the job a tool with its radius and length: [[tools]]"
+
 
 def select_offset(control: Control, name: str, word: Word | None) -> None:
     """Put a work offset of the job into force.
@@ -139,7 +141,9 @@ def _compensation_by_table(control: Control, side: float) -> None:
     number = control.tools.spindle if word is None else tool_numbered(control, word)
     data = control.tools.data(number)
     if data is None:
-        control.fail("no-such-tool", "compensation needs a tool, and the job has none", word)
+        control.fail(
+            "no-such-tool", "compensation needs a tool, and the job has none", word, NO_TOOL
+        )
     compensate(control, side, data.radius)
 
 
@@ -154,7 +158,9 @@ def length_by_table(control: Control, sign: float) -> None:
     number = control.tools.spindle if word is None else tool_numbered(control, word)
     data = control.tools.data(number)
     if data is None:
-        control.fail("no-such-tool", "tool length needs a tool, and the job has none", word)
+        control.fail(
+            "no-such-tool", "tool length needs a tool, and the job has none", word, NO_TOOL
+        )
     set_length(control, sign * control.tools.longer(data))
 
 

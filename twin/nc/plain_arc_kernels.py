@@ -85,7 +85,9 @@ def write_arc(
         if has_first or has_second or not seen & in_plane:
             return False
         radius = value_of(RADIUS, roles, values) * modal[UNIT]
-        larger = radius < 0.0 and tables.signed_radius[interpolation]
+        larger = radius < 0.0
+        if larger and not tables.signed_radius[interpolation]:
+            return False
         if radius == 0.0 or not arcs.reaches(start, end, abs(radius)):
             return False
         fits = tables.fits_radius[interpolation]

@@ -30,7 +30,7 @@ class BlockTables(NamedTuple):
         mismatch: How far start and end radius of an arc may differ, shape (i,) [mm].
         mismatch_share: The same as a share of the larger one, shape (i,).
         shift: How far its centre may be moved to fit, shape (i,) [mm].
-        signed_radius: A negative radius asks for the larger arc, shape (i,).
+        signed_radius: A negative radius asks for the larger arc, else it is not plain, shape (i,).
         fits_radius: A centre found by its radius is fitted like a given one, shape (i,).
         linear: Which axes are linear, shape (k,).
     """

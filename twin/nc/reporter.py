@@ -71,12 +71,13 @@ class Reporter:
     ) -> Diagnostic:
         lines = self._source.lines
         text = lines[self.line - 1] if 0 < self.line <= len(lines) else ""
+        file, line = self._source.place(max(1, self.line))
         return Diagnostic(
             severity=severity,
             code=code,
             message=message,
-            file=self._source.name,
-            line=max(1, self.line),
+            file=file,
+            line=line,
             column=column + 1,
             width=width,
             source=text,

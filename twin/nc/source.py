@@ -99,12 +99,32 @@ class Source:
     Attributes:
         name: The file as the user named it.
         lines: Its lines without their ends.
-        sha256: Digest of its bytes.
+        sha256: Digest of its bytes, without those of further files.
+        parts: Further files whose lines follow: number of the first line, from 1, and name.
     """
 
     name: str
     lines: Lines
     sha256: str
+    parts: tuple[tuple[int, str], ...] = ()
+
+    def place(self, line: int) -> tuple[str, int]:
+        """The file that a line stands in, and its number there, from 1."""
+        name, first = self.name, 1
+        for begin, part in self.parts:
+            if line >= begin:
+                name, first = part, begin
+        return name, line - first + 1
+
+    def followed_by(self, line: str, other: "Source") -> "Source":
+        """The program with a line of text and another file behind it."""
+        data = self.lines.data.tobytes()
+        if data and not data.endswith((b"\n", b"\r")):
+            data += b"\n"
+        data += f"{line}\n".encode()
+        first = len(Lines(data)) + 1
+        lines = Lines(data + other.lines.data.tobytes())
+        return dataclasses.replace(self, lines=lines, parts=(*self.parts, (first, other.name)))
 
     @property
     def text(self) -> str:

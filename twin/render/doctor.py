@@ -1,6 +1,8 @@
 """What this machine can draw and film, for ``twin doctor``."""
 
 import dataclasses
+import shutil
+from pathlib import Path
 
 import av
 from av.codec.codec import UnknownCodecError
@@ -17,12 +19,16 @@ class RenderFacts:
         backend: OpenGL backend that drew a test frame; empty when none did.
         renderer: What OpenGL calls itself.
         encoder: Name of the H.264 encoder; empty when there is none.
+        memory_mb: Memory that is free for a run; None where the system does not tell [MB].
+        disk_mb: Space on the disk of the working folder [MB].
         problems: What to install or mend, one sentence each.
     """
 
     backend: str
     renderer: str
     encoder: str
+    memory_mb: float | None
+    disk_mb: float
     problems: tuple[str, ...]
 
     @property
@@ -32,6 +38,12 @@ class RenderFacts:
 
 
 H264_ENCODER = "libx264"
+
+LEAST_MEMORY_MB = 700.0
+"""What a film in final quality at 1920 x 1080 was seen to take, and some more."""
+LEAST_DISK_MB = 200.0
+"""Room for the recording and the film of a long program."""
+_MEMORY_FILE = Path("/proc/meminfo")
 
 
 def render_facts() -> RenderFacts:
@@ -47,7 +59,31 @@ def render_facts() -> RenderFacts:
         encoder = av.Codec(H264_ENCODER, "w").name
     except UnknownCodecError:
         problems.append(missing_encoder())
-    return RenderFacts(backend, renderer, encoder, tuple(problems))
+    memory, disk = free_memory_mb(), shutil.disk_usage(Path.cwd()).free / 1e6
+    if memory is not None and memory < LEAST_MEMORY_MB:
+        problems.append(
+            f"{memory:.0f} MB of memory are free, films want {LEAST_MEMORY_MB:.0f}: "
+            "close other programs, or film smaller and in draft quality"
+        )
+    if disk < LEAST_DISK_MB:
+        problems.append(
+            f"{disk:.0f} MB of disk are free in {Path.cwd()}, runs want {LEAST_DISK_MB:.0f}: "
+            "free some, or write elsewhere by --out"
+        )
+    return RenderFacts(backend, renderer, encoder, memory, disk, tuple(problems))
+
+
+def free_memory_mb() -> float | None:
+    """Memory that can still be taken [MB]; None where the system does not tell."""
+    try:
+        lines = _MEMORY_FILE.read_text(encoding="ascii").splitlines()
+    except OSError:
+        return None
+    for line in lines:
+        name, _, amount = line.partition(":")
+        if name == "MemAvailable":
+            return float(amount.split()[0]) * 1024 / 1e6
+    return None
 
 
 def missing_encoder() -> str:

@@ -119,7 +119,8 @@ class Skin:
         )
         heights = wide[here]
         sunk = np.clip((blurred(wide, reach)[here] - heights) / SHADE_MM, 0.0, 1.0)
-        machined = heights < self._map.top
+        uncut = self._map.uncut[::step, ::step][wide_row : row_end + reach][:, wide_column:]
+        machined = heights < uncut[here]
         light = np.where(machined, self._marked(rows, columns), self._grain[rows, columns])
         light *= 1.0 - SHADE_DEPTH * sunk
         colours = np.where(machined[..., None], MACHINED_RGB, RAW_RGB) * light[..., None]

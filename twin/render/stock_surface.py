@@ -149,7 +149,8 @@ class StockSurface:
         fine = self._meshes[tile.name]
         fine.show(not level)
         if tile.whole:
-            self._meshes[tile.flat_name].show(level)
+            left = float(heights.max()) > self._map.bottom
+            self._meshes[tile.flat_name].show(level and left)
         if level:
             flat = self._meshes[tile.flat_name]
             flat.put(vertices[tile.ends], np.tile([0.0, 0.0, 1.0], (6, 1)))

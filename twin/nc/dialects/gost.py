@@ -166,6 +166,7 @@ GOST = Dialect(
             ground="seed",
         ),
     },
+    instead=iso.INSTEAD,
     start=(*iso.START, 64, 98),
     m=iso.M_CODES,
     words=iso.WORDS,

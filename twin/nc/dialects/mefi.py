@@ -9,7 +9,17 @@ from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
 from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
-from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Interpolation, Mark, Syntax
+from twin.nc.dialect import (
+    HEADING,
+    Comment,
+    Decision,
+    Dialect,
+    GCode,
+    Interpolation,
+    Mark,
+    PlainArc,
+    Syntax,
+)
 
 
 @dataclasses.dataclass(slots=True)
@@ -107,6 +117,10 @@ def _arc(control: Control, *, clockwise: bool) -> None:
                 control.words[name],
                 hint="leave it out, or end the helix by G98",
             )
+    radius = control.words.get("R")
+    if radius is not None and control.number(radius) < 0.0:
+        message = "R draws arcs below 180 degrees; what a negative one means is not known"
+        control.fail("arc-radius", message, radius, "write the centre (I, J, K) of a larger arc")
     target = control.target()
     center = iso_arc_center(control, target, clockwise=clockwise)
     start, end = start_and_end(control, target)
@@ -126,8 +140,12 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True))
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=plain_arc(clockwise=False))
+def _plain(*, clockwise: bool) -> PlainArc:
+    return dataclasses.replace(plain_arc(clockwise=clockwise), signed_radius=False)
+
+
+CLOCKWISE = Interpolation(clockwise_arc, plain=_plain(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=_plain(clockwise=False))
 
 DECISIONS = (
     Decision(
@@ -135,6 +153,12 @@ DECISIONS = (
         "To the start of the arc; a missing one is 0.",
         "In the page's example relative and absolute centres coincide; ISO 6983-1 is relative.",
         example="centre_from_the_start",
+    ),
+    Decision(
+        "What does R draw?",
+        "An arc of that radius below 180 degrees; a negative R is refused.",
+        "The page shows centres only.",
+        example="radius_words",
     ),
     Decision(
         "Which way does a lead drag?",
@@ -207,11 +231,16 @@ MEFI = Dialect(
         73: GCode(meaning="jump with repeat: L, Q", after=jump_with_repeat, ground="seed"),
         98: GCode(meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"),
     },
+    instead={
+        **iso.INSTEAD,
+        99: "cycles return to the height of their call; G98 ends a helix here",
+    },
     start=iso.START,
     m=iso.M_CODES,
     words=iso.WORDS,
     word_meanings={
         **iso.WORD_MEANINGS,
+        "R": "radius of an arc below 180 degrees; reference plane of a cycle",
         "L": "block to jump to (G73)",
         "Q": "number of jumps (G73); depth of one peck (G83)",
     },

@@ -14,7 +14,7 @@ from twin.nc.dialect import (
     MCode,
     Syntax,
 )
-from twin.nc.dialects.codesys import codes, program
+from twin.nc.dialects.codesys import codes, program, subprograms
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
@@ -66,6 +66,7 @@ CODESYS = Dialect(
         expressions=program.EXPRESSIONS,
         statement=program.STATEMENT,
         several_blocks=True,
+        trailing_prose=True,
     ),
     groups=(
         "plane",
@@ -216,6 +217,14 @@ CODESYS = Dialect(
             ground="seed",
         ),
     },
+    instead={
+        **dict.fromkeys(range(80, 90), "there are no canned cycles: write their moves"),
+        **dict.fromkeys((57, 58, 59), "shifts are G54 and G55 with their distances"),
+        **dict.fromkeys((94, 95), "F counts units per second"),
+        21: "lengths are in the axes' unit, millimetres",
+        28: "write G53, then G0 and the axes",
+        49: "write G43 I0 J0 K0",
+    },
     start=(15, 40, 50, 60, 70, 90, 99),
     start_state={"feed_mode": FeedMode.PER_SECOND, "corner": Corner.EXACT_PATH},
     m={number: MCode(meaning="end of program", late=True, ends=True) for number in (2, 30)},
@@ -248,11 +257,11 @@ CODESYS = Dialect(
     },
     statements={
         "LET": program.let,
-        "SUBPROGRAM": program.define,
-        "END_SUBPROGRAM": program.leave_subprogram,
-        "RETURN": program.leave_subprogram,
+        "SUBPROGRAM": subprograms.define,
+        "END_SUBPROGRAM": subprograms.leave_subprogram,
+        "RETURN": subprograms.leave_subprogram,
     },
-    other_statement=program.assign_or_call,
+    other_statement=subprograms.assign_or_call,
     word_meanings={
         "N": "block number",
         "G": "preparatory code",
@@ -264,7 +273,7 @@ CODESYS = Dialect(
         "J": "centre along Y",
         "K": "centre along Z; condition of a jump; angle of an ellipse; parameter of M",
         "R": "radius; short by long half axis of an ellipse",
-        "T": "opening angle; seconds of G4",
+        "T": "opening angle of an arc; seconds of G4; no tool",
         "F": "feed per second",
         "E": "acceleration per second squared",
         "E-": "deceleration per second squared, below 0",
@@ -292,7 +301,11 @@ CODESYS = Dialect(
         Mark(r"\bE[ \t]*[-+]?\d", "E, the acceleration"),
         Mark(r"\$[A-Z_]\w*\$", "$variable$"),
         Mark(r"\bLET[ \t]+#|\bSUBPROGRAM\b", "LET, SUBPROGRAM"),
-        Mark(r"\bG20[ \t]+L", "G20 L"),
+        Mark(r"\bG20[ \t]+L|\bL[?!][ \t]*\d", "G20 L, L?, L!"),
+        Mark(r"\bG5[12][ \t]*D|\bG1[56]\b|\bG3[67]\b.*\bD", "G51 D, G52 D, G15, G16, G36 D"),
+        Mark(r"\b(?:FF|P[ABC])[ \t]*\d", "FF, PA, PB, PC"),
+        Mark(r"\bH[ \t]*-?\d+[ \t]*[OL][ \t]*-?[\d.]", "a switch point H with O or L"),
+        Mark(r"[XYZ][^ \t;$\"]*\b(?:SIN|COS|SQRT|PI)\b(?!\[)", "functions with round brackets"),
     ),
     memory=program.Variables,
     before_motion=codes.before_motion,

@@ -188,7 +188,17 @@ def before_motion(control: Control, rapid: bool) -> None:
     if rapid:
         feed = variables(control).rapid_feed or control.feed
         control.rapid_feed = math.nan if feed is None else feed * 60.0
+    _refuse_slopes(control)
     take_shortest_way(control)
+
+
+def _refuse_slopes(control: Control) -> None:
+    """U, V, W beside A, B, C are the slopes of these at the end of the element (manual)."""
+    for slope, axis in zip("UVW", "ABC", strict=True):
+        if slope in control.words and slope not in control.axis_index and axis in control.words:
+            message = f"{slope} is the slope of {axis}, and the twin moves {axis} linearly"
+            hint = f"leave out {slope}, or write {axis} in pieces"
+            control.fail("unsupported-word", message, control.words[slope], hint)
 
 
 def set_period(letter: str) -> WordAction:

@@ -67,8 +67,8 @@ DECISIONS = (
     ),
     Decision(
         "How do additional axes move?",
-        "Linearly with the path, A B C too.",
-        "Without slopes and smoothing a polynomial of third degree has nothing to bend for.",
+        "Linearly with the path, A B C too; their slopes U V W are refused.",
+        "A polynomial of third degree with the slopes of the straight way at both ends is the line.",
         example="additional_axes",
     ),
     Decision(
@@ -101,6 +101,12 @@ DECISIONS = (
         "32 moves.",
         "The control is limited by a buffer of the application.",
         example="loop_cut_out",
+    ),
+    Decision(
+        "What does G92 do?",
+        "Where the machine stands becomes the given coordinates; nothing moves.",
+        "The manual lets the path jump there; a machine cannot, and the program's shape is the same.",
+        example="position_set",
     ),
     Decision(
         "What does G56 do?",

@@ -4,8 +4,9 @@ from twin.nc import iso
 from twin.nc.control import Control
 from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, statements, subroutines, variables
-from twin.nc.dialects.fagor8070.codes import CODES, auxiliary, plain_dwell
+from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
+from twin.nc.dialects.fagor8070.library import with_globals
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
 
 
@@ -49,6 +50,7 @@ FAGOR8070 = Dialect(
         "cycle",
     ),
     g=CODES,
+    instead=INSTEAD,
     start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
     m={
         **iso.M_CODES,
@@ -113,8 +115,17 @@ FAGOR8070 = Dialect(
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(
-        Mark(r"\bR[ \t]*[\d.]+.*\bQ[ \t]*-?[\d.]+", "polar coordinates R and Q"),
-        Mark(r"\bG0*(?:30|31|26[1-5])\b", "G30, G31, G261 to G265"),
+        Mark(
+            r"^(?!.*\b(?:G0*8\d|[XY][ \t]*[-+.\d]))[^\"$;]*\bR[ \t]*[\d.]+.*\bQ[ \t]*-?[\d.]+",
+            "polar coordinates R and Q without X and Y",
+        ),
+        Mark(r"\bG0*(?:30|26[1-5])\b|\bG0*31\b.*\bQ", "G30, G31 with Q, G261 to G265"),
+        Mark(r"\bG0*8[1-8]\b.*\bI[ \t]*-?[\d.]", "a cycle with its depth in I"),
+        Mark(r"\bG0*3[69][ \t]*I", "G36 or G39 with I"),
+        Mark(r"\bG(?:13[6-9]|15[89]|10[89]|19[37])\b", "G136 to G139, G158, G159, G108, G193"),
+        Mark(r"\bG0*72[ \t]*S|\bG0*73[ \t]*Q", "G72 S, G73 Q"),
+        Mark(r"^[ \t]*%[ \t]*L[ \t]+\w|^[ \t]*LL[ \t]+[A-Z]", "%L, LL (a local subroutine)"),
+        Mark(r"\bNR[ \t]*\d", "NR (a repeated block)"),
         Mark(r"^[^\"$]*;", "a comment after ;"),
         Mark(r"\$(?:IF|ELSE|ENDIF|WHILE|DO|ENDDO|FOR|SWITCH|GOTO)\b(?!\$)", "$IF, $WHILE, $GOTO"),
         Mark(r"#(?:RPT|TIME|CALL|PCALL|MCALL|RET|COMMENT)\b", "#RPT, #CALL, #TIME"),
@@ -126,6 +137,7 @@ FAGOR8070 = Dialect(
     memory=FagorMemory,
     before_motion=frames.turn_in_commanded_direction,
     read_variable=variables.read_variable,
+    library=with_globals,
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,

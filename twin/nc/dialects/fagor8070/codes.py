@@ -41,7 +41,12 @@ def _compensate(side: float) -> Action:
     def action(control: Control) -> None:
         tool = control.tools.data(control.tools.spindle)
         if tool is None:
-            control.fail("no-such-tool", "compensation needs a tool, and the job has none")
+            control.fail(
+                "no-such-tool",
+                "compensation needs a tool, and the job has none",
+                None,
+                offsets.NO_TOOL,
+            )
         offsets.compensate(control, side, tool.radius if memory_of(control).offset_on else 0.0)
 
     return action
@@ -105,6 +110,18 @@ _LEAD = "where its arc begins is not documented well enough; write the lead as a
 _LIMITS = "the limits are the machine file's"
 _UNKNOWN = "its effect on the path is not documented well enough to be followed"
 
+INSTEAD = {
+    21: "millimetres are G71",
+    28: "write G53 G00 and the axes",
+    43: "D1 brings the tool's length",
+    49: "D0 ends the tool's length",
+    51: "a scale is G72 S",
+    64: "G05 rounds corners, G50 keeps to the path",
+    68: "a rotation is G73 Q",
+    69: "a rotation ends by G73 alone",
+}
+"""Codes of other controls, and what this one has for them."""
+
 CODES: dict[int, GCode] = {
     0: _motion("rapid positioning", arcs.RAPID),
     1: _motion("straight line", arcs.FEED),
@@ -163,7 +180,13 @@ CODES: dict[int, GCode] = {
         perform=forget_polar_values(offsets.preset),
         ground="manual",
     ),
-    93: _g("feed as seconds of the block", "feed", feed_mode=FeedMode.SECONDS_PER_BLOCK),
+    93: GCode(
+        meaning="feed as seconds of the block",
+        group="feed",
+        sets={"feed_mode": FeedMode.SECONDS_PER_BLOCK},
+        action=polar.refuse_origin_by_g93,
+        ground="manual",
+    ),
     94: _g("feed per minute", "feed", feed_mode=FeedMode.PER_MINUTE),
     95: _g("feed per revolution", "feed", feed_mode=FeedMode.PER_REVOLUTION),
     96: GCode(

@@ -6,6 +6,7 @@ from twin.nc.blocks import Statement
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.structure import Construct, Structure, structure_of
+from twin.nc.dialects.fagor8070.subroutines import lines_around
 from twin.nc.dialects.fagor8070.variables import read_variable, refuse, variable_table
 from twin.nc.flow import Place
 
@@ -188,7 +189,9 @@ def _go_to(control: Control, text: str, column: int, statement: Statement) -> No
     match = _PLACE.fullmatch(text)
     if match is None:
         refuse(control, statement, "jump-target", "$GOTO needs N10 or [NAME]")
-    place = control.flow.find_label(label_of(match), (column, len(text)), "$GOTO")
+    place = control.flow.find_label(
+        label_of(match), (column, len(text)), "$GOTO", lines_around(control)
+    )
     structure = _structure(control)
     here = structure.around(control.block.line - 1)
     if any(construct not in here for construct in structure.around(place.line)):

@@ -24,6 +24,8 @@ class FagorMemory:
         local: P0 to P25 of the main program and of each call, the innermost last.
         common: All other parameters and variables.
         subroutines: First line of each local subroutine by name, from 0.
+        library: First line of each global subroutine, from 0.
+        headings: Lines of all headings, from 0, in order.
         main: Line of the program's heading, from 0, or None.
         structure: Which $ keywords belong together; None before it was asked for.
         modal_call: #MCALL in force.
@@ -42,6 +44,8 @@ class FagorMemory:
     local: list[dict[str, float]] = dataclasses.field(default_factory=lambda: [{}])
     common: dict[str, float] = dataclasses.field(default_factory=dict)
     subroutines: dict[str, int] = dataclasses.field(default_factory=dict)
+    library: dict[str, int] = dataclasses.field(default_factory=dict)
+    headings: list[int] = dataclasses.field(default_factory=list)
     main: int | None = None
     structure: Structure | None = None
     modal_call: ModalCall | None = None

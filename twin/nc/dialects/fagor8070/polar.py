@@ -60,8 +60,26 @@ def set_polar_origin(control: Control) -> None:
     forget_polar(control)
 
 
+def refuse_origin_by_g93(control: Control) -> None:
+    """G93 I J is the polar origin of the CNC 8055; here G93 is a feed.
+
+    Raises:
+        ProgramError: The block has I or J and no motion that would use them.
+    """
+    word = control.words.get("I") or control.words.get("J")
+    if word is not None and not any(code.group == "motion" for _, code in control.codes):
+        message = "G93 is the feed in seconds; the polar origin by G93 is the CNC 8055's"
+        control.fail("polar-origin", message, word, "write G30 I J")
+
+
 def temporary_polar_origin(control: Control) -> None:
-    """G31: for this arc the polar origin is its centre."""
+    """G31: for this arc the polar origin is its centre.
+
+    Raises:
+        ProgramError: The block draws no arc (E1604).
+    """
+    if control.active.get("motion") not in (2, 3):
+        control.fail("temporary-origin", "G31 needs an arc, G02 or G03", control.code_word(31))
     memory_of(control).temporary = True
 
 
@@ -94,6 +112,9 @@ def take_goal(control: Control, *, arc: bool) -> Goal:
 
 def _polar_target(control: Control, *, arc: bool) -> list[float]:
     polar, plane = memory_of(control), control.modal.plane
+    if control.active.get("offset") == 53:
+        message = "polar coordinates are not allowed while G53 is in force (E1530)"
+        control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
     radius, angle = current_polar(control)
     radius_word, angle_word = control.take("R"), control.take("Q")
     target = control.target()

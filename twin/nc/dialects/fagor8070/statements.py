@@ -66,7 +66,7 @@ STATEMENTS: dict[str, Callable[[Control, Statement], None]] = {
     "$GOTO": flow.go_to,
     "#RPT": subroutines.repeat_range,
     "#TIME": dwell,
-    "#CALL": subroutines.call_local,
+    "#CALL": subroutines.call_any,
     "LL": subroutines.call_local,
     "L": subroutines.call_global,
     "#PCALL": subroutines.call_with_parameters,

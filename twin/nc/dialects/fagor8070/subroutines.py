@@ -1,9 +1,11 @@
 """Subroutines and repeated ranges of the Fagor CNC 8070."""
 
 import re
+from collections.abc import Mapping
 
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
+from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.variables import refuse
 from twin.nc.expressions import (
@@ -16,6 +18,7 @@ DEEPEST_CALL = 20
 
 
 _NAME = re.compile(r"[ \t]*([A-Z_]\w*)[ \t]*", re.IGNORECASE)
+_TITLE = re.compile(r"[ \t]*[^,;(]*(?:\([^)]*\)[ \t]*)?")
 _RANGE = re.compile(
     r"[ \t]*\[[ \t]*(N?[A-Z_0-9]+)[ \t]*,[ \t]*(N?[A-Z_0-9]+)[ \t]*(?:,(.*))?\][ \t]*",
     re.IGNORECASE,
@@ -30,9 +33,15 @@ def repeat_range(control: Control, statement: Statement) -> None:
     if match is None:
         refuse(control, statement, "repeat-range", "the labels are missing", "#RPT[N10,N20,3]")
     first, last = (
-        control.flow.find_label(_range_label(match[group]), _span(statement), "#RPT")
+        control.flow.find_label(
+            _range_label(match[group]), _span(statement), "#RPT", lines_around(control)
+        )
         for group in (1, 2)
     )
+    blocks = control.flow.lexer.blocks(control.flow.lines[last.line], last.line + 1)
+    if len(blocks) != 1 or blocks[0].words or blocks[0].statement is not None:
+        message = "the last label must stand alone in its block"
+        refuse(control, statement, "repeat-range", message, "give it a block of its own behind")
     column = statement.text_column
     count = (
         1.0
@@ -59,50 +68,73 @@ def _span(statement: Statement) -> tuple[int, int]:
 
 
 def begin(control: Control) -> None:
-    """The main program is the first heading that is no local subroutine's."""
-    memory = memory_of(control)
+    """The main program is the first heading that is no subroutine's."""
+    memory, lines = memory_of(control), control.flow.lines
     main = None
-    for line, text in control.flow.lines.holding("%"):
+    for line, text in lines.holding("%"):
         if not text.lstrip().startswith("%"):
             continue
+        memory.headings.append(line)
         match = _SUBROUTINE.match(text)
-        if match is not None:
+        if text.startswith(MARK):
+            first = line + 1
+            while first < len(lines) and lines[first].strip()[:1] in ("", "%", ";", "("):
+                first += 1
+            memory.library[text[len(MARK) :]] = first
+        elif match is not None:
             memory.subroutines[match[1].upper()] = line + 1
-        elif main is None:
+        elif main is None and not memory.library:
             main = line
     if memory.subroutines and main is not None:
         control.flow.place = Place(main, 0)
     memory.main = main
 
 
+def lines_around(control: Control) -> range:
+    """The program or subroutine that is being run; labels are its own."""
+    headings, here = memory_of(control).headings, control.block.line - 1
+    begin = max((line for line in headings if line <= here), default=0)
+    return range(
+        begin, min((line for line in headings if line > here), default=len(control.flow.lines))
+    )
+
+
 def heading(control: Control, statement: Statement) -> None:
-    """%: the program's name; nowhere else."""
+    """%: the program's name; nowhere else. A global subroutine behind it ends the program."""
+    if control.block.line - 1 in memory_of(control).headings and statement.text.startswith(
+        MARK[1:]
+    ):
+        control.flow.end()
+        return
     if control.block.line - 1 != memory_of(control).main:
         message = "a heading can stand only before the program or a local subroutine"
         refuse(control, statement, "heading", message, hint="end a subroutine by M17")
+    if _TITLE.fullmatch(statement.text) is None:
+        message = "nothing but a comment may follow the program's name"
+        hint = "the 8070's heading is %NAME; what follows a comma is the CNC 8055's"
+        refuse(control, statement, "heading", message, hint)
 
 
 def call_local(control: Control, statement: Statement) -> None:
-    """LL, #CALL: run a local subroutine with the caller's parameters."""
-    match = _NAME.fullmatch(statement.text)
-    if match is None:
-        refuse(control, statement, "call-values", "the call needs a name and no more")
-    _call(control, statement, match[1].upper(), None)
+    """LL: run a local subroutine with the caller's parameters."""
+    _call(control, statement, _only_name(control, statement), None, memory_of(control).subroutines)
 
 
 def call_global(control: Control, statement: Statement) -> None:
-    """L: global subroutines lie in files of their own, which the twin does not have.
+    """L: run a global subroutine, a file of its own, with the caller's parameters."""
+    _call(control, statement, _only_name(control, statement), None, memory_of(control).library)
 
-    Raises:
-        ProgramError: Always.
-    """
-    refuse(
-        control,
-        statement,
-        "global-subroutine",
-        "global subroutines are not part of the program",
-        hint="write it as a local one (%L NAME ... M17) and call it by LL",
-    )
+
+def call_any(control: Control, statement: Statement) -> None:
+    """#CALL: run a local or global subroutine with the caller's parameters."""
+    _call(control, statement, _only_name(control, statement), None)
+
+
+def _only_name(control: Control, statement: Statement) -> str:
+    match = _NAME.fullmatch(statement.text)
+    if match is None:
+        refuse(control, statement, "call-values", "the call needs a name and no more")
+    return match[1].upper()
 
 
 def call_with_parameters(control: Control, statement: Statement) -> None:
@@ -150,14 +182,24 @@ def _arguments(control: Control, statement: Statement) -> tuple[str, dict[str, f
 
 
 def _call(
-    control: Control, statement: Statement, name: str, values: dict[str, float] | None
+    control: Control,
+    statement: Statement,
+    name: str,
+    values: dict[str, float] | None,
+    table: Mapping[str, int] | None = None,
 ) -> None:
     memory = memory_of(control)
-    line = memory.subroutines.get(name)
+    if table is None:
+        table = {**memory.library, **memory.subroutines}
+    line = table.get(name)
     if line is None:
-        known = ", ".join(sorted(memory.subroutines)) or "none"
-        message = f"there is no local subroutine {name}"
-        refuse(control, statement, "unknown-subprogram", message, f"subroutines here: {known}")
+        known = f"subroutines here: {', '.join(sorted(table)) or 'none'}"
+        if table is memory.subroutines:
+            message = f"there is no local subroutine {name}"
+            refuse(control, statement, "unknown-subprogram", message, known)
+        message = f"there is no subroutine {name}"
+        hint = f"a global one is a file {name} or {name}.nc beside the program; {known}"
+        refuse(control, statement, "unknown-subprogram", message, hint)
     leave = None
     if values is not None:
         leave = memory.forget_local

@@ -62,6 +62,7 @@ EXPRESSIONS = ExpressionSyntax(
     constants={},
     variable=r"P[0-9]+|V\.[A-Z]\.[A-Z_][\w.]*",
     indexed=("P",),
+    existence=("EXIST",),
     brackets="[]",
 )
 """Angles are degrees."""

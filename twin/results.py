@@ -1,7 +1,9 @@
 """``result.json`` and ``report.html`` of a run."""
 
 import dataclasses
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from twin.chain import Run
 from twin.commands.pictures import STILL_NAME
@@ -9,34 +11,54 @@ from twin.compare.report import Report, write_report
 from twin.compare.result import RunSummary, result, write_result
 from twin.outcome import Outcome
 
+RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
+"""What a run may leave; an earlier run's files of these names are removed when one begins.
+
+The result, written last, is removed first: where it stands, everything that it speaks of is whole.
+"""
+
 
 def write_results(run: Run, outcome: Outcome, folder: Path) -> None:
     """Write the verdict and every figure behind it, for programs and for people.
-
-    A run that never moved has a result and no report.
 
     Args:
         run: The run.
         outcome: What it came to.
         folder: Where the files go; a still that was drawn there is put on the page.
     """
-    preparation = run.preparation
-    tolerance = preparation.job.file.tolerance
-    content = result(
+    content = result_of(run, outcome)
+    write_report(folder / "report.html", report_of(run, outcome, content, folder / STILL_NAME))
+    write_result(folder / "result.json", content)
+
+
+def result_of(run: Run, outcome: Outcome) -> dict[str, Any]:
+    """The content of ``result.json``."""
+    tolerance = run.preparation.job.file.tolerance
+    return result(
         _summary(run, outcome), outcome.figures, tolerance, outcome.verdict, outcome.alarms
     )
-    if outcome.samples:
-        still = folder / STILL_NAME
-        page = Report(
-            header=run.header(),
-            figures=outcome.figures,
-            verdict=outcome.verdict,
-            trace=run.trace,
-            result=content,
-            stills=[("The end of the run", still)] if still.is_file() else [],
-        )
-        write_report(folder / "report.html", page)
-    write_result(folder / "result.json", content)
+
+
+def report_of(
+    run: Run, outcome: Outcome, content: Mapping[str, Any], still: Path | None = None
+) -> Report:
+    """What the page about a run is made of.
+
+    Args:
+        run: The run.
+        outcome: What it came to.
+        content: The content of ``result.json``.
+        still: A picture of its end, put on the page where it exists.
+    """
+    return Report(
+        header=run.header(),
+        figures=outcome.figures,
+        verdict=outcome.verdict,
+        tolerance=run.preparation.job.file.tolerance,
+        trace=run.trace,
+        result=content,
+        stills=[("The end of the run", still)] if still is not None and still.is_file() else [],
+    )
 
 
 def _summary(run: Run, outcome: Outcome) -> RunSummary:

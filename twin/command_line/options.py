@@ -14,13 +14,9 @@ ProgramOrJob = Annotated[
         show_default=False,
     ),
 ]
-DialectOption = Annotated[
-    str | None,
-    typer.Option("--dialect", help="Language of the program; default: told by its words."),
-]
-MachineOption = Annotated[
-    str | None, typer.Option("--machine", help="A shipped machine's name, or a machine.toml.")
-]
+DialectOption = Annotated[str | None, typer.Option("--dialect", help="Default: told by its words.")]
+OutOption = Annotated[Path | None, typer.Option("--out", help="Folder; default out/<program>.")]
+MachineOption = Annotated[str | None, typer.Option("--machine", help="Name, or a machine.toml.")]
 MachineArgument = Annotated[
     str, typer.Argument(help="A shipped machine's name, or a machine.toml.", show_default=False)
 ]

@@ -1,0 +1,98 @@
+"""The machine room beside the raw ``mujoco.rollout`` of the same model and the same controls."""
+
+import statistics
+import time
+from collections.abc import Callable, Iterator
+
+import mujoco
+import numpy as np
+from benches.row import REPEATS, Row, median_seconds
+from mujoco.rollout import Rollout
+
+from twin.machine.circle_path import CirclePath
+from twin.machine.config import read_machine
+from twin.machine.drives import feedforward_name
+from twin.machine.live import LiveMachine
+from twin.machine.model import build_spec, physics_model
+from twin.machine.sampling import held_commands, polyline_nodes
+from twin.machine.simulate import simulate
+from twin.motion.setpoints import Setpoints, join
+from twin.resources import machine_file, machine_names
+
+CHUNK = 16384
+"""Setpoints per chunk, as the planner gives them."""
+SLICE = 4
+"""Servo periods per slice of a machine that is operated."""
+
+
+def rows() -> Iterator[Row]:
+    """The simulation of each shipped machine, and a machine that is operated in slices."""
+    for name in machine_names():
+        yield _beside_rollout(name)
+    points = _circle("mill4")[: 2000 * SLICE]
+
+    def operate() -> None:
+        live = LiveMachine(read_machine(machine_file("mill4")), position=points.position[0])
+        for first in range(1, len(points), SLICE):
+            live.follow(points[first : first + SLICE])
+
+    period = read_machine(machine_file("mill4")).file.servo_period_s
+    seconds = median_seconds(operate)
+    yield Row(
+        "machine", f"mill4, operated in slices of {SLICE} ms", len(points) * period / seconds,
+        "x real time",
+    )  # fmt: skip
+
+
+def _beside_rollout(name: str) -> Row:
+    machine = read_machine(machine_file(name))
+    points = _circle(name)
+    model = physics_model(machine, build_spec(machine))
+    chunks = [points[i : i + CHUNK] for i in range(0, len(points), CHUNK)]
+    ours, raw = _paired(
+        lambda: [len(samples) for samples in simulate(machine, model, chunks)],
+        lambda: _roll(model, name, chunks),
+    )
+    count, peer = len(points), f"mujoco.rollout {mujoco.__version__}"
+    return Row("machine", f"{name}, circle", count / ours, "steps/s", peer, count / raw)
+
+
+def _circle(name: str) -> Setpoints:
+    path = CirclePath(read_machine(machine_file(name)), "XY", 50.0, 400.0, 1)
+    return join(list(path.setpoints()))
+
+
+def _roll(model: mujoco.MjModel, name: str, chunks: list[Setpoints]) -> None:
+    """The same steps without anything that belongs to this project but the controls."""
+    machine = read_machine(machine_file(name))
+    data = mujoco.MjData(model)
+    scale, period = machine.joint_scale, machine.file.servo_period_s
+    servos = [model.actuator(axis).id for axis in machine.axes.names]
+    forces = [model.actuator(feedforward_name(axis)).id for axis in machine.axes.names]
+    joints = [model.joint(machine.axis(axis).joint).qposadr[0] for axis in machine.axes.names]
+    data.qpos[joints] = chunks[0].position[0] * scale
+    data.act[model.actuator_actadr[servos]] = polyline_nodes(chunks[0][:1], period)[0] * scale
+    kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
+    state = np.zeros((1, mujoco.mj_stateSize(model, kind)))
+    mujoco.mj_getState(model, data, state[0], kind)
+    for chunk in chunks:
+        velocity, acceleration = held_commands(chunk, period)
+        controls = np.zeros((1, len(velocity), model.nu))
+        controls[0, :, model.actuator_ctrladr[servos]] = (velocity * scale).T
+        controls[0, :, model.actuator_ctrladr[forces]] = (0.0 * acceleration).T
+        with Rollout(nthread=0) as rollout:
+            states, _ = rollout.rollout(model, data, state, controls)
+        state = states[:, -1].copy()
+
+
+def _paired(
+    ours: Callable[[], object], theirs: Callable[[], object], repeats: int = REPEATS
+) -> tuple[float, float]:
+    """Median seconds of two tasks taken in turns, so that a busy computer slows down both."""
+    times: tuple[list[float], list[float]] = ([], [])
+    for _ in range(repeats + 1):
+        for task, kept in zip((ours, theirs), times, strict=True):
+            start = time.perf_counter()
+            task()
+            kept.append(time.perf_counter() - start)
+    return statistics.median(times[0][1:]), statistics.median(times[1][1:])

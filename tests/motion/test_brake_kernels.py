@@ -1,0 +1,199 @@
+"""The braking kernels against plain NumPy twins that integrate the acceleration over time."""
+
+import itertools
+import math
+
+import hypothesis
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from motion_programs import SETTINGS
+
+from twin.motion.brake_kernels import (
+    brake_distance,
+    brake_need,
+    brake_state,
+    brake_time,
+    time_to,
+)
+from twin.motion.phase_kernels import put_brake
+from twin.motion.reach_kernels import find_brake, find_reach
+from twin.motion.stretch_kernels import find_stretches, merge_limits, place_phases
+from twin.nc.canonical import FloatArray
+
+FEWER = hypothesis.settings(SETTINGS, max_examples=40)
+LARGE = st.floats(1.0, 1000.0)
+DECELERATION, JERK = st.floats(50.0, 2e4), st.floats(500.0, 1e6)
+
+
+def plain_brake(
+    v: float, a: float, w: float, deceleration: float, jerk: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Time, way, velocity, acceleration of the brake, by summing up its acceleration."""
+    hardest, reached = 0.0, math.inf
+    low, high = 0.0, deceleration
+    for _ in range(100):
+        # Without a hold: from a down to -hardest and back to 0.
+        middle = 0.5 * (low + high)
+        reached = v + a * a / (2.0 * jerk) - middle * middle / jerk
+        low, high = (middle, high) if reached > w else (low, middle)
+    hardest = low
+    hold = max(0.0, v + a * a / (2.0 * jerk) - hardest * hardest / jerk - w)
+    hold = hold / hardest if hardest > 0.0 else 0.0
+    corners = np.cumsum([0.0, (a + hardest) / jerk, hold, hardest / jerk])
+    t = np.unique(np.concatenate([np.linspace(p, q, 801) for p, q in itertools.pairwise(corners)]))
+    acceleration = np.interp(t, corners, [a, -hardest, -hardest, 0.0])
+    h = np.diff(t)
+    velocity = v + np.append(0.0, np.cumsum(0.5 * (acceleration[1:] + acceleration[:-1]) * h))
+    # Exact for a acceleration that is linear over each step.
+    steps = velocity[:-1] * h + (2.0 * acceleration[:-1] + acceleration[1:]) * h * h / 6.0
+    return t, np.append(0.0, np.cumsum(steps)), velocity, acceleration
+
+
+@SETTINGS
+@given(LARGE, st.floats(0.0, 1.0), st.floats(0.0, 1.0), DECELERATION, JERK)
+def test_brakes_agree_with_the_sum_of_their_acceleration(
+    v: float, lower: float, rising: float, deceleration: float, jerk: float
+) -> None:
+    a, w = rising * deceleration, lower * v
+    t, x, velocity, acceleration = plain_brake(v, a, w, deceleration, jerk)
+    assert brake_need(v, a, w, deceleration, jerk) == pytest.approx(x[-1], rel=1e-6, abs=1e-9)
+    assert velocity[-1] == pytest.approx(w, rel=1e-6, abs=1e-6)
+    if a == 0.0:
+        assert brake_distance(v, w, deceleration, jerk) == pytest.approx(x[-1], rel=1e-6, abs=1e-9)
+        assert brake_time(v, w, deceleration, jerk) == pytest.approx(t[-1], rel=1e-6, abs=1e-9)
+    for share in (0.1, 0.5, 0.9):
+        row = int(share * (len(x) - 1))
+        found_v, found_a = brake_state(float(x[row]), v, a, w, deceleration, jerk)
+        assert found_v == pytest.approx(velocity[row], rel=1e-4, abs=1e-4 * v)
+        assert found_a == pytest.approx(acceleration[row], rel=1e-2, abs=0.02 * deceleration)
+
+
+@SETTINGS
+@given(LARGE, st.floats(0.05, 0.95), DECELERATION, JERK)
+def test_a_brake_goes_on_from_any_state_on_it(
+    v: float, share: float, deceleration: float, jerk: float
+) -> None:
+    """From a state with a < 0 the rest of the way and the rows are those of the whole brake."""
+    t, x, velocity, acceleration = plain_brake(v, 0.0, 0.0, deceleration, jerk)
+    row = int(share * (len(t) - 1))
+    rest = brake_need(velocity[row], acceleration[row], 0.0, deceleration, jerk)
+    assert rest == pytest.approx(x[-1] - x[row], rel=1e-3, abs=1e-4 * x[-1])
+    rows, pieces = np.zeros((3, 6)), np.zeros((3, 2), np.int64)
+    lengths = np.array([10.0 * x[-1] + 1.0])
+    count, _, end, _ = put_brake(
+        rows, pieces, 0, lengths, 0, 0, 0.0, 0.0,
+        velocity[row], acceleration[row], 0.0, deceleration, jerk,
+    )  # fmt: skip
+    assert end == pytest.approx(t[-1] - t[row], rel=1e-2, abs=1e-3 * t[-1])
+    _, duration, _, begin_v, begin_a, j = rows[count - 1]
+    assert begin_v + (begin_a + 0.5 * j * duration) * duration == pytest.approx(0.0, abs=1e-6 * v)
+
+
+@SETTINGS
+@given(st.floats(0.1, 100.0), st.floats(-100.0, 100.0), st.floats(-100.0, 100.0), LARGE)
+def test_time_to_inverts_the_way(v: float, a: float, j: float, share: float) -> None:
+    latest = 1.0
+    t = np.linspace(0.0, latest, 2001)
+    way = v * t + a * t**2 / 2.0 + j * t**3 / 6.0
+    hypothesis.assume(np.all(np.diff(way) > 0.0))
+    wanted = way[-1] * share / 1000.0
+    assert time_to(wanted, v, a, j, latest) == pytest.approx(np.interp(wanted, way, t), abs=1e-4)
+
+
+@st.composite
+def stretches(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
+    count = draw(st.integers(1, 7))
+
+    def row(low: float, high: float) -> list[float]:
+        return draw(st.lists(st.floats(low, high), min_size=count, max_size=count))
+
+    limits = np.array(
+        [row(0.01, 5.0), row(1.0, 100.0), *(row(100.0, 5e3) for _ in range(2)), row(1e3, 1e5)]
+    )
+    entry = np.array([*row(0.0, 200.0), 0.0])
+    return limits, entry
+
+
+def plain_is_safe(
+    limits: FloatArray, entry: FloatArray, reach: FloatArray, i: int, v: float, slack: float
+) -> bool:
+    """Whether some brake from border i with a = 0 keeps every limit, by looking at all of it."""
+    count = limits.shape[1]
+    for k in range(i + 1, count + 1):
+        deceleration, jerk = limits[3, i:k].min(), limits[4, i:k].min()
+        w = min(v, reach[k])
+        _, x, velocity, _ = plain_brake(v, 0.0, w, deceleration, jerk)
+        borders = np.cumsum(limits[0, i:k])
+        if x[-1] > borders[-1] * (1.0 + slack) + 1e-12:
+            continue
+        within = np.minimum(np.searchsorted(borders, x), k - i - 1)
+        caps = limits[1, i:k][within]
+        passed = np.interp(borders[:-1], x, velocity)
+        inner = np.minimum(entry[i + 1 : k], np.minimum(limits[1, i + 1 : k], limits[1, i : k - 1]))
+        if np.all(velocity <= caps * (1.0 + slack)) and np.all(passed <= inner * (1.0 + slack)):
+            return True
+    return False
+
+
+@FEWER
+@given(stretches())
+def test_reach_is_safe_and_nearly_the_most_that_is(case: tuple[FloatArray, FloatArray]) -> None:
+    limits, entry = case
+    reach, to, at = find_reach(limits, entry, np.zeros((3, 0)))
+    assert reach[-1] == 0.0
+    for i in range(limits.shape[1]):
+        if reach[i] == 0.0:
+            continue
+        assert at[i] <= reach[int(to[i])] * (1.0 + 1e-12)
+        assert plain_is_safe(limits, entry, reach, i, reach[i], 1e-3)
+        highest = min(entry[i], limits[1, i], limits[1, i - 1] if i > 0 else math.inf)
+        if reach[i] < 0.98 * highest:
+            assert not plain_is_safe(limits, entry, reach, i, min(highest, 1.02 * reach[i]), 0.0)
+        assert find_brake(limits, entry, reach, i, 0.0, 0.999 * reach[i], 0.0, 1e-9, 0) > i
+
+
+@SETTINGS
+@given(stretches(), st.lists(st.booleans(), min_size=7, max_size=7))
+def test_stretches_are_the_strictest_of_their_pieces(
+    case: tuple[FloatArray, FloatArray], dwells: list[bool]
+) -> None:
+    limits, entry = case
+    count = limits.shape[1]
+    limits = np.repeat(limits, 4, axis=1)
+    limits[0] *= 0.01
+    limits[0, np.repeat(dwells[:count], 4)] = 0.0
+    entry = np.where(np.arange(4 * count) % 4 == 0, np.repeat(entry[:-1], 4), np.inf)
+    begins = find_stretches(limits, entry, limits[1])
+    merged = merge_limits(limits, entry, begins)
+    assert begins[0] == 0
+    assert begins[-1] == 4 * count
+    for number, (first, last) in enumerate(itertools.pairwise(begins)):
+        assert last == first + 1 or np.all(limits[0, first:last] > 0.0)
+        assert len(set(limits[1, first:last])) == 1
+        assert np.all(entry[first + 1 : last] > 0.0)
+        assert merged[0, number] == pytest.approx(limits[0, first:last].sum())
+        slowest = min(limits[1, first:last].min(), entry[first + 1 : last].min(initial=math.inf))
+        assert merged[1, number] == slowest
+        assert np.array_equal(merged[2:, number], limits[2:, first:last].min(axis=1))
+
+
+@SETTINGS
+@given(
+    st.lists(st.floats(0.1, 2.0), min_size=1, max_size=12),
+    st.lists(st.floats(0.0, 1.0), max_size=9),
+)
+def test_phases_are_placed_in_the_pieces_of_their_stretch(
+    lengths: list[float], shares: list[float]
+) -> None:
+    begins = np.array([0, len(lengths)])
+    rows = np.zeros((len(shares), 6))
+    rows[:, 2] = np.sort(shares) * sum(lengths)
+    x = rows[:, 2].copy()
+    pieces = place_phases(rows, np.zeros((len(shares), 2), np.int64), begins, np.array(lengths))
+    borders = np.append(0.0, np.cumsum(lengths))
+    for row, wanted in enumerate(x):
+        assert borders[pieces[row, 0]] + rows[row, 2] == pytest.approx(wanted)
+        assert rows[row, 2] <= lengths[pieces[row, 0]] * (1.0 + 1e-12) + 1e-12
+        assert pieces[row, 1] == len(lengths) - 1

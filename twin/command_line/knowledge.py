@@ -1,0 +1,31 @@
+"""What the twin knows of itself: ``twin dialects``, ``explain`` and ``doctor``."""
+
+from typing import Annotated
+
+import typer
+
+
+def dialects(
+    name: Annotated[str | None, typer.Argument(help="One of them.", show_default=False)] = None,
+) -> None:
+    """Print the dialects, or what one of them understands, refuses and decided."""
+    from twin.nc.describe import describe, overview
+    from twin.nc.dialects import dialect_named
+
+    typer.echo(overview() if name is None else describe(dialect_named(name)))
+
+
+def explain(
+    code: Annotated[str, typer.Argument(help="Code of a diagnostic.", show_default=False)],
+) -> None:
+    """Explain a diagnostic's code, with an example."""
+    from twin.nc import explain as explanations
+
+    typer.echo(explanations.explain(code))
+
+
+def doctor() -> None:
+    """Say what this computer can do: libraries, off-screen pictures, video."""
+    from twin.commands.doctor import print_doctor
+
+    raise typer.Exit(print_doctor())

@@ -1,0 +1,58 @@
+"""``twin machine``: list, show, check and circle."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from twin.command_line.options import (
+    FormatOption,
+    MachineArgument,
+)
+
+machine_app = typer.Typer(no_args_is_help=True, help="Look at machines, check them, run circles.")
+
+
+@machine_app.command("list")
+def machine_list(form: FormatOption = "text") -> None:
+    """List the shipped machines."""
+    from twin.commands.machine import print_machines
+
+    print_machines(form)
+
+
+@machine_app.command("show")
+def machine_show(
+    name: MachineArgument,
+    feed: Annotated[
+        float, typer.Option("--feed", help="For the lag (mm/min or deg/min).")
+    ] = 3000.0,
+    form: FormatOption = "text",
+) -> None:
+    """Show travel, limits, loop gain, inertia, natural frequency, expected lag."""
+    from twin.commands.machine import print_machine
+
+    print_machine(name, feed=feed, form=form)
+
+
+@machine_app.command("check")
+def machine_check(name: MachineArgument) -> None:
+    """Check a machine's folder: files, model, hold still at home, shake."""
+    from twin.commands.machine import print_check
+
+    raise typer.Exit(print_check(name))
+
+
+@machine_app.command("circle")
+def machine_circle(
+    machine: Annotated[str, typer.Option("--machine", help="Name or machine.toml.")] = "mill4",
+    radius: Annotated[float, typer.Option("--radius", help="Of the circle (mm).")] = 50.0,
+    feed: Annotated[float, typer.Option("--feed", help="Along the circle (mm/min).")] = 3000.0,
+    plane: Annotated[str, typer.Option("--plane", help="XY, ZX, YZ or XYC.")] = "XY",
+    form: FormatOption = "text",
+    plot: Annotated[Path, typer.Option("--plot", help="SVG, PNG or PDF.")] = Path("circle.svg"),
+) -> None:
+    """Run the circular test of ISO 230-4 in both directions and draw it."""
+    from twin.commands.machine import print_circle
+
+    print_circle(machine, radius=radius, feed=feed, plane=plane, form=form, plot=plot)

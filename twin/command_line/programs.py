@@ -1,0 +1,57 @@
+"""What one program does: ``twin interpret``, ``plan`` and ``run``."""
+
+from typing import Annotated
+
+import typer
+
+from twin.command_line.options import (
+    DialectOption,
+    FormatOption,
+    MachineOption,
+    OutOption,
+    Program,
+    ProgramOrJob,
+    StrictOption,
+)
+
+
+def interpret(
+    program: Program,
+    dialect: DialectOption = None,
+    machine: MachineOption = None,
+    form: Annotated[str, typer.Option("--format", help="text or jsonl.")] = "text",
+    strict: StrictOption = False,
+) -> None:
+    """Print what the interpreter made of a program, before any machine moves."""
+    from twin.commands.interpret import print_interpretation
+
+    print_interpretation(program, dialect=dialect, machine=machine, form=form, strict=strict)
+
+
+def plan(
+    job: ProgramOrJob,
+    out: OutOption = None,
+    dialect: DialectOption = None,
+    machine: MachineOption = None,
+    form: FormatOption = "text",
+    strict: StrictOption = False,
+) -> None:
+    """Print the cycle time and where it is lost, and draw feed and axis speeds."""
+    from twin.commands.plan import plan_and_print
+
+    plan_and_print(job, out, dialect=dialect, machine=machine, form=form, strict=strict)
+
+
+def run(
+    job: ProgramOrJob,
+    out: OutOption = None,
+    video: Annotated[bool, typer.Option("--video", help="Film the run as video.mp4.")] = False,
+    dialect: DialectOption = None,
+    machine: MachineOption = None,
+    strict: StrictOption = False,
+) -> None:
+    """Interpret, plan, simulate, compare and cut; write the results and print the verdict."""
+    from twin.commands.run import run_and_print
+
+    code = run_and_print(job, out, dialect=dialect, machine=machine, video=video, strict=strict)
+    raise typer.Exit(code)

@@ -1,0 +1,114 @@
+"""Verdicts on many runs and on recordings: ``twin check``, ``compare`` and ``export``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from twin.command_line.options import (
+    ClusterOption,
+    DialectOption,
+    FormatOption,
+    JobsOption,
+    MachineOption,
+    ProgramOrJob,
+    StrictOption,
+)
+
+
+def check(
+    paths: Annotated[list[str], typer.Argument(help="Programs, job files, folders, globs.")],
+    junit: Annotated[Path | None, typer.Option("--junit", help="Write JUnit XML there.")] = None,
+    json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    baseline: Annotated[
+        Path | None, typer.Option("--baseline", help="Hold runs to the baselines in this folder.")
+    ] = None,
+    update_baseline: Annotated[
+        bool, typer.Option("--update-baseline", help="Store baselines instead.")
+    ] = False,
+    reports: Annotated[
+        Path | None, typer.Option("--reports", help="Write a report on every program there.")
+    ] = None,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
+    dialect: DialectOption = None,
+    machine: MachineOption = None,
+    strict: StrictOption = False,
+) -> None:
+    """Run many programs without pictures; one table, exit 1 if any falls short."""
+    from twin.check.program import CheckSettings
+    from twin.commands.check import check_and_print
+
+    settings = CheckSettings(
+        dialect=dialect, machine=machine, strict=strict, baseline=baseline,
+        update_baseline=update_baseline, reports=reports,
+    )  # fmt: skip
+    code = check_and_print(
+        paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs, cluster=cluster
+    )
+    raise typer.Exit(code)
+
+
+def sweep(
+    job: ProgramOrJob,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            "--vary",
+            help="machine.KEY=VALUES or job.KEY=VALUES: a,b,c or FROM:TO:COUNT; again for more.",
+        ),
+    ],
+    json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
+    dialect: DialectOption = None,
+    machine: MachineOption = None,
+    strict: StrictOption = False,
+) -> None:
+    """Run a job for every combination of values; exit 1 if any falls short."""
+    from twin.check.program import CheckSettings
+    from twin.commands.sweep import sweep_and_print
+
+    code = sweep_and_print(
+        job,
+        vary,
+        settings=CheckSettings(dialect=dialect, machine=machine, strict=strict),
+        json_file=json_file,
+        jobs=jobs,
+        cluster=cluster,
+    )
+    raise typer.Exit(code)
+
+
+def compare(
+    first: Annotated[Path, typer.Argument(help="Recording, or CSV log.", show_default=False)],
+    second: Annotated[Path, typer.Argument(help="The same.", show_default=False)],
+    form: FormatOption = "text",
+    period: Annotated[
+        float | None, typer.Option("--period", help="Sample period of logs without time (s).")
+    ] = None,
+    offset: Annotated[
+        float | None, typer.Option("--offset", help="Known offset in time (s); default: found.")
+    ] = None,
+    tolerance: Annotated[
+        float | None, typer.Option("--tolerance", help="Largest actual difference (mm or deg).")
+    ] = None,
+) -> None:
+    """Compare two recordings, or a recording with a log of the real machine."""
+    from twin.commands.compare import compare_and_print
+
+    code = compare_and_print(
+        first, second, form=form, period_s=period, offset_s=offset, tolerance=tolerance
+    )
+    raise typer.Exit(code)
+
+
+def export(
+    recording: Annotated[Path, typer.Argument(help="recording.h5", show_default=False)],
+    out: Annotated[Path | None, typer.Option("--out", help="Default: beside it, .csv.")] = None,
+    every: Annotated[int, typer.Option("--every", help="Write one of so many samples.")] = 1,
+) -> None:
+    """Write a recording as CSV, units in the header."""
+    from twin.commands.export import export_and_print
+
+    raise typer.Exit(export_and_print(recording, out, every=every))

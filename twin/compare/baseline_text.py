@@ -1,0 +1,250 @@
+"""Baselines as text: one entry a line, modal like an NC program, so that they are small and diff well.
+
+    twin baseline 2
+    cycle_time_s 12.5
+    contour_um 3.2
+    axes X Y Z C
+    M3 S3000
+    start X0 Y0 Z50 C0
+    rapid Z0
+    feed X50 F600
+    arc X0 center 25 0 0 normal 0 0 1 sweep 180
+    dwell 0.5
+
+An axis or a feed is written where it changes; source lines are not, so that a comment more changes
+nothing.
+"""
+
+import dataclasses
+import math
+from collections.abc import Iterable, Iterator
+from typing import TextIO
+
+from twin.nc.canonical import Chunk, Dwell, Event, Function, Motion, Moves, Shape
+
+HEADING = "twin baseline 2"
+_DECIMALS = 6
+"""Of coordinates in the file: a nanometre, far below any tolerance."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class RunFigures:
+    """What a baseline keeps beside the path.
+
+    Attributes:
+        cycle_time_s: Machine time of the program [s].
+        contour_um: Greatest contour error [µm].
+    """
+
+    cycle_time_s: float
+    contour_um: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Entry:
+    """A move, dwell or function as a baseline knows it.
+
+    Attributes:
+        kind: ``rapid``, ``feed``, ``arc``, ``rapid arc``, ``dwell``, or a function with its
+            arguments, such as ``M3 S3000``.
+        line: Source line; 0 in a stored baseline, which knows none.
+        start: Of a move [mm or deg].
+        end: Of a move [mm or deg].
+        feed: Of a move, per minute; 0 for rapids.
+        center: Of an arc [mm].
+        normal: Of an arc.
+        value: Sweep of an arc [deg], or length of a dwell [s].
+    """
+
+    kind: str
+    line: int = 0
+    start: tuple[float, ...] = ()
+    end: tuple[float, ...] = ()
+    feed: float = 0.0
+    center: tuple[float, ...] = ()
+    normal: tuple[float, ...] = ()
+    value: float = 0.0
+
+    @property
+    def is_path(self) -> bool:
+        """Whether it moves or waits, rather than being a function."""
+        return self.kind == "dwell" or self.kind in _MOVES
+
+
+_KINDS = {
+    (Motion.RAPID, Shape.LINE): "rapid",
+    (Motion.FEED, Shape.LINE): "feed",
+    (Motion.RAPID, Shape.ARC): "rapid arc",
+    (Motion.FEED, Shape.ARC): "arc",
+}
+_MOVES = frozenset(_KINDS.values())
+
+
+def entries(chunks: Iterable[Chunk]) -> Iterator[Entry]:
+    """What a program does, in order."""
+    for chunk in chunks:
+        events = iter(chunk.events)
+        event = next(events, None)
+        for row in range(len(chunk.moves) + 1):
+            while event is not None and event.before == row:
+                yield _event(event)
+                event = next(events, None)
+            if row < len(chunk.moves):
+                yield _move(chunk.moves, row)
+
+
+def _event(event: Event) -> Entry:
+    if isinstance(event, Dwell):
+        return Entry("dwell", event.line, value=event.seconds)
+    return Entry(_function_text(event), event.line)
+
+
+def _function_text(event: Function) -> str:
+    arguments = [f"{name}{number(value)}" for name, value in event.arguments.items()]
+    place = [f"at {number(event.at)}"] if event.at else []
+    return " ".join([event.word, *arguments, *place])
+
+
+def _move(moves: Moves, row: int) -> Entry:
+    motion, shape = Motion(moves.motion[row]), Shape(moves.shape[row])
+    arc = shape is Shape.ARC
+    return Entry(
+        kind=_KINDS[motion, shape],
+        line=int(moves.line[row]),
+        start=tuple(moves.start[row].tolist()),
+        end=tuple(moves.end[row].tolist()),
+        feed=0.0 if math.isnan(moves.feed[row]) else float(moves.feed[row]),
+        center=tuple(moves.center[row].tolist()) if arc else (),
+        normal=tuple(moves.normal[row].tolist()) if arc else (),
+        value=float(moves.sweep[row]),
+    )
+
+
+def write(
+    file: TextIO, figures: RunFigures, names: tuple[str, ...], program: Iterable[Entry]
+) -> None:
+    """Write a baseline.
+
+    Args:
+        file: Where to.
+        figures: What the run came to.
+        names: Of the axes.
+        program: What the program does.
+    """
+    file.write(f"{HEADING}\n")
+    file.write(f"cycle_time_s {figures.cycle_time_s:.6f}\ncontour_um {figures.contour_um:.3f}\n")
+    file.write(f"axes {' '.join(names)}\n")
+    position: tuple[float, ...] = ()
+    feed = 0.0
+    for entry in program:
+        if entry.start and list(map(number, entry.start)) != list(map(number, position)):
+            file.write(f"start {words(names, entry.start)}\n")
+        file.write(text(entry, names, entry.start, feed) + "\n")
+        position, feed = entry.end or position, entry.feed or feed
+
+
+def text(entry: Entry, names: tuple[str, ...], position: tuple[float, ...], feed: float) -> str:
+    """One line of a baseline.
+
+    Args:
+        entry: What it is about.
+        names: Of the axes.
+        position: What need not be repeated [mm or deg].
+        feed: The same.
+    """
+    if entry.kind not in _MOVES:
+        return f"{entry.kind} {number(entry.value)}" if entry.kind == "dwell" else entry.kind
+    parts = [entry.kind]
+    for name, value, before in zip(names, entry.end, position, strict=True):
+        if number(value) != number(before):
+            parts.append(name + number(value))
+    if entry.feed and number(entry.feed) != number(feed):
+        parts.append("F" + number(entry.feed))
+    if entry.center:
+        parts += ["center", *map(number, entry.center), "normal", *map(number, entry.normal)]
+        parts += ["sweep", number(entry.value)]
+    return " ".join(parts)
+
+
+def words(names: tuple[str, ...], values: Iterable[float]) -> str:
+    """A position, such as ``X10 Y-2.5``."""
+    return " ".join(name + number(value) for name, value in zip(names, values, strict=True))
+
+
+def number(value: float) -> str:
+    """A number without needless zeros."""
+    shown = f"{value:.{_DECIMALS}f}".rstrip("0").rstrip(".")
+    return "0" if shown == "-0" else shown
+
+
+def read_head(lines: Iterator[str]) -> tuple[RunFigures, tuple[str, ...]]:
+    """Figures and names of the axes; the iterator is left at the first entry.
+
+    Raises:
+        ValueError: This is no baseline.
+    """
+    if next(lines, "").strip() != HEADING:
+        raise ValueError(f"the first line is not '{HEADING}'")
+    values = {}
+    for key in ("cycle_time_s", "contour_um", "axes"):
+        name, *rest = next(lines, "").split() or [""]
+        if name != key:
+            raise ValueError(f"'{key}' is missing")
+        values[key] = rest
+    figures = RunFigures(float(*values["cycle_time_s"]), float(*values["contour_um"]))
+    return figures, tuple(values["axes"])
+
+
+def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[Entry]:
+    """The entries of a stored baseline.
+
+    Raises:
+        ValueError: A line is no entry.
+    """
+    position = dict.fromkeys(names, 0.0)
+    feed = 0.0
+    for line in lines:
+        parts = line.split()
+        if not parts:
+            continue
+        kind = "rapid arc" if parts[:2] == ["rapid", "arc"] else parts[0]
+        if kind == "dwell":
+            yield Entry(kind, value=float(parts[1]))
+        elif kind != "start" and kind not in _MOVES:
+            yield Entry(" ".join(parts))
+        else:
+            start = tuple(position.values())
+            parts, arc = _split_arc(parts[len(kind.split()) :])
+            given = _read_words(parts, names)
+            own_feed = given.pop("F", feed)
+            position |= given
+            if kind == "start":
+                continue
+            feed = own_feed
+            yield Entry(
+                kind, 0, start, tuple(position.values()), 0.0 if "rapid" in kind else feed, *arc
+            )
+
+
+def _split_arc(
+    parts: list[str],
+) -> tuple[list[str], tuple[tuple[float, ...], tuple[float, ...], float]]:
+    if "center" not in parts:
+        return parts, ((), (), 0.0)
+    at = parts.index("center")
+    tail = parts[at:]
+    if len(tail) != 10 or tail[4] != "normal" or tail[8] != "sweep":
+        raise ValueError(f"no arc: {' '.join(tail)}")
+    center, normal = (tuple(map(float, tail[i : i + 3])) for i in (1, 5))
+    return parts[:at], (center, normal, float(tail[9]))
+
+
+def _read_words(parts: list[str], names: tuple[str, ...]) -> dict[str, float]:
+    values = {}
+    for part in parts:
+        # The longest name first: an axis X2 begins like an axis X.
+        known = sorted((name for name in (*names, "F") if part.startswith(name)), key=len)
+        if not known:
+            raise ValueError(f"'{part}' is not a word of a baseline")
+        values[known[-1]] = float(part.removeprefix(known[-1]))
+    return values

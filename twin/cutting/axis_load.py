@@ -1,0 +1,74 @@
+"""The cutting force as a load on the axes, reckoned ahead of the motion along the setpoints."""
+
+import numpy as np
+
+from twin.cutting.cut import Cutter
+from twin.errors import ConfigError
+from twin.job import StockTable
+from twin.motion.setpoints import Setpoints
+from twin.nc.canonical import FloatArray
+from twin.program_notes import ProgramNotes
+from twin.recording import Samples
+from twin.toolpath.part_frame import PartFrame
+from twin.units import MM
+
+
+class AxisLoad:
+    """Loads of a run, chunk by chunk; call it with the setpoints in order.
+
+    The material is cut along the commanded path: what the axes stand off it, micrometres, changes
+    the chip by far less than Kienzle's constants are known to.
+    """
+
+    def __init__(
+        self,
+        stock: StockTable,
+        notes: ProgramNotes,
+        part_frame: PartFrame,
+        part_zero: FloatArray,
+    ) -> None:
+        """Lay another blank on the table, to be cut ahead.
+
+        Args:
+            stock: The blank; its material must be named.
+            notes: What is in the spindle when, at which speed, and which moves are rapids.
+            part_frame: How the part turns under the tool.
+            part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+
+        Raises:
+            ConfigError: The stock's material or any spindle speed is missing, so that no force can
+                be reckoned.
+        """
+        if stock.material is None:
+            raise ConfigError("cutting_load needs stock.material, for the cutting force")
+        if all(tool.speed is None for tool in notes.tools.tools):
+            raise ConfigError(
+                "cutting_load needs a spindle speed: S in the program, or speed of a [[tools]] table"
+            )
+        self._cutter = Cutter(stock, notes.tools, part_frame, part_zero, along="setpoints")
+        self._notes = notes
+        self._part_frame = part_frame
+
+    def __call__(self, setpoint: Setpoints) -> FloatArray:
+        """Load on every axis during the period that ends with each setpoint.
+
+        Args:
+            setpoint: n setpoints that follow the last ones.
+
+        Returns:
+            Shape (n, k) [N or N m], positive where it pushes an axis towards greater values.
+        """
+        still = np.zeros_like(setpoint.position)
+        samples = Samples(setpoint, setpoint.position, setpoint.velocity, still)
+        self._cutter.add(samples, self._notes.is_rapid(setpoint.move))
+        force = self._cutter.force
+        frame, load = self._part_frame, still
+        load[:, :3] = force
+        if frame.rotary is not None:
+            place = frame.position(setpoint.position)
+            turned = np.deg2rad(setpoint.position[:, frame.rotary] - frame.turn_zero)
+            cosine, sine = np.cos(turned), np.sin(turned)
+            load[:, 0] = cosine * force[:, 0] + sine * force[:, 1]
+            load[:, 1] = cosine * force[:, 1] - sine * force[:, 0]
+            load[:, frame.rotary] = MM * (place[:, 0] * force[:, 1] - place[:, 1] * force[:, 0])
+        return load

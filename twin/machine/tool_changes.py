@@ -1,0 +1,44 @@
+"""Collisions and near misses of whichever tool is in the spindle."""
+
+from twin.machine.alarms import Alarm, NearMiss
+from twin.machine.clearance import Clearance
+from twin.machine.config import Machine
+from twin.machine.model import build_spec, clearance_model
+from twin.machine.tool_shape import ToolSchedule, ToolShape, tool_cylinders
+from twin.recording import Samples
+
+
+class ToolClearances:
+    """Watches a run with tool changes; each tool's clearance is built when it first comes."""
+
+    def __init__(self, machine: Machine, tools: ToolSchedule) -> None:
+        self._machine = machine
+        self._tools = tools
+        self._built: dict[object, Clearance] = {}
+        self._current: Clearance | None = None
+
+    @property
+    def near_miss(self) -> NearMiss | None:
+        """The closest approach of all tools, where it was below the machine file's limit."""
+        misses = [clearance.near_miss for clearance in self._built.values()]
+        return min(filter(None, misses), key=lambda miss: miss.clearance_mm, default=None)
+
+    def look(self, samples: Samples) -> Alarm | None:
+        """Return the alarm of the first sample of the chunk at which two things meet."""
+        for run, tool in self._tools.runs(samples.setpoint.move):
+            clearance = self._of(tool)
+            if clearance is not self._current:
+                clearance.begin()
+                self._current = clearance
+            alarm = clearance.look(samples[run])
+            if alarm is not None:
+                return alarm
+        return None
+
+    def _of(self, tool: ToolShape) -> Clearance:
+        """Tools of one shape share their clearance, at whatever speed they turn."""
+        shape = tool_cylinders(tool, self._machine.file.spindle.flange_diameter)
+        if shape not in self._built:
+            spec = build_spec(self._machine, tool)
+            self._built[shape] = Clearance(self._machine, clearance_model(self._machine, spec))
+        return self._built[shape]
