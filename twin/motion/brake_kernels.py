@@ -27,7 +27,7 @@ def time_to(distance: float, v: float, a: float, j: float, latest: float) -> flo
         new = t - miss / slope if slope > 0.0 else 0.5 * (low + high)
         if not low < new < high:
             new = 0.5 * (low + high)
-        if abs(new - t) <= 1e-16 * latest:
+        if abs(new - t) <= 1e-15 * new:
             return new
         t = new
     return t
