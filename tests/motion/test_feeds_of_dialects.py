@@ -75,6 +75,4 @@ def test_codesys_speeds_up_by_one_word_and_brakes_by_the_other(
 def _setpoints(preparation: Preparation) -> Setpoints:
     chunks = preparation.interpretation().chunks()
     zero = np.zeros(4)
-    return join(
-        list(plan(chunks, NIMBLE, period_s=0.001, part_zero=zero, start=preparation.start))
-    )
+    return join(list(plan(chunks, NIMBLE, period_s=0.001, part_zero=zero, start=preparation.start)))

@@ -78,7 +78,9 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
     # What ``reachable_velocities`` takes away.
     beside = pieces.velocity < bound * (1.0 - CLEARLY)
     return Reasons(
-        velocity=[BESIDE if row else name for name, row in zip(names_of_bounds, beside, strict=True)],
+        velocity=[
+            BESIDE if row else name for name, row in zip(names_of_bounds, beside, strict=True)
+        ],
         entry=_entries(pieces, limits, names),
         acceleration=_least(hardest)[0],
         jerk=_least(smoothest)[0],

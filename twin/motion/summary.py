@@ -184,8 +184,10 @@ def _slow_places(phases: Phases, why: Reasons) -> list[str]:
 
 
 def _reason_at(piece: int, x: float, phases: Phases, why: Reasons) -> str:
-    """What bounds the velocity at x in a piece: the nearest border that has a bound, or the slower of
-    the pieces that meet at the nearest border."""
+    """What bounds the velocity at x in a piece.
+
+    The nearest border that has a bound, or the slower of the pieces that meet at the nearest one.
+    """
     if piece >= len(why.entry):
         return STOP
     nearer_end = x > 0.5 * phases.pieces.length[piece]
