@@ -10,6 +10,7 @@ from twin.command_line.knowledge import dialects, doctor, explain
 from twin.command_line.machines import machine_app
 from twin.command_line.pictures import render
 from twin.command_line.programs import interpret, plan, run
+from twin.command_line.training import train
 from twin.command_line.verdicts import check, compare, export
 from twin.errors import ExitCode, TwinError
 
@@ -48,6 +49,7 @@ for command in (
     check,
     compare,
     export,
+    train,
     dialects,
     explain,
     doctor,

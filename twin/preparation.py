@@ -64,7 +64,13 @@ def prepare(
         raise UsageError(f"{path}: a folder; twin check runs the programs in a folder")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
-    job = read_job(path)
+    return prepare_job(read_job(path), dialect=dialect, machine=machine, strict=strict)
+
+
+def prepare_job(
+    job: Job, *, dialect: str | None = None, machine: str | None = None, strict: bool = False
+) -> Preparation:
+    """Read all that a job names; arguments and errors as for ``prepare``."""
     if machine is None:
         found = machine_file(job.file.machine, beside=job.folder)
     else:
