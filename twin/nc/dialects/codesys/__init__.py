@@ -16,6 +16,7 @@ from twin.nc.dialect import (
 )
 from twin.nc.dialects.codesys import codes, jumps, program, subprograms
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
+from twin.nc.dialects.codesys.codes import ADDITIONAL
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
     COUNTER_CLOCKWISE_ELLIPSE,
@@ -26,9 +27,6 @@ from twin.nc.dialects.codesys.curves import (
 from twin.nc.dialects.codesys.decisions import DECISIONS
 from twin.nc.linear import rapid_line
 from twin.nc.planes import XY, YZ, ZX, Plane
-
-ADDITIONAL = "ABCPQUVW"
-"""Letters of additional axes."""
 
 
 def _motion(meaning: str, interpolation: Interpolation, *, seed: bool = False) -> GCode:
@@ -76,7 +74,6 @@ CODESYS = Dialect(
         "length",
         "compensation",
         "smoothing",
-        "additional axes",
         "loops",
         "motion",
     ),
@@ -182,12 +179,15 @@ CODESYS = Dialect(
             ground="manual",
         ),
         70: GCode(
-            meaning="smoothing of additional axes off", group="additional axes", ground="manual"
+            meaning="additional axis L (6 is C) goes with each move; without L all",
+            perform=codes.go_as_programmed,
+            takes="L",
+            ground="manual",
         ),
         71: GCode(
-            meaning="smoothing of additional axes on",
-            group="additional axes",
-            refused="additional axes go linearly with the path",
+            meaning="additional axis L goes evenly over the moves up to G70",
+            perform=codes.go_evenly,
+            takes="L",
             ground="manual",
         ),
         75: GCode(meaning="wait for the motion before variables are read", ground="manual"),
@@ -225,7 +225,7 @@ CODESYS = Dialect(
         28: "write G53, then G0 and the axes",
         49: "write G43 I0 J0 K0",
     },
-    start=(15, 40, 50, 60, 70, 90, 99),
+    start=(15, 40, 50, 60, 90, 99),
     start_state={"feed_mode": FeedMode.PER_SECOND, "corner": Corner.EXACT_PATH},
     m={number: MCode(meaning="end of program", late=True, ends=True) for number in (2, 30)},
     any_m=True,
@@ -283,7 +283,8 @@ CODESYS = Dialect(
         "D": "tool radius; distance of smoothing; value of G36 and G37",
         "H": "switch point, negative: off",
         "O": "place of a switch point as a share; variable of G36 and G37; parameter of M",
-        "L": "block to jump to; place of a switch point as a distance; parameter of M",
+        "L": "block to jump to; place of a switch point as a distance; axis of G70 and G71; "
+        "parameter of M",
         "L?": "label to jump to, forwards",
         "L!": "label",
         "S": "profile of additional axes; 0 only",

@@ -10,6 +10,11 @@ from twin.nc.dialects.codesys.program import variables
 from twin.nc.offsets import LEFT, RIGHT, compensate
 from twin.nc.planes import XY, plane_with_normal
 
+ADDITIONAL = "ABCPQUVW"
+"""Letters of additional axes, in the order of their numbers."""
+FIRST_ADDITIONAL = 4
+"""Number of the first of them, A (manual)."""
+
 SWITCHES = 3
 """Switch points that one element may have (manual)."""
 
@@ -112,6 +117,35 @@ def cut_loops(control: Control) -> None:
 def keep_loops(control: Control) -> None:
     """G60."""
     control.path.keep_loops()
+
+
+def go_evenly(control: Control) -> None:
+    """G71 L: the additional axis L goes evenly over the moves up to G70."""
+    word = control.take("L")
+    if word is None:
+        hint = "write G71 L6 for C"
+        control.fail("even-axis", "G71 needs L, the number of the axis", hint=hint)
+    control.path.go_evenly(_numbered_axis(control, word))
+
+
+def go_as_programmed(control: Control) -> None:
+    """G70 L: it goes with each move again; without L all do."""
+    word = control.take("L")
+    axes = range(len(control.settings.axes)) if word is None else [_numbered_axis(control, word)]
+    for axis in axes:
+        control.path.go_as_programmed(axis)
+
+
+def _numbered_axis(control: Control, word: Word) -> int:
+    """Column of the additional axis with a number: 4 is A, 11 is W (manual)."""
+    number = control.number(word) - FIRST_ADDITIONAL
+    if number not in range(len(ADDITIONAL)):
+        control.fail("even-axis", f"{word.text} numbers no additional axis", word, "4 is A, 6 is C")
+    letter = ADDITIONAL[int(number)]
+    index = control.axis_index.get(letter)
+    if index is None:
+        control.refuse_axis(word._replace(address=letter))
+    return index
 
 
 def length_vector(control: Control) -> None:
