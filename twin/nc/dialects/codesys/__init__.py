@@ -14,7 +14,7 @@ from twin.nc.dialect import (
     MCode,
     Syntax,
 )
-from twin.nc.dialects.codesys import codes, jumps, program, subprograms
+from twin.nc.dialects.codesys import codes, jumps, program, subprograms, words
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.codes import ADDITIONAL
 from twin.nc.dialects.codesys.curves import (
@@ -49,7 +49,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
 
 
 RAPID = Interpolation(rapid_line, rapid=True)
-"""Its pace may follow F (``codes.before_motion``): no plain block."""
+"""Its pace may follow F (``words.before_motion``): no plain block."""
 
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
@@ -237,21 +237,21 @@ CODESYS = Dialect(
     series="HOL",
     words={
         "F": iso.set_feed,
-        "E": codes.set_acceleration,
-        "E-": codes.set_acceleration,
-        "FF": codes.set_rapid_feed,
-        "EF": codes.set_rapid_acceleration,
-        "EF-": codes.set_rapid_acceleration,
+        "E": words.set_acceleration,
+        "E-": words.set_acceleration,
+        "FF": words.set_rapid_feed,
+        "EF": words.set_rapid_acceleration,
+        "EF-": words.set_rapid_acceleration,
         "D": codes.set_smoothing,
-        "S": codes.refuse_profile,
-        "L!": codes.pass_label,
-        **{f"P{letter}": codes.set_period(letter) for letter in ADDITIONAL},
+        "S": words.refuse_profile,
+        "L!": words.pass_label,
+        **{f"P{letter}": words.set_period(letter) for letter in ADDITIONAL},
         **{
-            f"F{letter}": codes.axis_limit(letter, acceleration=False)
+            f"F{letter}": words.axis_limit(letter, acceleration=False)
             for letter in f"XYZ{ADDITIONAL}"
         },
         **{
-            f"E{letter}": codes.axis_limit(letter, acceleration=True)
+            f"E{letter}": words.axis_limit(letter, acceleration=True)
             for letter in f"XYZ{ADDITIONAL}"
         },
     },
@@ -309,9 +309,9 @@ CODESYS = Dialect(
         Mark(r"[XYZ][^ \t;$\"]*\b(?:SIN|COS|SQRT|PI)\b(?!\[)", "functions with round brackets"),
     ),
     memory=program.Variables,
-    before_motion=codes.before_motion,
+    before_motion=words.before_motion,
     read_variable=program.read_variable,
-    place_switches=codes.place_switches,
+    place_switches=words.place_switches,
     library=subprograms.with_files,
     disturbed=lambda control: bool(program.variables(control).periods),
 )
