@@ -234,7 +234,7 @@ def test_a_stock_that_is_cut_away_is_seen_no_more(scene: Scene) -> None:
 
 def test_shadows_fall(scene: Scene) -> None:
     pictures = []
-    for quality in (DRAFT, dataclasses.replace(DRAFT, shadows=True)):
+    for quality in (DRAFT, dataclasses.replace(DRAFT, passes=4)):
         with stage(scene, SIZE, quality) as play:
             play_to(play, scene.recording, 500)
             pictures.append(play.picture("overview").astype(float))
