@@ -11,6 +11,8 @@ RATE_OF_MOST = 300.0
 """Material removed per second from which on no more chips are drawn [mm³/s]."""
 SIZE_SHARE = 0.11
 """Length of the largest chip, as a share of the tool's diameter."""
+LONGEST_M = 2.5e-3
+"""No chip is longer [m]."""
 FLIGHT_S = 0.05
 """How long a chip is seen [s]."""
 SPEED = (0.2, 0.9)
@@ -60,7 +62,7 @@ def chips(tip: FloatArray, diameter: float, rate: float, seed: int) -> Chips:
     )
     time = random.uniform(0.0, FLIGHT_S, count)[:, None]
     fall = 0.5 * GRAVITY * time**2 * [0.0, 0.0, 1.0]
-    length = SIZE_SHARE * diameter * random.uniform(0.4, 1.0, count)
+    length = min(SIZE_SHARE * diameter, LONGEST_M) * random.uniform(0.4, 1.0, count)
     return Chips(
         tip + 0.5 * diameter * out + velocity * time - fall,
         np.linalg.qr(random.standard_normal((count, 3, 3)))[0],

@@ -35,6 +35,9 @@ WARNINGS = {
     "holder": "holder in the material",
 }
 
+OF_LATE_S = 0.02
+"""What was cut within this time throws chips [s]."""
+
 _NO_POINTS = np.zeros(0, np.int64)
 
 BETWEEN_FIELDS = 255
@@ -142,10 +145,17 @@ class Stage:
         self._move = int(samples.setpoint.move[-1])
         self._tool = self._scene.notes.tools.at(self._move)
         if self._cutter is not None:
-            rapid = self._scene.notes.is_rapid(samples.setpoint.move)
-            duration = len(samples) * self._scene.recording.header.period_s
-            self._rate = self._cutter.add(samples, rapid) / duration
-            self._changed = union(self._changed, self._cutter.changed)
+            period = self._scene.recording.header.period_s
+            late = min(len(samples), max(1, round(OF_LATE_S / period)))
+            self._cut(samples[:-late])
+            self._rate = self._cut(samples[-late:]) / (late * period)
+
+    def _cut(self, samples: Samples) -> float:
+        """Take the samples' material off; returns how much [mm³]."""
+        assert self._cutter is not None
+        removed = self._cutter.add(samples, self._scene.notes.is_rapid(samples.setpoint.move))
+        self._changed = union(self._changed, self._cutter.changed)
+        return removed
 
     def warning(self, line: int) -> str:
         """What the running block does to the part that it must not; empty for nothing."""
