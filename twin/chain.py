@@ -1,7 +1,6 @@
 """The order of the rooms: text, moves, setpoints, samples, figures, in chunks."""
 
 import dataclasses
-import math
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,22 +18,22 @@ from twin.cutting.part import write_stl
 from twin.cutting.spindle import Spindle, speaks_of_spindle
 from twin.errors import ConfigError
 from twin.machine.alarms import Alarm
-from twin.machine.config import Machine
 from twin.machine.model import build_spec, spindle_over_table_mm
 from twin.machine.simulate import Simulation, simulate
 from twin.machine.travel import soft_limit_alarm
-from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan
 from twin.motion.setpoints import Setpoints
 from twin.motion.settle import settle
+from twin.motion_limits import motion_limits
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.diagnostics import Diagnostic
+from twin.nc.source import Source
 from twin.outcome import Outcome
 from twin.placement import part_zero
 from twin.preparation import Preparation
 from twin.program_notes import NoteTaker, ProgramNotes
 from twin.progress import Progress
-from twin.recording import RecordingHeader, Samples, record
+from twin.recording import LONGEST_TEXT, RecordingHeader, Samples, record
 from twin.stages import StageClock
 from twin.stock_alarm import fixture_alarm, stock_alarm
 from twin.toolpath.part_frame import PartFrame
@@ -248,7 +247,7 @@ class Run:
             part_zero=self.part_zero,
             part_frame=self.part_frame,
             program=preparation.source.name,
-            program_text=preparation.source.text,
+            program_text=_text_to_keep(preparation.source),
             program_sha256=preparation.source.sha256,
             dialect=preparation.dialect.name,
             machine=preparation.machine.file.name,
@@ -257,6 +256,10 @@ class Run:
             job=preparation.job.file.model_dump_json(exclude_unset=True),
             machine_file=str(preparation.machine.path.resolve()),
         )
+
+
+def _text_to_keep(source: Source) -> str:
+    return source.text if source.lines.data.nbytes <= LONGEST_TEXT else ""
 
 
 def _keep_clear(guard: FixtureGuard | None, samples: Samples) -> tuple[Samples, Alarm | None]:
@@ -295,21 +298,3 @@ class _Track:
         """Share of the program that is done, 0 to 1."""
         move, fraction = self._place
         return (move + fraction) / moves if moves else 1.0
-
-
-def motion_limits(machine: Machine) -> MotionLimits:
-    """The planner's view of a machine file."""
-    axes = [machine.axis(name) for name in machine.axes.names]
-    path = machine.file.path
-    return MotionLimits(
-        velocity=np.array([axis.velocity for axis in axes]),
-        acceleration=np.array([axis.acceleration for axis in axes]),
-        jerk=np.array([axis.jerk for axis in axes]),
-        junction_velocity_step=np.array([axis.junction_velocity_step for axis in axes]),
-        junction_acceleration_step=np.array([axis.junction_acceleration_step for axis in axes]),
-        corner_tolerance=path.corner_tolerance,
-        path_acceleration=path.acceleration,
-        path_jerk=path.jerk,
-        rotary_path_acceleration=path.rotary_acceleration or math.inf,
-        rotary_path_jerk=path.rotary_jerk or math.inf,
-    )
