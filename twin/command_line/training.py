@@ -20,7 +20,9 @@ def train(
     host: Annotated[
         str | None, typer.Option("--host", help="Listen there too; needs --token.")
     ] = None,
-    port: Annotated[int, typer.Option("--port", help="Default: the first free from 8080.")] = 0,
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="0: the first free from 8080.")
+    ] = 0,
     token: Annotated[
         str | None, typer.Option("--token", help="What a browser must know to come in.")
     ] = None,
