@@ -11,11 +11,11 @@ from twin.training.texts import LANGUAGES, Language, in_language
 
 
 def print_scenes(language: str | None) -> None:
-    """List the shipped scenes."""
-    chosen = language_named(language)
+    """List the shipped scenes, in English unless another language is asked for."""
+    chosen = language_named(language) or "en"
     for name in scene_names():
         scene = read_scene(scene_path(name))
-        title = in_language(scene.file.title, chosen or scene.file.language)
+        title = in_language(scene.file.title, chosen)
         dialect = scene.preparation.dialect.name
         typer.echo(f"{name:26} {dialect:11} {scene.points:3} points  {title}")
 
