@@ -20,6 +20,25 @@ def print_scenes(language: str | None) -> None:
         typer.echo(f"{name:26} {dialect:11} {scene.points:3} points  {title}")
 
 
+def rehearse_and_print(name: str) -> ExitCode:
+    """Play a scene's scripted solution and mistake, and say whether they end as intended.
+
+    Raises:
+        TwinError: The scene is wrong, or a step of a script cannot be done.
+    """
+    from twin.training.script import rehearse
+
+    scene = read_scene(scene_path(name))
+    rehearsals = rehearse(scene)
+    for played in rehearsals:
+        failed = ", ".join(map(str, played.failed)) or "none"
+        typer.echo(
+            f"{scene.name}: {played.what}: {played.score} of {scene.points} points, failed tasks: "
+            f"{failed}: {'as intended' if played.intended else 'NOT as intended'}"
+        )
+    return ExitCode.OK if all(played.intended for played in rehearsals) else ExitCode.FAILED
+
+
 def language_named(name: str | None) -> Language | None:
     """A language by its name.
 
