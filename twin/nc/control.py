@@ -92,7 +92,10 @@ class Control(ControlMotion):
 
     def finish(self) -> None:
         """The program has ended, by an end code or by its last line."""
-        if not self.ended and self.dialect.finish is not None:
+        if not self.flow.begun:
+            self.report.line = 1
+            self.report.warn("empty-program", "no line holds a block", hint="is this the program?")
+        elif not self.ended and self.dialect.finish is not None:
             self.dialect.finish(self)
         self.path.finish()
 

@@ -17,11 +17,13 @@ CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True))
 COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=plain_arc(clockwise=False))
 
 
-_ELLIPSIS = re.compile(r"[ \t]*\.{3,}[ \t]*")
+_ELLIPSIS = re.compile(
+    r"[ \t]*(?:N[ \t]*[0-9]+)?(?:[ \t]*[A-Z]?[ \t]*\.{3,})+[ \t]*(?:[$\"].*)?", re.IGNORECASE
+)
 
 
 def is_ellipsis(line: str) -> bool:
-    """A line of dots, by which documents show blocks that they leave out."""
+    """Dots alone or in place of values, by which documents show what they leave out."""
     return _ELLIPSIS.fullmatch(line) is not None
 
 

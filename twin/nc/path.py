@@ -238,8 +238,9 @@ class Path:
 
     def cut_loops(self, plane: Plane) -> None:
         """Loops of the path in a plane are cut out from now on."""
-        self._flush()
-        self._loops = Loops(plane, self._add)
+        if self._loops is None:
+            self._flush()
+            self._loops = Loops(plane, self._columns.add)
 
     def keep_loops(self) -> None:
         """Loops stay."""
@@ -256,9 +257,6 @@ class Path:
             self._columns.add(move)
         else:
             self._loops.add(move)
-
-    def _add(self, move: Segment) -> None:
-        self._columns.add(move)
 
     def _record(self, happen: Callable[[MoveColumns], None]) -> None:
         if self._loops is None:

@@ -44,6 +44,9 @@ class ControlSettings:
     tools: Mapping[int, ToolData] = dataclasses.field(default_factory=dict)
     """The tool table by tool number; the first is in the spindle when the program starts."""
 
+    any_tool: bool = False
+    """Nobody gave a tool table: every number means the first tool."""
+
     offsets: Mapping[str, Mapping[str, float]] = dataclasses.field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
 

@@ -14,7 +14,7 @@ from twin.nc.dialect import (
     MCode,
     Syntax,
 )
-from twin.nc.dialects.codesys import codes, program, subprograms
+from twin.nc.dialects.codesys import codes, jumps, program, subprograms
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
@@ -103,7 +103,7 @@ CODESYS = Dialect(
         19: _plane("3D mode, plane Y Z", YZ),
         20: GCode(
             meaning="jump to L (or the label L? behind) when K is not 0",
-            perform=program.conditional_jump,
+            perform=jumps.conditional_jump,
             takes="L!",
             ground="manual",
         ),
@@ -203,7 +203,7 @@ CODESYS = Dialect(
             sets={"incremental": True},
             ground="manual",
         ),
-        92: GCode(meaning="set position", perform=offsets.preset, ground="manual"),
+        92: GCode(meaning="set position", perform=codes.set_position, ground="manual"),
         98: GCode(
             meaning="centre I J K absolute",
             group="centre",
@@ -311,5 +311,6 @@ CODESYS = Dialect(
     before_motion=codes.before_motion,
     read_variable=program.read_variable,
     place_switches=codes.place_switches,
+    library=subprograms.with_files,
     disturbed=lambda control: bool(program.variables(control).periods),
 )

@@ -23,7 +23,12 @@ def dwell(control: Control) -> None:
 
 
 def free_plane(control: Control) -> None:
-    """G16: the plane whose normal is I, J, K."""
+    """G16: the plane whose normal is I, J, K.
+
+    Decision: without them the plane in force stays; the manual's example of a jump is written so.
+    """
+    if not any(letter in control.words for letter in "IJK"):
+        return
     i, j, k = (control.take_number(letter) for letter in "IJK")
     if not (i or j or k):
         control.fail("plane-normal", "G16 needs the plane's normal", control.code_word(16))
@@ -120,7 +125,6 @@ def length_vector(control: Control) -> None:
 def reset_shift(control: Control) -> None:
     """G53: decoder and machine coordinates coincide."""
     control.frame.set_shift("offset", [0.0] * len(control.settings.axes))
-    control.frame.set_shift("preset", [0.0] * len(control.settings.axes))
     control.reframed()
 
 
@@ -150,6 +154,27 @@ def set_reference(control: Control) -> None:
     for index, word in control.take_axis_words():
         programmed[index] = control.axis_value(index, word)
     control.relabel(programmed, "offset")
+
+
+def set_position(control: Control) -> None:
+    """G92: the path goes on from the given position.
+
+    Before the first move it is where the path begins. The path jumps there later, which no machine
+    can: its axes travel as fast as they can (the manual's ``bAvoidGaps``). Of several in a row the
+    last counts (manual).
+    """
+    words = control.words.keys() & control.dialect.axis_letters
+    if not words:
+        control.fail("preset", "G92 needs the position from which the path goes on")
+    target = control.target()
+    following = control.flow.following()
+    if following is not None and any(w.address == "G" and w.value == 92.0 for w in following.words):
+        return
+    if control.has_moved:
+        control.rapid_feed = math.nan
+        control.line_to(target, rapid=True)
+    else:
+        control.stand_at(target)
 
 
 # --- words

@@ -103,10 +103,17 @@ DECISIONS = (
         example="loop_cut_out",
     ),
     Decision(
-        "What does G92 do?",
-        "Where the machine stands becomes the given coordinates; nothing moves.",
-        "The manual lets the path jump there; a machine cannot, and the program's shape is the same.",
+        "How does a path jump (G92)?",
+        "Before the first move the given position is where it begins; later the axes travel there as "
+        "fast as they can.",
+        "A machine cannot jump; the manual's bAvoidGaps does the same.",
         example="position_set",
+    ),
+    Decision(
+        "Which plane has G16 without I, J and K?",
+        "The one in force.",
+        "The manual's example of a jump begins so.",
+        example="plane_without_normal",
     ),
     Decision(
         "What does G56 do?",
