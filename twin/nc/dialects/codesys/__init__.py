@@ -203,7 +203,11 @@ CODESYS = Dialect(
             sets={"incremental": True},
             ground="manual",
         ),
-        92: GCode(meaning="set position", perform=codes.set_position, ground="manual"),
+        92: GCode(
+            meaning="position from which the path goes on",
+            perform=codes.set_position,
+            ground="manual",
+        ),
         98: GCode(
             meaning="centre I J K absolute",
             group="centre",
@@ -289,9 +293,13 @@ CODESYS = Dialect(
         "L!": "label",
         "S": "profile of additional axes; 0 only",
         "M": "machine function",
-        **{f"P{letter}": f"modulo period of {letter}; 0: none" for letter in ADDITIONAL},
-        **{f"F{letter}": f"largest velocity of {letter}" for letter in f"XYZ{ADDITIONAL}"},
-        **{f"E{letter}": f"largest acceleration of {letter}" for letter in f"XYZ{ADDITIONAL}"},
+        **dict.fromkeys((f"P{each}" for each in ADDITIONAL), "modulo period of the axis; 0: none"),
+        **dict.fromkeys(
+            (f"F{each}" for each in f"XYZ{ADDITIONAL}"), "largest velocity of the axis"
+        ),
+        **dict.fromkeys(
+            (f"E{each}" for each in f"XYZ{ADDITIONAL}"), "largest acceleration of the axis"
+        ),
     },
     units="mm, degrees; F in units per second, E in units per second squared",
     decisions=DECISIONS,
