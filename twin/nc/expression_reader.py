@@ -20,11 +20,16 @@ _LONGEST = 200
 """Operators and functions that an expression may have."""
 
 
+_MOST_KEPT = 4096
+"""Expressions that are kept once they were read: loops compute the same ones again and again."""
+
+
 class ExpressionReader:
     """Reads the expressions of one dialect."""
 
     def __init__(self, syntax: ExpressionSyntax) -> None:
         self._syntax = syntax
+        self._kept: dict[tuple[str, int], tuple[Expression, int]] = {}
         symbols = sorted(syntax.operators, key=len, reverse=True)
         self._operator = re.compile(
             rf"[ \t]*({'|'.join(map(operator_pattern, symbols))})", re.IGNORECASE
@@ -39,9 +44,14 @@ class ExpressionReader:
         Raises:
             ExpressionError: There is none, or it is malformed.
         """
-        reading = _Reading(self._syntax, self, text, start)
-        evaluate = reading.operation(0, 0)
-        return Expression(text[start : reading.at].strip(), evaluate), reading.at
+        read = self._kept.get((text, start))
+        if read is None:
+            reading = _Reading(self._syntax, self, text, start)
+            evaluate = reading.operation(0, 0)
+            read = Expression(text[start : reading.at].strip(), evaluate), reading.at
+            if len(self._kept) < _MOST_KEPT:
+                self._kept[text, start] = read
+        return read
 
     def read_list(self, text: str, start: int) -> tuple[list[Expression], int]:
         """Read expressions separated by commas; return them with the end of the last."""

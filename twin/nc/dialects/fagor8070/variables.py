@@ -21,6 +21,7 @@ from twin.nc.expressions import (
 
 LOCAL_PARAMETERS = 26
 """P0 to P25 are local (MINLOCP, MAXLOCP); the letters A to Z of #PCALL set them."""
+_LOCAL = frozenset(f"P{number}" for number in range(LOCAL_PARAMETERS))
 
 
 def _integers(compute: Callable[[int, int], int]) -> Callable[[float, float], float]:
@@ -111,7 +112,7 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
 def variable_table(control: Control, name: str) -> dict[str, float]:
     """Where a variable is kept: with the call, or for the whole program."""
     memory = memory_of(control)
-    local = name.startswith("P") and name[1:].isdigit() and int(name[1:]) < LOCAL_PARAMETERS
+    local = name in _LOCAL or (name.startswith("P0") and int(name[1:]) < LOCAL_PARAMETERS)
     return memory.local[-1] if local else memory.common
 
 
