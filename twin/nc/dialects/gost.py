@@ -178,7 +178,7 @@ GOST = Dialect(
     decisions=DECISIONS,
     marks=(
         Mark(r"\bG102[ \t]*[A-Z]", "G102 with an axis"),
-        Mark(r"^[^$]*(?:\$\w+\$[^$]*)*\$(?=\s|$|[А-Яа-я])", "$ before a comment"),
+        Mark(r"^[^$;\"]*(?:\$\w+\$[^$;\"]*)*\$(?=\s|$|[А-Яа-я])", "$ before a comment"),
     ),
     memory=Periods,
     before_motion=recalculate_start,
