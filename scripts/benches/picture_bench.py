@@ -38,6 +38,7 @@ of 6 mm. It was not run here: PyPI has no FreeCAD."""
 MOVE_MM = 0.1
 PLATE = StockTable(shape="box", size=(60.0, 60.0, 10.0))
 TOOL = ToolTable(number=1, diameter=6.0)
+FRAME = PartFrame(rotary=3, center=(0.0, 0.0))
 FRAMES = 50
 RING_CELLS = (0.8, 0.4, 0.2, 0.1)
 
@@ -49,6 +50,14 @@ def rows() -> Iterator[Row]:
             room="picture",
             task=f"cut moves of {MOVE_MM} mm, 6 mm tool, cell {cell} mm",
             figure=moves_per_second(cell),
+            unit="moves/s",
+            peer=FREECAD,
+            peer_figure=published,
+        )
+        yield Row(
+            room="picture",
+            task=f"the same on straight passes, cell {cell} mm",
+            figure=straight_moves_per_second(cell),
             unit="moves/s",
             peer=FREECAD,
             peer_figure=published,
@@ -94,19 +103,40 @@ def moves_per_second(cell: float) -> float:
     return (len(points) - 1) / median_seconds(cut)
 
 
+def _samples(position: FloatArray) -> Samples:
+    """Samples at 1 ms of axes that stand where they were told to."""
+    still, column, line = np.zeros_like(position), np.zeros(len(position)), np.ones(len(position))
+    number = line.astype(np.int64)
+    time: FloatArray = 1e-3 * np.arange(len(position), dtype=np.float64)
+    setpoint = Setpoints(time, number, number - 1, column, position, still, still)
+    return Samples(setpoint, position, still, still)
+
+
+def straight_moves_per_second(cell: float) -> float:
+    """Moves of straight passes, to and fro, that a cutter takes per second: it joins them."""
+    x = np.arange(-27.0, 27.0, MOVE_MM)
+    passes = [
+        np.stack(np.broadcast_arrays(x[:: 1 - 2 * (number % 2)], y, -2.0, 0.0), axis=1)
+        for number, y in enumerate(np.arange(-27.0, 27.0, TOOL.diameter / 3))
+    ]
+    samples = _samples(np.concatenate(passes))
+    feed = np.zeros(len(samples), np.bool_)
+
+    def cut() -> None:
+        Cutter(PLATE.model_copy(update={"cell": cell}), TOOL, FRAME, np.zeros(4)).add(samples, feed)
+
+    return len(samples) / median_seconds(cut)
+
+
 def ring(cell: float) -> float:
     """How far the volume of a groove cut by turning C alone is off 2 pi R width depth [%]."""
-    tool, depth, radius = ToolTable(number=1, diameter=6.0), 2.0, 100.0
+    depth, radius = 2.0, 100.0
     stock = StockTable(shape="cylinder", diameter=240.0, height=20.0, cell=cell)
-    cutter = Cutter(stock, tool, PartFrame(rotary=3, center=(0.0, 0.0)), np.zeros(4))
-    count = 20_000
-    position = np.tile([radius, 0.0, -depth, 0.0], (count, 1))
-    position[:, 3] = np.linspace(0.0, 360.0, count)
-    still, column, line = np.zeros_like(position), np.zeros(count), np.ones(count, np.int64)
-    time: FloatArray = 1e-3 * np.arange(count, dtype=np.float64)
-    setpoint = Setpoints(time, line, line - 1, column, position, still, still)
-    cutter.add(Samples(setpoint, position, still, still), np.zeros(count, np.bool_))
-    exact = 2 * np.pi * radius * tool.diameter * depth
+    cutter = Cutter(stock, TOOL, FRAME, np.zeros(4))
+    position = np.tile([radius, 0.0, -depth, 0.0], (20_000, 1))
+    position[:, 3] = np.linspace(0.0, 360.0, len(position))
+    cutter.add(_samples(position), np.zeros(len(position), np.bool_))
+    exact = 2 * np.pi * radius * TOOL.diameter * depth
     return 100.0 * abs(cutter.result().removed_mm3 / exact - 1.0)
 
 

@@ -133,13 +133,15 @@ class Stage:
         self._samples = 0
         self._rate = 0.0
         self._changed: Rectangle = (0, 0, 0, 0)
-        self._position = np.zeros(len(scene.machine.axes))
+        self._position = self._start = np.zeros(len(scene.machine.axes))
         mujoco.mj_forward(model, self.data)
 
     def advance(self, samples: Samples) -> None:
         """Go on by samples that follow the last ones: move the axes, cut the stock."""
         if not len(samples):
             return
+        if not self._samples:
+            self._start = samples.joint_position[0]
         self._samples += len(samples)
         self._position = samples.joint_position[-1]
         self._move = int(samples.setpoint.move[-1])
@@ -149,6 +151,10 @@ class Stage:
             late = min(len(samples), max(1, round(OF_LATE_S / period)))
             self._cut(samples[:-late])
             self._rate = self._cut(samples[-late:]) / (late * period)
+
+    def clear_view(self) -> None:
+        """Take the tool back to where it stood at the start, so that it does not hide the part."""
+        self._position, self._rate = self._start, 0.0
 
     def _cut(self, samples: Samples) -> float:
         """Take the samples' material off; returns how much [mm³]."""
@@ -189,9 +195,17 @@ class Stage:
         self._refresh()
         return self._drawing.draw_objects(self.data, int(self.model.camera(camera).id))
 
+    @property
+    def _tip(self) -> FloatArray:
+        """Where the tool point is, in the part's frame, shape (3,) [mm]."""
+        tip = self._scene.recording.header.part_frame.position(self._position[None])[0]
+        return tip - [0.0, 0.0, self._scene.notes.tools.longer(self._tool)]
+
     def _spray(self) -> Chips:
-        """Chips of what was removed of late."""
+        """Chips of what was removed of late; out of a slot they fly from its upper edge."""
         tip = tip_position(self.model, self.data, self._tool.length)
+        if self._cutter is not None:
+            tip[2] += MM * max(0.0, self._cutter.map.top - self._tip[2])
         return chips(tip, MM * self._tool.diameter, self._rate, self._samples)
 
     def _focus(self, camera: str) -> Focus:
@@ -213,9 +227,7 @@ class Stage:
             self._surface.update(self._drawing, self._changed)
             self._changed = (0, 0, 0, 0)
         if self._samples:
-            tip = self._scene.recording.header.part_frame.position(self._position[None])[0]
-            tip[2] -= self._scene.notes.tools.longer(self._tool)
-            self._trail.show(self._drawing, self._samples, tip)
+            self._trail.show(self._drawing, self._samples, self._tip)
 
 
 @contextlib.contextmanager
@@ -233,7 +245,8 @@ def stage(
         scene: What is to be seen.
         size: Width and height of the pictures [px].
         quality: What a picture may cost.
-        paint: Colours of the stock's cells, shape (ny, nx, 3); None: as metal looks.
+        paint: Colours of the stock's cells, shape (ny, nx, 4); as metal looks where the fourth is 0,
+            or without any.
         trail: Whether the way of the tool is seen.
 
     Raises:
