@@ -115,7 +115,8 @@ class LineReader:
             return False
         end = self._line.find(closing, self._at + len(opening))
         if end < 0:
-            self._fail("open-comment", f"the comment is not closed by '{closing}'", self._at)
+            message = f"the comment is not closed by '{closing}'"
+            self._fail("open-comment", message, self._at, hint="close it on its own line")
         self._at = end + len(closing)
         return True
 
