@@ -17,9 +17,10 @@ MAY_IMPORT = {
     "compare": {"nc", "toolpath", "motion"},
     "cutting": {"nc", "toolpath", "motion"},
     "render": {"nc", "toolpath", "motion", "machine", "compare", "cutting"},
+    "training": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "render"},
 }
 ROOMS = set(MAY_IMPORT)
-NO_MUJOCO = ROOMS - {"machine", "render"}
+NO_MUJOCO = ROOMS - {"machine", "render", "training"}
 
 
 def imported_modules(path: Path) -> set[str]:

@@ -17,11 +17,12 @@ from typing import Any
 
 import numpy.typing as npt
 
-from twin.chain import Run, motion_limits
+from twin.chain import Run
 from twin.compare.track_comparison import compare_files
 from twin.errors import RecordingError
 from twin.motion.planner import plan as plan_chunks
 from twin.motion.setpoints import Setpoints, join
+from twin.motion_limits import motion_limits
 from twin.nc.canonical import Moves, concatenate
 from twin.outcome import Outcome
 from twin.preparation import prepare

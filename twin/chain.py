@@ -1,7 +1,6 @@
 """The order of the rooms: text, moves, setpoints, samples, figures, in chunks."""
 
 import dataclasses
-import math
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,14 +18,13 @@ from twin.cutting.part import write_stl
 from twin.cutting.spindle import Spindle, speaks_of_spindle
 from twin.errors import ConfigError
 from twin.machine.alarms import Alarm
-from twin.machine.config import Machine
 from twin.machine.model import build_spec, spindle_over_table_mm
 from twin.machine.simulate import Simulation, simulate
 from twin.machine.travel import soft_limit_alarm
-from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan
 from twin.motion.setpoints import Setpoints
 from twin.motion.settle import settle
+from twin.motion_limits import motion_limits
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.diagnostics import Diagnostic
 from twin.nc.source import Source
@@ -300,21 +298,3 @@ class _Track:
         """Share of the program that is done, 0 to 1."""
         move, fraction = self._place
         return (move + fraction) / moves if moves else 1.0
-
-
-def motion_limits(machine: Machine) -> MotionLimits:
-    """The planner's view of a machine file."""
-    axes = [machine.axis(name) for name in machine.axes.names]
-    path = machine.file.path
-    return MotionLimits(
-        velocity=np.array([axis.velocity for axis in axes]),
-        acceleration=np.array([axis.acceleration for axis in axes]),
-        jerk=np.array([axis.jerk for axis in axes]),
-        junction_velocity_step=np.array([axis.junction_velocity_step for axis in axes]),
-        junction_acceleration_step=np.array([axis.junction_acceleration_step for axis in axes]),
-        corner_tolerance=path.corner_tolerance,
-        path_acceleration=path.acceleration,
-        path_jerk=path.jerk,
-        rotary_path_acceleration=path.rotary_acceleration or math.inf,
-        rotary_path_jerk=path.rotary_jerk or math.inf,
-    )

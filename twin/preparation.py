@@ -1,6 +1,7 @@
 """From a job to everything that a run needs: the program, its dialect, the machine, the places."""
 
 import dataclasses
+import functools
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -42,10 +43,15 @@ class Preparation:
         """A fresh pass over the program."""
         return Interpretation(self.source, self.dialect, self.settings)
 
-    @property
+    @functools.cached_property
     def start(self) -> FloatArray:
-        """Where the axes stand at the program's start, program coordinates, shape (k,)."""
-        return start_position(self.job.file, self.machine)
+        """Where the axes stand at the program's start, program coordinates, shape (k,).
+
+        The job says it, or the program itself before its first move (G92 of ``codesys``).
+        """
+        chunks = (chunk.moves for chunk in self.interpretation().chunks())
+        begin = next((moves.start[0] for moves in chunks if len(moves)), None)
+        return start_position(self.job.file, self.machine) if begin is None else begin
 
 
 def prepare(
@@ -72,7 +78,20 @@ def prepare(
         raise UsageError(f"{path}: a folder; twin check runs the programs in a folder")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
-    job = read_job(path, changes)
+    return prepare_job(
+        read_job(path, changes), dialect=dialect, machine=machine, strict=strict, changes=changes
+    )
+
+
+def prepare_job(
+    job: Job,
+    *,
+    dialect: str | None = None,
+    machine: str | None = None,
+    strict: bool = False,
+    changes: Sequence[Change] = (),
+) -> Preparation:
+    """Read all that a job names; arguments and errors as for ``prepare``."""
     if machine is None:
         found = machine_file(job.file.machine, beside=job.folder)
     else:
@@ -140,6 +159,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
             tool.number: ToolData(radius=tool.diameter / 2.0, length=tool.length)
             for tool in job.file.tools
         },
+        any_tool="tools" not in job.file.model_fields_set,
         offsets=job.file.offsets,
         machine_zero=_machine_zero(job, machine),
         variables=job.file.variables,

@@ -10,10 +10,11 @@ from rich.console import Console
 from rich.table import Table
 
 from twin import api
-from twin.chain import Run, motion_limits
+from twin.chain import Run
 from twin.errors import UsageError
 from twin.motion.drawing import draw_plan
 from twin.motion.summary import Summary, summarize
+from twin.motion_limits import motion_limits
 from twin.preparation import prepare
 
 MOST_ROWS = 20

@@ -3,7 +3,7 @@
 import numpy as np
 
 from twin.compare.blocks import BoolArray
-from twin.compare.figures import FeatureFigures
+from twin.compare.figures import ContourFigures
 from twin.compare.statistics import Distribution
 from twin.nc.canonical import FloatArray, IntArray, Moves, Shape
 
@@ -41,10 +41,10 @@ class FeatureCollector:
                 row = rows[greatest]
                 self._worst[index] = int(moves.line[place[row]]), float(time[row])
 
-    def figures(self) -> dict[str, FeatureFigures]:
+    def figures(self) -> dict[str, ContourFigures]:
         """The figures of the features that occurred."""
         return {
-            name: FeatureFigures(errors.greatest, errors.rms, errors.percentile(99.0), *worst)
+            name: ContourFigures(errors.greatest, errors.rms, errors.percentile(99.0), *worst)
             for name, errors, worst in zip(FEATURES, self._errors, self._worst, strict=True)
             if errors.count
         }

@@ -34,9 +34,11 @@ class AxisTracking:
 class ContourFigures:
     """Contour error: shortest distance from the tool to the commanded path, seen from the part.
 
+    Of the whole program, or of all its blocks of one shape.
+
     Attributes:
         max: Greatest [µm].
-        rms: Root mean square over all samples [µm].
+        rms: Root mean square [µm].
         p99: What 99 % of the samples do not exceed [µm], to 0.1 %.
         worst_line: Source line of the block nearest to the worst point; 0 without samples.
         worst_time_s: When it was reached [s].
@@ -119,25 +121,6 @@ class BidirectionalFigures:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class FeatureFigures:
-    """Contour error of all blocks of one shape.
-
-    Attributes:
-        max: Greatest [µm].
-        rms: Root mean square [µm].
-        p99: What 99 % of the samples do not exceed [µm], to 0.1 %.
-        worst_line: Source line of the greatest.
-        worst_time_s: When it was reached [s].
-    """
-
-    max: float
-    rms: float
-    p99: float
-    worst_line: int
-    worst_time_s: float
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
 class Figures:
     """Everything the comparison found.
 
@@ -161,6 +144,6 @@ class Figures:
     arcs: tuple[ArcFigures, ...]
     worst: tuple[WorstPlace, ...]
     blocks: BlockFigures = NO_BLOCKS
-    features: Mapping[str, FeatureFigures] = dataclasses.field(default_factory=dict)
+    features: Mapping[str, ContourFigures] = dataclasses.field(default_factory=dict)
     corners: CornerFigures = NO_CORNERS
     bidirectional: tuple[BidirectionalFigures, ...] = ()

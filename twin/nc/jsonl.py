@@ -44,16 +44,14 @@ def json_lines(interpretation: Interpretation) -> Iterator[str]:
 
 
 def text_lines(interpretation: Interpretation) -> Iterator[str]:
-    """The records for a person, one a line.
+    """The records for a person, one a line, but for the diagnostics, which have a form of their own.
 
     Raises:
         ProgramError: As in ``records``.
     """
-
-    def text(record: Record) -> str:
-        return _TEXT[record["type"]](record)
-
-    return _items(interpretation, lambda moves: map(text, _move_records(moves)), text)
+    for record in records(interpretation):
+        if record["type"] in _TEXT:
+            yield _TEXT[record["type"]](record)
 
 
 def _items(
@@ -209,14 +207,18 @@ def _named(values: dict[str, float]) -> str:
 
 def _move_text(record: Record) -> str:
     line, feed = f"{record['line']:6d}", record["feed"]
-    pace = "rapid" if feed is None else f"F{feed:.10g} {record['feed_unit']}"
+    pace = [] if record["motion"] == "feed" else ["rapid"]
+    if feed is not None:
+        pace.append(f"F{feed:.10g} {record['feed_unit']}")
     arc = record.get("arc")
     bend = "" if arc is None else f"  R{arc['radius']:.10g} sweep {arc['sweep']:.10g}"
-    return f"{line}  {record['shape']:4s}  {_named(record['end'])}  {pace}{bend}"
+    return f"{line}  {record['shape']:4s}  {_named(record['end'])}  {' '.join(pace)}{bend}"
 
 
 def _function_text(record: Record) -> str:
-    return f"{record['line']:6d}  {record['word']}  {_named(record['arguments'])}".rstrip()
+    place = f"at {record['at']:.10g} of the move" if "at" in record else ""
+    words = (record["word"], _named(record["arguments"]), place)
+    return f"{record['line']:6d}  {'  '.join(word for word in words if word)}"
 
 
 def _end_text(record: Record) -> str:
@@ -227,8 +229,5 @@ _TEXT = {
     "move": _move_text,
     "dwell": lambda record: f"{record['line']:6d}  dwell {record['seconds']:.10g} s",
     "function": _function_text,
-    "diagnostic": lambda record: (
-        f"{record['line']:6d}  {record['severity']} {record['code']}: {record['message']}"
-    ),
     "end": _end_text,
 }

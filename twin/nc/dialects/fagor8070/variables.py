@@ -8,6 +8,7 @@ from typing import NoReturn
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.expression_reader import computed
 from twin.nc.expressions import (
     ARITHMETIC,
     COMPARISON,
@@ -156,13 +157,9 @@ def assign(control: Control, statement: Statement) -> None:
 def _combined(old: float, operator: str, value: float) -> Expression:
     compute = EXPRESSIONS.operators[operator].compute
 
-    def evaluate(_scope: object) -> float:
-        try:
-            return compute(old, value)
-        except ArithmeticError as error:
-            raise ExpressionError("undefined-value", f"the value is undefined: {error}") from error
-
-    return Expression(f"{old:g}{operator}{value:g}", evaluate)
+    return Expression(
+        f"{old:g}{operator}{value:g}", lambda _scope: computed(operator, compute, old, value)
+    )
 
 
 def _old_value(control: Control, statement: Statement, name: str) -> float:

@@ -1,0 +1,152 @@
+"""The training room: does machine time keep up with the wall's, and how soon does it react.
+
+The page is opened in headless Chromium where there is one. Without a graphics card the processor
+draws it, on the same cores as the machine: that is the worst case for both figures.
+"""
+
+import contextlib
+import importlib.util
+import statistics
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from benches.row import REPEATS, Row
+
+from twin.training.launch import OpenRoom, open_room
+from twin.training.panel.request import do
+from twin.training.scene import read_scene, scene_path
+from twin.training.session import Session
+from twin.training.studio import RequestEvent
+
+SCENE = "mefi_helix_hold"
+CHROMIUM = Path("/usr/bin/chromium")
+FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+OVERRIDE = 20
+"""Feed override, so that the program lasts [%]."""
+FEED = 400.0
+"""The helix's feed at this override [mm/min]."""
+WATCHED_S = 5.0
+PATIENCE_S = 60.0
+GONE = 0.02
+"""Share of the speed that is gone when the machine counts as having reacted."""
+
+
+def rows() -> Iterator[Row]:
+    """Machine time per time without a page; factor and reaction with one."""
+    yield Row("training", "headless, in slices of 10 ms", _headless(), "x real time")
+    if not CHROMIUM.exists() or importlib.util.find_spec("playwright") is None:
+        return
+    with _open_page() as (room, click):
+        room.session.room.feed_override = OVERRIDE
+        _ask(room, "cycle_start")
+        _until(lambda: _speed(room) > 10.0)
+        time.sleep(3.0)
+        factor = statistics.median(_factor(room) for _ in range(REPEATS))
+        yield Row("training", "panel open in a browser", factor, "x real time")
+        asked = [_reaction(room, lambda: _ask(room, "feed_hold")) for _ in range(REPEATS)]
+        yield Row("training", "panel's request to braking", 1e3 * statistics.median(asked), "ms")
+        clicked = [_reaction(room, click) for _ in range(REPEATS)]
+        yield Row(
+            "training", "click in the page to braking", 1e3 * statistics.median(clicked), "ms"
+        )
+        yield Row("training", "  of it the page's own frame", 1e3 * _frame(room), "ms")
+
+
+def _headless() -> float:
+    session = Session(read_scene(scene_path(SCENE)))
+    session.submit({"do": "cycle_start"})
+    session.advance(200)
+    figures = []
+    for _ in range(REPEATS):
+        begin = time.perf_counter()
+        session.advance(200)
+        figures.append(200 * session.room.slice_s / (time.perf_counter() - begin))
+    return statistics.median(figures)
+
+
+@contextlib.contextmanager
+def _open_page() -> Iterator[tuple[OpenRoom, Callable[[], None]]]:
+    """A room with its page; and how to press feed hold on it."""
+    from playwright.sync_api import sync_playwright
+
+    with open_room(read_scene(scene_path(SCENE)), plain=True) as room:
+        thread = threading.Thread(target=room.serve, daemon=True)
+        thread.start()
+        assert room.gate is not None
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+            page = browser.new_context(
+                viewport={"width": 1280, "height": 760}, device_scale_factor=0.25
+            ).new_page()
+            page.goto(room.gate.address)
+            _until(lambda: room.shown.panel.width == 1280)
+
+            def click() -> None:
+                left, top, right, bottom = room.shown.panel.kit.places["feed hold"]
+                page.mouse.up()
+                page.mouse.move(0.5 * (left + right), 0.5 * (top + bottom))
+                time.sleep(1.0)
+                page.mouse.down()
+
+            yield room, click
+            browser.close()
+        room.handle.close()
+        thread.join(timeout=10.0)
+
+
+def _factor(room: OpenRoom) -> float:
+    begin, before = time.perf_counter(), room.session.room.time_s
+    time.sleep(WATCHED_S)
+    return (room.session.room.time_s - before) / (time.perf_counter() - begin)
+
+
+def _reaction(room: OpenRoom, hold: Callable[[], None]) -> float:
+    """Time from a hold to the first loss of speed, from a steady feed [s]."""
+    if not room.session.room.running:
+        _ask(room, "cycle_start")
+    _until(lambda: abs(_speed(room) - FEED) < 0.001 * FEED)
+    hold()
+    begin = time.perf_counter()
+    steady = _speed(room)
+    _until(lambda: _speed(room) < (1.0 - GONE) * steady)
+    passed = time.perf_counter() - begin
+    _until(lambda: not room.session.room.moving)
+    _ask(room, "cycle_start")
+    return passed
+
+
+def _frame(room: OpenRoom) -> float:
+    """How long the page takes for a frame [s]."""
+    gate = room.gate
+    assert gate is not None
+    begin, before = time.perf_counter(), gate.heard
+    time.sleep(WATCHED_S)
+    return (time.perf_counter() - begin) / max(1, gate.heard - before)
+
+
+def _speed(room: OpenRoom) -> float:
+    velocity = room.session.room.samples.joint_velocity[-1, :3]
+    return 60.0 * float((velocity @ velocity) ** 0.5)
+
+
+def _ask(room: OpenRoom, name: str) -> None:
+    room.shown.viewer.send_to_sim(RequestEvent(do(name)))
+
+
+def _until(come: Callable[[], bool]) -> None:
+    end = time.perf_counter() + PATIENCE_S
+    while not come():
+        if time.perf_counter() > end:
+            raise TimeoutError("the training room did not do what it was asked for")
+        time.sleep(0.001)

@@ -1,0 +1,256 @@
+"""The machine under an operator's hands, without a window."""
+
+import json
+
+import hypothesis.strategies as st
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from twin.errors import UsageError
+from twin.training.commands import command_from
+from twin.training.log import relive
+from twin.training.scene import read_scene, scene_path
+from twin.training.session import Session
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(read_scene(scene_path("fagor_first_steps")))
+
+
+def do(session: Session, name: str, **arguments: object) -> None:
+    assert session.submit({"do": name, **arguments}), session.refusal
+
+
+def run_to_line(session: Session, line: int) -> None:
+    for _ in range(2000):
+        if int(session.room.machine.setpoint.line[0]) == line:
+            return
+        session.advance()
+    raise AssertionError(f"line {line} never ran: {session.room.alarm}")
+
+
+def rest(session: Session) -> None:
+    session.advance(5)
+    for _ in range(2000):
+        session.advance()
+        if not session.room.moving:
+            return
+    raise AssertionError("the axes never came to rest")
+
+
+def speed(session: Session) -> float:
+    return 60.0 * float(np.linalg.norm(session.room.samples.joint_velocity[-1, :3]))
+
+
+def test_override_turns_the_feed(session):
+    do(session, "cycle_start")
+    run_to_line(session, 5)
+    session.advance(50)
+    assert speed(session) == pytest.approx(1200.0, rel=1e-3)
+    do(session, "override", dial="feed", percent=50)
+    session.advance(50)
+    assert speed(session) == pytest.approx(600.0, rel=1e-3)
+    do(session, "override", dial="feed", percent=120)
+    session.advance(50)
+    assert speed(session) == pytest.approx(1440.0, rel=1e-3)
+    do(session, "override", dial="feed", percent=0)
+    rest(session)
+    assert session.room.running == "program"
+
+
+def test_hold_stops_on_the_path_and_start_goes_on(session):
+    do(session, "cycle_start")
+    run_to_line(session, 5)
+    session.advance(50)
+    do(session, "feed_hold")
+    rest(session)
+    stands = session.room.machine.position - session.room.tables.zero
+    assert session.snapshot().held
+    assert stands[1:3] == pytest.approx([-20.0, -2.0], abs=2e-3)
+    do(session, "cycle_start")
+    run_to_line(session, 6)
+    assert session.room.alarm is None
+
+
+def test_distance_to_go_and_the_screen_agree(session):
+    do(session, "cycle_start")
+    run_to_line(session, 5)
+    session.advance(30)
+    now = session.snapshot()
+    lag = now.following_error[0]
+    assert now.position[0] + lag + now.distance_to_go[0] == pytest.approx(40.0)
+    assert now.modal is not None
+    assert {"G1", "G17", "G90"} <= set(now.modal.codes)
+    assert now.modal.feed == 1200.0
+    assert now.spindle == 3000.0
+
+
+def test_emergency_stop_latches_until_it_is_turned_free_and_reset(session):
+    do(session, "cycle_start")
+    run_to_line(session, 5)
+    do(session, "emergency_stop")
+    rest(session)
+    assert session.room.alarm is not None
+    assert session.room.alarm.code == "emergency-stop"
+    assert session.room.spindle == 0.0
+    assert not session.submit({"do": "reset"})
+    assert "turn it free" in session.refusal
+    assert not session.submit({"do": "cycle_start"})
+    do(session, "emergency_stop", pressed=False)
+    do(session, "reset")
+    assert session.room.alarm is None
+
+
+def test_reset_comes_to_rest_on_the_path_and_drops_the_program(session):
+    do(session, "cycle_start")
+    run_to_line(session, 5)
+    session.advance(30)
+    do(session, "reset")
+    rest(session)
+    session.advance()
+    assert session.room.running == ""
+    stands = session.room.machine.position - session.room.tables.zero
+    assert stands[1:3] == pytest.approx([-20.0, -2.0], abs=2e-3)
+    assert session.room.judge.verdicts[3].state == "open"
+
+
+def test_mdi_runs_through_interpreter_and_limits(session):
+    do(session, "mode", mode="mdi")
+    do(session, "mdi", text="G90 G01 X10 F2000")
+    do(session, "cycle_start")
+    session.advance(100)
+    assert session.snapshot().position[0] == pytest.approx(10.0, abs=1e-3)
+    do(session, "mdi", text="G91 G77 X1")
+    session.submit({"do": "cycle_start"})
+    session.advance()
+    assert session.room.alarm is not None
+    assert session.room.alarm.code == "program"
+    assert "unknown-g" in session.room.alarm.message
+    do(session, "reset")
+    do(session, "mdi", text="G90 G01 X500 F2000")
+    do(session, "cycle_start")
+    session.advance()
+    assert session.room.alarm is not None
+    assert session.room.alarm.code == "soft-limit"
+    assert session.snapshot().position[0] == pytest.approx(10.0, abs=1e-3)
+
+
+def test_jog_stops_when_let_go_and_at_the_end_of_the_travel(session):
+    do(session, "mode", mode="jog")
+    do(session, "jog", axis="X", direction=1)
+    session.advance(50)
+    assert speed(session) == pytest.approx(2000.0, rel=1e-3)
+    do(session, "jog_stop")
+    rest(session)
+    do(session, "jog", axis="X", direction=1, feed=30000)
+    rest(session)
+    for _ in range(300):
+        session.advance()
+    assert session.room.alarm is None
+    assert session.room.machine.position[0] == pytest.approx(400.0, abs=1e-3)
+    assert not session.submit({"do": "jog", "axis": "X", "direction": 1})
+    assert "end of its travel" in session.refusal
+
+
+def test_an_edited_program_is_what_runs(session):
+    do(session, "edit", line=5, text="N40 X20 F1200\nN45 X25")
+    assert len(session.room.lines) == 11
+    do(session, "edit", line=6)
+    assert session.room.lines[4] == "N40 X20 F1200"
+    assert not session.submit({"do": "edit", "line": 99, "text": "M30"})
+
+
+@pytest.mark.parametrize(
+    ("fault", "code"),
+    [
+        ({"kind": "friction", "axis": "X", "value": 20000.0}, "following-error"),
+        ({"kind": "alarm"}, "external"),
+    ],
+)
+def test_injected_faults_have_consequences(session, fault, code):
+    assert not session.submit({"do": "inject", "fault": fault})
+    assert "trainer" in session.refusal
+    do(session, "cycle_start")
+    run_to_line(session, 5)
+    assert session.submit({"do": "inject", "fault": fault}, "trainer")
+    session.advance(400)
+    assert session.room.alarm is not None
+    assert session.room.alarm.code in (code, "drive-saturation")
+
+
+def test_a_lost_offset_shows_and_the_machine_is_repaired(session):
+    before = session.snapshot()
+    fault = {"kind": "lost_offset", "axis": "Y", "value": 3.0}
+    assert session.submit({"do": "inject", "fault": fault}, "trainer")
+    assert session.snapshot().position[1] == pytest.approx(before.position[1] - 3.0)
+    fault = {"kind": "backlash", "axis": "X", "value": 0.2}
+    assert session.submit({"do": "inject", "fault": fault}, "trainer")
+    session.advance(10)
+    assert session.room.machine.machine.axis("X").backlash == 0.2
+    assert session.submit({"do": "repair"}, "trainer")
+    assert session.room.machine.machine.axis("X").backlash == 0.0
+
+
+def test_living_it_again_is_the_same_to_the_last_bit(session):
+    do(session, "cycle_start")
+    session.advance(120)
+    do(session, "override", dial="feed", percent=70)
+    session.advance(37)
+    do(session, "feed_hold")
+    session.advance(40)
+    do(session, "cycle_start")
+    session.advance(200)
+    room = session.room
+    again = relive(session.scene, session.log, room.tick)
+    assert np.array_equal(again.machine.position, room.machine.position)
+    assert again.work is not None
+    assert room.work is not None
+    assert np.array_equal(again.work.map.heights, room.work.map.heights)
+    session.rewind(1.5)
+    assert session.room.tick == room.tick - 1500
+    session.advance(150)
+    assert np.array_equal(session.room.machine.position, room.machine.position)
+
+
+def test_a_replay_comes_to_where_the_session_is(session):
+    do(session, "cycle_start")
+    session.advance(150)
+    replay = session.replay()
+    while not replay.over:
+        replay.advance(0.06)
+    assert np.array_equal(replay.room.machine.position, session.room.machine.position)
+
+
+def test_freezing_stops_time(session):
+    do(session, "cycle_start")
+    session.frozen = True
+    session.advance(100)
+    assert session.room.tick == 0
+
+
+ANYTHING = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
+    max_leaves=6,
+)  # fmt: skip
+NAMES = st.sampled_from(["jog", "mode", "edit", "override", "set_tool", "inject", "answer", "nope"])
+
+
+@given(ANYTHING | st.dictionaries(st.sampled_from(["do", "axis", "step", "mode", "line", "fault"]), ANYTHING | NAMES))  # fmt: skip
+@settings(max_examples=200, derandomize=True, deadline=None)
+def test_malformed_commands_are_refused_in_words(data):
+    try:
+        command = command_from(data)
+    except UsageError:
+        return
+    assert json.dumps(command.model_dump())
+
+
+def test_a_malformed_command_changes_nothing(session):
+    before = session.snapshot()
+    assert not session.submit({"do": "jog", "axis": "X", "direction": float("nan")})
+    assert not session.submit("reset")
+    assert not session.log
+    assert session.snapshot().position == before.position

@@ -1,0 +1,95 @@
+"""Every shipped scene, played headless: its solution reaches full points, its mistake fails."""
+
+import pytest
+
+from twin.errors import ConfigError
+from twin.training.scene import Scene, read_scene, scene_names, scene_path
+from twin.training.script import play
+from twin.training.session import Session
+
+CONTROLS = ("gost", "codesys", "fagor8070", "mefi")
+
+
+def scene(name: str) -> Scene:
+    return read_scene(scene_path(name))
+
+
+def test_there_are_at_least_eight_two_per_control():
+    dialects = [scene(name).preparation.dialect.name for name in scene_names()]
+    assert len(dialects) >= 8
+    assert all(dialects.count(control) >= 2 for control in CONTROLS)
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_the_solution_reaches_full_points(name):
+    session = Session(scene(name))
+    play(session, session.scene.file.solution)
+    judge = session.room.judge
+    assert [verdict.state for verdict in judge.verdicts] == ["done"] * len(judge.verdicts)
+    assert judge.score == session.scene.points
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_the_mistake_fails_as_intended(name):
+    session = Session(scene(name))
+    play(session, session.scene.file.mistake)
+    states = [verdict.state for verdict in session.room.judge.verdicts]
+    failed = tuple(number for number, state in enumerate(states, 1) if state == "failed")
+    assert failed == session.scene.file.mistake_fails
+    assert failed
+    assert session.room.judge.score < session.scene.points
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_texts_are_there_in_the_scene_s_language_and_in_english(name):
+    file = scene(name).file
+    texts = [file.title, file.story, *file.hints, *(task.text for task in file.tasks)]
+    for text in texts:
+        assert text.get("en")
+        assert text.get(file.language)
+
+
+MINIMAL = """
+schema = 1
+title = { en = "t" }
+story = { en = "s" }
+[job]
+program = "p.nc"
+dialect = "fagor8070"
+[[tasks]]
+text = { en = "x" }
+finished = true
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("finished = true", "finnished = true", "did you mean 'finished'"),
+        ("finished = true", "", "exactly one condition"),
+        ("finished = true", 'finished = true\ncleared = "x"', "exactly one condition"),
+        ('"p.nc"', '"../p.nc"', "leaves the scene's folder"),
+        ('"p.nc"', '"/etc/passwd"', "leaves the scene's folder"),
+        ('"p.nc"', '"q.nc"', "no NC program"),
+        ("[job]", "[start]\nposition = { Q = 1.0 }\n[job]", "no axis 'Q'"),
+        ("schema = 1", "schema = 2", "schema"),
+        ('title = { en = "t" }', 'title = { xx = "t" }', "title"),
+    ],
+)
+def test_a_wrong_scene_is_refused_with_what_is_wrong(tmp_path, old, new, message):
+    (tmp_path / "p.nc").write_text("M30\n")
+    path = tmp_path / "scene.toml"
+    path.write_text(MINIMAL)
+    read_scene(path)
+    path.write_text(MINIMAL.replace(old, new))
+    with pytest.raises(ConfigError, match=message):
+        read_scene(path)
+
+
+def test_a_link_out_of_the_folder_is_refused(tmp_path):
+    (tmp_path / "scene").mkdir()
+    (tmp_path / "p.nc").write_text("M30\n")
+    (tmp_path / "scene" / "p.nc").symlink_to(tmp_path / "p.nc")
+    (tmp_path / "scene" / "scene.toml").write_text(MINIMAL)
+    with pytest.raises(ConfigError, match="leads out of the scene's folder"):
+        read_scene(tmp_path / "scene" / "scene.toml")

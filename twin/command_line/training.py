@@ -1,0 +1,49 @@
+"""The command line of ``twin train``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def train(
+    scene: Annotated[
+        str, typer.Argument(help="A shipped scene's name, or a scene.toml.")
+    ] = "fagor_first_steps",
+    list_scenes: Annotated[bool, typer.Option("--list", help="List the shipped scenes.")] = False,
+    language: Annotated[
+        str | None, typer.Option("--language", help="en, ru, it or cs; default: the scene's.")
+    ] = None,
+    window: Annotated[
+        bool, typer.Option("--window", help="A window instead of a browser page.")
+    ] = False,
+    host: Annotated[
+        str | None, typer.Option("--host", help="Listen there too; needs --token.")
+    ] = None,
+    port: Annotated[int, typer.Option("--port", help="Default: the first free from 8080.")] = 0,
+    token: Annotated[
+        str | None, typer.Option("--token", help="What a browser must know to come in.")
+    ] = None,
+    certificate: Annotated[Path | None, typer.Option("--certificate", help="For https.")] = None,
+    key: Annotated[Path | None, typer.Option("--key", help="Of the certificate.")] = None,
+    trainer: Annotated[
+        bool, typer.Option("--trainer", help="Show the trainer's sheet: faults, freeze, replay.")
+    ] = False,
+    plain: Annotated[
+        bool, typer.Option("--plain", help="Draw plainly: for browsers without a graphics card.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Logs and score sheets; default out/training.")
+    ] = None,
+) -> None:
+    """Run a machine, and wreck it, in a browser: the training room."""
+    from twin.commands import train as room
+
+    if list_scenes:
+        room.print_scenes(language)
+        return
+    code = room.train(
+        scene, language=language, window=window, host=host, port=port, token=token,
+        certificate=certificate, key=key, trainer=trainer, plain=plain, out=out,
+    )  # fmt: skip
+    raise typer.Exit(code)

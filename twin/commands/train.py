@@ -1,0 +1,99 @@
+"""``twin train``: the training room."""
+
+import ssl
+from pathlib import Path
+
+import typer
+
+from twin.errors import ExitCode, UsageError
+from twin.training.scene import read_scene, scene_names, scene_path
+from twin.training.texts import LANGUAGES, Language, in_language
+
+
+def print_scenes(language: str | None) -> None:
+    """List the shipped scenes."""
+    chosen = language_named(language)
+    for name in scene_names():
+        scene = read_scene(scene_path(name))
+        title = in_language(scene.file.title, chosen or scene.file.language)
+        dialect = scene.preparation.dialect.name
+        typer.echo(f"{name:26} {dialect:11} {scene.points:3} points  {title}")
+
+
+def language_named(name: str | None) -> Language | None:
+    """A language by its name.
+
+    Raises:
+        UsageError: The panel does not speak it.
+    """
+    for language in LANGUAGES:
+        if name == language:
+            return language
+    if name is None:
+        return None
+    raise UsageError(f"no language '{name}': the panel speaks {', '.join(LANGUAGES)}")
+
+
+def train(
+    name: str,
+    *,
+    language: str | None,
+    window: bool,
+    host: str | None,
+    port: int,
+    token: str | None,
+    certificate: Path | None,
+    key: Path | None,
+    trainer: bool,
+    plain: bool,
+    out: Path | None,
+) -> ExitCode:
+    """Open a scene and play it until it is closed.
+
+    Returns:
+        ``FAILED`` where the scene was handed in with less than full points.
+
+    Raises:
+        TwinError: The scene, or how it shall be opened, is wrong.
+    """
+    from twin.training.gate import LOOPBACK
+    from twin.training.launch import open_room
+
+    scene = read_scene(scene_path(name))
+    with open_room(
+        scene,
+        language=language_named(language),
+        window=window,
+        host=host or LOOPBACK,
+        port=port,
+        token=token or "",
+        tls=_tls(certificate, key),
+        trainer=trainer,
+        plain=plain,
+        out=out or Path("out") / "training",
+    ) as room:
+        if room.gate is not None:
+            typer.echo(f"{scene.name}: open {room.gate.address} in a browser; Ctrl+C ends")
+            if host is not None and certificate is None:
+                typer.echo(
+                    "other computers' browsers show the page over https only: give --certificate "
+                    "and --key, or lead them here through ssh -L", err=True,
+                )  # fmt: skip
+        try:
+            room.serve()
+        except KeyboardInterrupt:
+            typer.echo("")
+        judge = room.session.room.judge
+    typer.echo(f"{scene.name}: {judge.score} of {scene.points} points; sheet in {room.folder}")
+    return ExitCode.FAILED if judge.over and judge.score < scene.points else ExitCode.OK
+
+
+def _tls(certificate: Path | None, key: Path | None) -> ssl.SSLContext | None:
+    if certificate is None:
+        return None
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    try:
+        context.load_cert_chain(certificate, key)
+    except (OSError, ssl.SSLError) as error:
+        raise UsageError(f"{certificate}: no certificate with its key: {error}") from error
+    return context

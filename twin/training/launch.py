@@ -1,0 +1,142 @@
+"""From a scene to a page or a window, and the files that are left of it."""
+
+import contextlib
+import ssl
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from mujoco.studio import messages, viewer_handle
+
+from twin.errors import UsageError
+from twin.training.gate import LOOPBACK, Gate
+from twin.training.page import open_page, readable_fonts
+from twin.training.panel.panel import Panel
+from twin.training.scene import Scene
+from twin.training.score import SheetWriter
+from twin.training.session import Session
+from twin.training.studio import PanelPlugin, RoomPlugin
+from twin.training.texts import Language, in_language
+from twin.training.vocabulary import Words
+
+_WINDOW_PYTHON = (3, 12)
+"""What Studio's window needs: its Filament helper imports ``collections.abc.Buffer``."""
+
+
+class OpenRoom:
+    """A room that is open to the operator.
+
+    Attributes:
+        session: What is played.
+        driver: Lets its time go on.
+        shown: Shows it.
+        handle: Studio's side of it.
+        gate: Where browsers come in; None for a window.
+        folder: Where log and score sheet lie; None for nowhere.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        driver: RoomPlugin,
+        shown: PanelPlugin,
+        handle: viewer_handle.ViewerHandle,
+        gate: Gate | None,
+        folder: Path | None,
+    ) -> None:
+        self.session = session
+        self.driver = driver
+        self.shown = shown
+        self.handle = handle
+        self.gate = gate
+        self.folder = folder
+
+    def serve(self) -> None:
+        """Let time go on until the window is closed or Ctrl+C is pressed."""
+        while self.handle.is_running():
+            self.handle.sync()
+
+
+@contextlib.contextmanager
+def open_room(
+    scene: Scene,
+    *,
+    language: Language | None = None,
+    window: bool = False,
+    host: str = LOOPBACK,
+    port: int = 0,
+    token: str = "",
+    tls: ssl.SSLContext | None = None,
+    trainer: bool = False,
+    plain: bool = False,
+    out: Path | None = None,
+) -> Iterator[OpenRoom]:
+    """Open the training room for a scene.
+
+    Args:
+        scene: The scene.
+        language: Of the panel; the scene's by default.
+        window: A desktop window instead of a page.
+        host: Where the page's gate listens.
+        port: Its port; 0: the first free one.
+        token: What a browser must know.
+        tls: Certificate for https.
+        trainer: Show the trainer's sheet.
+        plain: Draw plainly, for computers without a graphics card.
+        out: Folder for log and score sheet; none: none are written.
+
+    Raises:
+        TwinError: The scene does not fit its machine, the port is taken, there is no window here.
+    """
+    words = Words(language or scene.file.language, scene.preparation.dialect.name)
+    warm_up(scene)
+    session = Session(scene)
+    writer = SheetWriter(session, words, out)
+    driver = RoomPlugin(session, plain=plain, changed=writer.write)
+    panel = Panel(scene.file, words, trainer=trainer)
+    shown = PanelPlugin(panel, driver.display, scene.file.picture.camera, plain=plain)
+    title = f"{in_language(scene.file.title, words.language)} - {words['title']}"
+    with contextlib.ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="twin-train-")))
+        (folder / "assets").mkdir()
+        stack.enter_context(readable_fonts(folder / "assets"))
+        gate = None
+        if window:
+            handle = _open_window(title, [shown, driver])
+        else:
+            inside = folder / "studio.sock"
+            gate = Gate(inside, host=host, port=port, token=token, tls=tls)
+            handle = open_page(title, [shown, driver], inside, lambda: gate.heard)
+            stack.enter_context(gate)
+        stack.enter_context(handle)
+        handle.dispatch(messages.LoadModelEvent(path=""))
+        try:
+            yield OpenRoom(session, driver, shown, handle, gate, writer.folder)
+        finally:
+            writer.write(session)
+
+
+def warm_up(scene: Scene) -> None:
+    """Run the first moves on a machine that nobody sees, so that nothing is compiled later."""
+    session = Session(scene)
+    session.submit({"do": "cycle_start"})
+    session.advance(20)
+
+
+def _open_window(title: str, plugins: list[RoomPlugin | PanelPlugin]) -> viewer_handle.ViewerHandle:
+    """Open a desktop window.
+
+    Raises:
+        UsageError: There can be none here.
+    """
+    if sys.version_info < _WINDOW_PYTHON:
+        needed = ".".join(map(str, _WINDOW_PYTHON))
+        raise UsageError(
+            f"--window needs Python {needed} or newer (MuJoCo Studio's window does); "
+            "without it the room opens in a browser"
+        )
+    from mujoco.studio import launch_native, viewer_protocol
+
+    config = viewer_protocol.ViewerConfig(title=title, width=1600, height=960)
+    return launch_native.launch(config, plugins=plugins)

@@ -1,0 +1,144 @@
+"""The whole panel: where its parts stand, and what they ask for in one frame."""
+
+from mujoco.studio.dear_imgui import dear_imgui as imgui
+
+from twin.training.panel.desk import (
+    DeskState,
+    build_cycle,
+    build_dials,
+    build_emergency,
+    build_entry,
+    build_jog,
+    build_modes,
+    build_supplies,
+)
+from twin.training.panel.keyboard import read_keyboard
+from twin.training.panel.kit import Kit
+from twin.training.panel.request import Request
+from twin.training.panel.screen import build_axes, build_head, build_program, build_speeds
+from twin.training.panel.side import (
+    SideState,
+    build_tasks,
+    build_tools,
+    build_trainer,
+    build_view,
+    build_zero,
+)
+from twin.training.scene import SceneFile
+from twin.training.snapshot import Snapshot
+from twin.training.vocabulary import Words
+
+HEAD = 84.0
+"""Height of the head [px]."""
+DESK = 172.0
+"""Height of the desk [px]."""
+SCREEN = 440.0
+"""Width of the screen [px]."""
+SIDE = 316.0
+"""Width of the side [px]."""
+GAP = 4.0
+
+
+class Panel:
+    """A panel for one scene in one language.
+
+    Attributes:
+        kit: Knows where each part was drawn.
+        desk: What is set at the desk.
+        side: What is set at the side.
+        width: Of the page in the last frame [px].
+    """
+
+    def __init__(self, scene: SceneFile, words: Words, *, trainer: bool) -> None:
+        self._scene = scene
+        self._words = words
+        self._trainer = trainer
+        self.kit = Kit()
+        self.desk = DeskState()
+        self.side = SideState()
+        self.width = 0.0
+
+    def build(self, now: Snapshot) -> list[Request]:
+        """Build the panel of one frame.
+
+        Args:
+            now: The machine.
+
+        Returns:
+            What was asked for.
+        """
+        size = imgui.GetIO().DisplaySize
+        self.width = size.x
+        kit, words = self.kit, self._words
+        asked = read_keyboard(now, self.desk)
+        middle = size.y - HEAD - DESK - 4 * GAP
+        with kit.dressed():
+            with kit.window("head", GAP, GAP, size.x - 2 * GAP, HEAD):
+                build_head(kit, words, now)
+            with kit.window("screen", GAP, HEAD + 2 * GAP, SCREEN, middle):
+                build_axes(kit, words, now)
+                build_speeds(kit, words, now)
+                self._choose(now, build_program(kit, now, self.desk.chosen))
+            with kit.window("side", size.x - SIDE - GAP, HEAD + 2 * GAP, SIDE, middle):
+                asked += self._build_side(now)
+            with kit.window("desk", GAP, size.y - DESK - GAP, size.x - 2 * GAP, DESK):
+                asked += self._build_desk(now)
+        return asked
+
+    def _choose(self, now: Snapshot, line: int) -> None:
+        if line != self.desk.chosen:
+            self.desk.chosen, self.desk.edited = line, now.program[line - 1]
+
+    def _build_desk(self, now: Snapshot) -> list[Request]:
+        kit, words = self.kit, self._words
+        asked: list[Request] = []
+        imgui.BeginGroup()
+        asked += build_modes(kit, words, now, 224.0)
+        imgui.BeginChild("entry", imgui.Vec2(224.0, 64.0))
+        asked += build_entry(kit, words, now, self.desk)
+        imgui.EndChild()
+        imgui.EndGroup()
+        imgui.SameLine(0.0, 12.0)
+        imgui.BeginGroup()
+        asked += build_cycle(kit, words, now, 200.0)
+        imgui.EndGroup()
+        imgui.SameLine(0.0, 12.0)
+        imgui.BeginGroup()
+        asked += build_jog(kit, words, now, self.desk)
+        imgui.EndGroup()
+        imgui.SameLine(0.0, 12.0)
+        imgui.BeginGroup()
+        asked += build_dials(kit, words, now)
+        imgui.EndGroup()
+        imgui.SameLine(0.0, 12.0)
+        imgui.BeginGroup()
+        asked += build_supplies(kit, words, now, 104.0)
+        imgui.EndGroup()
+        imgui.SameLine(0.0, 12.0)
+        asked += build_emergency(kit, words, now, 130.0)
+        return asked
+
+    def _build_side(self, now: Snapshot) -> list[Request]:
+        kit, words = self.kit, self._words
+        asked: list[Request] = []
+        if not imgui.BeginTabBar("side"):
+            return asked
+        sheets = ["tasks", "offsets", "tools", "display"] + ["trainer"] * self._trainer
+        for sheet in sheets:
+            open_ = imgui.BeginTabItem(f"{words[sheet]}###{sheet}")
+            kit.note(f"tab {sheet}")
+            if not open_:
+                continue
+            if sheet == "tasks":
+                asked += build_tasks(kit, words, now, self._scene)
+            elif sheet == "offsets":
+                asked += build_zero(kit, words, now, self.side)
+            elif sheet == "tools":
+                asked += build_tools(kit, words, now)
+            elif sheet == "display":
+                build_view(kit, words, self.side)
+            else:
+                asked += build_trainer(kit, words, now, self.side)
+            imgui.EndTabItem()
+        imgui.EndTabBar()
+        return asked

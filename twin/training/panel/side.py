@@ -1,0 +1,145 @@
+"""The side of the screen: tasks and story, tables, view; and the trainer's sheet."""
+
+import dataclasses
+
+from mujoco.studio.dear_imgui import dear_imgui as imgui
+
+from twin.training.faults import FAULT_KINDS
+from twin.training.panel.kit import BRIGHT_GREEN, CYAN, QUIET, RED, TEXT, YELLOW, Kit
+from twin.training.panel.request import Request, do
+from twin.training.scene import SceneFile
+from twin.training.snapshot import Snapshot
+from twin.training.texts import in_language
+from twin.training.vocabulary import Words
+
+_MARKS = {"open": ("○", TEXT), "done": ("●", BRIGHT_GREEN), "failed": ("×", RED)}
+_BACK_S = (10.0, 60.0)
+
+
+@dataclasses.dataclass
+class SideState:
+    """What is set at the side and concerns nobody else."""
+
+    readings: dict[str, float] = dataclasses.field(default_factory=dict)
+    show_trail: bool = True
+    show_stock: bool = True
+    show_collision: bool = False
+    fault: int = 0
+    fault_axis: int = 0
+    fault_value: float = 0.05
+
+
+def build_tasks(kit: Kit, words: Words, now: Snapshot, scene: SceneFile) -> list[Request]:
+    """The story, the tasks with their marks, questions, hints and points."""
+    asked: list[Request] = []
+    language = words.language
+    kit.text(in_language(scene.title, language), CYAN, 1.15)
+    kit.wrapped(in_language(scene.story, language), QUIET)
+    imgui.Separator()
+    answers = dict(now.answers)
+    for number, (task, verdict) in enumerate(zip(scene.tasks, now.verdicts, strict=True), 1):
+        mark, colour = _MARKS[verdict.state]
+        kit.wrapped(f"{mark} {in_language(task.text, language)}  ({task.points})", colour)
+        if task.question is not None and number not in answers:
+            for choice in task.question.choices:
+                if kit.key(f"answer {number} {choice}", choice):
+                    asked.append(do("answer", task=number, choice=choice))
+                imgui.SameLine()
+            imgui.NewLine()
+    imgui.Separator()
+    for hint in scene.hints[: now.hints]:
+        kit.wrapped(in_language(hint, language), YELLOW)
+    total = sum(task.points for task in scene.tasks)
+    kit.text(f"{words['score']}: {now.score} / {total}", TEXT, 1.2)
+    if now.over:
+        kit.text(words["over"], BRIGHT_GREEN)
+        return asked
+    if now.hints < len(scene.hints):
+        cost = words["hint_cost"].format(cost=scene.hint_cost)
+        if kit.key("hint", f"{words['hint']} ({cost})"):
+            asked.append(do("hint"))
+        imgui.SameLine()
+    if kit.key("finish", words["finish"]):
+        asked.append(do("finish"))
+    return asked
+
+
+def build_zero(kit: Kit, words: Words, now: Snapshot, state: SideState) -> list[Request]:
+    """Part zero by axis, with a field to preset it by where the axis stands."""
+    asked: list[Request] = []
+    kit.wrapped(words["preset_help"], QUIET)
+    for axis, zero in zip(now.axes, now.zero, strict=True):
+        kit.text(f"{axis} {zero:10.3f}", TEXT)
+        imgui.SameLine()
+        imgui.SetNextItemWidth(90.0)
+        _, value = imgui.InputDouble(
+            f"###reading {axis}", state.readings.get(axis, 0.0), 0.0, 0.0, "%.3f"
+        )
+        state.readings[axis] = value
+        kit.note(f"reading {axis}")
+        imgui.SameLine()
+        if kit.key(f"preset {axis}", words["preset"]):
+            asked.append(do("set_zero", axis=axis, reading=value))
+    return asked
+
+
+def build_tools(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
+    """The tool table; the tool in the spindle can be measured by touching Z0."""
+    asked: list[Request] = []
+    for tool in now.tools:
+        here = tool.number == now.tool
+        kit.text(f"T{tool.number}  {tool.kind}  {words['diameter']} {tool.diameter:g}",
+                 CYAN if here else TEXT)  # fmt: skip
+        kit.text(f"   {words['length']} {tool.length:.3f}", TEXT)
+        if here:
+            imgui.SameLine()
+            if kit.key("touch off", words["touch_off"]):
+                length = tool.length + now.position[now.axes.index("Z")]
+                asked.append(do("set_tool", number=tool.number, length=round(length, 4)))
+    return asked
+
+
+def build_view(kit: Kit, words: Words, state: SideState) -> None:
+    """What is drawn."""
+    for name in ("trail", "stock", "collision"):
+        _, on = imgui.Checkbox(words[name], getattr(state, f"show_{name}"))
+        setattr(state, f"show_{name}", on)
+        kit.note(f"show {name}")
+
+
+def build_trainer(kit: Kit, words: Words, now: Snapshot, state: SideState) -> list[Request]:
+    """Faults, freezing, going back, replay."""
+    asked: list[Request] = []
+    if now.frozen:
+        if kit.key("go on", words["go_on"]):
+            asked.append(Request("trainer", change="go_on"))
+    elif kit.key("freeze", words["freeze"]):
+        asked.append(Request("trainer", change="freeze"))
+    for seconds in _BACK_S:
+        imgui.SameLine()
+        if kit.key(f"rewind {seconds:g}", words["rewind"].format(seconds=f"{seconds:g}")):
+            asked.append(Request("trainer", change="rewind", seconds=seconds))
+    imgui.SameLine()
+    if kit.key("replay", words["replay"]):
+        asked.append(Request("trainer", change="replay"))
+    imgui.Separator()
+    names = [words[f"fault_{kind}"] for kind in FAULT_KINDS]
+    _, state.fault = imgui.Combo("###fault", state.fault, names)
+    kind = FAULT_KINDS[state.fault]
+    fault: dict[str, object] = {"kind": kind}
+    if kind != "alarm":
+        imgui.SetNextItemWidth(60.0)
+        _, state.fault_axis = imgui.Combo("###fault axis", state.fault_axis, list(now.axes))
+        imgui.SameLine()
+        imgui.SetNextItemWidth(100.0)
+        _, state.fault_value = imgui.InputDouble(
+            "###fault value", state.fault_value, 0.0, 0.0, "%.3f"
+        )
+        fault |= {"axis": now.axes[state.fault_axis], "value": state.fault_value}
+    if kit.key("inject", words["inject"]):
+        asked.append(Request("trainer", command={"do": "inject", "fault": fault}))
+    imgui.SameLine()
+    if kit.key("repair", words["repair"]):
+        asked.append(Request("trainer", command={"do": "repair"}))
+    kit.text(f"{now.time_s:.3f} {words['seconds']}", QUIET)
+    return asked

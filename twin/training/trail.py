@@ -1,0 +1,53 @@
+"""The way of the tool's tip over the part, as it is drawn: its last stretch, as a thin tube."""
+
+import itertools
+from collections import deque
+
+import mujoco
+import numpy as np
+
+from twin.nc.canonical import FloatArray
+from twin.render.placement import Frame
+
+MOST = 240
+"""Points that are kept: the page draws no more than a thousand extra bodies."""
+APART_MM = 0.5
+"""Shortest way between two points [mm]."""
+_RADIUS_M = 0.0004
+_COLOUR = np.array([1.0, 0.45, 0.05, 1.0], np.float32)
+
+
+class Trail:
+    """The last points that the tip has passed, in the part's frame."""
+
+    def __init__(self) -> None:
+        self._points: deque[tuple[float, ...]] = deque(maxlen=MOST)
+
+    def add(self, tip: tuple[float, ...]) -> None:
+        """The tip is there now [mm]."""
+        if not self._points or np.linalg.norm(np.subtract(tip, self._points[-1])) > APART_MM:
+            self._points.append(tip)
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._points.clear()
+
+    def geoms(self, frame: Frame, position: FloatArray, rotation: FloatArray) -> list[mujoco.MjvGeom]:  # fmt: skip
+        """The tube.
+
+        Args:
+            frame: Where the part's frame lies on the table.
+            position: Of the table in the world, shape (3,) [m].
+            rotation: Of the table in the world, shape (3, 3).
+        """
+        if len(self._points) < 2:
+            return []
+        places = frame.points(np.array(self._points)) @ rotation.T + position
+        found = []
+        for first, second in itertools.pairwise(places):
+            geom = mujoco.MjvGeom()
+            kind = int(mujoco.mjtGeom.mjGEOM_CAPSULE)
+            mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).ravel(), _COLOUR)
+            mujoco.mjv_connector(geom, kind, _RADIUS_M, first, second)
+            found.append(geom)
+        return found
