@@ -28,6 +28,7 @@ from twin.recording import RecordingHeader, Samples, open_recording, record
 from twin.resources import machine_file, machine_names
 from twin.stl_file import read_stl
 from twin.toolpath.part_frame import PartFrame
+from twin.training.scene import read_scene
 
 LONGEST_SECONDS = 20.0
 """Processor time that one file may take; a loop without an end takes longer."""
@@ -158,6 +159,23 @@ def _solids() -> list[bytes]:
     ]
 
 
+@functools.cache
+def _scenes() -> list[Path]:
+    return sorted((nc_fuzz.ROOT / "twin" / "training" / "scenes").rglob("*.toml"))
+
+
+def try_scene(chance: random.Random, folder: Path) -> None:
+    """A shipped scene of the training, damaged."""
+    scene = chance.choice(_scenes())
+    path = folder / scene.name
+    for program in scene.parent.glob("*.nc"):
+        shutil.copy(program, folder)
+    path.write_text(
+        changed_toml(chance, scene.read_text(encoding="utf-8")), "utf-8", "surrogateescape"
+    )
+    read_scene(path)
+
+
 def try_stl(chance: random.Random, folder: Path) -> None:
     """A solid, damaged."""
     path = folder / "part.stl"
@@ -185,6 +203,7 @@ KINDS: Mapping[str, Callable[[random.Random, Path], None]] = {
     "jobs": try_job,
     "machines": try_machine,
     "recordings": try_recording,
+    "scenes": try_scene,
     "stl": try_stl,
 }
 

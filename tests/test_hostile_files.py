@@ -18,7 +18,8 @@ from twin.stl_file import read_stl
 
 
 @pytest.mark.parametrize(
-    ("kind", "tries"), [("jobs", 60), ("machines", 25), ("recordings", 150), ("stl", 150)]
+    ("kind", "tries"),
+    [("jobs", 60), ("machines", 25), ("recordings", 150), ("scenes", 60), ("stl", 150)],
 )
 def test_damage_is_taken_or_refused(kind: str, tries: int) -> None:
     outcomes = file_fuzz.main(kind, tries)
