@@ -30,7 +30,7 @@ PICTURE_S = 1.0 / 60.0
 """How often states are sent and requests are heard [s]."""
 MOST_BEHIND_S = 0.25
 """How far machine time may fall behind the wall's before it is given up [s]."""
-_COSTLY = ("SHADOW", "REFLECTION", "HAZE", "POST_PROCESSING")
+_COSTLY = ("SHADOW", "REFLECTION", "HAZE")
 """Effects that a plain picture does without."""
 REPLAY_SPEED = 4.0
 """Times faster than it was, a session is shown again."""
