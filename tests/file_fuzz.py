@@ -125,8 +125,9 @@ def whole_recording() -> bytes:
     """A small recording."""
     axes = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
     number = np.arange(SAMPLES)
+    milli = np.float64(0.001) * number
     rows = np.outer(number, [1.0, 2.0, 3.0, 4.0])
-    setpoint = Setpoints(0.001 * number, number, number, 0.001 * number, rows, rows, rows)
+    setpoint = Setpoints(milli, number, number, milli, rows, rows, rows)
     header = RecordingHeader(
         axes=axes, period_s=0.001, part_zero=np.zeros(4), part_frame=PartFrame(3, (0.0, 0.0), 0.0),
         program="a.nc", program_text="G0 X1\n", program_sha256="00", dialect="gost",
@@ -152,11 +153,8 @@ def try_recording(chance: random.Random, folder: Path) -> None:
 @functools.cache
 def _solids() -> list[bytes]:
     solids = (trimesh.creation.box((3, 4, 5)), trimesh.creation.cylinder(4, 7, sections=6))
-    return [
-        data if isinstance(data, bytes) else data.encode()
-        for solid in solids
-        for data in (solid.export(file_type="stl"), solid.export(file_type="stl_ascii"))
-    ]
+    exported = [solid.export(file_type=form) for solid in solids for form in ("stl", "stl_ascii")]
+    return [each if isinstance(each, bytes) else str(each).encode() for each in exported]
 
 
 @functools.cache
