@@ -83,20 +83,23 @@ def _open_page() -> Iterator[tuple[OpenRoom, Callable[[], None]]]:
     with open_room(read_scene(scene_path(SCENE)), plain=True) as room:
         thread = threading.Thread(target=room.serve, daemon=True)
         thread.start()
-        assert room.gate is not None
+        gate = room.gate
+        assert gate is not None
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
             page = browser.new_context(
                 viewport={"width": 1280, "height": 760}, device_scale_factor=0.25
             ).new_page()
-            page.goto(room.gate.address)
+            page.goto(gate.address)
             _until(lambda: room.shown.panel.width == 1280)
 
             def click() -> None:
                 left, top, right, bottom = room.shown.panel.kit.places["feed hold"]
                 page.mouse.up()
                 page.mouse.move(0.5 * (left + right), 0.5 * (top + bottom))
-                time.sleep(1.0)
+                # However slow the page is: it has seen the button up, and where the mouse is.
+                seen = gate.heard + 5
+                _until(lambda: gate.heard >= seen)
                 page.mouse.down()
 
             yield room, click
