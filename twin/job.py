@@ -228,7 +228,7 @@ class JobFile(Table):
     """Values of variables that the program reads but does not set, by their name in it."""
     block_skip: bool = False
     """Blocks that begin with a slash are left out."""
-    step_limit: Annotated[int, Field(gt=0)] = 50_000
+    step_limit: Annotated[int, Field(gt=0)] = 20_000
     """Blocks that may be run again through jumps and loops before the program counts as endless."""
     tolerance: ToleranceTable = ToleranceTable()
     baseline: BaselineTable = BaselineTable()

@@ -3,8 +3,10 @@
 import numpy as np
 
 from twin.motion.limits import MotionLimits
+from twin.motion.phases import Phases
 from twin.motion.setpoints import Setpoints
-from twin.nc.canonical import FloatArray, Moves, Shape
+from twin.nc.canonical import FloatArray, Motion, Moves, Shape
+from twin.units import SECONDS_PER_MINUTE
 
 TOLERANCE = 1.001
 """Acceleration and jerk may pass their limits by 0.1 %."""
@@ -90,3 +92,35 @@ def assert_consistent(
     allowed = limits.jerk * h**2 / 2.0 * TOLERANCE + 1e-12
     wrong = np.abs(gained - mean * h) / allowed
     assert np.all(wrong[smooth] <= 1.0), wrong[smooth].max(axis=0)
+
+
+def assert_feed_and_path_limits(setpoints: Setpoints, moves: Moves, limits: MotionLimits) -> None:
+    """The speed that the feed counts, and the acceleration of X Y Z along and across the path."""
+    velocity, acceleration = setpoints.velocity[:, :3], setpoints.acceleration[:, :3]
+    speed = np.linalg.norm(velocity, axis=1)
+    here = setpoints.move >= 0
+    rows = setpoints.move[here]
+    spatial = np.any(moves.start[rows, :3] != moves.end[rows, :3], axis=1)
+    spatial |= moves.shape[rows] == Shape.ARC
+    counted = np.where(spatial, speed[here], np.abs(setpoints.velocity[here, 3]))
+    feed = np.where(moves.motion[rows] == Motion.RAPID, np.inf, moves.feed[rows])
+    assert np.all(counted <= feed / SECONDS_PER_MINUTE * (1.0 + 1e-9) + 1e-9)
+
+    moving = speed > 1e-6 * speed.max(initial=0.0)
+    tangent = velocity[moving] / speed[moving, None]
+    along = np.sum(acceleration[moving] * tangent, axis=1)
+    across = np.linalg.norm(acceleration[moving] - along[:, None] * tangent, axis=1)
+    highest = limits.path_acceleration * TOLERANCE
+    assert np.abs(along).max(initial=0.0) <= highest
+    assert across.max(initial=0.0) <= highest
+
+
+def assert_phases_join(phases: Phases) -> None:
+    """Each phase begins where the one before it ended, as fast as that did."""
+    place = np.append(0.0, np.cumsum(phases.pieces.length))
+    _, t, x, v, a, j = phases.rows.T
+    x = x + place[phases.rows_pieces[:, 0]]
+    end_x = x + ((j / 6.0 * t + 0.5 * a) * t + v) * t
+    end_v = v + (0.5 * j * t + a) * t
+    assert np.abs(x[1:] - end_x[:-1]).max(initial=0.0) <= 1e-10 * (1.0 + place[-1])
+    assert np.abs(v[1:] - end_v[:-1]).max(initial=0.0) <= 1e-9 * (1.0 + v.max(initial=0.0))

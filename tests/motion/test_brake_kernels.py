@@ -20,6 +20,7 @@ from twin.motion.brake_kernels import (
 from twin.motion.phase_kernels import put_brake
 from twin.motion.reach_kernels import find_brake, find_reach
 from twin.motion.stretch_kernels import find_stretches, merge_limits, place_phases
+from twin.motion.transition_kernels import find_transition
 from twin.nc.canonical import FloatArray
 
 FEWER = hypothesis.settings(SETTINGS, max_examples=40)
@@ -102,6 +103,14 @@ def test_time_to_inverts_the_way(v: float, a: float, j: float, share: float) -> 
     assert time_to(wanted, v, a, j, latest) == pytest.approx(np.interp(wanted, way, t), abs=1e-4)
 
 
+def test_time_is_found_from_all_but_standing() -> None:
+    """At 6e-8 mm/s the way would take months without the acceleration."""
+    v, a, distance = 5.847205949142e-8, 5.0, 1.0650219816634
+    expected = (-v + math.sqrt(v * v + 2.0 * a * distance)) / a
+    found = time_to(distance, v, a, 0.0, 2.0 * distance / v)
+    assert found == pytest.approx(expected, rel=1e-13)
+
+
 @st.composite
 def stretches(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
     count = draw(st.integers(1, 7))
@@ -152,6 +161,44 @@ def test_reach_is_safe_and_nearly_the_most_that_is(case: tuple[FloatArray, Float
         if reach[i] < 0.98 * highest:
             assert not plain_is_safe(limits, entry, reach, i, min(highest, 1.02 * reach[i]), 0.0)
         assert find_brake(limits, entry, reach, i, 0.0, 0.999 * reach[i], 0.0, 1e-9, 0) > i
+
+
+@SETTINGS
+@given(
+    stretches(), st.floats(0.0, 0.99), st.floats(0.1, 1.0), st.floats(-0.99, 0.99),
+    st.lists(st.floats(0.0, 1.0), min_size=7, max_size=7),
+)  # fmt: skip
+def test_transition_ends_where_its_brake_does(
+    case: tuple[FloatArray, FloatArray], place: float, share: float, rising: float,
+    lower: list[float],
+) -> None:  # fmt: skip
+    limits, _ = case
+    entry = np.full(limits.shape[1] + 1, math.inf)
+    entry[-1] = 0.0
+    wanted = limits.copy()
+    wanted[1] *= lower[: limits.shape[1]]
+    reach = find_reach(wanted, entry, np.zeros((3, 0)))[0]
+    x, v = place * limits[0, 0], share * limits[1, 0]
+    a = rising * (limits[2, 0] if rising > 0.0 else limits[3, 0])
+    end, x_end, w, deceleration, jerk = find_transition(limits, wanted, entry, reach, 0, x, v, a)
+    if end >= 0:
+        way = limits[0, :end].sum() + x_end - x
+        assert way == pytest.approx(brake_need(v, a, w, deceleration, jerk), rel=1e-9, abs=1e-9)
+        assert w <= wanted[1, end] * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("then", [0.1, 0.2, 0.3, 0.4])
+def test_transition_to_a_third_of_the_velocity(then: float) -> None:
+    """The way from v to w is longest for w = v / 3, longer than the one to a stop."""
+    v, jerk = 100.0, 1e4
+    length = 1.04 * brake_distance(v, 0.0, 1e6, jerk)
+    limits = np.array([[length, 50.0], [v, v], [1e6, 1e6], [1e6, 1e6], [jerk, jerk]])
+    wanted, entry = limits.copy(), np.array([math.inf, math.inf, 0.0])
+    wanted[1] = 0.6 * v, then * v
+    reach = find_reach(wanted, entry, np.zeros((3, 0)))[0]
+    end, x_end, w, deceleration, j = find_transition(limits, wanted, entry, reach, 0, 0.0, v, 0.0)
+    way = limits[0, :end].sum() + x_end
+    assert way == pytest.approx(brake_need(v, 0.0, w, deceleration, j), rel=1e-9)
 
 
 @SETTINGS

@@ -11,6 +11,7 @@ from motion_programs import PERIOD, SETTINGS, ZERO, Program, duration, limits, m
 
 from twin.motion.corner_kernels import add_rounding
 from twin.motion.limits import MotionLimits
+from twin.motion.pieces import join_pieces, pieces_of_chunks
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Corner, FloatArray
 
@@ -114,6 +115,16 @@ def test_continuous_corner_uses_its_tolerance(angle: float) -> None:
     assert 0.98 * 0.05 < away.max() <= 0.05 * (1.0 + 1e-9)
 
 
+@pytest.mark.parametrize("straight", [0.5, 0.8, 1.05, 1.3, 1.6, 2.1, 4.0])
+def test_roundings_of_both_ends_of_a_block_share_the_tolerance(straight: float) -> None:
+    """Between two tangent arcs; alone, the change of curvature is rounded over 0.96 mm."""
+    program = with_corner(Corner.CONTINUOUS).arc((0.0, 1.0, 0.0), (0.0, 0.0, 1.0), 180.0)
+    program.line(-straight, 2.0, 0.0, 0.0, feed=600.0)
+    program.arc((-straight, 1.0, 0.0), (0.0, 0.0, 1.0), 180.0)
+    away = deviation(run(program, mill(corner_tolerance=0.01), period_s=1e-4), program)
+    assert 0.0075 < away.max() <= 0.01 * (1.0 + 1e-9)
+
+
 def test_programmed_tolerance_counts() -> None:
     wide = Program()
     wide.corner, wide.corner_tolerance = Corner.CONTINUOUS, 0.2
@@ -139,6 +150,40 @@ def test_chain_of_short_blocks_runs_near_its_feed() -> None:
     assert setpoints.time[-1] < 1.2 * (20.0 * np.pi / 2 / 40.0)
     middle = setpoints[len(setpoints) // 4 : -len(setpoints) // 4]
     assert np.linalg.norm(middle.velocity[:, :3], axis=1).min() > 0.9 * 40.0
+
+
+def derivative_steps(program: Program, machine: MotionLimits, order: int) -> FloatArray:
+    """Steps of a derivative of the path from piece to piece where it does not stop, shape (n, k)."""
+    pieces = join_pieces(list(pieces_of_chunks(program.chunks(), machine, program.start)))
+    rows = np.arange(len(pieces))
+
+    def at(x: FloatArray) -> FloatArray:
+        fraction = pieces.begin + x * pieces.fraction_per_length
+        if order == 0:
+            values = pieces.geometry.position(rows, fraction)
+        else:
+            values = pieces.geometry.derivative(rows, fraction, order)
+        added = pieces.rounding
+        for _ in range(order):
+            added = added[:, :, 1:] * np.arange(1, added.shape[2])
+        powers = x[:, None, None] ** np.arange(added.shape[2])
+        scale = pieces.fraction_per_length[:, None] ** order
+        return values * scale + np.sum(added * powers, axis=2)
+
+    return (at(np.zeros(len(rows)))[1:] - at(pieces.length)[:-1])[pieces.entry[1:] > 0.0]
+
+
+@pytest.mark.parametrize("tolerance", [0.003, 0.3])
+def test_roundings_go_on_from_piece_to_piece(tolerance: float) -> None:
+    """Roundings as wide as they may be, over the blocks that are cut at a time."""
+    program = with_corner(Corner.CONTINUOUS)
+    program.corner_tolerance = tolerance
+    rng = np.random.default_rng(4)
+    for _ in range(1500):
+        step = np.append(rng.normal(size=3) * 0.002 + [0.01, 0.0, 0.0], 0.0)
+        program.line(*(program.position + step), feed=6000.0)
+    for order, largest in ((0, 1e-12), (1, 1e-9), (2, 1e-4)):
+        assert np.abs(derivative_steps(program, mill(), order)).max() < largest, order
 
 
 def test_tangent_blocks_run_through() -> None:

@@ -199,6 +199,24 @@ def test_zero_stands_and_goes_on() -> None:
     assert to_the_end(motion)[-1].position[-1, 0] == ZERO[0]
 
 
+@pytest.mark.parametrize("before", [300, 301, 437, 700])
+def test_zero_stands_within_a_chain_of_blocks(before: int) -> None:
+    """The brake to it ends many blocks further on."""
+    program = Program()
+    program.corner = Corner.EXACT_PATH
+    for i in range(1000):
+        program.line(0.1 * (i + 1), 0.001 * (i % 2), 0.0, 0.0, feed=6000.0)
+    motion = live(program, mill(junction_velocity_step=2.5))
+    begun = motion.advance(before)
+    motion.feed_override = 0.0
+    standing = motion.advance(300)
+    assert motion.standing
+    assert np.ptp(standing[-10:].position, axis=0).max() == 0.0
+    assert standing.move[-1] > begun.move[-1] + 10
+    motion.feed_override = 1.0
+    assert to_the_end(motion)[-1].position[-1, 0] == 100.0 + ZERO[0]
+
+
 def test_hold_stops_the_clock_of_a_dwell() -> None:
     program = Program().dwell(0.2).line(1.0, 0.0, 0.0, 0.0, feed=600.0)
     untouched = len(run(program, mill()))
@@ -248,6 +266,21 @@ def test_single_block_too_late_stops_at_the_next_end() -> None:
     motion.single_block = True
     assert motion.advance(5000).move[-1] == 1
     assert motion.advance(1).position[0, 0] == 20.0 + ZERO[0]
+
+
+def test_single_block_taken_back_while_braking_for_it() -> None:
+    """However late: the machine goes on, from the block's end if it cannot at once."""
+    program = Program().arc((10.0, 0.0, 0.0), (0.0, 0.0, 1.0), 90.0, feed=3000.0)
+    program.line(10.0, 10.0, 0.0, 0.0, feed=3000.0)
+    motion = live(program, mill())
+    motion.single_block = True
+    stop = int(np.argmin(speed(motion.advance(5000))[1:] > 0.0))
+    for sooner in range(1, 80):
+        motion = live(program, mill())
+        motion.single_block = True
+        motion.advance(stop - sooner)
+        motion.single_block = False
+        assert to_the_end(motion, most=20_000)[-1].move[-1] == 1, sooner
 
 
 def test_reset_stops_and_drops_the_rest() -> None:

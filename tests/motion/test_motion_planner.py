@@ -6,7 +6,13 @@ import pytest
 import ruckig
 from hypothesis import given
 from hypothesis import strategies as st
-from motion_checks import assert_consistent, assert_on_path, assert_within_limits
+from motion_checks import (
+    assert_consistent,
+    assert_feed_and_path_limits,
+    assert_on_path,
+    assert_phases_join,
+    assert_within_limits,
+)
 from motion_programs import (
     AXES,
     PERIOD,
@@ -25,7 +31,7 @@ from twin.motion.limits import MotionLimits
 from twin.motion.phases import plan_phases
 from twin.motion.planner import plan
 from twin.motion.setpoints import join
-from twin.nc.canonical import Chunk, FloatArray, Function, Moves
+from twin.nc.canonical import Chunk, Corner, Dwell, FloatArray, Function, Moves
 
 
 def shortest_time(length: float, velocity: float, acceleration: float, jerk: float) -> float:
@@ -55,6 +61,35 @@ def test_every_program_keeps_path_and_limits(program: Program, machine: MotionLi
 
 
 @SETTINGS
+@given(programs(most=12, corners=(Corner.EXACT_STOP, Corner.EXACT_PATH)), limits())
+def test_every_program_keeps_its_feed_and_the_limits_of_the_path(
+    program: Program, machine: MotionLimits
+) -> None:
+    assert_feed_and_path_limits(run(program, machine), program.moves, machine)
+
+
+@SETTINGS
+@given(programs(most=12, corners=tuple(Corner)), limits())
+def test_phases_join(program: Program, machine: MotionLimits) -> None:
+    for phases in plan_phases(program.chunks(), machine, start=program.start):
+        assert_phases_join(phases)
+
+
+@SETTINGS
+@given(programs(), limits())
+def test_with_exact_stops_the_times_of_the_moves_add_up(
+    program: Program, machine: MotionLimits
+) -> None:
+    alone = [
+        list(plan_phases([Chunk(move)], machine, start=move.start[0])) for move in program.parts
+    ]
+    expected = sum(phases[-1].end_time for phases in alone if phases)
+    expected += sum(event.seconds for event in program.events if isinstance(event, Dwell))
+    whole = list(plan_phases(program.chunks(), machine, start=program.start))
+    assert (whole[-1].end_time if whole else 0.0) == pytest.approx(expected, rel=1e-9)
+
+
+@SETTINGS
 @given(programs(most=12), limits(), st.lists(st.integers(0, 12), max_size=4))
 def test_chunks_do_not_matter(program: Program, machine: MotionLimits, cuts: list[int]) -> None:
     whole, cut = run(program, machine), run(program, machine, *cuts)
@@ -79,6 +114,29 @@ def test_single_move_takes_minimum_time(
     program = Program().line(length, 0.0, 0.0, 0.0, feed=feed)
     expected = shortest_time(length, feed / 60.0, acceleration, jerk)
     assert duration(program, machine) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("acceleration", [5.0, 3e3])
+@pytest.mark.parametrize("jerk", [1e10, 1e13, 1e16])
+def test_huge_jerk_is_none(acceleration: float, jerk: float) -> None:
+    """The whole of a phase then takes less than rounding elsewhere."""
+    machine = mill(
+        velocity=np.full(4, 2000.0), acceleration=np.full(4, acceleration), jerk=np.full(4, jerk),
+        path_acceleration=math.inf, path_jerk=math.inf,
+    )  # fmt: skip
+    program = Program()
+    program.deceleration = 0.1 * acceleration
+    program.line(10.0, 0.0, 0.0, 0.0, feed=1e6)
+    # Up to v and down again: v² (1 / a + 1 / d) = 2 s, and v (1 / a + 1 / d) is the time.
+    each = 1.1 / (0.1 * acceleration)
+    assert duration(program, machine) == pytest.approx(math.sqrt(20.0 * each), rel=1e-5)
+
+
+def test_dwell_on_a_machine_without_limits_of_the_path() -> None:
+    machine = mill(path_acceleration=math.inf, path_jerk=math.inf)
+    program = Program().line(1.0, 0.0, 0.0, 0.0, feed=600.0).dwell(0.5)
+    moving = duration(Program().line(1.0, 0.0, 0.0, 0.0, feed=600.0), machine)
+    assert duration(program, machine) == pytest.approx(moving + 0.5)
 
 
 def test_rapid_runs_at_the_limit_of_its_slowest_axis() -> None:

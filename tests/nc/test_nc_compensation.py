@@ -120,6 +120,22 @@ def test_a_vertical_move_beside_the_contour_stays_there() -> None:
     assert moves.end[:, 2].tolist() == [0.0, 0.0, 0.0, -2.0, -2.0, -2.0, -2.0]
 
 
+@pytest.mark.parametrize(
+    ("code", "radius", "lost"),
+    [("G41", 45.0, math.degrees(math.asin(5.0 / 45.0))), ("G42", 55.0, 0.0)],
+)
+def test_a_helix_of_half_turns_keeps_them(code: str, radius: float, lost: float) -> None:
+    """Inside, it begins where the parallel of the line before meets it."""
+    text = (
+        f"G00 X-10 Y-10\n{code} G01 X0 Y0 F100\nX50\nG03 X-50 Y0 I-50 Z45 K10\nG01 Y-30\n"
+        "G40 Y-50\nM30"
+    )
+    moves = good(text, "fagor8070", tools={1: ToolData(5.0, 60.0)}).moves
+    helix = moves[moves.line == 4]
+    assert helix.sweep[0] == pytest.approx(4.5 * 360.0 - lost)
+    np.testing.assert_allclose(helix.end[0, :3], [-radius, 0.0, 45.0], atol=1e-9)
+
+
 @pytest.mark.parametrize("code", ["G41", "G42"])
 def test_a_full_circle_changes_its_radius(code: str) -> None:
     text = f"G0 X10 Y-5\n{code} D1 G1 X20 Y0 F100\nG3 X20 Y0 I-20\nG40 G1 X10 Y5"

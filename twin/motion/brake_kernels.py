@@ -25,11 +25,9 @@ def time_to(distance: float, v: float, a: float, j: float, latest: float) -> flo
             low = t
         slope = (0.5 * j * t + a) * t + v
         new = t - miss / slope if slope > 0.0 else 0.5 * (low + high)
-        if not low < new < high:
-            new = 0.5 * (low + high)
-        if abs(new - t) <= 1e-16 * latest:
-            return new
-        t = new
+        if abs(new - t) <= 1e-15 * t:
+            return min(new, latest)
+        t = new if low < new < high else 0.5 * (low + high)
     return t
 
 

@@ -4,7 +4,7 @@ With t = y / width from -1 to 1, y being the distance from the border, the round
 ``knee width (smooth_ramp(t) - max(t, 0))``: the kink of a ramp, smoothed by the parabolic kernel
 3/4 (1 - t²). It is largest at the border, 3/16, and convex on either side. The rounding of a bend
 is ``bend width² (smooth_square(t) - max(t, 0)²/2)``, ``smooth_square`` being the quintic that
-meets 0 and t²/2 with two derivatives.
+meets 0 and t²/2 with two derivatives. It is odd, ``(3 t - 8 t² + 6 t³ - t⁵) / 32`` for t > 0.
 """
 
 import numba
@@ -21,6 +21,9 @@ NARROWEST = 1e-4
 KNEE_PEAK = 3.0 / 16.0
 BEND_PEAK = 0.01074
 """Largest value of ``smooth_square(t) - max(t, 0)²/2`` (0.010736)."""
+
+OVERLAP_POINTS = 16
+"""At which roundings from both ends of a block are added up."""
 
 SMOOTH_RAMP = np.array([3.0, 8.0, 6.0, 0.0, -1.0, 0.0]) / 16.0
 """Coefficients by powers of t."""
@@ -40,14 +43,58 @@ def _share(away: float, width: float, per_width: float, per_square: float) -> fl
 
 
 @numba.njit(cache=True)
+def _between(
+    place: FloatArray, width: FloatArray, per_width: FloatArray, per_square: FloatArray,
+    i: int, before: int, after: int,
+) -> float:  # fmt: skip
+    """Share of the tolerance that roundings use within block i where those of both ends meet.
+
+    Elsewhere along the block they use no more than at its borders, where the peak of each counts.
+
+    Args:
+        place: As in ``find_widths``.
+        width: Of the roundings, shape (n,).
+        per_width: As in ``find_widths``.
+        per_square: As in ``find_widths``.
+        i: The block.
+        before: Border before the first that may reach into the block.
+        after: Border after the last.
+    """
+    begin, end = place[i + 1], place[i]
+    for other in range(before + 1, after):
+        if other <= i:
+            end = max(end, place[other] + width[other])
+        else:
+            begin = min(begin, place[other] - width[other])
+    begin, end = max(begin, place[i]), min(end, place[i + 1])
+    if begin >= end:
+        return 0.0
+    h = (end - begin) / (OVERLAP_POINTS - 1)
+    most = 0.0
+    for point in range(OVERLAP_POINTS):
+        used = 0.0
+        for other in range(before + 1, after):
+            t = abs(begin + h * point - place[other]) / width[other] if width[other] > 0.0 else 1.0
+            if t < 1.0:
+                ramp = (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 16.0
+                bend = t * (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 32.0
+                # Between two points a bend lies within h²/8 of its second derivative, half at most.
+                square = bend * width[other] ** 2 + h * h / 16.0
+                used += per_width[other] * width[other] * ramp + per_square[other] * square
+        most = max(most, used)
+    return most
+
+
+@numba.njit(cache=True)
 def find_widths(
     place: FloatArray, rounded: FloatArray, per_width: FloatArray, per_square: FloatArray
 ) -> FloatArray:
     """How far the rounding of each border reaches.
 
     Each border first takes the width that would use the tolerance if all its neighbours took the
-    same. Where the sum of what they then take passes the tolerance, those that reach there are
-    narrowed by that factor, which is enough because a narrower rounding is also a flatter one.
+    same. Where the sum of what they then take passes the tolerance, at a border or where roundings
+    meet between two, those that reach there are narrowed by that factor, which is enough because a
+    narrower rounding is also a flatter one.
 
     Args:
         place: Where each block begins and, last, where the last one ends, shape (n + 1,).
@@ -102,14 +149,21 @@ def find_widths(
                     place[other] - place[i], first[other], per_width[other], per_square[other]
                 )
         excess[i] = max(1.0, used)
+    within = np.ones(count)
+    if np.any(per_square > 0.0):
+        for i in range(count):
+            if i + 1 < count and (rounded[i] or rounded[i + 1]):
+                low = before[i] if rounded[i] else i
+                high = after[i + 1] if rounded[i + 1] else i + 1
+                within[i] = max(1.0, _between(place, first, per_width, per_square, i, low, high))
     width = np.zeros(count)
     for i in range(count):
         if first[i] == 0.0:
             continue
-        most = 1.0
+        most = max(1.0, within[i - 1], within[i])
         for other in range(before[i] + 1, after[i]):
             if abs(place[other] - place[i]) < first[i]:
-                most = max(most, excess[other])
+                most = max(most, excess[other], within[other - 1], within[other])
         if first[i] / most >= NARROWEST:
             width[i] = first[i] / most
     return width

@@ -16,8 +16,9 @@ from twin.motion.corner_kernels import MOST_NEIGHBOURS, find_widths
 from twin.motion.limits import MotionLimits
 from twin.nc.canonical import Corner, FloatArray
 
-CONTEXT = 4 * MOST_NEIGHBOURS
-"""Blocks on either side that the rounding of a border can depend on."""
+CONTEXT = 5 * MOST_NEIGHBOURS
+"""Blocks on either side that the path along a block can depend on: roundings reach that far, their
+widths depend on others' widths thrice as far, and those on the tolerances as far again."""
 
 KNEE_NOISE = 1e-9
 """Steps of derivatives below this are rounding of the geometry [1, or 1/mm]."""

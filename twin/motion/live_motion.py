@@ -196,7 +196,7 @@ class LiveMotion:
             self._finished = True
             parts.append(self._at_end())
             self._tick += 1
-        elif plan.at_block_end and not self._wanted.held:
+        elif plan.at_block_end and self._wanted.single_block and not self._wanted.held:
             # The panel's start button, not the plan, goes on from here.
             self._wanted = self._granted = dataclasses.replace(self._wanted, held=True)
         if self._dropped:

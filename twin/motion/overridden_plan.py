@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from twin.motion.blocks import BoolArray
 from twin.motion.phase_kernels import put_brake
 from twin.motion.phases import Phases, no_phases, phases_of, ways_on
 from twin.motion.pieces import Pieces
@@ -43,14 +44,19 @@ class _Drive:
         entry: As the window's, 0 where a block is to stop.
         ways: From ``find_reach``.
         block_end: Stretch before which a single block stops; -1: none.
-        stop: First stretch that must not be driven on, or n.
+        closed: Whether each stretch must not be driven on, shape (n,).
     """
 
     limits: FloatArray
     entry: FloatArray
     ways: FloatArray
     block_end: int
-    stop: int
+    closed: BoolArray
+
+    def stop_from(self, stretch: int) -> int:
+        """The first stretch from one on that must not be driven on, or n."""
+        ahead = self.closed[stretch:]
+        return stretch + int(np.argmax(ahead)) if np.any(ahead) else len(self.closed)
 
 
 class OverriddenPlan:
@@ -95,18 +101,19 @@ class OverriddenPlan:
         while self._state[4] < time and not self.ended:
             stretch = int(self._state[0])
             window, drive = self._window, self._drive
+            stop = drive.stop_from(stretch)
             self.at_block_end = stretch == drive.block_end
             if self.at_block_end:
                 self._stand_until(time)
             elif stretch >= window.due:
                 self._open()
-            elif self._wishes.held or stretch == drive.stop:
+            elif self._wishes.held or stretch == stop:
                 self._stand_until(time)
             else:
-                stop = min(drive.stop, window.due)
                 rows, stretches = find_phases(
-                    drive.limits, drive.entry, drive.ways, window.pause, stop, time, self._state
-                )
+                    drive.limits, drive.entry, drive.ways, window.pause, min(stop, window.due),
+                    time, self._state,
+                )  # fmt: skip
                 self._append(phases_of(window, rows, stretches))
 
     def wish(self, wishes: Wishes, time: float) -> bool:
@@ -231,11 +238,9 @@ def _drive(
     wanted = np.minimum(limits[1], override * np.where(rapid, limits[1], feed))
     limits[1] = 0.0 if wishes.held else wanted
     closed = (limits[1] < SLOWEST) & (limits[0] > 0.0)
-    closed[:stretch] = False
-    stop = int(np.argmax(closed)) if np.any(closed) else len(first)
     if block_end >= 0:
         entry[block_end] = 0.0
-        stop = min(stop, block_end)
+        closed[block_end] = True
         known = None
     ways = np.zeros((3, len(entry)))
     ways[:, stretch:] = find_reach(
@@ -243,4 +248,4 @@ def _drive(
         np.zeros((3, 0)) if known is None else known[:, stretch:] - [[0.0], [stretch], [0.0]],
     )  # fmt: skip
     ways[1] += stretch
-    return window, _Drive(limits, entry, ways, block_end, stop)
+    return window, _Drive(limits, entry, ways, block_end, closed)

@@ -53,7 +53,7 @@ def cut_blocks(
         for part in range(parts):
             cuts[part] = length[i] * part / parts
         found = parts
-        low, high = max(0, i - MOST_NEIGHBOURS + 1), min(count, i + MOST_NEIGHBOURS)
+        low, high = max(0, i - MOST_NEIGHBOURS + 1), min(count, i + MOST_NEIGHBOURS + 1)
         for other in range(low, high):
             if width[other] > 0.0:
                 for side in (-1.0, 1.0):
@@ -75,7 +75,7 @@ def cut_blocks(
         i = owner[piece]
         begin = place[i] + offset[piece]
         middle = begin + 0.5 * extent[piece]
-        low, high = max(0, i - MOST_NEIGHBOURS + 1), min(count, i + MOST_NEIGHBOURS)
+        low, high = max(0, i - MOST_NEIGHBOURS + 1), min(count, i + MOST_NEIGHBOURS + 1)
         for other in range(low, high):
             if abs(middle - place[other]) < width[other]:
                 away = place[i] - place[other] + offset[piece]

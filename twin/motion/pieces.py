@@ -192,8 +192,11 @@ def _constant_limits(
 
         straight = np.minimum(path_acceleration, (limits.acceleration / first).min(axis=1))
         ramp_jerk = np.minimum(path_jerk, (limits.jerk / first).min(axis=1))
-        # A ramp to v takes v / a without a jerk limit and a / j longer with it.
-        readiness = 1.0 / (1.0 + straight**2 / (ramp_jerk * velocity))
+        # A ramp to v takes v / a without a jerk limit and a / j longer with it; a dwell has none.
+        easing = np.divide(
+            straight**2 / velocity, ramp_jerk, out=np.zeros(len(length)), where=length > 0.0
+        )
+        readiness = 1.0 / (1.0 + easing)
         velocity = reachable_velocities(
             first, against_speeding, against_braking, bend + second.max(axis=1) > 0.0,
             length, velocity, ceilings, limits.acceleration,

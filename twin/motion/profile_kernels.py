@@ -22,6 +22,10 @@ velocity there."""
 SHORTEST_PHASE = 1e-10
 """Phases below this are rounding [s]."""
 
+SAME = 1e-12
+"""Relative difference of velocities that rounding makes: the brake between them would be longer
+than what is left of the way."""
+
 TIME_PRECISION = 1e-14
 """Of the end of a phase, relative to the time looked at."""
 
@@ -216,7 +220,9 @@ def find_phases(
             latest = (highest_a - a) / jerk
             duration, at_border, then = _longest(limits, entry, reach, i, x, v, a, j, latest, k)
         holds = a == 0.0 or gap > ROUNDING * highest_v
-        if extend and holds and duration < SHORTEST_PHASE and v > 0.0:
+        # With a huge jerk even the whole of a phase may be shorter than any that counts.
+        short = duration < SHORTEST_PHASE and not 0.0 < latest <= duration
+        if extend and holds and short and v > 0.0:
             j = 0.0
             latest = 2.0 * rest / v
             duration, at_border, then = _longest(limits, entry, reach, i, x, v, a, j, latest, k)
@@ -228,7 +234,8 @@ def find_phases(
                 duration, brake_in, then = sooner, i, i + 1
                 # Once per stretch: what rounding leaves over must not be weighed again.
                 compared_in = i
-        if duration > 0.0 and (duration >= SHORTEST_PHASE or at_border):
+        whole = at_border or duration >= latest or v <= 0.0
+        if duration > 0.0 and (duration >= SHORTEST_PHASE or whole):
             put_phase(phases, stretches, used, i, i, now, duration, x, v, a, j)
             used += 1
             now += duration
@@ -272,13 +279,13 @@ def find_phases(
         if v <= w and brake_in == i:
             brake_in = -1
             continue
-        if v <= w:
+        if v <= w * (1.0 + SAME):
             # Only rounding has kept the state from going on as it is.
             duration = rest / v
             put_phase(phases, stretches, used, i, i, now, duration, x, v, 0.0, 0.0)
             used += 1
             now += duration
-            i, x = i + 1, 0.0
+            i, x, v = i + 1, 0.0, min(v, w)
             continue
         spare = distance - brake_distance(v, w, deceleration, jerk)
         to_border = spare <= ROUNDING * distance

@@ -14,9 +14,13 @@ from twin.nc.canonical import FloatArray, IntArray
 FEED = "programmed feed"
 STOP = "stop at a block's end"
 SHORT = "block too short to speed up"
+BESIDE = "curve beside a slower place"
 
 NEAR = 1e-6
 """Share by which two bounds may differ and count as the same."""
+
+CLEARLY = 1e-3
+"""Share by which a velocity must stay below all its bounds for something else to bound it."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -70,20 +74,25 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
             fastest[f"jerk of {name} in a curve"] = np.cbrt(share / third[:, axis])
             hardest[f"acceleration of {name}"] = limits.acceleration[axis] / first[:, axis]
             smoothest[f"jerk of {name}"] = limits.jerk[axis] / first[:, axis]
+    names_of_bounds, bound = _least(fastest)
+    # What ``reachable_velocities`` takes away.
+    beside = pieces.velocity < bound * (1.0 - CLEARLY)
     return Reasons(
-        velocity=_least(fastest),
+        velocity=[
+            BESIDE if row else name for name, row in zip(names_of_bounds, beside, strict=True)
+        ],
         entry=_entries(pieces, limits, names),
-        acceleration=_least(hardest),
-        jerk=_least(smoothest),
+        acceleration=_least(hardest)[0],
+        jerk=_least(smoothest)[0],
     )
 
 
-def _least(bounds: dict[str, FloatArray]) -> list[str]:
-    """The name of the least bound of each row; of equals the one named first."""
+def _least(bounds: dict[str, FloatArray]) -> tuple[list[str], FloatArray]:
+    """The name of the least bound of each row, of equals the one named first; and the bound."""
     names = list(bounds)
     values = np.stack(list(bounds.values()))
     least = values.min(axis=0)
-    return [names[row] for row in np.argmax(values <= least * (1.0 + NEAR), axis=0)]
+    return [names[row] for row in np.argmax(values <= least * (1.0 + NEAR), axis=0)], least
 
 
 def _entries(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> list[str]:

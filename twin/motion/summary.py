@@ -184,7 +184,10 @@ def _slow_places(phases: Phases, why: Reasons) -> list[str]:
 
 
 def _reason_at(piece: int, x: float, phases: Phases, why: Reasons) -> str:
-    """What bounds the velocity at x in a piece: the nearest border that has a bound, or the piece."""
+    """What bounds the velocity at x in a piece.
+
+    The nearest border that has a bound, or the slower of the pieces that meet at the nearest one.
+    """
     if piece >= len(why.entry):
         return STOP
     nearer_end = x > 0.5 * phases.pieces.length[piece]
@@ -192,4 +195,6 @@ def _reason_at(piece: int, x: float, phases: Phases, why: Reasons) -> str:
     for border in borders:
         if border < len(why.entry) and why.entry[border]:
             return why.entry[border]
-    return why.velocity[piece]
+    beside = min(piece + 1, len(why.entry) - 1) if nearer_end else max(piece - 1, 0)
+    slower = min(piece, beside, key=lambda number: float(phases.pieces.velocity[number]))
+    return why.velocity[slower]

@@ -72,8 +72,11 @@ def find_transition(
                 highest = _slowest_within(v, a, highest, deceleration, jerk, before)
             w = highest
             for step in range(BISECTIONS):
-                end = min(max(0.0, brake_need(v, a, w, deceleration, jerk) - before), limits[0, p])
-                safe = find_brake(wanted, entry, reach, p, end, w, 0.0, 0.0, 0) >= 0
+                need = brake_need(v, a, w, deceleration, jerk)
+                end = min(max(0.0, need - before), limits[0, p])
+                # Between a stop and a third of the velocity the way grows with w.
+                fits = need <= after
+                safe = fits and find_brake(wanted, entry, reach, p, end, w, 0.0, 0.0, 0) >= 0
                 if safe and holds_on_the_way(
                     limits, entry, i, x, v, a, p + 1, w, deceleration, jerk, 1.0 + ROUNDING
                 ):

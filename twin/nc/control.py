@@ -134,6 +134,8 @@ class Control(ControlMotion):
                 self.words[word.address] = word
         if len(self.codes) > 1:
             self._check_groups()
+        if len(functions) > 1:
+            self._check_functions(functions)
         return functions
 
     def _has_switch(self, block: Block) -> bool:
@@ -189,6 +191,14 @@ class Control(ControlMotion):
                 performing = word
         order = {group: rank for rank, group in enumerate(self.dialect.groups)}
         self.codes.sort(key=lambda pair: order.get(pair[1].group, len(order)))
+
+    def _check_functions(self, functions: list[tuple[Word, MCode]]) -> None:
+        seen: dict[str, Word] = {}
+        for word, function in functions:
+            other = seen.setdefault(function.group or word.text, word)
+            if other is not word:
+                message = f"{other.text} and {word.text} exclude each other"
+                self.fail("conflicting-codes", message, word, hint="write them in two blocks")
 
     def _run_modal_words(self, reserved: str) -> None:
         words = self.words

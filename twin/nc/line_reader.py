@@ -12,6 +12,7 @@ from twin.nc.reporter import Reporter
 LARGEST_LABEL = 4_294_967_295
 """Largest N number (32 bits, as the Fagor manual states)."""
 
+_STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
 _BLANKS = re.compile(r"[ \t]*")
@@ -228,9 +229,17 @@ class LineReader:
         character = self._line[at]
         latin = character.upper().translate(_LOOKALIKES)
         address = self._grammar.address.match(self._line, at)
-        if latin != character.upper():
+        if "\u0400" <= character <= "\u04ff":
             message = f"'{character}' is a Cyrillic letter"
-            self._fail("foreign-letter", message, at, hint=f"write the Latin {latin}")
+            hint = f"write the Latin {latin}" if latin != character.upper() else self._comments()
+            self._fail("foreign-letter", message, at, hint=hint)
+        statement = _STATEMENT.match(self._line, at)
+        if statement is not None and self._grammar.statement is not None:
+            known = ", ".join(self._grammar.dialect.statements)
+            message = f"'{statement[0]}' is no statement of {self._grammar.dialect.name}"
+            self._fail(
+                "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"
+            )
         if address is not None:
             message = f"'{address[1]}' has no value"
             self._fail("missing-value", message, address.start(1), hint="write a number after it")

@@ -65,5 +65,5 @@ class ControlSettings:
     block_skip: bool = False
     """Blocks that begin with a slash are left out."""
 
-    step_limit: int = 50_000
+    step_limit: int = 20_000
     """Blocks that may be run again through jumps and loops before a program counts as endless."""

@@ -72,6 +72,13 @@ DECISIONS = (
         example="additional_axes",
     ),
     Decision(
+        "How does an axis go from G71 to G70?",
+        "With one slope over the length of the path, from where it stands at G71 to where the program "
+        "has it at G70, or at its end.",
+        "The library's page promises one slope and does not say what targets between them do.",
+        example="evenly_over_several_moves",
+    ),
+    Decision(
         "How fast is G0?",
         "FF, else F; as fast as the machine can where the program has set neither.",
         "The manual says so; the defaults of FF and F are inputs of the application.",

@@ -180,12 +180,13 @@ def _store(control: Control, name: str | None, change: float, *, add: bool) -> N
     if name is None:
         known.counter = known.counter + change if add else change
         return
+    must_exist = add or name.startswith("#")
     try:
-        before = read_variable(control, name, None) if add else 0.0
+        before = read_variable(control, name, None) if must_exist else 0.0
     except ExpressionError as error:
         control.fail(error.code, str(error), None, error.hint)
     table = known.local[-1] if name.startswith("#") else known.plc
-    table[name] = before + change
+    table[name] = before + change if add else change
 
 
 def write_variable(control: Control) -> None:

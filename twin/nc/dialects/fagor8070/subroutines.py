@@ -109,7 +109,8 @@ def heading(control: Control, statement: Statement) -> None:
         return
     if control.block.line - 1 != memory_of(control).main:
         message = "a heading can stand only before the program or a local subroutine"
-        refuse(control, statement, "heading", message, hint="end a subroutine by M17")
+        hint = "end the program by M30 and a subroutine by M17 before the next begins"
+        refuse(control, statement, "heading", message, hint)
     if _TITLE.fullmatch(statement.text) is None:
         message = "nothing but a comment may follow the program's name"
         hint = "the 8070's heading is %NAME; what follows a comma is the CNC 8055's"
