@@ -199,7 +199,11 @@ class PanelPlugin(plugin.ViewerPlugin):
     @messages.handler
     def on_room(self, snapshot: RoomSnapshot) -> None:
         """Take over what the machine shows."""
-        self.now = snapshot.now
+        now, before = snapshot.now, self.now
+        if now.modal is None and before is not None:
+            # A screen goes on showing what was in force when the last block ended.
+            now = dataclasses.replace(now, modal=before.modal)
+        self.now = now
         self._trail.add(snapshot.now.trail)
 
     @messages.handler
