@@ -13,19 +13,22 @@ import numpy as np
 from benches.row import REPEATS, Row, median_seconds
 
 from twin.chain import Run
+from twin.cutting.cut import Cutter
 from twin.cutting.height_map import blank
 from twin.cutting.sweep_kernels import sweep
 from twin.cutting.tools import profile
 from twin.job import StockTable, ToolTable, VideoTable
+from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.preparation import prepare
 from twin.progress import no_progress
-from twin.recording import open_recording
+from twin.recording import Samples, open_recording
 from twin.render.canvas import Canvas, Pixels
 from twin.render.film import film
 from twin.render.stage import Scene
 from twin.replay import scene_of
 from twin.resources import resource_root
+from twin.toolpath.part_frame import PartFrame
 
 FREECAD = "FreeCAD height map, published"
 PUBLISHED = {0.1: 44e3, 0.2: 146e3}
@@ -36,10 +39,11 @@ MOVE_MM = 0.1
 PLATE = StockTable(shape="box", size=(60.0, 60.0, 10.0))
 TOOL = ToolTable(number=1, diameter=6.0)
 FRAMES = 50
+RING_CELLS = (0.8, 0.4, 0.2, 0.1)
 
 
 def rows() -> Iterator[Row]:
-    """Cutting at two cells, then a film of the demo's scene."""
+    """Cutting at two cells, a ring against its formula, then a film of the demo's scene."""
     for cell, published in PUBLISHED.items():
         yield Row(
             room="picture",
@@ -49,6 +53,8 @@ def rows() -> Iterator[Row]:
             peer=FREECAD,
             peer_figure=published,
         )
+    for cell in RING_CELLS:
+        yield Row("picture", f"ring cut by C at X100, cell {cell} mm: volume off", ring(cell), "%")
     with tempfile.TemporaryDirectory() as folder:
         run = Run(prepare(resource_root("programs") / "mefi" / "helix.toml"))
         survey = run.survey()
@@ -86,6 +92,22 @@ def moves_per_second(cell: float) -> float:
         )  # fmt: skip
 
     return (len(points) - 1) / median_seconds(cut)
+
+
+def ring(cell: float) -> float:
+    """How far the volume of a groove cut by turning C alone is off 2 pi R width depth [%]."""
+    tool, depth, radius = ToolTable(number=1, diameter=6.0), 2.0, 100.0
+    stock = StockTable(shape="cylinder", diameter=240.0, height=20.0, cell=cell)
+    cutter = Cutter(stock, tool, PartFrame(rotary=3, center=(0.0, 0.0)), np.zeros(4))
+    count = 20_000
+    position = np.tile([radius, 0.0, -depth, 0.0], (count, 1))
+    position[:, 3] = np.linspace(0.0, 360.0, count)
+    still, column, line = np.zeros_like(position), np.zeros(count), np.ones(count, np.int64)
+    time: FloatArray = 1e-3 * np.arange(count, dtype=np.float64)
+    setpoint = Setpoints(time, line, line - 1, column, position, still, still)
+    cutter.add(Samples(setpoint, position, still, still), np.zeros(count, np.bool_))
+    exact = 2 * np.pi * radius * tool.diameter * depth
+    return 100.0 * abs(cutter.result().removed_mm3 / exact - 1.0)
 
 
 def _film(scene: Scene, video: VideoTable, out: Path) -> Iterator[Row]:

@@ -40,7 +40,7 @@ def inspection_still(
     """
     scene.require((camera,))
     paint = deviation_colours(found.deviation_mm, found.tolerance_um / UM_PER_MM)
-    with stage(scene, size, quality_named(quality), paint=paint, trail=False) as play:
+    with stage(scene, size, quality_named(quality).for_still, paint=paint, trail=False) as play:
         for samples in scene.recording.chunks():
             play.advance(samples)
         pixels = play.picture(camera).copy()

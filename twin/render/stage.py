@@ -18,7 +18,8 @@ from twin.program_notes import ProgramNotes
 from twin.recording import Recording, Samples
 from twin.render.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
 from twin.render.canvas import Canvas, Focus, Pixels, Quality, canvas, prepare
-from twin.render.placement import ROTARY_TABLE, Joints, Placement, place
+from twin.render.chips import Chips, chips
+from twin.render.placement import ROTARY_TABLE, Joints, Placement, place, tip_position
 from twin.render.skin import Skin
 from twin.render.stock_surface import StockSurface
 from twin.render.tool_body import ToolBodies
@@ -33,6 +34,9 @@ WARNINGS = {
     "shank": "shank in the material",
     "holder": "holder in the material",
 }
+
+OF_LATE_S = 0.02
+"""What was cut within this time throws chips [s]."""
 
 _NO_POINTS = np.zeros(0, np.int64)
 
@@ -127,6 +131,7 @@ class Stage:
         self._move = 0
         self._joints = Joints(scene.machine, model)
         self._samples = 0
+        self._rate = 0.0
         self._changed: Rectangle = (0, 0, 0, 0)
         self._position = np.zeros(len(scene.machine.axes))
         mujoco.mj_forward(model, self.data)
@@ -140,8 +145,17 @@ class Stage:
         self._move = int(samples.setpoint.move[-1])
         self._tool = self._scene.notes.tools.at(self._move)
         if self._cutter is not None:
-            self._cutter.add(samples, self._scene.notes.is_rapid(samples.setpoint.move))
-            self._changed = union(self._changed, self._cutter.changed)
+            period = self._scene.recording.header.period_s
+            late = min(len(samples), max(1, round(OF_LATE_S / period)))
+            self._cut(samples[:-late])
+            self._rate = self._cut(samples[-late:]) / (late * period)
+
+    def _cut(self, samples: Samples) -> float:
+        """Take the samples' material off; returns how much [mm³]."""
+        assert self._cutter is not None
+        removed = self._cutter.add(samples, self._scene.notes.is_rapid(samples.setpoint.move))
+        self._changed = union(self._changed, self._cutter.changed)
+        return removed
 
     def warning(self, line: int) -> str:
         """What the running block does to the part that it must not; empty for nothing."""
@@ -154,6 +168,7 @@ class Stage:
     def picture(self, *cameras: str) -> Pixels:
         """Draw what cameras see now, side by side in equal fields, shape (height, width, 3)."""
         self._refresh()
+        spray = self._spray()
         width, height = self._size
         columns = math.ceil(math.sqrt(len(cameras)))
         rows = -(-len(cameras) // columns)
@@ -161,7 +176,7 @@ class Stage:
         whole = np.full((height, width, 3), BETWEEN_FIELDS, np.uint8)
         for number, camera in enumerate(cameras):
             number_of = int(self.model.camera(camera).id)
-            view = self._drawing.draw(self.data, number_of, field, self._focus(camera))
+            view = self._drawing.draw(self.data, number_of, field, self._focus(camera), spray)
             if len(cameras) == 1:
                 return view
             top, left = field[1] * (number // columns), field[0] * (number % columns)
@@ -173,6 +188,11 @@ class Stage:
         """Number of the geom that every pixel shows now, -1 for none, shape (height, width)."""
         self._refresh()
         return self._drawing.draw_objects(self.data, int(self.model.camera(camera).id))
+
+    def _spray(self) -> Chips:
+        """Chips of what was removed of late."""
+        tip = tip_position(self.model, self.data, self._tool.length)
+        return chips(tip, MM * self._tool.diameter, self._rate, self._samples)
 
     def _focus(self, camera: str) -> Focus:
         """Where a camera needs shadows: around the part, or all over the machine."""
