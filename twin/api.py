@@ -28,7 +28,8 @@ from twin.outcome import Outcome
 from twin.preparation import prepare
 from twin.progress import no_progress
 from twin.recording import open_recording
-from twin.results import clear_results, write_results
+from twin.results import RESULT_FILES, write_results
+from twin.run_folder import run_folder
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,8 +101,8 @@ def run(
     folder = Path(out)
     chain = Run(prepare(Path(program), dialect=dialect, machine=machine))
     survey = chain.survey()
-    clear_results(folder)
-    outcome = chain.execute(survey, folder, no_progress)
-    write_results(chain, outcome, folder)
+    with run_folder(folder, RESULT_FILES):
+        outcome = chain.execute(survey, folder, no_progress)
+        write_results(chain, outcome, folder)
     recording = folder / "recording.h5"
     return FinishedRun(outcome=outcome, recording=recording if recording.is_file() else None)

@@ -27,12 +27,13 @@ from twin.motion.settle import settle
 from twin.motion_limits import motion_limits
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.diagnostics import Diagnostic
+from twin.nc.source import Source
 from twin.outcome import Outcome
 from twin.placement import part_zero
 from twin.preparation import Preparation
 from twin.program_notes import NoteTaker, ProgramNotes
 from twin.progress import Progress
-from twin.recording import RecordingHeader, Samples, record
+from twin.recording import LONGEST_TEXT, RecordingHeader, Samples, record
 from twin.stages import StageClock
 from twin.stock_alarm import fixture_alarm, stock_alarm
 from twin.toolpath.part_frame import PartFrame
@@ -246,7 +247,7 @@ class Run:
             part_zero=self.part_zero,
             part_frame=self.part_frame,
             program=preparation.source.name,
-            program_text=preparation.source.text,
+            program_text=_text_to_keep(preparation.source),
             program_sha256=preparation.source.sha256,
             dialect=preparation.dialect.name,
             machine=preparation.machine.file.name,
@@ -255,6 +256,10 @@ class Run:
             job=preparation.job.file.model_dump_json(exclude_unset=True),
             machine_file=str(preparation.machine.path.resolve()),
         )
+
+
+def _text_to_keep(source: Source) -> str:
+    return source.text if source.lines.data.nbytes <= LONGEST_TEXT else ""
 
 
 def _keep_clear(guard: FixtureGuard | None, samples: Samples) -> tuple[Samples, Alarm | None]:

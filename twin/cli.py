@@ -1,5 +1,6 @@
 """``twin``: the commands together, and what is said when one of them fails."""
 
+import signal
 import sys
 from typing import Annotated, NoReturn
 
@@ -11,7 +12,7 @@ from twin.command_line.machines import machine_app
 from twin.command_line.pictures import render
 from twin.command_line.programs import interpret, plan, run
 from twin.command_line.training import train
-from twin.command_line.verdicts import check, compare, export
+from twin.command_line.verdicts import check, compare, export, sweep
 from twin.errors import ExitCode, TwinError
 
 app = typer.Typer(
@@ -47,6 +48,7 @@ for command in (
     run,
     render,
     check,
+    sweep,
     compare,
     export,
     train,
@@ -60,6 +62,8 @@ app.add_typer(machine_app, name="machine")
 
 def main() -> None:
     """Run the command line and exit with the code that the contract promises."""
+    # Asked to end, by a batch system say, is the same as Ctrl-C: files are left whole or absent.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         app()
     except TwinError as error:

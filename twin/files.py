@@ -6,6 +6,9 @@ import secrets
 from collections.abc import Iterator
 from pathlib import Path
 
+LEFTOVERS = ".*.part.*"
+"""Files that a killed process left half-written."""
+
 
 @contextlib.contextmanager
 def complete_or_absent(path: Path) -> Iterator[Path]:

@@ -1,15 +1,17 @@
 """The job file: which program, on which machine, with which stock, tools and tolerances."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
 import pydantic
 from pydantic import Field
 
+from twin.changes import Change, changed
 from twin.errors import ConfigError
 from twin.fixture import FixtureTable
 from twin.stl_file import stl_extent
-from twin.toml_file import Table, read_toml
+from twin.toml_file import Data, Table, checked, read_toml
 
 Positive = Annotated[float, Field(gt=0)]
 
@@ -226,7 +228,7 @@ class JobFile(Table):
     """Values of variables that the program reads but does not set, by their name in it."""
     block_skip: bool = False
     """Blocks that begin with a slash are left out."""
-    step_limit: Annotated[int, Field(gt=0)] = 50_000
+    step_limit: Annotated[int, Field(gt=0)] = 20_000
     """Blocks that may be run again through jumps and loops before the program counts as endless."""
     tolerance: ToleranceTable = ToleranceTable()
     baseline: BaselineTable = BaselineTable()
@@ -266,26 +268,31 @@ def _runs(job: Job, program: Path) -> bool:
     return job.program.resolve() == program.resolve()
 
 
-def read_job(path: Path) -> Job:
+def read_job(path: Path, changes: Sequence[Change] = ()) -> Job:
     """Read a job file, or make the default job of an NC program.
 
     An NC program with a job file of the same stem beside it is run by that job.
 
     Args:
         path: A ``.toml`` job file, or an NC program.
+        changes: Values under ``job.`` to change.
 
     Raises:
         ConfigError: The job file is wrong, or the program does not exist.
     """
+
+    def change(data: Data) -> Data:
+        return changed(data, "job", changes)
+
     beside = path.with_suffix(".toml")
     if path.suffix == ".toml":
-        job = Job(path.parent, read_toml(path, JobFile), path)
+        job = Job(path.parent, read_toml(path, JobFile, prepare=change), path)
     elif beside.is_file() and _runs(
-        job := Job(path.parent, read_toml(beside, JobFile), beside), path
+        job := Job(path.parent, read_toml(beside, JobFile, prepare=change), beside), path
     ):
         pass
     else:
-        job = Job(path.parent, JobFile(program=path.name))
+        job = Job(path.parent, checked(change({"program": path.name}), JobFile, str(path)))
     if not job.program.is_file():
         raise ConfigError(f"{job.program}: no such NC program")
     return job

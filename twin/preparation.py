@@ -1,10 +1,13 @@
 """From a job to everything that a run needs: the program, its dialect, the machine, the places."""
 
 import dataclasses
+import functools
+from collections.abc import Sequence
 from pathlib import Path
 
 import pydantic
 
+from twin.changes import Change
 from twin.errors import RecordingError, UsageError
 from twin.job import Job, JobFile, read_job
 from twin.machine.config import Machine, read_machine
@@ -40,14 +43,24 @@ class Preparation:
         """A fresh pass over the program."""
         return Interpretation(self.source, self.dialect, self.settings)
 
-    @property
+    @functools.cached_property
     def start(self) -> FloatArray:
-        """Where the axes stand at the program's start, program coordinates, shape (k,)."""
-        return start_position(self.job.file, self.machine)
+        """Where the axes stand at the program's start, program coordinates, shape (k,).
+
+        The job says it, or the program itself before its first move (G92 of ``codesys``).
+        """
+        chunks = (chunk.moves for chunk in self.interpretation().chunks())
+        begin = next((moves.start[0] for moves in chunks if len(moves)), None)
+        return start_position(self.job.file, self.machine) if begin is None else begin
 
 
 def prepare(
-    path: Path, *, dialect: str | None = None, machine: str | None = None, strict: bool = False
+    path: Path,
+    *,
+    dialect: str | None = None,
+    machine: str | None = None,
+    strict: bool = False,
+    changes: Sequence[Change] = (),
 ) -> Preparation:
     """Read a job, or a program with its job beside it, and all that it names.
 
@@ -56,6 +69,7 @@ def prepare(
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine; a path is relative to the working folder.
         strict: Warnings of the interpreter are errors.
+        changes: Values of the job (``job.``) and the machine file (``machine.``) to change.
 
     Raises:
         UsageError: A file is missing or wrong, or the dialect cannot be told.
@@ -64,18 +78,25 @@ def prepare(
         raise UsageError(f"{path}: a folder; twin check runs the programs in a folder")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
-    return prepare_job(read_job(path), dialect=dialect, machine=machine, strict=strict)
+    return prepare_job(
+        read_job(path, changes), dialect=dialect, machine=machine, strict=strict, changes=changes
+    )
 
 
 def prepare_job(
-    job: Job, *, dialect: str | None = None, machine: str | None = None, strict: bool = False
+    job: Job,
+    *,
+    dialect: str | None = None,
+    machine: str | None = None,
+    strict: bool = False,
+    changes: Sequence[Change] = (),
 ) -> Preparation:
     """Read all that a job names; arguments and errors as for ``prepare``."""
     if machine is None:
         found = machine_file(job.file.machine, beside=job.folder)
     else:
         found = machine_file(machine)
-    twin_machine = read_machine(found).with_fixtures(job.file.fixtures)
+    twin_machine = read_machine(found, changes).with_fixtures(job.file.fixtures)
     name = dialect or job.file.dialect
     named = None if name is None else dialect_named(name)
     source = read_source(job.program, named)
@@ -111,10 +132,15 @@ def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> 
     found = read_machine(machine_file(machine or beside)).with_fixtures(file.fixtures)
     job = Job(Path(), file)
     dialect = dialect_named(header.dialect)
+    source = source_from_text(header.program_text, header.program)
+    if not header.program_text:
+        source = read_source(Path(header.program), dialect)
+        if source.sha256 != header.program_sha256:
+            raise RecordingError(f"{source.name}: is not the program that was recorded")
     return Preparation(
         job=job,
         machine=found,
-        source=source_from_text(header.program_text, header.program),
+        source=source,
         dialect=dialect,
         settings=_control_settings(job, found, strict=False),
     )
@@ -133,6 +159,7 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
             tool.number: ToolData(radius=tool.diameter / 2.0, length=tool.length)
             for tool in job.file.tools
         },
+        any_tool="tools" not in job.file.model_fields_set,
         offsets=job.file.offsets,
         machine_zero=_machine_zero(job, machine),
         variables=job.file.variables,

@@ -7,87 +7,55 @@ same folder, for HDF5 writes it so that others may read it (single writer, multi
 """
 
 import contextlib
-import dataclasses
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
+from twin.disk_room import DiskRoom
 from twin.errors import RecordingError
 from twin.files import complete_or_absent
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray
+from twin.recording_form import (
+    COLUMNS,
+    CONTOUR,
+    JOINT_COLUMNS,
+    LATER_ATTRIBUTES,
+    LONGEST_TEXT,
+    STEPS,
+    TEXT_ATTRIBUTES,
+    RecordingHeader,
+    Samples,
+)
 from twin.toolpath.part_frame import PartFrame
 
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Samples:
-    """A chunk of n samples over k axes: what was asked for and what the joints did.
-
-    Attributes:
-        setpoint: The setpoints of the same instants, machine coordinates.
-        joint_position: Shape (n, k) [mm or deg], machine coordinates.
-        joint_velocity: Shape (n, k) [mm/s or deg/s].
-        drive_force: Shape (n, k) [N or N m].
-    """
-
-    setpoint: Setpoints
-    joint_position: FloatArray
-    joint_velocity: FloatArray
-    drive_force: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.setpoint)
-
-    def __getitem__(self, index: slice) -> "Samples":
-        """A run of samples, as columns again."""
-        return Samples(*(getattr(self, field.name)[index] for field in dataclasses.fields(self)))
+__all__ = [
+    "CONTOUR",
+    "LONGEST_TEXT",
+    "Recording",
+    "RecordingHeader",
+    "RecordingWriter",
+    "Samples",
+    "open_growing",
+    "open_recording",
+    "record",
+]
 
 
-@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class RecordingHeader:
-    """What a recording says about itself; the attributes of the file."""
-
-    axes: Axes
-    period_s: float
-    part_zero: FloatArray
-    """Machine coordinates of program zero, shape (k,) [mm or deg]."""
-    part_frame: PartFrame
-    program: str
-    program_text: str
-    program_sha256: str
-    dialect: str
-    machine: str
-    twin_version: str
-    mujoco_version: str
-    job: str = ""
-    """The job as JSON, files in it as whole paths; empty in recordings that were made without."""
-    machine_file: str = ""
-    """Where the machine file lay."""
-
-
-_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "time": ("time", "s"),
-    "line": ("line", ""),
-    "move": ("move", ""),
-    "fraction": ("fraction", ""),
-    "setpoint/position": ("position", "mm or deg"),
-    "setpoint/velocity": ("velocity", "mm/s or deg/s"),
-    "setpoint/acceleration": ("acceleration", "mm/s^2 or deg/s^2"),
-}
-_JOINT_COLUMNS: Mapping[str, tuple[str, str]] = {
-    "joint/position": ("joint_position", "mm or deg"),
-    "joint/velocity": ("joint_velocity", "mm/s or deg/s"),
-    "drive/force": ("drive_force", "N or N m"),
-}
-CONTOUR = "contour"
-"""Dataset of the contour error, shape (n,) [µm]; missing where nobody compared."""
 _ROWS_PER_CHUNK = 4096
 _FORMAT = ("v110", "v110")
 """The oldest format of HDF5 that can be read while it is written."""
+
+_TEXT = "program_text"
+
+_BOOKKEEPING = 1 << 20
+"""What HDF5 may write besides columns [bytes]: attributes, and where the chunks lie."""
+_MOST_OF_A_LETTER = 4
+"""In UTF-8 [bytes]."""
 
 
 class RecordingWriter:
@@ -97,7 +65,11 @@ class RecordingWriter:
         self._file = file
         self._count = 0
         width = len(header.axes)
-        for path, (name, unit) in {**_COLUMNS, **_JOINT_COLUMNS}.items():
+        self._room = DiskRoom(file.id.get_vfd_handle(), Path(file.filename))
+        self._hold_room(len(header.program_text) * _MOST_OF_A_LETTER)
+        values = sum(width if "/" in path else 1 for path in (*COLUMNS, *JOINT_COLUMNS, CONTOUR))
+        self._row_bytes = values * np.dtype(np.float64).itemsize
+        for path, (name, unit) in {**COLUMNS, **JOINT_COLUMNS}.items():
             kind = np.int64 if name in ("line", "move") else np.float64
             self._create(path, (0, width) if "/" in path else (0,), kind, unit)
         _write_attributes(file, header)
@@ -120,24 +92,33 @@ class RecordingWriter:
         Args:
             samples: n samples.
             contour_um: Their contour errors, shape (n,) [µm]; for all chunks or for none.
+
+        Raises:
+            OSError: The disk is full.
         """
         end = self._count + len(samples)
+        # The last chunk of each column is written once more when it was not full.
+        self._hold_room((len(samples) + _ROWS_PER_CHUNK) * self._row_bytes)
         if contour_um is not None:
             if CONTOUR not in self._file:
                 self._create(CONTOUR, (0,), np.float64, "um")
             self._put(CONTOUR, contour_um, end)
-        for path, (name, _) in _COLUMNS.items():
+        for path, (name, _) in COLUMNS.items():
             self._put(path, getattr(samples.setpoint, name), end)
-        for path, (name, _) in _JOINT_COLUMNS.items():
+        for path, (name, _) in JOINT_COLUMNS.items():
             self._put(path, getattr(samples, name), end)
         self._count = end
         self._file.flush()
+
+    def _hold_room(self, size: int) -> None:
+        self._room.hold(self._file.id.get_filesize() + size + _BOOKKEEPING)
 
     def _put(self, path: str, values: np.ndarray[Any, Any], end: int) -> None:
         dataset = self._file[path]
         assert isinstance(dataset, h5py.Dataset)
         dataset.resize(end, axis=0)
-        dataset[self._count : end] = values
+        step = STEPS.get(path)
+        dataset[self._count : end] = values if step is None else np.rint(values / step) * step
 
 
 def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
@@ -151,22 +132,12 @@ def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
     )
     attributes["table_center"] = header.part_frame.center
     attributes["table_zero"] = header.part_frame.turn_zero
-    for name in (*_TEXT_ATTRIBUTES, *_LATER_ATTRIBUTES):
+    for name in (*TEXT_ATTRIBUTES, *LATER_ATTRIBUTES):
         attributes[name] = getattr(header, name)
+    text = np.frombuffer(header.program_text.encode("utf-8", "surrogatepass"), np.uint8)
+    compression = "gzip" if len(text) else None
+    file.create_dataset(_TEXT, data=text, compression=compression)
     attributes["complete"] = False
-
-
-_TEXT_ATTRIBUTES = (
-    "program",
-    "program_text",
-    "program_sha256",
-    "dialect",
-    "machine",
-    "twin_version",
-    "mujoco_version",
-)
-_LATER_ATTRIBUTES = ("job", "machine_file")
-"""Recordings of earlier versions lack them."""
 
 
 @contextlib.contextmanager
@@ -176,12 +147,16 @@ def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
     Args:
         path: The file to be.
         header: What the recording says about itself.
+
+    Raises:
+        OSError: It cannot be written.
     """
     with complete_or_absent(path) as temporary:
         with h5py.File(temporary, "w", libver=_FORMAT) as file:
             writer = RecordingWriter(file, header)
             file.swmr_mode = True
             yield writer
+        # Opened again, HDF5 also gives the room back that was held and not needed.
         with h5py.File(temporary, "r+", libver=_FORMAT) as file:
             file.attrs["complete"] = True
 
@@ -205,7 +180,7 @@ class Recording:
 
     def refresh(self) -> int:
         """See what has been appended since; how many samples there are now."""
-        datasets = [self._dataset(name) for name in (*_COLUMNS, *_JOINT_COLUMNS)]
+        datasets = [self._dataset(name) for name in (*COLUMNS, *JOINT_COLUMNS)]
         for dataset in datasets:
             dataset.refresh()
         # The columns grow one after the other: only what all of them have is whole.
@@ -237,11 +212,11 @@ class Recording:
         for first in range(0, len(self), rows):
             here = slice(first, min(first + rows, len(self)))
             setpoint = Setpoints(
-                **{name: self._dataset(path)[here] for path, (name, _) in _COLUMNS.items()}
+                **{name: self._dataset(path)[here] for path, (name, _) in COLUMNS.items()}
             )
             yield Samples(
                 setpoint,
-                **{name: self._dataset(path)[here] for path, (name, _) in _JOINT_COLUMNS.items()},
+                **{name: self._dataset(path)[here] for path, (name, _) in JOINT_COLUMNS.items()},
             )
 
 
@@ -258,9 +233,17 @@ def _read_header(file: h5py.File) -> RecordingHeader:
             center=tuple(values["table_center"]),
             turn_zero=values["table_zero"],
         ),
-        **{name: values[name] for name in _TEXT_ATTRIBUTES},
-        **{name: values.get(name, "") for name in _LATER_ATTRIBUTES},
+        program_text=_program_text(file),
+        **{name: values[name] for name in TEXT_ATTRIBUTES},
+        **{name: values.get(name, "") for name in LATER_ATTRIBUTES},
     )
+
+
+def _program_text(file: h5py.File) -> str:
+    kept = file.get(_TEXT)
+    if isinstance(kept, h5py.Dataset):
+        return kept[:].tobytes().decode("utf-8", "surrogatepass")
+    return str(file.attrs[_TEXT])  # recordings of earlier versions
 
 
 @contextlib.contextmanager

@@ -12,7 +12,10 @@ from twin.compare.result import RunSummary, result, write_result
 from twin.outcome import Outcome
 
 RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
-"""What a run may leave; an earlier run's files of these names are removed when one begins."""
+"""What a run may leave; an earlier run's files of these names are removed when one begins.
+
+The result, written last, is removed first: where it stands, everything that it speaks of is whole.
+"""
 
 
 def write_results(run: Run, outcome: Outcome, folder: Path) -> None:
@@ -56,12 +59,6 @@ def report_of(
         result=content,
         stills=[("The end of the run", still)] if still is not None and still.is_file() else [],
     )
-
-
-def clear_results(folder: Path) -> None:
-    """Remove what an earlier run left in a folder, so that nothing is taken for this one's."""
-    for name in RESULT_FILES:
-        (folder / name).unlink(missing_ok=True)
 
 
 def _summary(run: Run, outcome: Outcome) -> RunSummary:

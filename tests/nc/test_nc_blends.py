@@ -189,6 +189,12 @@ def test_a_loop_is_cut_out_where_it_crosses() -> None:
     assert moves.end[:, :2].tolist() == [[8.0, 0.0], [8.0, -10.0]]
 
 
+def test_a_second_g61_changes_nothing() -> None:
+    text = "N10 G61 N20 G1 X20 F10 N30 Y10 N40 X8 {again} N50 Y-10 N60 G60"
+    once, twice = (good(text.format(again=each), "codesys").moves for each in ("", "N45 G61"))
+    assert twice.end.tolist() == once.end.tolist()
+
+
 def test_loops_of_arcs_are_cut_too() -> None:
     text = "N10 G61 N20 G1 X20 F10 N30 G3 X10 Y0 I-5 J5 N40 G1 Y-20 N50 G60"
     moves = good("N10 G0 X0 Y5 N15 " + text[4:], "codesys").moves

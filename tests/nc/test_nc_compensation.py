@@ -101,7 +101,7 @@ def test_a_lead_from_the_wrong_side_is_warned_of() -> None:
 @settings(max_examples=40, derandomize=True, deadline=None)
 @given(angle=st.integers(0, 355), far=st.floats(10.0, 60.0))
 def test_indirect_leads_never_cut_the_first_point(angle: int, far: float) -> None:
-    """Unless they come from ahead, on the other side: no way leads around there."""
+    """Unless they come from ahead or the other side: no way leads around there."""
     x, y = far * math.cos(math.radians(angle)), far * math.sin(math.radians(angle))
     text = f"G136\nG00 X{x:.6f} Y{y:.6f}\nG41 G01 X0 Y0 F100\nY40\nX60\nG40 X100 Y80\nM30"
     outcome = good(text, "fagor8070", tools=TOOLS)
@@ -109,7 +109,7 @@ def test_indirect_leads_never_cut_the_first_point(angle: int, far: float) -> Non
     lead = moves[moves.line == 3]
     path = sampled(lead)[:, :2]
     free = np.linalg.norm(path, axis=1).min() > RADIUS - 1e-6
-    assert free or (outcome.codes == ["compensation-lead"] and 0 < angle < 90)
+    assert free or (outcome.codes == ["compensation-lead"] and 0 < angle <= 90)
     np.testing.assert_allclose(moves.start[moves.line == 4][0, :2], [-RADIUS, 0.0], atol=1e-9)
 
 
@@ -118,6 +118,22 @@ def test_a_vertical_move_beside_the_contour_stays_there() -> None:
     moves = good(text, "gost", tools=TOOLS).moves
     np.testing.assert_array_equal(moves.start[1:], moves.end[:-1])
     assert moves.end[:, 2].tolist() == [0.0, 0.0, 0.0, -2.0, -2.0, -2.0, -2.0]
+
+
+@pytest.mark.parametrize(
+    ("code", "radius", "lost"),
+    [("G41", 45.0, math.degrees(math.asin(5.0 / 45.0))), ("G42", 55.0, 0.0)],
+)
+def test_a_helix_of_half_turns_keeps_them(code: str, radius: float, lost: float) -> None:
+    """Inside, it begins where the parallel of the line before meets it."""
+    text = (
+        f"G00 X-10 Y-10\n{code} G01 X0 Y0 F100\nX50\nG03 X-50 Y0 I-50 Z45 K10\nG01 Y-30\n"
+        "G40 Y-50\nM30"
+    )
+    moves = good(text, "fagor8070", tools={1: ToolData(5.0, 60.0)}).moves
+    helix = moves[moves.line == 4]
+    assert helix.sweep[0] == pytest.approx(4.5 * 360.0 - lost)
+    np.testing.assert_allclose(helix.end[0, :3], [-radius, 0.0, 45.0], atol=1e-9)
 
 
 @pytest.mark.parametrize("code", ["G41", "G42"])

@@ -322,7 +322,8 @@ def test_codesys_shifts_and_positions() -> None:
         "N80 G56 X50 N90 X51",
         "codesys",
     )
-    assert outcome.moves.end[:, 0].tolist() == [1.0, 90.0, 95.0, 96.0]
+    assert outcome.moves.start[0, 0] == 10.0
+    assert outcome.moves.end[:, 0].tolist() == [11.0, 100.0, 105.0, 106.0]
     assert outcome.end(2)["Y"] == 1.0
 
 
@@ -425,6 +426,11 @@ def test_fagor_incremental_words() -> None:
     assert outcome.end(1) == pytest.approx({"X": 15.0, "Y": 3.0, "Z": 0.0, "C": 0.0})
     assert outcome.end(2)["X"] == 16.0
     assert outcome.position["Y"] == pytest.approx(15.0)
+
+
+def test_fagor_axes_by_number_take_computed_values() -> None:
+    outcome = good("P1=10\nG1 X1=P1 Y1=[P1/2] F100\nX1=[P1]I Y = -P1\nM30", "fagor8070")
+    assert outcome.moves.end[:, :2].tolist() == [[10.0, 5.0], [20.0, -10.0]]
 
 
 def test_fagor_pole_follows_current_position_and_plane() -> None:

@@ -50,6 +50,7 @@ class CheckOutcome:
         wall_s: How long the check took [s].
         findings: Why it does not pass; empty when it does.
         warnings: What the interpreter had to say beside that.
+        changes: What a sweep changed for it, keys of job or machine and their values.
     """
 
     program: str
@@ -61,6 +62,7 @@ class CheckOutcome:
     wall_s: float = 0.0
     findings: tuple[Finding, ...] = ()
     warnings: tuple[Finding, ...] = ()
+    changes: tuple[tuple[str, Any], ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -71,4 +73,16 @@ class CheckOutcome:
         """The outcome as plain values."""
         content = dataclasses.asdict(self)
         content["exit_code"] = int(self.exit_code)
+        content["changes"] = dict(self.changes)
         return content
+
+
+def died(task: str) -> CheckOutcome:
+    """What became of a task whose process died."""
+    message = "the process that ran it died; out of memory?"
+    return CheckOutcome(
+        program=task,
+        verdict="error",
+        exit_code=ExitCode.FAILED,
+        findings=(Finding("process-died", message, task),),
+    )

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from twin.alarm_text import alarm_diagnostic
 from twin.check.outcome import CheckOutcome, Finding
+from twin.check.variation import Variant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
@@ -43,12 +44,17 @@ class CheckSettings:
 
 def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
     """Run a job or a program and say how it came out; what is wrong with it becomes a finding."""
-    began = time.perf_counter()
+    return check_variant(Variant(path, ()), settings)
+
+
+def check_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
+    """The same with some values of the job or the machine changed."""
+    began, path = time.perf_counter(), variant.path
     try:
-        outcome = _run(path, settings)
+        outcome = _run(variant, settings)
     except TwinError as error:
         outcome = _not_run(path, error)
-    return dataclasses.replace(outcome, wall_s=time.perf_counter() - began)
+    return dataclasses.replace(outcome, wall_s=time.perf_counter() - began, changes=variant.changes)
 
 
 def file_of(folder: Path, job: Job, suffix: str) -> Path:
@@ -67,13 +73,18 @@ def file_of(folder: Path, job: Job, suffix: str) -> Path:
     return folder / parts.with_name(name + suffix)
 
 
-def _run(path: Path, settings: CheckSettings) -> CheckOutcome:
+def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     from twin.chain import Run
     from twin.compare.report import write_report
     from twin.results import report_of, result_of
 
+    path = variant.path
     preparation = prepare(
-        path, dialect=settings.dialect, machine=settings.machine, strict=settings.strict
+        path,
+        dialect=settings.dialect,
+        machine=settings.machine,
+        strict=settings.strict,
+        changes=variant.changes,
     )
     run = Run(preparation)
     try:

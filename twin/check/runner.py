@@ -6,23 +6,22 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.context import SpawnContext
-from pathlib import Path
+from typing import TypeVar
 
-from twin.check.outcome import CheckOutcome, Finding
-from twin.errors import ExitCode
+from twin.check.outcome import CheckOutcome, died
 
-CheckOne = Callable[[Path], CheckOutcome]
-"""Runs one program; sent to other processes, so it must be a module's function or a partial."""
+TaskT = TypeVar("TaskT")
+"""A program or a variant of one."""
 
 
 def check_all(
-    programs: Sequence[Path], check: CheckOne, *, jobs: int | None = None
+    programs: Sequence[TaskT], check: Callable[[TaskT], CheckOutcome], *, jobs: int | None = None
 ) -> Iterator[CheckOutcome]:
     """Check programs, several at a time.
 
     Args:
         programs: What to check.
-        check: How one is checked.
+        check: How one is checked; sent to other processes, so a module's function or a partial.
         jobs: How many processes; one for each core by default.
 
     Yields:
@@ -51,6 +50,21 @@ def check_all(
         yield _check_alone(path, check, context)
 
 
+def run_tasks(
+    tasks: Sequence[TaskT],
+    check: Callable[[TaskT], CheckOutcome],
+    *,
+    jobs: int | None,
+    cluster: str | None,
+) -> Iterator[CheckOutcome]:
+    """Run tasks over this computer's cores or, given its address, on a Ray cluster."""
+    if cluster is None:
+        return check_all(tasks, check, jobs=jobs)
+    from twin.check.cluster import check_on_cluster
+
+    return check_on_cluster(tasks, check, address=cluster)
+
+
 def _pool(workers: int, context: SpawnContext) -> concurrent.futures.ProcessPoolExecutor:
     return concurrent.futures.ProcessPoolExecutor(
         workers, mp_context=context, initializer=_end_when_interrupted
@@ -69,15 +83,11 @@ def available_cores() -> int:
     return os.cpu_count() or 1
 
 
-def _check_alone(path: Path, check: CheckOne, context: SpawnContext) -> CheckOutcome:
+def _check_alone(
+    task: TaskT, check: Callable[[TaskT], CheckOutcome], context: SpawnContext
+) -> CheckOutcome:
     with _pool(1, context) as pool:
         try:
-            return pool.submit(check, path).result()
+            return pool.submit(check, task).result()
         except BrokenProcessPool:
-            message = "the process that ran it died; out of memory?"
-            return CheckOutcome(
-                program=str(path),
-                verdict="error",
-                exit_code=ExitCode.FAILED,
-                findings=(Finding("process-died", message, str(path)),),
-            )
+            return died(str(task))

@@ -16,12 +16,14 @@ def dialects(
 
 
 def explain(
-    code: Annotated[str, typer.Argument(help="Code of a diagnostic.", show_default=False)],
+    code: Annotated[
+        str | None, typer.Argument(help="Code of a diagnostic.", show_default=False)
+    ] = None,
 ) -> None:
-    """Explain a diagnostic's code, with an example."""
+    """Explain a diagnostic's code, with an example; without a code list them all."""
     from twin.nc import explain as explanations
 
-    typer.echo(explanations.explain(code))
+    typer.echo(explanations.overview() if code is None else explanations.explain(code))
 
 
 def doctor() -> None:

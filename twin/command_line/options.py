@@ -20,5 +20,12 @@ MachineOption = Annotated[str | None, typer.Option("--machine", help="Name, or a
 MachineArgument = Annotated[
     str, typer.Argument(help="A shipped machine's name, or a machine.toml.", show_default=False)
 ]
+JobsOption = Annotated[
+    int | None, typer.Option("--jobs", min=1, help="How many at a time; default: all cores.")
+]
+ClusterOption = Annotated[
+    str | None,
+    typer.Option("--cluster", help="Run on the Ray cluster at this address; local: start one."),
+]
 FormatOption = Annotated[str, typer.Option("--format", help="text or json.")]
 StrictOption = Annotated[bool, typer.Option("--strict", help="Turn warnings into errors.")]

@@ -6,9 +6,12 @@ from typing import Annotated
 import typer
 
 from twin.command_line.options import (
+    ClusterOption,
     DialectOption,
     FormatOption,
+    JobsOption,
     MachineOption,
+    ProgramOrJob,
     StrictOption,
 )
 
@@ -26,9 +29,8 @@ def check(
     reports: Annotated[
         Path | None, typer.Option("--reports", help="Write a report on every program there.")
     ] = None,
-    jobs: Annotated[
-        int | None, typer.Option("--jobs", min=1, help="How many at a time; default: all cores.")
-    ] = None,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
     dialect: DialectOption = None,
     machine: MachineOption = None,
     strict: StrictOption = False,
@@ -41,7 +43,40 @@ def check(
         dialect=dialect, machine=machine, strict=strict, baseline=baseline,
         update_baseline=update_baseline, reports=reports,
     )  # fmt: skip
-    code = check_and_print(paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs)
+    code = check_and_print(
+        paths, settings=settings, junit=junit, json_file=json_file, jobs=jobs, cluster=cluster
+    )
+    raise typer.Exit(code)
+
+
+def sweep(
+    job: ProgramOrJob,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            "--vary",
+            help="machine.KEY=VALUES or job.KEY=VALUES: a,b,c or FROM:TO:COUNT; again for more.",
+        ),
+    ],
+    json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    jobs: JobsOption = None,
+    cluster: ClusterOption = None,
+    dialect: DialectOption = None,
+    machine: MachineOption = None,
+    strict: StrictOption = False,
+) -> None:
+    """Run a job for every combination of values; exit 1 if any falls short."""
+    from twin.check.program import CheckSettings
+    from twin.commands.sweep import sweep_and_print
+
+    code = sweep_and_print(
+        job,
+        vary,
+        settings=CheckSettings(dialect=dialect, machine=machine, strict=strict),
+        json_file=json_file,
+        jobs=jobs,
+        cluster=cluster,
+    )
     raise typer.Exit(code)
 
 

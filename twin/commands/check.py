@@ -14,7 +14,7 @@ from twin.check import forms
 from twin.check.discovery import find_programs
 from twin.check.outcome import CheckOutcome
 from twin.check.program import CheckSettings, check_program
-from twin.check.runner import check_all
+from twin.check.runner import run_tasks
 from twin.errors import ExitCode, UsageError
 from twin.files import write_text
 from twin.progress import shown_progress
@@ -32,6 +32,7 @@ def check_and_print(
     junit: Path | None = None,
     json_file: Path | None = None,
     jobs: int | None = None,
+    cluster: str | None = None,
     environment: Mapping[str, str] = os.environ,
 ) -> ExitCode:
     """Check programs and tell how they came out.
@@ -42,6 +43,7 @@ def check_and_print(
         junit: Write JUnit XML there.
         json_file: Write every outcome as JSON there.
         jobs: How many at a time; one for each core by default.
+        cluster: Address of the Ray cluster to run on instead; ``local`` starts one here.
         environment: Tells GitHub Actions and GitLab by their variables.
 
     Returns:
@@ -56,7 +58,7 @@ def check_and_print(
     check = functools.partial(check_program, settings=settings)
     outcomes: list[CheckOutcome] = []
     with shown_progress() as progress:
-        for outcome in check_all(programs, check, jobs=jobs):
+        for outcome in run_tasks(programs, check, jobs=jobs, cluster=cluster):
             outcomes.append(outcome)
             progress("check", len(outcomes) / len(programs))
     order = {str(path): index for index, path in enumerate(programs)}

@@ -13,7 +13,7 @@ FORMATS = {"text": text_lines, "jsonl": json_lines}
 def print_interpretation(
     program: Path, *, dialect: str | None, machine: str | None, form: str, strict: bool
 ) -> None:
-    """Print the program's moves, dwells, functions and warnings to stdout, in program order.
+    """Print the program's moves, dwells and functions to stdout, its warnings to stderr behind them.
 
     Raises:
         UsageError: The format is unknown, or the program cannot be prepared.
@@ -24,5 +24,10 @@ def print_interpretation(
     interpretation = prepare(
         program, dialect=dialect, machine=machine, strict=strict
     ).interpretation()
-    for line in FORMATS[form](interpretation):
-        sys.stdout.write(f"{line}\n")
+    try:
+        for line in FORMATS[form](interpretation):
+            sys.stdout.write(f"{line}\n")
+    finally:
+        sys.stdout.flush()
+        for warning in interpretation.diagnostics:
+            sys.stderr.write(f"{warning}\n")

@@ -12,7 +12,8 @@ from twin.outcome import Outcome
 from twin.preparation import prepare
 from twin.progress import shown_progress
 from twin.reason_text import reason_text
-from twin.results import clear_results, write_results
+from twin.results import RESULT_FILES, write_results
+from twin.run_folder import run_folder
 
 
 def run_and_print(
@@ -41,13 +42,13 @@ def run_and_print(
     folder = out or Path("out") / preparation.job.program.stem
     run = Run(preparation)
     survey = run.survey()
-    clear_results(folder)
-    with shown_progress() as progress:
-        outcome = run.execute(survey, folder, progress)
-        if video and outcome.samples:
-            with run.clock.stage("render"):
-                film_run(run, survey, folder, progress)
-    write_results(run, outcome, folder)
+    with run_folder(folder, RESULT_FILES):
+        with shown_progress() as progress:
+            outcome = run.execute(survey, folder, progress)
+            if video and outcome.samples:
+                with run.clock.stage("render"):
+                    film_run(run, survey, folder, progress)
+        write_results(run, outcome, folder)
     _print_findings(run, outcome)
     typer.echo(_summary(run, outcome, folder))
     return outcome.verdict.exit_code

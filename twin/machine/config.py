@@ -1,5 +1,6 @@
 """The machine file ``machine.toml``: axes, drives, feeds, as data."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -7,11 +8,12 @@ import numpy as np
 import pydantic
 from pydantic import Field
 
+from twin.changes import Change, changed
 from twin.errors import ConfigError
 from twin.fixture import FixtureTable
 from twin.machine.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
-from twin.toml_file import Table, checked, read_toml
+from twin.toml_file import Data, Table, checked, read_toml
 from twin.toolpath.part_frame import PartFrame
 from twin.units import AxisKind, to_si
 
@@ -274,13 +276,21 @@ class Machine:
         return Machine(self.path, checked(data, MachineFile, self.file.name))
 
 
-def read_machine(path: Path) -> Machine:
+def read_machine(path: Path, changes: Sequence[Change] = ()) -> Machine:
     """Read a machine file, over the one that its key ``base`` names, if any.
+
+    Args:
+        path: The file.
+        changes: Values under ``machine.`` to change.
 
     Raises:
         ConfigError: The file or the model that it names is missing or wrong.
     """
-    machine = Machine(path, read_toml(path, MachineFile, prepare=lambda data: on_base(data, path)))
+
+    def prepare(data: Data) -> Data:
+        return changed(on_base(data, path), "machine", changes)
+
+    machine = Machine(path, read_toml(path, MachineFile, prepare=prepare))
     if not machine.model_path.is_file():
         raise ConfigError(f"{path}: model '{machine.file.model}' does not exist")
     return machine

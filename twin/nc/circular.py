@@ -175,7 +175,7 @@ def iso_arc_center(control: Control, target: list[float], *, clockwise: bool) ->
         control.fail(
             "arc-without-center",
             "the arc has neither a centre nor a radius",
-            hint=f"write {', '.join(plane_center_letters(control))} or R",
+            hint=f"write {', '.join(plane_center_letters(control))} or R; or G1 for a line",
         )
     offset = control.modal.plane.local(centre.vector)
     center = (start.abscissa + offset.abscissa, start.ordinate + offset.ordinate)

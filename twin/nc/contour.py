@@ -115,13 +115,14 @@ class Element:
         return -slack <= fraction <= 1.0 + slack
 
     def cut(self, start: Point, end: Point) -> "Element":
-        """The part between two points of it; whole turns of an arc stay."""
+        """The part between two points of it; on an arc of several turns those nearest its ends."""
         if self.center is None:
             return Element(start, end)
         before, after = self.along(start), self.along(end)
         if abs(self.sweep) >= 360.0:
-            before = before if before < 0.5 else before - 360.0 / abs(self.sweep)
-            after = after if after > 0.5 else after + 1.0
+            turn = 360.0 / abs(self.sweep)
+            before -= turn * round(before / turn)
+            after += turn * round((1.0 - after) / turn)
         return Element(start, end, self.center, self.sweep * (after - before))
 
     def cut_share(self, last: float) -> "Element":

@@ -92,7 +92,10 @@ class Control(ControlMotion):
 
     def finish(self) -> None:
         """The program has ended, by an end code or by its last line."""
-        if not self.ended and self.dialect.finish is not None:
+        if not self.flow.begun:
+            self.report.line = 1
+            self.report.warn("empty-program", "no line holds a block", hint="is this the program?")
+        elif not self.ended and self.dialect.finish is not None:
             self.dialect.finish(self)
         self.path.finish()
 
@@ -131,6 +134,8 @@ class Control(ControlMotion):
                 self.words[word.address] = word
         if len(self.codes) > 1:
             self._check_groups()
+        if len(functions) > 1:
+            self._check_functions(functions)
         return functions
 
     def _has_switch(self, block: Block) -> bool:
@@ -186,6 +191,14 @@ class Control(ControlMotion):
                 performing = word
         order = {group: rank for rank, group in enumerate(self.dialect.groups)}
         self.codes.sort(key=lambda pair: order.get(pair[1].group, len(order)))
+
+    def _check_functions(self, functions: list[tuple[Word, MCode]]) -> None:
+        seen: dict[str, Word] = {}
+        for word, function in functions:
+            other = seen.setdefault(function.group or word.text, word)
+            if other is not word:
+                message = f"{other.text} and {word.text} exclude each other"
+                self.fail("conflicting-codes", message, word, hint="write them in two blocks")
 
     def _run_modal_words(self, reserved: str) -> None:
         words = self.words

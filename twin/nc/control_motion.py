@@ -148,6 +148,7 @@ class ControlMotion(ControlWords):
             self.report.warn_once(
                 "no-feed",
                 "no feed is programmed: the machine's default is used",
+                *self._blamed(None),
                 hint="write F in the first block that needs it",
             )
             settings = self.settings
@@ -182,6 +183,16 @@ class ControlMotion(ControlWords):
         normal, _ = frame.arc(plane.normal, 0.0)
         abscissa, _ = frame.arc(plane.abscissa, 0.0)
         return Plane(plane.name, abscissa, cross(normal, abscissa), normal)
+
+    @property
+    def has_moved(self) -> bool:
+        """The path has begun."""
+        return self._last is not None
+
+    def stand_at(self, programmed: list[float]) -> None:
+        """Let the path, which has not begun, begin at a programmed position."""
+        self.programmed = programmed
+        self.part = self.path.position = self.frame.to_part(programmed)
 
     def relabel(self, programmed: list[float], shift: str) -> None:
         """Give the place where it stands other programmed coordinates; nothing moves."""

@@ -69,7 +69,7 @@ class ControlState:
         self.deceleration = NAN
         self.rapid_acceleration = NAN
         self.rapid_deceleration = NAN
-        self.tools = Tools(settings.tools)
+        self.tools = Tools(settings.tools, any_tool=settings.any_tool)
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
         self.flow = Flow(source, Lexer(dialect, self.report), settings.step_limit, self.report)
         self.cycle_values: dict[str, float] = {}

@@ -139,6 +139,7 @@ class MCode:
 
     Attributes:
         meaning: For people.
+        group: Codes of one group exclude each other in a block; empty: it has none.
         late: Takes effect when the block has moved.
         ends: Ends the program.
         action: What it does besides being reported as a function.
@@ -147,6 +148,7 @@ class MCode:
     """
 
     meaning: str
+    group: str = ""
     late: bool = False
     ends: bool = False
     silent: bool = False

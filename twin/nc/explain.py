@@ -37,6 +37,15 @@ def findings() -> Mapping[str, Finding]:
     return {code: Finding.model_validate(entry) for code, entry in data.items()}
 
 
+def overview() -> str:
+    """Every code with the first sentence of its meaning, one a line."""
+    width = max(map(len, findings()))
+    return "\n".join(
+        f"{code:{width}}  {finding.text.split('. ')[0].rstrip('.')}"
+        for code, finding in sorted(findings().items())
+    )
+
+
 def explain(code: str) -> str:
     """Text for a person about one code.
 

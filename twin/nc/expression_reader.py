@@ -20,11 +20,16 @@ _LONGEST = 200
 """Operators and functions that an expression may have."""
 
 
+_MOST_KEPT = 4096
+"""Expressions that are kept once they were read: loops compute the same ones again and again."""
+
+
 class ExpressionReader:
     """Reads the expressions of one dialect."""
 
     def __init__(self, syntax: ExpressionSyntax) -> None:
         self._syntax = syntax
+        self._kept: dict[tuple[str, int], tuple[Expression, int]] = {}
         symbols = sorted(syntax.operators, key=len, reverse=True)
         self._operator = re.compile(
             rf"[ \t]*({'|'.join(map(operator_pattern, symbols))})", re.IGNORECASE
@@ -39,9 +44,14 @@ class ExpressionReader:
         Raises:
             ExpressionError: There is none, or it is malformed.
         """
-        reading = _Reading(self._syntax, self, text, start)
-        evaluate = reading.operation(0, 0)
-        return Expression(text[start : reading.at].strip(), evaluate), reading.at
+        read = self._kept.get((text, start))
+        if read is None:
+            reading = _Reading(self._syntax, self, text, start)
+            evaluate = reading.operation(0, 0)
+            read = Expression(text[start : reading.at].strip(), evaluate), reading.at
+            if len(self._kept) < _MOST_KEPT:
+                self._kept[text, start] = read
+        return read
 
     def read_list(self, text: str, start: int) -> tuple[list[Expression], int]:
         """Read expressions separated by commas; return them with the end of the last."""
@@ -102,7 +112,7 @@ class _Reading:
             self._count()
             self.at = match.end()
             right = self.operation(operator.precedence + 1, depth + 1)
-            left = _joined(operator.compute, left, right)
+            left = _joined(match[1].upper(), operator.compute, left, right)
         return left
 
     def _operand(self, depth: int) -> Evaluate:
@@ -135,7 +145,9 @@ class _Reading:
             return lambda scope: scope.read_variable(variable, None)
         match = self._reader.name_at(self._text, self.at)
         if match is None:
-            self._fail("expression", "a value is missing here")
+            foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
+            hint = f"brackets are {opening} {self._syntax.brackets[1]}" if foreign else None
+            self._fail("expression", "a value is missing here", hint)
         name, after = match[0].upper(), match.end()
         if name in self._syntax.indexed and self._text[after : after + 1] == opening:
             (index,) = self._arguments(name, after, 1, depth)
@@ -157,7 +169,7 @@ class _Reading:
             self._fail("unknown-function", f"'{name}' is no function here", f"functions: {known}")
         function = self._syntax.functions[name]
         arguments = self._arguments(name, after, function.arguments, depth)
-        return lambda scope: _computed(function.compute, *(each(scope) for each in arguments))
+        return lambda scope: computed(name, function.compute, *(each(scope) for each in arguments))
 
     def _arguments(self, name: str, at: int, count: int, depth: int) -> list[Evaluate]:
         self._count()
@@ -201,8 +213,10 @@ class _Reading:
         raise ExpressionError(code, message, self.at, hint)
 
 
-def _joined(compute: Callable[[float, float], float], left: Evaluate, right: Evaluate) -> Evaluate:
-    return lambda scope: _computed(compute, left(scope), right(scope))
+def _joined(
+    symbol: str, compute: Callable[[float, float], float], left: Evaluate, right: Evaluate
+) -> Evaluate:
+    return lambda scope: computed(symbol, compute, left(scope), right(scope))
 
 
 def _exists(value: Evaluate, scope: Scope) -> float:
@@ -213,9 +227,14 @@ def _exists(value: Evaluate, scope: Scope) -> float:
     return 1.0
 
 
-def _computed(compute: Callable[..., float], *values: float) -> float:
+def computed(what: str, compute: Callable[..., float], *values: float) -> float:
+    """The value of an operator or a function, called ``what`` in errors.
+
+    Raises:
+        ExpressionError: It is undefined, or too large.
+    """
     try:
         result = compute(*values)
     except (ArithmeticError, ValueError) as error:
-        raise ExpressionError("undefined-value", f"the value is undefined: {error}") from error
+        raise ExpressionError.undefined(what, values) from error
     return checked(result)

@@ -6,7 +6,7 @@ are the same for all. Truth is 1, falsehood 0.
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 NUMBER = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
@@ -32,6 +32,12 @@ class ExpressionError(Exception):
         self.code = code
         self.column = column
         self.hint = hint
+
+    @classmethod
+    def undefined(cls, what: str, values: Sequence[float]) -> "ExpressionError":
+        """An operator or a function has no value there, such as ``1 / 0``."""
+        given = " and ".join(f"{value:g}" for value in values)
+        return cls("undefined-value", f"{what} is undefined for {given}")
 
 
 class Scope(Protocol):

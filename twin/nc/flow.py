@@ -2,7 +2,7 @@
 
 import dataclasses
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Container, Iterator
 from typing import NamedTuple, NoReturn
 
 from twin.nc.blocks import Block
@@ -75,6 +75,11 @@ class Flow:
     def lexer(self) -> Lexer:
         """Reads the program's lines."""
         return self._lexer
+
+    @property
+    def begun(self) -> bool:
+        """A block was run."""
+        return self._furthest.line >= 0
 
     def next(self) -> Block | None:
         """The next block, or None at the end of the program.
@@ -157,13 +162,22 @@ class Flow:
 
     def seek(self, wanted: Callable[[Block], bool]) -> bool:
         """Go on at the next block that is wanted; stay where it is when there is none."""
+        for block in self._ahead():
+            if wanted(block):
+                self.place = Place(block.line - 1, block.part)
+                return True
+        return False
+
+    def following(self) -> Block | None:
+        """The block behind this one in the text, as far as it can be read."""
+        return next(self._ahead(), None)
+
+    def _ahead(self) -> Iterator[Block]:
         line, part = self.place
         for number in range(line, len(self._lines)):
             for block in self._readable_blocks(number):
-                if (number > line or block.part >= part) and wanted(block):
-                    self.place = Place(number, block.part)
-                    return True
-        return False
+                if number > line or block.part >= part:
+                    yield block
 
     def jump(self, number: int, fail_at: tuple[int, int], word: str) -> None:
         """Go on at the block with an N number.
@@ -183,7 +197,7 @@ class Flow:
         label: int | str,
         fail_at: tuple[int, int],
         word: str,
-        within: range | None = None,
+        within: Container[int] | None = None,
     ) -> Place:
         """Where the block with an N number or a name stands; arguments as for ``jump``.
 

@@ -28,7 +28,7 @@ class Grammar:
         continues = "[0-9.]"
         if syntax.expressions is not None:
             operators = sorted(syntax.expressions.operators, key=len, reverse=True)
-            continues += rf"|[ \t]*(?:{'|'.join(map(operator_pattern, operators))})"
+            continues += rf"|[ \t]*(?:=|{'|'.join(map(operator_pattern, operators))})"
         suffix = r"(I(?![ \t]*[-+.0-9=\[P])|)" if syntax.incremental_suffix else "()"
         self.word = _compiled(
             rf"[ \t]*({syntax.address})[ \t]*([+-]?{NUMBER})(?!{continues}){suffix}"

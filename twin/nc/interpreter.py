@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from twin.nc.plain import PlainRunner
 
 PLAIN_FROM = 500
-"""Lines from which on a program takes the fast way: loading it costs as much as so many blocks."""
+"""Blocks after which a program of more lines takes the fast way, which costs time to load."""
 
 
 class Interpretation:
@@ -43,7 +43,7 @@ class Interpretation:
             source: The program.
             dialect: The language it is read in.
             settings: What the control is told of the machine and the job.
-            plain_from: Lines from which on plain blocks take the fast way.
+            plain_from: Blocks after which plain ones take the fast way, where it has as many lines.
         """
         self.source = source
         self.dialect = dialect
@@ -75,13 +75,17 @@ class Interpretation:
         control = self._control
         try:
             control.prepare()
-            plain = self._plain_runner()
+            general = 0
+            plain = self._plain_runner() if self._plain_from == 0 else None
             while not control.ended:
                 if plain is None or not plain.run():
                     block = control.flow.next()
                     if block is None:
                         break
                     control.run(block)
+                    general += 1
+                    if general == self._plain_from:
+                        plain = self._plain_runner()
                 if len(control.path) >= CHUNK:
                     yield control.path.take()
             control.finish()

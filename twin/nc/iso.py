@@ -17,11 +17,13 @@ CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True))
 COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=plain_arc(clockwise=False))
 
 
-_ELLIPSIS = re.compile(r"[ \t]*\.{3,}[ \t]*")
+_ELLIPSIS = re.compile(
+    r"[ \t]*(?:N[ \t]*[0-9]+)?(?:[ \t]*[A-Z]?[ \t]*\.{3,})+[ \t]*(?:[$\"].*)?", re.IGNORECASE
+)
 
 
 def is_ellipsis(line: str) -> bool:
-    """A line of dots, by which documents show blocks that they leave out."""
+    """Dots alone or in place of values, by which documents show what they leave out."""
     return _ELLIPSIS.fullmatch(line) is not None
 
 
@@ -154,17 +156,17 @@ GROUPS = (
 )
 
 M_CODES = {
-    0: MCode(meaning="program stop", late=True),
-    1: MCode(meaning="optional stop", late=True),
-    2: MCode(meaning="end of program", late=True, ends=True),
-    3: MCode(meaning="spindle clockwise"),
-    4: MCode(meaning="spindle counter-clockwise"),
-    5: MCode(meaning="spindle stop", late=True),
+    0: MCode(meaning="program stop", group="stop", late=True),
+    1: MCode(meaning="optional stop", group="stop", late=True),
+    2: MCode(meaning="end of program", group="stop", late=True, ends=True),
+    3: MCode(meaning="spindle clockwise", group="spindle"),
+    4: MCode(meaning="spindle counter-clockwise", group="spindle"),
+    5: MCode(meaning="spindle stop", group="spindle", late=True),
     6: MCode(meaning="tool change", action=change_tool),
     7: MCode(meaning="mist on"),
-    8: MCode(meaning="coolant on"),
-    9: MCode(meaning="coolant off", late=True),
-    30: MCode(meaning="end of program and back to its start", late=True, ends=True),
+    8: MCode(meaning="coolant on", group="coolant"),
+    9: MCode(meaning="coolant off", group="coolant", late=True),
+    30: MCode(meaning="end of program and back to its start", group="stop", late=True, ends=True),
 }
 
 WORDS = {"F": set_feed, "S": set_spindle, "T": select_tool}

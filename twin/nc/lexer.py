@@ -57,4 +57,5 @@ class Lexer:
             for column, character in enumerate(line):
                 if ord(character) < 32 and character not in "\t\f\v":
                     message = f"the line holds the control character {ord(character)}"
-                    self._report.fail("control-character", message, column)
+                    hint = None if ord(character) else "if the file is UTF-16, save it as UTF-8"
+                    self._report.fail("control-character", message, column, hint=hint)

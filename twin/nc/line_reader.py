@@ -12,11 +12,16 @@ from twin.nc.reporter import Reporter
 LARGEST_LABEL = 4_294_967_295
 """Largest N number (32 bits, as the Fagor manual states)."""
 
+_STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
 _BLANKS = re.compile(r"[ \t]*")
-_PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t]+[^\W\d_]+)+[ \t]*[.!?]?[ \t]*(?=$|N[ \t]*[0-9])")
+_PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t,;:'-]+[^\W\d_]+)+[ \t]*[.!?:]?[ \t]*(?=$|N[ \t]*[0-9])")
 """At least two words of letters alone, up to the end of the line or the next block."""
+_NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re.IGNORECASE)
+"""Words of a post-processor that had no number to write: no prose."""
+_NAME = re.compile(r"[^\W\d_]\w+(?![\w(\[])")
+"""Letters and digits without a bracket behind, as neither a value nor a function is written."""
 
 _LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
 """Cyrillic letters that look like Latin ones: a keyboard left in the wrong layout."""
@@ -85,16 +90,14 @@ class LineReader:
                 return self._comment(comment.opening, comment.closing)
         if self._block_skip() or self._named_label():
             return True
-        if self._syntax.trailing_prose and self._prose():
-            return True
         if not self._computed_word():
             self._refuse(self._at)
         return True
 
     def _prose(self) -> bool:
-        """Leave out several words of prose behind the words of a block, with a warning."""
+        """Leave out prose behind the words of a block, with a warning."""
         match = _PROSE.match(self._line, self._at) if self._words else None
-        if match is None:
+        if match is None or not self._syntax.trailing_prose or _NO_NUMBER.search(match[0]):
             return False
         self._report.line = self._line_number
         message = "this is no part of the block and is left out"
@@ -168,8 +171,9 @@ class LineReader:
         try:
             expression, end = reader.read(self._line, match.end())
         except ExpressionError as error:
-            column = begin if error.column is None else min(error.column, len(self._line) - 1)
-            self._fail(error.code, str(error), column, hint=error.hint)
+            if self._prose():
+                return True
+            self._refuse_value(begin, error)
         name = self._grammar.name(match[1])
         if name == "N":
             self._fail("label", "a block number must be a plain number", begin)
@@ -178,6 +182,15 @@ class LineReader:
         self._at = suffix.end()
         self._words.append(Word(name, expression, begin, self._at - begin, bool(suffix[1])))
         return True
+
+    def _refuse_value(self, begin: int, error: ExpressionError) -> NoReturn:
+        name = _NAME.match(self._line, begin)
+        if name is not None and error.code == "unknown-function":
+            message = f"'{name[0]}' is no word of {self._grammar.dialect.name}"
+            hint = f"a value is a number, a variable or a function; {self._comments()}"
+            self._fail("unknown-word", message, begin, width=len(name[0]), hint=hint)
+        column = begin if error.column is None else min(error.column, len(self._line) - 1)
+        self._fail(error.code, str(error), column, hint=error.hint)
 
     def _label(self, number: str, begin: int) -> None:
         value = float(number)
@@ -216,9 +229,17 @@ class LineReader:
         character = self._line[at]
         latin = character.upper().translate(_LOOKALIKES)
         address = self._grammar.address.match(self._line, at)
-        if latin != character.upper():
+        if "\u0400" <= character <= "\u04ff":
             message = f"'{character}' is a Cyrillic letter"
-            self._fail("foreign-letter", message, at, hint=f"write the Latin {latin}")
+            hint = f"write the Latin {latin}" if latin != character.upper() else self._comments()
+            self._fail("foreign-letter", message, at, hint=hint)
+        statement = _STATEMENT.match(self._line, at)
+        if statement is not None and self._grammar.statement is not None:
+            known = ", ".join(self._grammar.dialect.statements)
+            message = f"'{statement[0]}' is no statement of {self._grammar.dialect.name}"
+            self._fail(
+                "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"
+            )
         if address is not None:
             message = f"'{address[1]}' has no value"
             self._fail("missing-value", message, address.start(1), hint="write a number after it")
@@ -228,12 +249,15 @@ class LineReader:
     def _hint_for(self, character: str) -> str | None:
         if character == ",":
             return "decimals begin with a point"
-        comments = [each for each in self._syntax.comments if not each.whole_line]
-        if character in ";$\"('/":
-            shown = " or ".join(f"{each.opening} {each.closing}".strip() for each in comments)
-            return f"comments are written {shown}"
-        return None
+        return self._comments() if character in ";$\"('/" else None
 
-    def _fail(self, code: str, message: str, column: int, *, hint: str | None = None) -> NoReturn:
+    def _comments(self) -> str:
+        comments = [each for each in self._syntax.comments if not each.whole_line]
+        shown = " or ".join(f"{each.opening} {each.closing}".strip() for each in comments)
+        return f"comments are written {shown}"
+
+    def _fail(
+        self, code: str, message: str, column: int, *, width: int = 1, hint: str | None = None
+    ) -> NoReturn:
         self._report.line = self._line_number
-        self._report.fail(code, message, column, 1, hint)
+        self._report.fail(code, message, column, width, hint)

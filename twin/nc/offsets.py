@@ -9,6 +9,7 @@ from collections.abc import Mapping
 
 from twin.nc.blocks import Word
 from twin.nc.control import Control
+from twin.nc.control_state import integer_of
 from twin.nc.dialect import GCode
 
 LEFT, RIGHT = 1.0, -1.0
@@ -95,12 +96,21 @@ def tool_numbered(control: Control, word: Word) -> int:
     Raises:
         ProgramError: The job has no such tool.
     """
-    number = control.number(word)
-    if number not in control.tools.table:
+    number = integer_of(control.number(word))
+    tool = control.tools.data(number)
+    if tool is None or number < 0:
         known = ", ".join(str(each) for each in control.tools.table) or "none"
-        message = f"the job has no tool {number:g}"
+        message = f"the job has no tool {control.number(word):g}"
         control.fail("no-such-tool", message, word, hint=f"tools of the job: {known}")
-    return int(number)
+    if number not in control.tools.table:
+        control.report.warn_once(
+            "default-tool",
+            f"the job lists no tools: every number means one of {2.0 * tool.radius:g} mm",
+            word.column,
+            word.width,
+            hint="give the job its tools: [[tools]]",
+        )
+    return number
 
 
 def compensate(control: Control, side: float, radius: float) -> None:

@@ -1,7 +1,7 @@
 """The way of moves from the control to the columns.
 
 The stages, in order: splines through points, blends at corners, tool radius compensation, loops cut
-out. Each is there only while a program asks for it, and holds few moves.
+out, additional axes that go evenly. Each is there only while a program asks for it, and holds few moves.
 """
 
 import dataclasses
@@ -12,6 +12,7 @@ from twin.nc.blends import Blend
 from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray, Motion
 from twin.nc.compensation import Compensation, Refuse, Warn
 from twin.nc.contour import Element
+from twin.nc.even_axes import MOST_MOVES, EvenAxes
 from twin.nc.leads import LeadOut, around, lead_depth
 from twin.nc.loops import Loops
 from twin.nc.move_columns import MoveColumns, Segment
@@ -38,6 +39,7 @@ class Path:
         self._compensation: Compensation | None = None
         self._leading_out: LeadOut | None = None
         self._loops: Loops | None = None
+        self._even: EvenAxes | None = None
         self.position = start
 
     def __len__(self) -> int:
@@ -52,6 +54,8 @@ class Path:
         self._flush()
         self.end_compensation()
         self.keep_loops()
+        if self._even is not None:
+            self._even.finish()
 
     # --- what the control adds
 
@@ -65,8 +69,14 @@ class Path:
     @property
     def open(self) -> bool:
         """No stage holds or changes moves: what is added is emitted at once."""
-        stages = (self._spline, self._rounding, self._compensation, self._leading_out, self._loops)
-        return all(stage is None for stage in stages)
+        return (
+            self._spline is None
+            and self._rounding is None
+            and self._compensation is None
+            and self._leading_out is None
+            and self._loops is None
+            and self._even is None
+        )
 
     def add_rows(
         self, codes: IntArray, values: FloatArray, positions: FloatArray, last: Segment
@@ -238,8 +248,9 @@ class Path:
 
     def cut_loops(self, plane: Plane) -> None:
         """Loops of the path in a plane are cut out from now on."""
-        self._flush()
-        self._loops = Loops(plane, self._add)
+        if self._loops is None:
+            self._flush()
+            self._loops = Loops(plane, self._out)
 
     def keep_loops(self) -> None:
         """Loops stay."""
@@ -248,20 +259,47 @@ class Path:
             self._loops.flush()
             self._loops = None
 
+    # --- additional axes
+
+    def go_evenly(self, axis: int) -> None:
+        """From now on the axis of this column goes evenly over the moves that follow."""
+        self._flush()
+        if self._even is None:
+            self._even = EvenAxes(self._columns.add)
+        self._even.begin(axis)
+
+    def go_as_programmed(self, axis: int) -> None:
+        """It has arrived, and goes with each move again."""
+        if self._even is not None:
+            self._flush()
+            self._even.end(axis)
+            if self._even.idle:
+                self._even = None
+
     def _emit(self, move: Segment) -> None:
         if move.center is None and move.start == move.end:
             return
         self.position = move.end
         if self._loops is None:
-            self._columns.add(move)
+            self._out(move)
         else:
             self._loops.add(move)
 
-    def _add(self, move: Segment) -> None:
-        self._columns.add(move)
+    def _out(self, move: Segment) -> None:
+        if self._even is None:
+            self._columns.add(move)
+        elif not self._even.add(move):
+            message = f"an axis cannot go evenly over more than {MOST_MOVES} moves"
+            self._refuse(move, "even-axis", message)
 
     def _record(self, happen: Callable[[MoveColumns], None]) -> None:
         if self._loops is None:
+            self._report(happen)
+        else:
+            self._loops.event(lambda: self._report(happen))
+
+    def _report(self, happen: Callable[[MoveColumns], None]) -> None:
+        if self._even is None:
             happen(self._columns)
         else:
-            self._loops.event(lambda: happen(self._columns))
+            self._even.event(lambda: happen(self._columns))

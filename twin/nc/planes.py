@@ -24,17 +24,18 @@ class Plane:
         abscissa: Direction of angle 0.
         ordinate: Direction of angle 90.
         normal: Axis that positive arcs turn about counter-clockwise.
+        axes: Columns of abscissa, ordinate and normal, for planes along the axes.
     """
 
     name: str
     abscissa: Vector
     ordinate: Vector
     normal: Vector
+    axes: tuple[int, int, int] = dataclasses.field(init=False, repr=False, compare=False)
 
-    @property
-    def axes(self) -> tuple[int, int, int]:
-        """Columns of abscissa, ordinate and normal, for planes along the axes."""
-        return (_column(self.abscissa), _column(self.ordinate), _column(self.normal))
+    def __post_init__(self) -> None:
+        columns = (_column(self.abscissa), _column(self.ordinate), _column(self.normal))
+        object.__setattr__(self, "axes", columns)
 
     def local(self, point: Vector | list[float]) -> Local:
         """A point of X, Y, Z (further axes are ignored) seen from the plane."""

@@ -50,11 +50,13 @@ class Reporter:
         if len(self.warnings) < _MOST_WARNINGS:
             self.warnings.append(self._diagnostic("warning", code, message, column, width, hint))
 
-    def warn_once(self, code: str, message: str, hint: str | None = None) -> None:
-        """Warn of something that holds for the whole program."""
+    def warn_once(
+        self, code: str, message: str, column: int = 0, width: int = 1, hint: str | None = None
+    ) -> None:
+        """Warn of something that holds for the whole program, where it is met first."""
         if code not in self._said:
             self._said.add(code)
-            self.warn(code, message, hint=hint)
+            self.warn(code, message, column, width, hint)
 
     def has_said(self, code: str) -> bool:
         """Whether ``warn_once`` has given this warning."""

@@ -31,6 +31,14 @@ def direction_of(move: Segment, *, at_end: bool) -> Vector:
     )
 
 
+def spatial_length(move: Segment) -> float:
+    """Length of a move in X, Y, Z [mm]."""
+    if move.center is None:
+        return math.dist(move.start[:3], move.end[:3])
+    advance = sum((move.end[i] - move.start[i]) * move.normal[i] for i in range(3))
+    return math.hypot(math.dist(move.start[:3], move.center) * math.radians(move.sweep), advance)
+
+
 def element_of(move: Segment, plane: Plane) -> Element | None:
     """A move as a plane sees it; None where it is no line or arc there, or has no length."""
     start, end = plane.local(move.start)[:2], plane.local(move.end)[:2]

@@ -44,6 +44,9 @@ class ControlSettings:
     tools: Mapping[int, ToolData] = dataclasses.field(default_factory=dict)
     """The tool table by tool number; the first is in the spindle when the program starts."""
 
+    any_tool: bool = False
+    """Nobody gave a tool table: every number means the first tool."""
+
     offsets: Mapping[str, Mapping[str, float]] = dataclasses.field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
 
@@ -62,5 +65,5 @@ class ControlSettings:
     block_skip: bool = False
     """Blocks that begin with a slash are left out."""
 
-    step_limit: int = 50_000
+    step_limit: int = 20_000
     """Blocks that may be run again through jumps and loops before a program counts as endless."""

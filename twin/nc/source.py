@@ -44,9 +44,10 @@ class Lines(Sequence[str]):
         self._text = text
         self.data = np.frombuffer(text, np.uint8)
         self.starts = _line_starts(self.data)
+        self._count = len(self.starts) - 1
 
     def __len__(self) -> int:
-        return len(self.starts) - 1
+        return self._count
 
     @overload
     def __getitem__(self, index: int) -> str: ...

@@ -14,9 +14,11 @@ class Tools:
         selected: Number of the tool that the next change brings.
     """
 
-    def __init__(self, table: Mapping[int, ToolData]) -> None:
+    def __init__(self, table: Mapping[int, ToolData], *, any_tool: bool = False) -> None:
+        """Put the first tool into the spindle; ``any_tool``: every number means this one."""
         self.table = table
         first = next(iter(table), None)
+        self._any = table[first] if any_tool and first is not None else None
         self._reference = 0.0 if first is None else table[first].length
         self.spindle = first
         self.selected = first
@@ -27,7 +29,7 @@ class Tools:
 
     def data(self, number: int | None) -> ToolData | None:
         """What a tool measures; None where the table lacks it."""
-        return None if number is None else self.table.get(number)
+        return None if number is None else self.table.get(number, self._any)
 
     def longer(self, tool: ToolData) -> float:
         """How much longer a tool is than the one that the part zero was taken with [mm]."""

@@ -40,19 +40,23 @@ def recognise(source: Source) -> Dialect:
     if len(fitting) == 1:
         return DIALECTS[fitting[0]]
     if fitting:
-        seen = "; ".join(f"{name}: {', '.join(found[name])}" for name in fitting)
+        seen = _listed({name: found[name] for name in fitting})
         raise UsageError(
-            f"{source.name}: words of several dialects stand in it ({seen}); "
-            "say which by --dialect or in the job file"
+            f"{source.name}: words of several dialects stand in it; {_SAY}. What was seen:{seen}"
         )
-    deciding = "; ".join(
-        f"{dialect.name}: {', '.join(mark.shown for mark in dialect.marks)}"
-        for dialect in DIALECTS.values()
-    )
+    if not any(line.strip() for line in source.lines):
+        raise UsageError(f"{source.name}: the program is empty")
+    deciding = _listed({d.name: [mark.shown for mark in d.marks] for d in DIALECTS.values()})
     raise UsageError(
-        f"{source.name}: could be any dialect; words that would decide ({deciding}); "
-        "say which by --dialect or in the job file"
+        f"{source.name}: could be any dialect; {_SAY}. Words that would decide:{deciding}"
     )
+
+
+_SAY = "say which by --dialect or in the job file"
+
+
+def _listed(words: Mapping[str, list[str]]) -> str:
+    return "".join(f"\n    {name}: {', '.join(shown)}" for name, shown in words.items())
 
 
 def _marks_found(source: Source) -> dict[str, list[str]]:

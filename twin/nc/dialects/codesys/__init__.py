@@ -14,8 +14,9 @@ from twin.nc.dialect import (
     MCode,
     Syntax,
 )
-from twin.nc.dialects.codesys import codes, program, subprograms
+from twin.nc.dialects.codesys import codes, jumps, program, subprograms, words
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
+from twin.nc.dialects.codesys.codes import ADDITIONAL
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
     COUNTER_CLOCKWISE_ELLIPSE,
@@ -26,9 +27,6 @@ from twin.nc.dialects.codesys.curves import (
 from twin.nc.dialects.codesys.decisions import DECISIONS
 from twin.nc.linear import rapid_line
 from twin.nc.planes import XY, YZ, ZX, Plane
-
-ADDITIONAL = "ABCPQUVW"
-"""Letters of additional axes."""
 
 
 def _motion(meaning: str, interpolation: Interpolation, *, seed: bool = False) -> GCode:
@@ -51,7 +49,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
 
 
 RAPID = Interpolation(rapid_line, rapid=True)
-"""Its pace may follow F (``codes.before_motion``): no plain block."""
+"""Its pace may follow F (``words.before_motion``): no plain block."""
 
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
@@ -76,7 +74,6 @@ CODESYS = Dialect(
         "length",
         "compensation",
         "smoothing",
-        "additional axes",
         "loops",
         "motion",
     ),
@@ -103,7 +100,7 @@ CODESYS = Dialect(
         19: _plane("3D mode, plane Y Z", YZ),
         20: GCode(
             meaning="jump to L (or the label L? behind) when K is not 0",
-            perform=program.conditional_jump,
+            perform=jumps.conditional_jump,
             takes="L!",
             ground="manual",
         ),
@@ -182,12 +179,15 @@ CODESYS = Dialect(
             ground="manual",
         ),
         70: GCode(
-            meaning="smoothing of additional axes off", group="additional axes", ground="manual"
+            meaning="additional axis L (6 is C) goes with each move; without L all",
+            perform=codes.go_as_programmed,
+            takes="L",
+            ground="manual",
         ),
         71: GCode(
-            meaning="smoothing of additional axes on",
-            group="additional axes",
-            refused="additional axes go linearly with the path",
+            meaning="additional axis L goes evenly over the moves up to G70",
+            perform=codes.go_evenly,
+            takes="L",
             ground="manual",
         ),
         75: GCode(meaning="wait for the motion before variables are read", ground="manual"),
@@ -203,7 +203,7 @@ CODESYS = Dialect(
             sets={"incremental": True},
             ground="manual",
         ),
-        92: GCode(meaning="set position", perform=offsets.preset, ground="manual"),
+        92: GCode(meaning="set position", perform=codes.set_position, ground="manual"),
         98: GCode(
             meaning="centre I J K absolute",
             group="centre",
@@ -225,7 +225,7 @@ CODESYS = Dialect(
         28: "write G53, then G0 and the axes",
         49: "write G43 I0 J0 K0",
     },
-    start=(15, 40, 50, 60, 70, 90, 99),
+    start=(15, 40, 50, 60, 90, 99),
     start_state={"feed_mode": FeedMode.PER_SECOND, "corner": Corner.EXACT_PATH},
     m={number: MCode(meaning="end of program", late=True, ends=True) for number in (2, 30)},
     any_m=True,
@@ -237,21 +237,21 @@ CODESYS = Dialect(
     series="HOL",
     words={
         "F": iso.set_feed,
-        "E": codes.set_acceleration,
-        "E-": codes.set_acceleration,
-        "FF": codes.set_rapid_feed,
-        "EF": codes.set_rapid_acceleration,
-        "EF-": codes.set_rapid_acceleration,
+        "E": words.set_acceleration,
+        "E-": words.set_acceleration,
+        "FF": words.set_rapid_feed,
+        "EF": words.set_rapid_acceleration,
+        "EF-": words.set_rapid_acceleration,
         "D": codes.set_smoothing,
-        "S": codes.refuse_profile,
-        "L!": codes.pass_label,
-        **{f"P{letter}": codes.set_period(letter) for letter in ADDITIONAL},
+        "S": words.refuse_profile,
+        "L!": words.pass_label,
+        **{f"P{letter}": words.set_period(letter) for letter in ADDITIONAL},
         **{
-            f"F{letter}": codes.axis_limit(letter, acceleration=False)
+            f"F{letter}": words.axis_limit(letter, acceleration=False)
             for letter in f"XYZ{ADDITIONAL}"
         },
         **{
-            f"E{letter}": codes.axis_limit(letter, acceleration=True)
+            f"E{letter}": words.axis_limit(letter, acceleration=True)
             for letter in f"XYZ{ADDITIONAL}"
         },
     },
@@ -283,7 +283,8 @@ CODESYS = Dialect(
         "D": "tool radius; distance of smoothing; value of G36 and G37",
         "H": "switch point, negative: off",
         "O": "place of a switch point as a share; variable of G36 and G37; parameter of M",
-        "L": "block to jump to; place of a switch point as a distance; parameter of M",
+        "L": "block to jump to; place of a switch point as a distance; axis of G70 and G71; "
+        "parameter of M",
         "L?": "label to jump to, forwards",
         "L!": "label",
         "S": "profile of additional axes; 0 only",
@@ -308,8 +309,9 @@ CODESYS = Dialect(
         Mark(r"[XYZ][^ \t;$\"]*\b(?:SIN|COS|SQRT|PI)\b(?!\[)", "functions with round brackets"),
     ),
     memory=program.Variables,
-    before_motion=codes.before_motion,
+    before_motion=words.before_motion,
     read_variable=program.read_variable,
-    place_switches=codes.place_switches,
+    place_switches=words.place_switches,
+    library=subprograms.with_files,
     disturbed=lambda control: bool(program.variables(control).periods),
 )

@@ -72,6 +72,13 @@ DECISIONS = (
         example="additional_axes",
     ),
     Decision(
+        "How does an axis go from G71 to G70?",
+        "With one slope over the length of the path, from where it stands at G71 to where the program "
+        "has it at G70, or at its end.",
+        "The library's page promises one slope and does not say what targets between them do.",
+        example="evenly_over_several_moves",
+    ),
+    Decision(
         "How fast is G0?",
         "FF, else F; as fast as the machine can where the program has set neither.",
         "The manual says so; the defaults of FF and F are inputs of the application.",
@@ -103,10 +110,17 @@ DECISIONS = (
         example="loop_cut_out",
     ),
     Decision(
-        "What does G92 do?",
-        "Where the machine stands becomes the given coordinates; nothing moves.",
-        "The manual lets the path jump there; a machine cannot, and the program's shape is the same.",
+        "How does a path jump (G92)?",
+        "Before the first move the given position is where it begins; later the axes travel there as "
+        "fast as they can.",
+        "A machine cannot jump; the manual's bAvoidGaps does the same.",
         example="position_set",
+    ),
+    Decision(
+        "Which plane has G16 without I, J and K?",
+        "The one in force.",
+        "The manual's example of a jump begins so.",
+        example="plane_without_normal",
     ),
     Decision(
         "What does G56 do?",

@@ -16,7 +16,6 @@ from twin.nc.expressions import (
     FunctionOf,
     Operator,
 )
-from twin.nc.flow import Place
 
 COUNTER_AT_START = -1.0
 """The decoder's internal variable before G36 sets it (manual): a bare G20 L jumps."""
@@ -62,7 +61,9 @@ STATEMENT = (
     r"|#[A-Z_]\w*[ \t]*(?=:=)|[A-Z_]\w*(?=[ \t]*\{)|[A-Z_]{3,}\w*(?=[ \t]*\()"
 )
 
-_LET = re.compile(r"[ \t]*(#[A-Z_]\w*)[ \t]*(?::[ \t]*L?REAL)?[ \t]*(:=)?", re.IGNORECASE)
+_LET = re.compile(
+    r"[ \t]*(#[A-Z_]\w*)[ \t]*(?::[ \t]*(?:L?REAL|BOOL|[DU]?INT))?[ \t]*(:=)?", re.IGNORECASE
+)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -70,12 +71,12 @@ class Subprogram:
     """A subprogram's heading.
 
     Attributes:
-        place: Its first block.
+        lines: Those between its heading and its end, from 0.
         formals: Names of its parameters.
         restores: It puts modal codes back when it returns.
     """
 
-    place: Place
+    lines: range
     formals: tuple[str, ...]
     restores: bool
 
@@ -179,12 +180,13 @@ def _store(control: Control, name: str | None, change: float, *, add: bool) -> N
     if name is None:
         known.counter = known.counter + change if add else change
         return
+    must_exist = add or name.startswith("#")
     try:
-        before = read_variable(control, name, None) if add else 0.0
+        before = read_variable(control, name, None) if must_exist else 0.0
     except ExpressionError as error:
         control.fail(error.code, str(error), None, error.hint)
     table = known.local[-1] if name.startswith("#") else known.plc
-    table[name] = before + change
+    table[name] = before + change if add else change
 
 
 def write_variable(control: Control) -> None:
@@ -202,28 +204,3 @@ def _change(control: Control, *, add: bool) -> None:
     if word is None:
         control.fail("variable-value", "the code needs its value D")
     _store(control, name, control.number(word), add=add)
-
-
-def conditional_jump(control: Control) -> None:
-    """G20: go on at block L when K (or the internal variable) is not 0.
-
-    A label L?4 is looked for forwards as L!4; where it is missing, the blocks behind the jump are
-    not run (manual).
-    """
-    number, label = control.take("L"), control.take("L?")
-    condition = control.take_number("K", variables(control).counter)
-    target = number or label
-    if target is None:
-        control.fail("jump-target", "G20 needs L: the block to jump to", hint="write G20 L10 K1")
-    value = control.number(target)
-    if value != int(value) or value < 0.0:
-        control.fail("jump-target", f"{target.text} is no block number", target)
-    if condition == 0.0:
-        return
-    if number is not None:
-        control.flow.jump(int(value), (target.column, target.width), "L")
-    elif not control.flow.seek(
-        lambda block: any(w.address == "L!" and w.value == value for w in block.words)
-    ):
-        control.warn("label-not-found", f"no L!{value:g} follows: the program ends here", target)
-        control.flow.end()

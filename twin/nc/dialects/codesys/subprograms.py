@@ -1,11 +1,15 @@
 """Subprograms of CODESYS SoftMotion, and statements that begin with a name."""
 
 import re
+from collections.abc import Container, Iterator
+from pathlib import Path
 
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
 from twin.nc.dialects.codesys.program import Subprogram, assign, variables
 from twin.nc.flow import Place, Return
+from twin.nc.library import named_files, with_called_files
+from twin.nc.source import Source
 
 DEEPEST_CALL = 14
 """Subprograms within subprograms (manual, before 4.18)."""
@@ -15,22 +19,68 @@ _FORMAL = re.compile(
 )
 _SUBPROGRAM = re.compile(r"[ \t]*(?:N[ \t]*\d+[ \t]+)?(END_)?SUBPROGRAM\b(.*)", re.IGNORECASE)
 
+_CALL = re.compile(r"(?:^|[ \t])([A-Z_]\w{2,})[ \t]*[{(]", re.IGNORECASE)
+_CALL_SOMEWHERE = re.compile(rb"[A-Z_][A-Z_0-9]{2,}[ \t]*[{(]", re.IGNORECASE)
+
+
+class _CodePage:
+    code_page = "cp1252"
+
+
+def with_files(source: Source, folder: Path) -> Source:
+    """The program with the subprograms that it calls, as far as they are files of their own.
+
+    Args:
+        source: The program.
+        folder: Where their files lie, called ``name.cnc`` (manual), in any case.
+    """
+    return with_called_files(
+        source, lambda: named_files(folder, (".cnc",)), _calls, "// ", _CodePage()
+    )
+
+
+def _calls(source: Source) -> Iterator[str]:
+    if source.lines.any_holds(_CALL_SOMEWHERE):
+        for line in source.lines:
+            if _SUBPROGRAM.match(line) is None:
+                yield from (match[1].upper() for match in _CALL.finditer(line))
+
+
+class _Outside:
+    """The lines that belong to no subprogram."""
+
+    def __init__(self, control: Control) -> None:
+        self._bodies = [each.lines for each in _subprograms(control).values()]
+
+    def __contains__(self, line: object) -> bool:
+        return not any(line in lines for lines in self._bodies)
+
+
+def own_lines(control: Control) -> Container[int]:
+    """The lines, from 0, of the subprogram that is being run, or those outside all of them."""
+    here = control.block.line - 1
+    bodies = (each.lines for each in _subprograms(control).values())
+    return next((lines for lines in bodies if here in lines), _Outside(control))
+
 
 def _subprograms(control: Control) -> dict[str, Subprogram]:
     known = variables(control)
     if known.subprograms is None:
         known.subprograms = {}
-        for line, text in enumerate(control.flow.lines):
-            match = _SUBPROGRAM.match(text)
-            heading = _FORMAL.match(match[2]) if match and not match[1] else None
+        lines = control.flow.lines
+        found = ((line, _SUBPROGRAM.match(text)) for line, text in enumerate(lines))
+        matches = [(line, match) for line, match in found if match is not None]
+        for line, match in matches:
+            heading = None if match[1] else _FORMAL.match(match[2])
             if heading is not None:
                 formals = tuple(
                     each.split(":")[0].strip().upper()
                     for each in heading[2].split(",")
                     if each.strip()
                 )
+                ends = (end for end, each in matches if each[1] and end > line)
                 known.subprograms[heading[1].upper()] = Subprogram(
-                    Place(line + 1, 0), formals, heading[3] is not None
+                    range(line + 1, next(ends, len(lines))), formals, heading[3] is not None
                 )
     return known.subprograms
 
@@ -59,7 +109,7 @@ def call(control: Control, statement: Statement) -> None:
             f"there is no subprogram {name}",
             statement.column,
             len(name),
-            hint=f"subprograms here: {known}",
+            hint=f"one of its own file is {name.lower()}.cnc; subprograms here: {known}",
         )
     text = statement.text.strip()
     if text[-1:] not in ("}", ")"):
@@ -81,7 +131,7 @@ def call(control: Control, statement: Statement) -> None:
         if before is not None:
             control.restore_modal(before)
 
-    back = Return(control.flow.place, subprogram.place, leave)
+    back = Return(control.flow.place, Place(subprogram.lines.start, 0), leave)
     control.flow.call(back, DEEPEST_CALL, statement.column, len(name))
     known.local.append(dict(zip(subprogram.formals, values, strict=True)))
 

@@ -19,8 +19,9 @@ DEEPEST_CALL = 20
 
 _NAME = re.compile(r"[ \t]*([A-Z_]\w*)[ \t]*", re.IGNORECASE)
 _TITLE = re.compile(r"[ \t]*[^,;(]*(?:\([^)]*\)[ \t]*)?")
+_LABEL = r"[ \t]*(\[?[ \t]*[A-Z_0-9]+[ \t]*\]?)[ \t]*"
 _RANGE = re.compile(
-    r"[ \t]*\[[ \t]*(N?[A-Z_0-9]+)[ \t]*,[ \t]*(N?[A-Z_0-9]+)[ \t]*(?:,(.*))?\][ \t]*",
+    rf"[ \t]*\[{_LABEL},{_LABEL}(?:,(.*))?\][ \t]*",
     re.IGNORECASE,
 )
 _ARGUMENT = re.compile(r"[ \t]*([A-Z])[ \t]*=?", re.IGNORECASE)
@@ -59,7 +60,7 @@ def repeat_range(control: Control, statement: Statement) -> None:
 
 
 def _range_label(text: str) -> int | str:
-    name = text.upper()
+    name = text.strip("[] \t").upper()
     return int(name[1:]) if name[:1] == "N" and name[1:].isdigit() else name
 
 
@@ -108,7 +109,8 @@ def heading(control: Control, statement: Statement) -> None:
         return
     if control.block.line - 1 != memory_of(control).main:
         message = "a heading can stand only before the program or a local subroutine"
-        refuse(control, statement, "heading", message, hint="end a subroutine by M17")
+        hint = "end the program by M30 and a subroutine by M17 before the next begins"
+        refuse(control, statement, "heading", message, hint)
     if _TITLE.fullmatch(statement.text) is None:
         message = "nothing but a comment may follow the program's name"
         hint = "the 8070's heading is %NAME; what follows a comma is the CNC 8055's"

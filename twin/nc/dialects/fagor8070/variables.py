@@ -8,6 +8,7 @@ from typing import NoReturn
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.expression_reader import computed
 from twin.nc.expressions import (
     ARITHMETIC,
     COMPARISON,
@@ -20,6 +21,7 @@ from twin.nc.expressions import (
 
 LOCAL_PARAMETERS = 26
 """P0 to P25 are local (MINLOCP, MAXLOCP); the letters A to Z of #PCALL set them."""
+_LOCAL = frozenset(f"P{number}" for number in range(LOCAL_PARAMETERS))
 
 
 def _integers(compute: Callable[[int, int], int]) -> Callable[[float, float], float]:
@@ -110,7 +112,7 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
 def variable_table(control: Control, name: str) -> dict[str, float]:
     """Where a variable is kept: with the call, or for the whole program."""
     memory = memory_of(control)
-    local = name.startswith("P") and name[1:].isdigit() and int(name[1:]) < LOCAL_PARAMETERS
+    local = name in _LOCAL or (name.startswith("P0") and int(name[1:]) < LOCAL_PARAMETERS)
     return memory.local[-1] if local else memory.common
 
 
@@ -155,13 +157,9 @@ def assign(control: Control, statement: Statement) -> None:
 def _combined(old: float, operator: str, value: float) -> Expression:
     compute = EXPRESSIONS.operators[operator].compute
 
-    def evaluate(_scope: object) -> float:
-        try:
-            return compute(old, value)
-        except ArithmeticError as error:
-            raise ExpressionError("undefined-value", f"the value is undefined: {error}") from error
-
-    return Expression(f"{old:g}{operator}{value:g}", evaluate)
+    return Expression(
+        f"{old:g}{operator}{value:g}", lambda _scope: computed(operator, compute, old, value)
+    )
 
 
 def _old_value(control: Control, statement: Statement, name: str) -> float:

@@ -1,0 +1,159 @@
+"""Interpreters: blocks a second from the file to moves in memory, ours and the peers'.
+
+Ours and nc-gcode-interpreter are called from Python and read the file; rs274 is a process that
+reads it and writes canonical text, its start taken off. Programs are made here, the same for all.
+"""
+
+import json
+import math
+import os
+import random
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from benches.row import REPEATS, Row, median_seconds
+
+from twin.nc.canonical import Axes
+from twin.nc.dialects import dialect_named
+from twin.nc.interpreter import Interpretation
+from twin.nc.settings import ControlSettings
+from twin.nc.source import read_source
+
+PEERS = Path(__file__).resolve().parents[2] / ".peers"
+"""Where ``scripts/bench --peers`` puts them."""
+BLOCKS = 200_000
+ROUNDS = 20_000
+_AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
+_SETTINGS = ControlSettings(axes=_AXES, step_limit=10 * ROUNDS)
+
+
+def rows() -> Iterator[Row]:
+    """Lines, arcs with helices, and a program that computes, beside each peer."""
+    with tempfile.TemporaryDirectory() as folder:
+        for task, dialect, ours, theirs, blocks in _programs(Path(folder)):
+            rate = blocks / median_seconds(lambda o=ours, d=dialect: _interpret(o, d))
+            for peer, measure in _PEERS.items():
+                seconds = measure(theirs)
+                figure = None if seconds is None else blocks / seconds
+                yield Row("nc", task, rate, "blocks/s", peer, figure)
+
+
+def _programs(folder: Path) -> Iterator[tuple[str, str, Path, Path, int]]:
+    """Task, our dialect, our program, the peers' program, and how many blocks it runs."""
+    for task, lines in (
+        (f"{BLOCKS:,} lines G1 X Y Z", _lines()),
+        (f"{BLOCKS * 9 // 10:,} arcs, {BLOCKS // 10:,} helices", _arcs()),
+    ):
+        path = folder / f"{len(task)}.ngc"
+        path.write_text("\n".join(["G90 G17", "G1 X0 Y0 Z0 F1000", *lines, "M2", ""]))
+        yield task, "gost", path, path, BLOCKS
+    ours, theirs = folder / "loop.nc", folder / "loop.ngc"
+    ours.write_text(_OUR_LOOP.format(rounds=ROUNDS))
+    theirs.write_text(_THEIR_LOOP.format(rounds=ROUNDS))
+    yield "variables, loop, subprogram", "fagor8070", ours, theirs, 6 * ROUNDS
+
+
+def _lines() -> Iterator[str]:
+    chance = random.Random(1)  # noqa: S311 (programs need no cryptography)
+    for _ in range(BLOCKS):
+        x, y, z = (chance.uniform(-100.0, 100.0) for _ in range(3))
+        yield f"G1 X{x:.3f} Y{y:.3f} Z{z:.3f}"
+
+
+def _arcs() -> Iterator[str]:
+    """Quarter circles of whole millimetres; every tenth block climbs as well."""
+    chance = random.Random(2)  # noqa: S311 (the same)
+    x = y = z = 0
+    for index in range(BLOCKS):
+        across, along = chance.choice([(1, 0), (0, 1), (-1, 0), (0, -1)])
+        radius, clockwise = chance.randrange(5, 50), chance.random() < 0.5
+        i, j = across * radius, along * radius
+        if abs(x + i) > 300 or abs(y + j) > 300:
+            i, j = -i, -j
+        x, y = (x + i - j, y + j + i) if clockwise else (x + i + j, y + j - i)
+        height = ""
+        if index % 10 == 9:
+            z = z - 1 if z > -50 else 0
+            height = f" Z{z}"
+        yield f"G{2 if clockwise else 3} X{x}.000 Y{y}.000{height} I{i}.000 J{j}.000"
+
+
+_OUR_LOOP = """%L STEP
+G1 X[P1*0.01] Y[10*SIN[P1]]
+M17
+%MAIN
+P1=0
+G90 G1 F1000
+$WHILE P1<{rounds}
+P1=P1+1
+LL STEP
+G1 Z[P1/1000]
+$ENDWHILE
+M30
+"""
+_THEIR_LOOP = """o100 sub
+G1 X[#101*0.01] Y[10*sin[#101]]
+o100 endsub
+#101=0
+G90 G1 F1000
+o110 while [#101 lt {rounds}]
+#101=[#101+1]
+o100 call
+G1 Z[#101/1000]
+o110 endwhile
+M2
+"""
+"""The same program for both; six blocks a round, the subroutine's end and the loop's among them."""
+
+
+def _interpret(path: Path, dialect: str) -> int:
+    interpretation = Interpretation(read_source(path), dialect_named(dialect), _SETTINGS)
+    return sum(len(chunk.moves) for chunk in interpretation.chunks())
+
+
+def _nc_gcode_interpreter(path: Path) -> float | None:
+    """Median time in a process of its own, which holds its packages [s]."""
+    python = PEERS / "venv" / "bin" / "python"
+    if not python.exists() or "o100" in path.read_text():
+        return None
+    code = (
+        "import json, statistics, sys, time\n"
+        "from nc_gcode_interpreter import nc_to_dataframe\n"
+        "times = []\n"
+        f"for _ in range({REPEATS} + 1):\n"
+        "    start = time.perf_counter()\n"
+        "    nc_to_dataframe(open(sys.argv[1]).read())\n"
+        "    times.append(time.perf_counter() - start)\n"
+        "print(json.dumps(statistics.median(times[1:])))\n"
+    )
+    done = subprocess.run(  # noqa: S603 (the peer that --peers installed)
+        [python, "-c", code, path], capture_output=True, text=True, check=False
+    )
+    return float(json.loads(done.stdout)) if done.returncode == 0 else None
+
+
+def _rs274(path: Path) -> float | None:
+    unpacked = PEERS / "linuxcnc" / "usr"
+    program = shutil.which("rs274") or str(unpacked / "bin" / "rs274")
+    if not Path(program).exists():
+        return None
+    libraries = f"{unpacked / 'lib'}:{unpacked / 'lib' / 'x86_64-linux-gnu'}"
+    with tempfile.TemporaryDirectory() as folder:
+        tools, empty = Path(folder, "tool.tbl"), Path(folder, "empty.ngc")
+        tools.write_text("T1 P1 D4.0\n")
+        empty.write_text("M2\n")
+
+        def run(what: Path) -> Callable[[], object]:
+            command = [program, "-g", "-t", str(tools), str(what), os.devnull]
+            surroundings = {**os.environ, "LD_LIBRARY_PATH": libraries}
+            return lambda: subprocess.run(  # noqa: S603 (the peer that --peers unpacked)
+                command, env=surroundings, cwd=folder, check=True, capture_output=True
+            )
+
+        return max(median_seconds(run(path)) - median_seconds(run(empty)), math.ulp(1.0))
+
+
+_PEERS = {"nc-gcode-interpreter (PyPI)": _nc_gcode_interpreter, "LinuxCNC rs274 -g": _rs274}

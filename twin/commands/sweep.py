@@ -1,0 +1,82 @@
+"""``twin sweep``: one job with values varied, one line of a table for each combination."""
+
+import functools
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from twin.check import forms
+from twin.check.outcome import CheckOutcome
+from twin.check.program import CheckSettings, check_variant
+from twin.check.runner import run_tasks
+from twin.check.variation import variants
+from twin.errors import ExitCode, UsageError
+from twin.files import write_text
+from twin.progress import shown_progress
+
+_LOG_WIDTH = 160
+
+
+def sweep_and_print(
+    path: Path,
+    vary: Sequence[str],
+    *,
+    settings: CheckSettings,
+    json_file: Path | None,
+    jobs: int | None,
+    cluster: str | None,
+) -> ExitCode:
+    """Run a job for every combination of the values and print how each came out.
+
+    Args:
+        path: The job or program.
+        vary: ``KEY=VALUES`` each, as ``variants`` reads them.
+        settings: How each run is checked.
+        json_file: Write every outcome as JSON there.
+        jobs: How many at a time; one for each core by default.
+        cluster: Address of the Ray cluster to run on instead; ``local`` starts one here.
+
+    Returns:
+        ``OK`` when every run passes, else ``FAILED``.
+
+    Raises:
+        UsageError: The job is missing, or a text says no values.
+    """
+    if not path.is_file():
+        raise UsageError(f"{path}: no such file")
+    tasks = variants(path, vary)
+    check = functools.partial(check_variant, settings=settings)
+    outcomes: list[CheckOutcome] = []
+    with shown_progress() as progress:
+        for outcome in run_tasks(tasks, check, jobs=jobs, cluster=cluster):
+            outcomes.append(outcome)
+            progress("sweep", len(outcomes) / len(tasks))
+    order = {task.changes: index for index, task in enumerate(tasks)}
+    outcomes.sort(key=lambda outcome: order.get(outcome.changes, len(order)))
+    if json_file is not None:
+        write_text(json_file, forms.json_text(outcomes))
+    _print(outcomes, [key for key, _ in tasks[0].changes])
+    return ExitCode.OK if all(outcome.passed for outcome in outcomes) else ExitCode.FAILED
+
+
+def _print(outcomes: Sequence[CheckOutcome], keys: Sequence[str]) -> None:
+    table = Table(box=None, pad_edge=False)
+    for key in keys:
+        table.add_column(key.partition(".")[2], justify="right")
+    table.add_column("verdict")
+    for heading in ("contour error", "line", "cycle time"):
+        table.add_column(heading, justify="right")
+    for outcome, row in zip(outcomes, forms.table_rows(outcomes), strict=True):
+        values = [_shown(value) for _, value in outcome.changes] or ["?"] * len(keys)
+        table.add_row(*values, *row[1:])
+    Console(width=None if sys.stdout.isatty() else _LOG_WIDTH).print(table)
+    for text in dict.fromkeys(str(f) for outcome in outcomes for f in outcome.findings):
+        typer.echo(text, err=True)
+
+
+def _shown(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,36 @@
+"""Jumps of CODESYS SoftMotion."""
+
+from twin.nc.control import Control
+from twin.nc.dialects.codesys.program import variables
+from twin.nc.dialects.codesys.subprograms import own_lines
+
+
+def conditional_jump(control: Control) -> None:
+    """G20: go on at block L when K (or the internal variable) is not 0.
+
+    A label L?4 is looked for forwards as L!4; where it is missing, the blocks behind the jump are
+    not run (manual).
+    """
+    number, label = control.take("L"), control.take("L?")
+    condition = control.take_number("K", variables(control).counter)
+    target = number or label
+    if target is None:
+        control.fail("jump-target", "G20 needs L: the block to jump to", hint="write G20 L10 K1")
+    value = control.number(target)
+    if value != int(value) or value < 0.0:
+        control.fail("jump-target", f"{target.text} is no block number", target)
+    if condition == 0.0:
+        return
+    if number is not None:
+        span = (target.column, target.width)
+        control.flow.go(control.flow.find_label(int(value), span, "L", own_lines(control)))
+        return
+    here = own_lines(control)
+    if not control.flow.seek(
+        lambda block: (
+            block.line - 1 in here
+            and any(word.address == "L!" and word.value == value for word in block.words)
+        )
+    ):
+        control.warn("label-not-found", f"no L!{value:g} follows: the program ends here", target)
+        control.flow.end()

@@ -1,0 +1,143 @@
+"""What the words of CODESYS SoftMotion do beside its G codes: paces, limits, periods, switch points."""
+
+import math
+
+from twin.nc.blocks import Word
+from twin.nc.control import Control
+from twin.nc.dialect import WordAction
+from twin.nc.dialects.codesys.program import variables
+
+SWITCHES = 3
+"""Switch points that one element may have (manual)."""
+
+
+def set_acceleration(control: Control, word: Word) -> None:
+    """E: above 0 the path's acceleration, below 0 its deceleration [units/s²]."""
+    value = control.number(word)
+    if value > 0.0:
+        control.acceleration = value
+    elif value < 0.0:
+        control.deceleration = -value
+    else:
+        control.fail("acceleration-range", "an acceleration of 0 never moves", word)
+
+
+def set_rapid_feed(control: Control, word: Word) -> None:
+    """FF: the feed of G0; 0 gives it back to F."""
+    value = control.number(word)
+    if value < 0.0:
+        control.fail("feed-range", f"the feed {word.text} is negative", word)
+    variables(control).rapid_feed = value
+
+
+def set_rapid_acceleration(control: Control, word: Word) -> None:
+    """EF: above 0 the acceleration of G0, below 0 its deceleration; 0 gives both back to E."""
+    value = control.number(word)
+    if value >= 0.0:
+        control.rapid_acceleration = value or math.nan
+    if value <= 0.0:
+        control.rapid_deceleration = -value or math.nan
+
+
+def before_motion(control: Control, rapid: bool) -> None:
+    """What holds for every motion block: the pace of G0, and the shortest way of modulo axes."""
+    if rapid:
+        feed = variables(control).rapid_feed or control.feed
+        control.rapid_feed = math.nan if feed is None else feed * 60.0
+    _refuse_slopes(control)
+    take_shortest_way(control)
+
+
+def _refuse_slopes(control: Control) -> None:
+    """U, V, W beside A, B, C are the slopes of these at the end of the element (manual)."""
+    for slope, axis in zip("UVW", "ABC", strict=True):
+        if slope in control.words and slope not in control.axis_index and axis in control.words:
+            message = f"{slope} is the slope of {axis}, and the twin moves {axis} linearly"
+            hint = f"leave out {slope}, or write {axis} in pieces"
+            control.fail("unsupported-word", message, control.words[slope], hint)
+
+
+def set_period(letter: str) -> WordAction:
+    """PA, PB, ...: the modulo period of an additional axis; 0 makes it linear."""
+
+    def action(control: Control, word: Word) -> None:
+        index = control.axis_index.get(letter)
+        if index is None:
+            control.refuse_axis(word._replace(address=letter))
+        period = control.number(word)
+        if period < 0.0:
+            control.fail("period", f"{word.text} is no period", word)
+        variables(control).periods[index] = period
+
+    return action
+
+
+def axis_limit(letter: str, *, acceleration: bool) -> WordAction:
+    """FX, EX, ...: the largest velocity or acceleration of one axis; 0 takes it away."""
+
+    def action(control: Control, word: Word) -> None:
+        index = control.axis_index.get(letter)
+        if index is None:
+            control.refuse_axis(word._replace(address=letter))
+        value = abs(control.number(word))
+        table = control.axis_accelerations if acceleration else control.axis_limits
+        if value == 0.0:
+            table.pop(index, None)
+        else:
+            table[index] = value if acceleration else value * 60.0
+
+    return action
+
+
+def refuse_profile(control: Control, word: Word) -> None:
+    """S: a profile of the additional axes; only 0, none, can be followed."""
+    if control.number(word) != 0.0:
+        message = "profiles of additional axes are not simulated; S can only be 0"
+        control.fail("unsupported-word", message, word)
+
+
+def pass_label(_control: Control, _word: Word) -> None:
+    """L!: a place to jump to; nothing happens there."""
+
+
+def take_shortest_way(control: Control) -> None:
+    """Axes with a period go the shorter way round: the start is relabelled by whole periods."""
+    if control.modal.incremental:
+        return
+    for index, period in variables(control).periods.items():
+        word = control.words.get(control.settings.axes.names[index])
+        if word is None or period == 0.0:
+            continue
+        target, here = control.axis_value(index, word), control.programmed[index]
+        turns = round((target - here) / period)
+        if turns:
+            programmed = list(control.programmed)
+            programmed[index] += turns * period
+            control.relabel(programmed, "turns")
+
+
+def place_switches(control: Control, length: float) -> None:
+    """H with O (share of the element) or L (distance from its start, or its end when negative).
+
+    Raises:
+        ProgramError: Too many, none of O and L, or a place outside the element.
+    """
+    words, control.series = control.series, []
+    switches = [at for at, word in enumerate(words) if word.address == "H"]
+    if len(switches) > SWITCHES:
+        control.fail("switch-point", f"an element has {SWITCHES} switch points at most", words[-1])
+    for begin, end in zip(switches, [*switches[1:], len(words)], strict=True):
+        place = words[begin + 1 : end]
+        number = control.number(words[begin])
+        if len(place) != 1 or number == 0.0 or number != int(number):
+            message = "a switch point is H with one of O and L after it"
+            control.fail("switch-point", message, words[begin])
+        value = control.number(place[0])
+        if place[0].address == "O":
+            share = value
+        else:
+            share = (value if value >= 0.0 else length + value) / length
+        if not 0.0 <= share <= 1.0:
+            control.fail("switch-point", "the switch point lies outside its element", place[0])
+        on = 1.0 if number > 0.0 else 0.0
+        control.function(f"H{abs(number):g}", {"on": on}, share)
