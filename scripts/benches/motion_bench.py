@@ -187,7 +187,7 @@ def _beside_linuxcnc(folder: Path) -> Iterator[Row]:
             yield Row("motion", f"{shape}: cycle, {kind}", cycle_s(chunks, limits), "s", name, peer)
         ours = setpoints["no jerk limit"].position
         for title, measure in (
-            ("corner cut at X50 Y0 [mm]", _corner_cut if shape == "square" else None),
+            ("corner cut at X50 Y0 (mm)", _corner_cut if shape == "square" else None),
             ("acceleration over its limit", lambda p: _over_limit(p, machine)),
         ):
             if measure is not None:
