@@ -34,25 +34,28 @@ class Picture:
     camera: str
     share: float = 1.0
     machine: str | None = None
+    display: bool = True
 
 
+ROSETTE = "gallery/fagor8070/rosette"
 PICTURES = {
+    "hero": Picture(program=ROSETTE, camera="part", share=0.78),
     "mill": Picture(program="mefi/helix", camera="overview", share=0.03),
-    "helix": Picture(program="mefi/helix", camera="part", share=0.045),
+    "helix": Picture(program="mefi/helix", camera="part", share=0.05),
     "scroll": Picture(program="fagor8070/scroll", camera="part", share=0.8),
-    "scroll_film": Picture(program="fagor8070/scroll", camera="part"),
+    "rosette_film": Picture(program=ROSETTE, camera="part"),
     "bolt_hole_ring": Picture(program="fagor8070/bolt_hole_ring", camera="part", share=0.8),
     "turning": Picture(program="gost/recalculation_3", camera="table", share=0.5),
     "light_mill": Picture(
         program="fagor8070/bolt_hole_ring", camera="overview", share=0.8, machine="mill4_light"
     ),
-    "arc_in_xz": Picture(program="codesys/arc_in_xz_then_xy", camera="part", share=0.75),
+    "arc_in_xz": Picture(program="codesys/arc_in_xz_then_xy", camera="part", share=0.5),
 }
 
 
 FILMS = {
-    "scroll_film": VideoTable(
-        cameras=("part",), seconds=4.0, fps=12, size=(480, 270), quality="draft"
+    "rosette_film": VideoTable(
+        cameras=("part",), seconds=5.0, fps=10, size=(480, 270), quality="final", display=False
     )
 }
 """Of the picture of the same stem's program, as WebP: pages play it."""
@@ -71,7 +74,7 @@ def draw(picture: Picture, out: Path) -> None:
                 film(scene, video=FILMS[out.stem], out=out)
                 return
             end = round(picture.share * len(recording))
-            stills(scene, [Shot(out, end)], cameras=(picture.camera,))
+            stills(scene, [Shot(out, end)], cameras=(picture.camera,), display=picture.display)
     shrink(out)
 
 
@@ -82,7 +85,9 @@ def shrink(path: Path) -> None:
     with Image.open(path) as picture:
         full = picture.convert("RGB")
     for colours in COLOURS:
-        full.quantize(colours, dither=Image.Dither.FLOYDSTEINBERG).save(path, optimize=True)
+        full.quantize(
+            colours, Image.Quantize.MAXCOVERAGE, kmeans=1, dither=Image.Dither.FLOYDSTEINBERG
+        ).save(path, optimize=True)
         if path.stat().st_size <= LARGEST_BYTES:
             return
     raise SystemExit(f"{path}: is still larger than {LARGEST_BYTES} bytes")

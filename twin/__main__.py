@@ -1,5 +1,27 @@
-"""``python -m twin``: the same as the command ``twin``."""
+"""``twin`` and ``python -m twin``: the command line, and what an early end of it says.
 
-from twin.cli import main
+A signal may come while the libraries are still being loaded: even then a sentence is said.
+"""
 
-main()
+import signal
+import sys
+
+
+def main() -> None:
+    """Run the command line and exit with the code that the contract promises."""
+    # Asked to end, by a batch system say, is the same as Ctrl-C: files are left whole or absent.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        from twin.cli import main as run
+
+        run()
+    except KeyboardInterrupt:
+        print("interrupted before anything was begun", file=sys.stderr)
+        raise SystemExit(130) from None
+    except MemoryError:
+        print("there is not enough memory to begin", file=sys.stderr)
+        raise SystemExit(2) from None
+
+
+if __name__ == "__main__":
+    main()

@@ -1,6 +1,5 @@
 """``twin``: the commands together, and what is said when one of them fails."""
 
-import signal
 import sys
 from typing import Annotated, NoReturn
 
@@ -62,8 +61,6 @@ app.add_typer(machine_app, name="machine")
 
 def main() -> None:
     """Run the command line and exit with the code that the contract promises."""
-    # Asked to end, by a batch system say, is the same as Ctrl-C: files are left whole or absent.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         app()
     except TwinError as error:

@@ -37,7 +37,8 @@ class StockTable(Table):
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Centre of the top face in program coordinates [mm]; of the box around an STL."""
     cell: Positive | None = None
-    """Grid of the height map [mm]; none: a tenth of the tool's radius, 0.1 at the finest."""
+    """Grid of the height map [mm]; none: a tenth of the smallest tool's radius, or a fortieth of the
+    stock's shorter side where that is less, 0.1 at the finest."""
     material: str | None = None
     """What it is made of, for the cutting force; none: no force is reckoned."""
 
@@ -184,6 +185,8 @@ class VideoTable(Table):
     """Named cameras, shown one after the other."""
     layout: Literal["sequence", "split"] = "sequence"
     """``split``: all cameras at once, side by side."""
+    display: bool = True
+    """Whether program, axes, feed and error are shown over the picture."""
     seconds: Positive = 12.0
     """Length of the video; the run is sped up or slowed down to fit [s]."""
     speed: Positive | None = None

@@ -31,6 +31,7 @@ from twin.recording_form import (
     RecordingHeader,
     Samples,
 )
+from twin.seal import seal, seal_is_broken
 from twin.toolpath.part_frame import PartFrame
 
 __all__ = [
@@ -159,6 +160,11 @@ def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
         # Opened again, HDF5 also gives the room back that was held and not needed.
         with h5py.File(temporary, "r+", libver=_FORMAT) as file:
             file.attrs["complete"] = True
+        seal(temporary)
+
+
+_DAMAGE = (KeyError, ValueError, IndexError, TypeError, AttributeError, OSError, RuntimeError)
+"""What HDF5 raises when a file is not what it should be."""
 
 
 class Recording:
@@ -173,6 +179,11 @@ class Recording:
         self.path = path
         self._file = file
         self.header = _read_header(file)
+        width = len(self.header.axes)
+        for name in (*COLUMNS, *JOINT_COLUMNS):
+            shape = self._dataset(name).shape
+            if shape[1:] != ((width,) if "/" in name else ()):
+                raise ValueError(f"'{name}' has {shape[1:]} values a sample")
         self._length = len(self._dataset("time"))
 
     def __len__(self) -> int:
@@ -187,36 +198,61 @@ class Recording:
         self._length = min(len(dataset) for dataset in datasets)
         return self._length
 
+    def check_lengths(self) -> None:
+        """Make sure that all columns of a recording that nobody writes any more are equally long.
+
+        Raises:
+            ValueError: They are not.
+        """
+        for name in (*COLUMNS, *JOINT_COLUMNS):
+            if len(self._dataset(name)) != len(self):
+                raise ValueError(f"'{name}' is not as long as 'time'")
+
     def _dataset(self, name: str) -> h5py.Dataset:
         dataset = self._file[name]
         if not isinstance(dataset, h5py.Dataset):
             raise TypeError(f"'{name}' is not a dataset")
         return dataset
 
+    def _read(self, name: str, first: int, last: int) -> np.ndarray[Any, Any]:
+        try:
+            return self._dataset(name)[first:last]
+        except _DAMAGE as error:
+            raise RecordingError(f"{self.path}: '{name}' cannot be read: {error}") from error
+
     def column(self, name: str) -> np.ndarray[Any, Any]:
-        """One whole dataset, such as ``joint/position``."""
-        return self._dataset(name)[: len(self)]
+        """One whole dataset, such as ``joint/position``.
+
+        Raises:
+            RecordingError: It is damaged.
+        """
+        return self._read(name, 0, len(self))
 
     @property
     def alarms(self) -> tuple[tuple[float, str], ...]:
         """When the machine raised which alarm [s, text]."""
-        noted = json.loads(str(self._file.attrs.get("alarms", "[]")))
-        return tuple((float(time), str(text)) for time, text in noted)
+        try:
+            noted = json.loads(str(self._file.attrs.get("alarms", "[]")))
+            return tuple((float(time), str(text)) for time, text in noted)
+        except _DAMAGE as error:
+            raise RecordingError(f"{self.path}: its alarms cannot be read: {error}") from error
 
     def contour_um(self, first: int, last: int) -> FloatArray | None:
         """Contour error of the samples from ``first`` up to ``last`` [µm]; None where not known."""
-        return self._dataset(CONTOUR)[first:last] if CONTOUR in self._file else None
+        return self._read(CONTOUR, first, last) if CONTOUR in self._file else None
 
     def chunks(self, rows: int = 65536) -> Iterator[Samples]:
         """Samples in order, at most ``rows`` at a time."""
         for first in range(0, len(self), rows):
-            here = slice(first, min(first + rows, len(self)))
+            last = min(first + rows, len(self))
             setpoint = Setpoints(
-                **{name: self._dataset(path)[here] for path, (name, _) in COLUMNS.items()}
+                **{name: self._read(path, first, last) for path, (name, _) in COLUMNS.items()}
             )
             yield Samples(
                 setpoint,
-                **{name: self._dataset(path)[here] for path, (name, _) in JOINT_COLUMNS.items()},
+                **{
+                    name: self._read(path, first, last) for path, (name, _) in JOINT_COLUMNS.items()
+                },
             )
 
 
@@ -253,10 +289,16 @@ def open_recording(path: Path) -> Iterator[Recording]:
     Raises:
         RecordingError: The file is missing, torn, incomplete or not a recording.
     """
+    with _damage_told(path):
+        if path.is_file() and seal_is_broken(path):
+            raise RecordingError(f"{path}: is damaged: it is not what was written")
     with _opened(path) as file:
-        if not file.attrs.get("complete", False):
-            raise RecordingError(f"{path}: the recording is not complete")
-        yield _recording(path, file)
+        with _damage_told(path):
+            if not file.attrs.get("complete", False):
+                raise RecordingError(f"{path}: the recording is not complete")
+            recording = Recording(path, file)
+            recording.check_lengths()
+        yield recording
 
 
 @contextlib.contextmanager
@@ -274,8 +316,9 @@ def open_growing(path: Path) -> Iterator[Recording]:
     )
     found = path if path.is_file() or not parts else parts[-1]
     with _opened(found, swmr=True) as file:
-        recording = _recording(found, file)
-        recording.refresh()
+        with _damage_told(found):
+            recording = Recording(found, file)
+            recording.refresh()
         yield recording
 
 
@@ -289,8 +332,9 @@ def _opened(path: Path, *, swmr: bool = False) -> Iterator[h5py.File]:
         yield file
 
 
-def _recording(path: Path, file: h5py.File) -> Recording:
+@contextlib.contextmanager
+def _damage_told(path: Path) -> Iterator[None]:
     try:
-        return Recording(path, file)
-    except (KeyError, ValueError, IndexError) as error:
+        yield
+    except _DAMAGE as error:
         raise RecordingError(f"{path}: is not a recording of this twin: {error}") from error

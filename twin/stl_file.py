@@ -1,10 +1,16 @@
 """Solids that come as STL files."""
 
 import functools
+import logging
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from twin.errors import ConfigError
+
+LARGEST_MM = 1e6
+"""A corner farther from zero than a kilometre is damage, and no sum with it is exact any more."""
 
 if TYPE_CHECKING:
     import trimesh
@@ -19,11 +25,17 @@ def read_stl(path: Path) -> "trimesh.Trimesh":
     """
     import trimesh
 
+    # It logs tracebacks of what it gets over; what it does not is told of here.
+    logging.getLogger("trimesh").addHandler(logging.NullHandler())
     try:
-        with path.open("rb") as file:
-            mesh = trimesh.load_mesh(file, file_type="stl")
+        # Corners that are no numbers are told of below.
+        with path.open("rb") as file, np.errstate(all="ignore"):
+            mesh = trimesh.load_mesh(file, file_type="stl", process=False)
     except (OSError, ValueError, KeyError, IndexError) as error:
         raise ConfigError(f"{path}: is not a readable STL file: {error}") from error
+    if np.abs(mesh.vertices).max(initial=0.0) > LARGEST_MM or np.isnan(mesh.vertices).any():
+        raise ConfigError(f"{path}: a corner lies beyond {LARGEST_MM:g} mm")
+    mesh.process()
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) < 4 or mesh.extents.min() <= 0:
         raise ConfigError(f"{path}: holds no solid")
     return mesh

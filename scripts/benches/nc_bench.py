@@ -2,6 +2,8 @@
 
 Ours and nc-gcode-interpreter are called from Python and read the file; rs274 is a process that
 reads it and writes canonical text, its start taken off. Programs are made here, the same for all.
+Times are those of the processor, of one core; of a peer that uses several, the shorter of that and
+of the time that passed.
 """
 
 import json
@@ -14,7 +16,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from benches.row import REPEATS, Row, median_seconds
+from benches.row import REPEATS, Row, median_cpu_seconds
 
 from twin.nc.canonical import Axes
 from twin.nc.dialects import dialect_named
@@ -34,9 +36,9 @@ def rows() -> Iterator[Row]:
     """Lines, arcs with helices, and a program that computes, beside each peer."""
     with tempfile.TemporaryDirectory() as folder:
         for task, dialect, ours, theirs, blocks in _programs(Path(folder)):
-            rate = blocks / median_seconds(lambda o=ours, d=dialect: _interpret(o, d))
-            for peer, measure in _PEERS.items():
-                seconds = measure(theirs)
+            rate = blocks / median_cpu_seconds(lambda o=ours, d=dialect: _interpret(o, d))
+            for measure in (_nc_gcode_interpreter, _rs274):
+                peer, seconds = measure(theirs)
                 figure = None if seconds is None else blocks / seconds
                 yield Row("nc", task, rate, "blocks/s", peer, figure)
 
@@ -114,32 +116,40 @@ def _interpret(path: Path, dialect: str) -> int:
     return sum(len(chunk.moves) for chunk in interpretation.chunks())
 
 
-def _nc_gcode_interpreter(path: Path) -> float | None:
-    """Median time in a process of its own, which holds its packages [s]."""
+def _nc_gcode_interpreter(path: Path) -> tuple[str, float | None]:
+    """Name and median time in a process of its own, which holds its packages [s]."""
+    name = "nc-gcode-interpreter"
     python = PEERS / "venv" / "bin" / "python"
-    if not python.exists() or "o100" in path.read_text():
-        return None
+    if not python.exists():
+        return name, None
+    if "o100" in path.read_text():
+        return f"{name}: knows no subprograms", None
     code = (
         "import json, statistics, sys, time\n"
+        "from importlib.metadata import version\n"
         "from nc_gcode_interpreter import nc_to_dataframe\n"
         "times = []\n"
         f"for _ in range({REPEATS} + 1):\n"
-        "    start = time.perf_counter()\n"
+        "    start, cpu = time.perf_counter(), time.process_time()\n"
         "    nc_to_dataframe(open(sys.argv[1]).read())\n"
-        "    times.append(time.perf_counter() - start)\n"
-        "print(json.dumps(statistics.median(times[1:])))\n"
+        "    times.append(min(time.perf_counter() - start, time.process_time() - cpu))\n"
+        "print(json.dumps([version('nc-gcode-interpreter'), statistics.median(times[1:])]))\n"
     )
     done = subprocess.run(  # noqa: S603 (the peer that --peers installed)
         [python, "-c", code, path], capture_output=True, text=True, check=False
     )
-    return float(json.loads(done.stdout)) if done.returncode == 0 else None
+    if done.returncode != 0:
+        return f"{name}: fails", None
+    found, seconds = json.loads(done.stdout)
+    return f"{name} {found}", float(seconds)
 
 
-def _rs274(path: Path) -> float | None:
+def _rs274(path: Path) -> tuple[str, float | None]:
+    name = "LinuxCNC rs274 -g"
     unpacked = PEERS / "linuxcnc" / "usr"
     program = shutil.which("rs274") or str(unpacked / "bin" / "rs274")
     if not Path(program).exists():
-        return None
+        return name, None
     libraries = f"{unpacked / 'lib'}:{unpacked / 'lib' / 'x86_64-linux-gnu'}"
     with tempfile.TemporaryDirectory() as folder:
         tools, empty = Path(folder, "tool.tbl"), Path(folder, "empty.ngc")
@@ -153,7 +163,6 @@ def _rs274(path: Path) -> float | None:
                 command, env=surroundings, cwd=folder, check=True, capture_output=True
             )
 
-        return max(median_seconds(run(path)) - median_seconds(run(empty)), math.ulp(1.0))
-
-
-_PEERS = {"nc-gcode-interpreter (PyPI)": _nc_gcode_interpreter, "LinuxCNC rs274 -g": _rs274}
+        return name, max(
+            median_cpu_seconds(run(path)) - median_cpu_seconds(run(empty)), math.ulp(1.0)
+        )

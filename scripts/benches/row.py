@@ -1,5 +1,6 @@
 """One line of the bench's table, and how a figure is taken."""
 
+import resource
 import statistics
 import time
 from collections.abc import Callable
@@ -28,6 +29,26 @@ class Row:
     unit: str
     peer: str = ""
     peer_figure: float | None = None
+
+
+def processor_seconds() -> float:
+    """What processors have spent on this process and on those that it began and that ended [s]."""
+    used = [resource.getrusage(whose) for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(each.ru_utime + each.ru_stime for each in used)
+
+
+def median_cpu_seconds(task: Callable[[], object], repeats: int = REPEATS) -> float:
+    """The median time that processors spend on ``task``, its processes included [s].
+
+    For work on one core it is the time that passes on a machine that does nothing else.
+    """
+    task()
+    times: list[float] = []
+    for _ in range(repeats):
+        start = processor_seconds()
+        task()
+        times.append(processor_seconds() - start)
+    return statistics.median(times)
 
 
 def median_seconds(task: Callable[[], object], repeats: int = REPEATS) -> float:

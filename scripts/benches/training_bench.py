@@ -76,28 +76,33 @@ def _headless() -> float:
 
 
 @contextlib.contextmanager
-def _open_page() -> Iterator[tuple[OpenRoom, Callable[[], None]]]:
+def _open_page() -> Iterator[tuple[OpenRoom, Callable[[], float]]]:
     """A room with its page; and how to press feed hold on it."""
     from playwright.sync_api import sync_playwright
 
     with open_room(read_scene(scene_path(SCENE)), plain=True) as room:
         thread = threading.Thread(target=room.serve, daemon=True)
         thread.start()
-        assert room.gate is not None
+        gate = room.gate
+        assert gate is not None
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
             page = browser.new_context(
                 viewport={"width": 1280, "height": 760}, device_scale_factor=0.25
             ).new_page()
-            page.goto(room.gate.address)
+            page.goto(gate.address)
             _until(lambda: room.shown.panel.width == 1280)
 
-            def click() -> None:
+            def click() -> float:
                 left, top, right, bottom = room.shown.panel.kit.places["feed hold"]
                 page.mouse.up()
                 page.mouse.move(0.5 * (left + right), 0.5 * (top + bottom))
-                time.sleep(1.0)
+                # However slow the page is: it has seen the button up, and where the mouse is.
+                seen = gate.heard + 5
+                _until(lambda: gate.heard >= seen)
+                begin = time.perf_counter()
                 page.mouse.down()
+                return begin
 
             yield room, click
             browser.close()
@@ -111,14 +116,18 @@ def _factor(room: OpenRoom) -> float:
     return (room.session.room.time_s - before) / (time.perf_counter() - begin)
 
 
-def _reaction(room: OpenRoom, hold: Callable[[], None]) -> float:
-    """Time from a hold to the first loss of speed, from a steady feed [s]."""
+def _reaction(room: OpenRoom, hold: Callable[[], float]) -> float:
+    """Time from a hold to the first loss of speed, from a steady feed [s].
+
+    Args:
+        room: Where.
+        hold: Asks for the hold, and says when it began to.
+    """
     if not room.session.room.running:
         _ask(room, "cycle_start")
     _until(lambda: abs(_speed(room) - FEED) < 0.001 * FEED)
-    hold()
-    begin = time.perf_counter()
     steady = _speed(room)
+    begin = hold()
     _until(lambda: _speed(room) < (1.0 - GONE) * steady)
     passed = time.perf_counter() - begin
     _until(lambda: not room.session.room.moving)
@@ -140,8 +149,11 @@ def _speed(room: OpenRoom) -> float:
     return 60.0 * float((velocity @ velocity) ** 0.5)
 
 
-def _ask(room: OpenRoom, name: str) -> None:
+def _ask(room: OpenRoom, name: str) -> float:
+    """Ask for something as the panel does; returns when."""
+    begin = time.perf_counter()
     room.shown.viewer.send_to_sim(RequestEvent(do(name)))
+    return begin
 
 
 def _until(come: Callable[[], bool]) -> None:

@@ -98,7 +98,13 @@ def test_tools_change_between_moves(samples: Motion) -> None:
         (0, 3, "flat"),
         (3, 5, "drill"),
     ]
-    assert default_cell([FLAT, ToolTable(number=9, diameter=3.0)]) == pytest.approx(0.15)
+    thin = ToolTable(number=9, diameter=3.0)
+    plate = StockTable(shape="box", size=(100.0, 80.0, 10.0))
+    assert default_cell([FLAT, thin], plate) == pytest.approx(0.15)
+    wide = ToolTable(number=9, diameter=40.0)
+    small = StockTable(shape="box", size=(10.0, 8.0, 10.0))
+    assert default_cell([wide], plate) == pytest.approx(2.0)
+    assert default_cell([wide], small) == pytest.approx(0.2)
 
 
 def test_holder_and_shank_in_the_material_are_gouges(samples: Motion) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from tests.nc.nc_running import ROOT, run
 from twin.errors import UsageError
-from twin.nc.explain import explain, findings
+from twin.nc.explain import explain, findings, overview
 from twin.nc.settings import ToolData
 
 _CODE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
@@ -50,3 +50,7 @@ def test_explain_shows_text_and_example() -> None:
 def test_an_unknown_code_names_the_nearest() -> None:
     with pytest.raises(UsageError, match="no-lead"):
         explain("nolead")
+
+
+def test_the_overview_names_every_code_once() -> None:
+    assert [line.split()[0] for line in overview().splitlines()] == sorted(findings())

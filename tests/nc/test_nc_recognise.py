@@ -26,6 +26,18 @@ def test_own_words_decide(dialect: str, text: str) -> None:
     assert recognise(source_from_text(f"G0 X0\n{text}\nX1")).name == dialect
 
 
+@pytest.mark.parametrize(
+    ("dialect", "line"),
+    [
+        ("fagor8070", 'G1 X1 ; "finish" costs 5 $ more'),
+        ("mefi", 'N10 G0 X1 " 5 $ ; or so'),
+        ("gost", 'G0 X1 $ "чисто"; готово'),
+    ],
+)
+def test_marks_within_a_comment_decide_nothing(dialect: str, line: str) -> None:
+    assert recognise(source_from_text(line)).name == dialect
+
+
 def test_no_words_of_its_own_ask() -> None:
     with pytest.raises(UsageError) as raised:
         recognise(source_from_text("G0 X1\nG1 Y2 F100", "plain.nc"))

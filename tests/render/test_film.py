@@ -134,3 +134,15 @@ def test_full_disk_is_said_and_leaves_nothing(
     with pytest.raises(RenderError, match=r"run\.mp4: .*No space left on device"):
         film(scene, video=VIDEO, out=tmp_path / "run.mp4")
     assert sorted(tmp_path.iterdir()) == before
+
+
+def test_the_display_can_be_left_out(scene: Scene, tmp_path: Path) -> None:
+    frames = []
+    for display in (True, False):
+        video = VIDEO.model_copy(update={"seconds": 0.2, "display": display})
+        with av.open(str(film(scene, video=video, out=tmp_path / "one.mp4"))) as container:
+            frames.append(next(container.decode(video=0)).to_ndarray(format="rgb24").astype(int))
+    changed = (np.abs(frames[0] - frames[1]).sum(axis=2) > 60).nonzero()
+    assert len(changed[0]) > 500
+    middle = np.abs(frames[0] - frames[1])[70:100, 140:180]
+    assert middle.mean() < 10, "the panels are at the corners"

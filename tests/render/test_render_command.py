@@ -89,6 +89,20 @@ def test_stills_at_times_lines_and_events(recorded: Path, twin: Twin, tmp_path: 
             assert picture.size == (160, 90)
 
 
+def test_a_split_film_for_a_page_without_display(
+    recorded: Path, twin: Twin, tmp_path: Path
+) -> None:
+    cameras = ("--camera", "part", "--camera", "riding", "--split", "--no-display")
+    length = ("--seconds", 0.4, "--fps", 10, "--size", "160x90", "--format", "gif")
+    done = twin("render", recorded, "--out", tmp_path, *cameras, *length)
+    assert done.code == 0, done.stderr
+    with Image.open(tmp_path / "video.gif") as picture:
+        assert picture.size == (160, 90)
+        assert getattr(picture, "n_frames", 1) == 4
+        left, right = (picture.convert("L").crop((x, 5, x + 75, 85)) for x in (2, 83))
+    assert left.tobytes() != right.tobytes()
+
+
 def test_the_part_is_written_and_measured(recorded: Path, twin: Twin, tmp_path: Path) -> None:
     arguments = ("--glb", "--inspect", "commanded", "--tolerance", 5)
     done = twin("render", recorded, "--out", tmp_path, *arguments)

@@ -13,7 +13,7 @@ from twin.job import StockTable, ToolTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.recording import Recording, open_recording
-from twin.render.canvas import DRAFT, Pixels
+from twin.render.canvas import DRAFT, FINAL, Pixels
 from twin.render.placement import tip_position
 from twin.render.replay import deal
 from twin.render.stage import Scene, Stage, stage
@@ -234,12 +234,32 @@ def test_a_stock_that_is_cut_away_is_seen_no_more(scene: Scene) -> None:
 
 def test_shadows_fall(scene: Scene) -> None:
     pictures = []
-    for quality in (DRAFT, dataclasses.replace(DRAFT, shadows=True)):
+    for quality in (DRAFT, dataclasses.replace(DRAFT, passes=4)):
         with stage(scene, SIZE, quality) as play:
             play_to(play, scene.recording, 500)
             pictures.append(play.picture("overview").astype(float))
     darker = pictures[0] - pictures[1] > 8
     assert darker.any(axis=2).sum() > 20
+
+
+def test_passes_smooth_edges_and_shadows(scene: Scene) -> None:
+    """Between the levels of a rough picture lie those of a smooth one."""
+    levels = []
+    for passes in (1, 8):
+        with stage(scene, SIZE, dataclasses.replace(DRAFT, passes=passes)) as play:
+            play_to(play, scene.recording, 500)
+            picture = play.picture("overview")
+            again = play.picture("overview")
+            assert np.abs(picture.astype(int) - again).mean() < 2, "only the tool and chips turn"
+            levels.append(len(np.unique(picture.reshape(-1, 3), axis=0)))
+    assert levels[1] > 1.5 * levels[0]
+
+
+def test_a_still_gets_more_passes_than_a_frame_and_a_draft_one() -> None:
+    assert FINAL.for_still.passes > FINAL.passes > 1
+    assert FINAL.for_still.drawn_cells == FINAL.drawn_cells
+    assert DRAFT.for_still == DRAFT
+    assert DRAFT.passes == 1
 
 
 def test_moments(recording: Recording) -> None:

@@ -13,6 +13,7 @@ from twin.errors import RenderError
 from twin.machine.config import Machine
 from twin.program_notes import Steps
 from twin.recording import open_recording
+from twin.recording_form import STEPS
 from twin.render.gauge import Gauge
 from twin.render.replay import deal
 from twin.render.stage import Scene
@@ -71,7 +72,8 @@ def no_warning(_: int) -> str:
 
 def test_display_reads_the_lag_where_nobody_compared(scene: Scene) -> None:
     reading = gauge_at(scene, 601).reading(no_warning)
-    assert reading.error_um == pytest.approx(5.0)
+    # Two recorded positions, each rounded to its step.
+    assert reading.error_um == pytest.approx(5.0, abs=1e3 * STEPS["joint/position"])
     assert reading.line == 3
     assert reading.feed == pytest.approx(80.0 / 0.25 * 60.0, rel=1e-6)
     np.testing.assert_allclose(reading.position, [-40 + 80 * 100 / 250, 0, -5, 0], atol=0.01)

@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -19,6 +20,9 @@ from twin.training.launch import OpenRoom, open_room
 from twin.training.panel.request import do
 from twin.training.scene import read_scene, scene_path
 from twin.training.studio import RequestEvent
+
+if TYPE_CHECKING:
+    from playwright.sync_api import BrowserContext
 
 CHROMIUM = Path(os.environ.get("TWIN_CHROMIUM", "/usr/bin/chromium"))
 FLAGS = [
@@ -31,7 +35,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-PATIENCE_S = 90.0
+PATIENCE_S = 180.0
 WIDTH, HEIGHT = 1280, 760
 
 pytestmark = [
@@ -47,9 +51,19 @@ pytestmark = [
 class Operator:
     """Somebody at the page."""
 
-    def __init__(self, room: OpenRoom, page: object) -> None:
+    def __init__(self, room: OpenRoom, browser: "BrowserContext") -> None:
         self.room = room
-        self.page = page
+        self._browser = browser
+        self.open()
+
+    def open(self) -> None:
+        """Go to the page; the panel stands where the page's width puts it once it is there."""
+        gate, panel = self.room.gate, self.room.shown.panel
+        assert gate is not None
+        panel.width = 0.0
+        self.page = self._browser.new_page()
+        self.page.goto(gate.address, timeout=1e3 * PATIENCE_S)
+        self.until(lambda: panel.width == WIDTH, "the page")
 
     def until(self, come: Callable[[], bool], what: str) -> None:
         """Wait until the room shows it."""
@@ -63,7 +77,7 @@ class Operator:
         places = self.room.shown.panel.kit.places
         self.until(lambda: name in places, f"the key {name}")
         left, top, right, bottom = places[name]
-        mouse = self.page.mouse  # pyright: ignore[reportAttributeAccessIssue]
+        mouse = self.page.mouse
         mouse.move(left + share * (right - left), 0.5 * (top + bottom))
         self._frames(1)
         mouse.down()
@@ -99,25 +113,24 @@ def operator(tmp_path) -> Iterator[Operator]:
     from playwright.sync_api import sync_playwright
 
     scene = read_scene(_slow_copy(tmp_path / "scene"))
+    before = set(threading.enumerate())
     with open_room(scene, plain=True, trainer=True, out=tmp_path) as room:
         thread = threading.Thread(target=room.serve, daemon=True)
         thread.start()
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
             # A quarter of the dots each way: little work for a processor that has to draw them.
-            page = browser.new_context(
+            context = browser.new_context(
                 viewport={"width": WIDTH, "height": HEIGHT}, device_scale_factor=0.25
-            ).new_page()
-            assert room.gate is not None
-            page.goto(room.gate.address)
-            somebody = Operator(room, page)
-            # The panel stands where the page's width puts it as soon as the page is there.
-            somebody.until(lambda: room.shown.panel.width == WIDTH, "the page")
-            yield somebody
+            )
+            yield Operator(room, context)
             browser.close()
         room.handle.close()
         thread.join(timeout=PATIENCE_S)
-    # What Studio leaves open is collected here, where it is expected, and not in another test.
+    # What Studio leaves open is collected here, where it is expected, and not in another test: once
+    # its threads, which it waits for no longer than 5 s, have ended.
+    for left in set(threading.enumerate()) - before:
+        left.join(timeout=PATIENCE_S)
     gc.collect()
 
 
@@ -165,7 +178,7 @@ def test_a_scene_is_played_in_the_browser_and_survives_its_loss(operator, tmp_pa
         "override",
     ]
 
-    # A lost browser does not stop the machine.
+    # A lost browser does not stop the machine, and another one finds it as it is.
     place = float(room.machine.position[2])
     operator.ask("mode", mode="jog")
     operator.ask("jog", axis="Z", direction=1, step=30.0, feed=600.0)
@@ -174,3 +187,6 @@ def test_a_scene_is_played_in_the_browser_and_survives_its_loss(operator, tmp_pa
     operator.until(lambda: room.machine.position[2] > place + 29.9, "the end of the jog")
     assert room.alarm is None
     assert operator.room.handle.is_running()
+    operator.open()
+    operator.click("mode auto")
+    operator.until(lambda: room.mode == "auto", "the panel of the second page")

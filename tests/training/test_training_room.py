@@ -223,6 +223,16 @@ def test_a_replay_comes_to_where_the_session_is(session):
     assert np.array_equal(replay.room.machine.position, session.room.machine.position)
 
 
+def test_what_was_handed_in_stays_as_it_was(session):
+    do(session, "finish")
+    score = session.room.judge.score
+    for command in ({"do": "hint"}, {"do": "finish"}, {"do": "answer", "task": 1, "choice": "R"}):
+        assert not session.submit(command)
+        assert "handed in" in session.refusal
+    assert (session.room.judge.score, session.room.judge.hints) == (score, 0)
+    do(session, "cycle_start")
+
+
 def test_freezing_stops_time(session):
     do(session, "cycle_start")
     session.frozen = True

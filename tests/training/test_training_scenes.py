@@ -4,7 +4,7 @@ import pytest
 
 from twin.errors import ConfigError
 from twin.training.scene import Scene, read_scene, scene_names, scene_path
-from twin.training.script import play
+from twin.training.script import ScriptError, play, rehearse
 from twin.training.session import Session
 
 CONTROLS = ("gost", "codesys", "fagor8070", "mefi")
@@ -38,6 +38,18 @@ def test_the_mistake_fails_as_intended(name):
     assert failed == session.scene.file.mistake_fails
     assert failed
     assert session.room.judge.score < session.scene.points
+
+
+def test_a_script_that_ends_otherwise_is_told(tmp_path):
+    shipped = scene_path("fagor_full_circle")
+    text = shipped.read_text(encoding="utf-8").replace("mistake_fails = [1]", "mistake_fails = [2]")
+    (tmp_path / shipped.name).write_text(text, encoding="utf-8")
+    program = shipped.with_suffix(".nc").read_text(encoding="utf-8")
+    (tmp_path / f"{shipped.stem}.nc").write_text(program, encoding="utf-8")
+    solution, mistake = rehearse(read_scene(tmp_path / shipped.name))
+    assert solution.intended
+    assert (mistake.failed, mistake.intended) == ((1,), False)
+    assert mistake.score < 10
 
 
 @pytest.mark.parametrize("name", scene_names())
@@ -93,3 +105,10 @@ def test_a_link_out_of_the_folder_is_refused(tmp_path):
     (tmp_path / "scene" / "scene.toml").write_text(MINIMAL)
     with pytest.raises(ConfigError, match="leads out of the scene's folder"):
         read_scene(tmp_path / "scene" / "scene.toml")
+
+
+def test_a_scene_without_scripts_cannot_be_rehearsed(tmp_path):
+    (tmp_path / "p.nc").write_text("M30\n")
+    (tmp_path / "scene.toml").write_text(MINIMAL)
+    with pytest.raises(ScriptError, match="no solution to rehearse"):
+        rehearse(read_scene(tmp_path / "scene.toml"))

@@ -43,6 +43,10 @@ def render(
         typer.Option("--camera", help="One after the other; part and riding fit any machine."),
     ] = None,
     split: Annotated[bool, typer.Option("--split", help="All cameras at once.")] = False,
+    display: Annotated[
+        bool | None,
+        typer.Option("--display/--no-display", help="Program, axes and error over the picture."),
+    ] = None,
     quality: Annotated[str | None, typer.Option("--quality", help="draft or final.")] = None,
     seconds: Annotated[
         float | None, typer.Option("--seconds", help="Length of the film (s).")
@@ -75,6 +79,7 @@ def render(
         video={
             "cameras": tuple(camera) if camera else None,
             "layout": "split" if split else None,
+            "display": display,
             "quality": quality,
             "seconds": seconds,
             "speed": speed,

@@ -11,6 +11,9 @@ def train(
         str, typer.Argument(help="A shipped scene's name, or a scene.toml.")
     ] = "fagor_first_steps",
     list_scenes: Annotated[bool, typer.Option("--list", help="List the shipped scenes.")] = False,
+    rehearse: Annotated[
+        bool, typer.Option("--rehearse", help="Play the scene's solution and mistake, no page.")
+    ] = False,
     language: Annotated[
         str | None, typer.Option("--language", help="en, ru, it or cs; default: the scene's.")
     ] = None,
@@ -20,7 +23,9 @@ def train(
     host: Annotated[
         str | None, typer.Option("--host", help="Listen there too; needs --token.")
     ] = None,
-    port: Annotated[int, typer.Option("--port", help="Default: the first free from 8080.")] = 0,
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="0: the first free from 8080.")
+    ] = 0,
     token: Annotated[
         str | None, typer.Option("--token", help="What a browser must know to come in.")
     ] = None,
@@ -42,6 +47,8 @@ def train(
     if list_scenes:
         room.print_scenes(language)
         return
+    if rehearse:
+        raise typer.Exit(room.rehearse_and_print(scene))
     code = room.train(
         scene, language=language, window=window, host=host, port=port, token=token,
         certificate=certificate, key=key, trainer=trainer, plain=plain, out=out,

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 from twin.errors import UsageError
+from twin.nc.interpreter import PLAIN_FROM
 from twin.nc.jsonl import json_lines, text_lines
 from twin.preparation import prepare
 
@@ -21,9 +22,12 @@ def print_interpretation(
     """
     if form not in FORMATS:
         raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
-    interpretation = prepare(
-        program, dialect=dialect, machine=machine, strict=strict
-    ).interpretation()
+    preparation = prepare(program, dialect=dialect, machine=machine, strict=strict)
+    if len(preparation.source.lines) >= PLAIN_FROM:
+        from twin.first_compilation import announce_compilation
+
+        announce_compilation()
+    interpretation = preparation.interpretation()
     try:
         for line in FORMATS[form](interpretation):
             sys.stdout.write(f"{line}\n")

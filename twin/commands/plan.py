@@ -12,6 +12,7 @@ from rich.table import Table
 from twin import api
 from twin.chain import Run
 from twin.errors import UsageError
+from twin.first_compilation import announce_compilation
 from twin.motion.drawing import draw_plan
 from twin.motion.summary import Summary, summarize
 from twin.motion_limits import motion_limits
@@ -46,6 +47,7 @@ def plan_and_print(
     """
     if form not in ("text", "json"):
         raise UsageError(f"--format {form}: use text or json")
+    announce_compilation()
     preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
     twin_machine = preparation.machine
     summary = summarize(

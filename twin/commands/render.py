@@ -129,6 +129,7 @@ class _Maker:
                 else self._video.cameras[:1],
                 size=self._video.size,
                 quality=self._video.quality,
+                display=self._video.display,
             )
             for shot in shots:
                 typer.echo(str(shot.out))

@@ -8,6 +8,7 @@ from twin.alarm_text import alarm_diagnostic, near_miss_diagnostic
 from twin.chain import Run
 from twin.commands.pictures import film_run
 from twin.errors import ExitCode
+from twin.first_compilation import announce_compilation
 from twin.outcome import Outcome
 from twin.preparation import prepare
 from twin.progress import shown_progress
@@ -38,6 +39,7 @@ def run_and_print(
     Raises:
         TwinError: Something is wrong before the run could end; see each error's exit code.
     """
+    announce_compilation()
     preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
     folder = out or Path("out") / preparation.job.program.stem
     run = Run(preparation)

@@ -11,13 +11,32 @@ from twin.training.texts import LANGUAGES, Language, in_language
 
 
 def print_scenes(language: str | None) -> None:
-    """List the shipped scenes."""
-    chosen = language_named(language)
+    """List the shipped scenes, in English unless another language is asked for."""
+    chosen = language_named(language) or "en"
     for name in scene_names():
         scene = read_scene(scene_path(name))
-        title = in_language(scene.file.title, chosen or scene.file.language)
+        title = in_language(scene.file.title, chosen)
         dialect = scene.preparation.dialect.name
         typer.echo(f"{name:26} {dialect:11} {scene.points:3} points  {title}")
+
+
+def rehearse_and_print(name: str) -> ExitCode:
+    """Play a scene's scripted solution and mistake, and say whether they end as intended.
+
+    Raises:
+        TwinError: The scene is wrong, or a step of a script cannot be done.
+    """
+    from twin.training.script import rehearse
+
+    scene = read_scene(scene_path(name))
+    rehearsals = rehearse(scene)
+    for played in rehearsals:
+        failed = ", ".join(map(str, played.failed)) or "none"
+        typer.echo(
+            f"{scene.name}: {played.what}: {played.score} of {scene.points} points, failed tasks: "
+            f"{failed}: {'as intended' if played.intended else 'NOT as intended'}"
+        )
+    return ExitCode.OK if all(played.intended for played in rehearsals) else ExitCode.FAILED
 
 
 def language_named(name: str | None) -> Language | None:
@@ -90,6 +109,8 @@ def train(
 
 def _tls(certificate: Path | None, key: Path | None) -> ssl.SSLContext | None:
     if certificate is None:
+        if key is not None:
+            raise UsageError("--key belongs to a --certificate, and there is none")
         return None
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     try:

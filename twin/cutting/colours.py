@@ -6,9 +6,9 @@ import numpy.typing as npt
 from twin.cutting.height_map import HeightMap
 from twin.nc.canonical import FloatArray
 
-RAW_RGB = (163, 167, 172)
-"""The blank's own skin."""
-MACHINED_RGB = (226, 229, 232)
+RAW_RGB = (112, 118, 126)
+"""The blank's own skin, dark as rolled steel: what was machined stands out."""
+MACHINED_RGB = (196, 200, 206)
 """Where a tool went."""
 UNMEASURED_RGB = (170, 170, 170)
 

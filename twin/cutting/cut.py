@@ -115,7 +115,7 @@ class Cutter:
         self._plan = tool if isinstance(tool, ToolPlan) else ToolPlan((tool,))
         self.tool = self._plan.tools[0]
         corner = np.asarray(part_zero[:3]) - np.array([*part_frame.center, 0.0])
-        self.map = blank(stock, corner, stock.cell or default_cell(self._plan.tools))
+        self.map = blank(stock, corner, stock.cell or default_cell(self._plan.tools, stock))
         self.changed = (0, 0, 0, 0)
         self.force = np.zeros((0, 3))
         self.marks = np.zeros(self.map.heights.shape if keep_marks else (0, 0))

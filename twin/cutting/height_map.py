@@ -110,7 +110,7 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
     result = HeightMap(
         origin, cell, bottom, np.full(shape, top), top, edge, np.broadcast_to(top, shape)
     )
-    result.heights[~edge.contains(*np.meshgrid(result.x, result.y))] = bottom
+    result.heights[~edge.contains(result.x, result.y[:, None])] = bottom
     if stock.file is not None:
         mesh = read_stl(Path(stock.file))
         low, high = mesh.bounds

@@ -43,13 +43,13 @@ def net(height_map: HeightMap, step: int = 1) -> Net:
         step: Take every ``step``-th cell.
     """
     spacing = step * height_map.cell
-    columns = height_map.heights.shape[1]
+    rows, columns = height_map.heights.shape
     x, y = height_map.x[::step], height_map.y[::step]
     grid_x, grid_y = np.meshgrid(
         np.concatenate([[x[0] - spacing], x, [x[-1] + spacing]]),
         np.concatenate([[y[0] - spacing], y, [y[-1] + spacing]]),
     )
-    number = np.arange(height_map.heights.size).reshape(-1, columns)[::step, ::step]
+    number = columns * np.arange(0, rows, step)[:, None] + np.arange(0, columns, step)
     number = np.pad(number, 1, constant_values=-1)
     inside = height_map.outline.contains(grid_x, grid_y) & (number >= 0)
     snapped_x, snapped_y = height_map.outline.snap(grid_x, grid_y)

@@ -8,11 +8,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from twin.job import ToolTable
+from twin.job import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray
 
 FINEST_CELL_MM = 0.1
 """The finest grid that is chosen without being asked for [mm]."""
+FEWEST_CELLS = 40
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -106,6 +107,11 @@ class ToolPlan:
         ]
 
 
-def default_cell(tools: Iterable[ToolTable]) -> float:
-    """Grid for a job that names none: a tenth of the smallest tool's radius, 0.1 mm at least [mm]."""
-    return max(FINEST_CELL_MM, 0.05 * min(tool.diameter for tool in tools))
+def default_cell(tools: Iterable[ToolTable], stock: StockTable) -> float:
+    """Grid for a job that names none: a tenth of the smallest tool's radius, 0.1 mm at least [mm].
+
+    A stock that is small beside its tools still gets ``FEWEST_CELLS`` along its shorter side.
+    """
+    width, depth, _ = stock.extent
+    tenth = 0.05 * min(tool.diameter for tool in tools)
+    return max(FINEST_CELL_MM, min(tenth, min(width, depth) / FEWEST_CELLS))

@@ -140,6 +140,11 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
     axis = machine.axis(name)
     period = machine.file.servo_period_s
     felt = reflected_inertia(axis) if has_give(axis) else drive.moved
+    if not felt > 0.0:
+        raise ConfigError(
+            f"{machine.path}: axes.{name}: behind a backlash or spring the motor needs an inertia "
+            "of its own; give motor_inertia"
+        )
     rate = drive.velocity_gain / felt * period
     if rate > FASTEST:
         reason = " behind the backlash or spring, where it moves no more than itself" * has_give(

@@ -27,7 +27,7 @@ class Word(NamedTuple):
     @property
     def text(self) -> str:
         """The word as a programmer would write it."""
-        value = f"{self.value:g}" if isinstance(self.value, float) else "..."
+        value = f"{self.value:.10g}" if isinstance(self.value, float) else "..."
         return f"{self.address}{value}"
 
 

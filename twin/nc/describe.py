@@ -44,7 +44,7 @@ def describe(dialect: Dialect) -> str:
         "## M codes",
         _m_table(dialect),
         "## Words",
-        _table(("word", "meaning"), sorted(dialect.word_meanings.items())),
+        _word_table(dialect),
         *_expression_sections(dialect),
         "## Refused",
         _REFUSED,
@@ -91,6 +91,14 @@ def _m_table(dialect: Dialect) -> str:
     return _table(("code", "meaning", "when"), rows)
 
 
+def _word_table(dialect: Dialect) -> str:
+    """Words by their meanings, those of the same meaning in one row."""
+    rows: dict[str, list[str]] = {}
+    for word, meaning in sorted(dialect.word_meanings.items()):
+        rows.setdefault(meaning, []).append(word)
+    return _table(("word", "meaning"), [(" ".join(words), text) for text, words in rows.items()])
+
+
 def _expression_sections(dialect: Dialect) -> list[str]:
     syntax = dialect.syntax.expressions
     if syntax is None:
@@ -122,9 +130,15 @@ def _decisions(dialect: Dialect) -> str:
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
+    """A table whose columns are as wide as their widest cell, to be read as it is."""
+    cells = [[cell.replace("|", "\\|") for cell in line] for line in (head, *rows)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    cells.insert(1, ["-" * width for width in widths])
     return "\n".join(
-        "| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines
+        "| "
+        + " | ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True))
+        + " |"
+        for line in cells
     )
 
 

@@ -13,6 +13,8 @@ LARGEST_LABEL = 4_294_967_295
 """Largest N number (32 bits, as the Fagor manual states)."""
 
 _STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
+_GARBLED = re.compile(r"[-+.0-9]{1,20}")
+"""What looks like a number and was not read as one."""
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
 _BLANKS = re.compile(r"[ \t]*")
@@ -113,7 +115,8 @@ class LineReader:
             return False
         end = self._line.find(closing, self._at + len(opening))
         if end < 0:
-            self._fail("open-comment", f"the comment is not closed by '{closing}'", self._at)
+            message = f"the comment is not closed by '{closing}'"
+            self._fail("open-comment", message, self._at, hint="close it on its own line")
         self._at = end + len(closing)
         return True
 
@@ -241,10 +244,19 @@ class LineReader:
                 "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"
             )
         if address is not None:
-            message = f"'{address[1]}' has no value"
-            self._fail("missing-value", message, address.start(1), hint="write a number after it")
+            self._refuse_missing_value(address)
         message = f"'{character}' begins no word of {self._grammar.dialect.name}"
         self._fail("unreadable", message, at, hint=self._hint_for(character))
+
+    def _refuse_missing_value(self, address: re.Match[str]) -> NoReturn:
+        name, end = address[1], address.end()
+        garbled = _GARBLED.match(self._line, end)
+        if garbled is not None:
+            message = f"'{garbled[0]}' is no number"
+            self._fail("missing-value", message, end, width=len(garbled[0]))
+        slip = "O" in (name.upper(), self._line[end : end + 1].upper())
+        hint = "the letter O is no 0" if slip else "write a number after it"
+        self._fail("missing-value", f"'{name}' has no value", address.start(1), hint=hint)
 
     def _hint_for(self, character: str) -> str | None:
         if character == ",":

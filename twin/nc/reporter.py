@@ -5,6 +5,8 @@ from typing import NoReturn
 from twin.nc.diagnostics import Diagnostic, ProgramError, Severity
 from twin.nc.source import Source
 
+_LONGEST_TEXT = 800
+"""Characters of a message or a hint: a program may hold names of any length."""
 _MOST_WARNINGS = 1000
 """Warnings that are kept: a program that earns more has made its point."""
 
@@ -77,11 +79,15 @@ class Reporter:
         return Diagnostic(
             severity=severity,
             code=code,
-            message=message,
+            message=_shortened(message),
             file=file,
             line=line,
             column=column + 1,
             width=width,
             source=text,
-            hint=hint,
+            hint=None if hint is None else _shortened(hint),
         )
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _LONGEST_TEXT else f"{text[:_LONGEST_TEXT]}..."

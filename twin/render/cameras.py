@@ -12,7 +12,7 @@ RIDING = "riding"
 """The same, but it turns with the part: the machine seems to turn around it."""
 PART_CAMERAS = (PART, RIDING)
 
-_DIRECTION = np.array([-0.50, -1.0, 0.47])
+_DIRECTION = np.array([-0.45, -1.0, 0.62])
 """From the part to the camera, in the part's frame: low enough to look in below the head."""
 _FIELD_DEG = 30.0
 _MARGIN = 1.12

@@ -61,7 +61,10 @@ def film(scene: Scene, *, video: VideoTable, out: Path, progress: Progress | Non
             if video.layout == "sequence":
                 cameras = (cameras[done * len(cameras) // frames],)
             pixels, reading = play.picture(*cameras), gauge.reading(play.warning)
-            writer.write(lambda pixels=pixels, reading=reading: display.draw(pixels, reading))
+            if video.display:
+                writer.write(lambda pixels=pixels, reading=reading: display.draw(pixels, reading))
+            else:
+                writer.write(lambda pixels=pixels: pixels)
             done += 1
             if progress is not None:
                 progress(done, frames)

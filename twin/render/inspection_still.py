@@ -39,10 +39,12 @@ def inspection_still(
         ConfigError: The stock is wrong.
     """
     scene.require((camera,))
-    paint = deviation_colours(found.deviation_mm, found.tolerance_um / UM_PER_MM)
-    with stage(scene, size, quality_named(quality), paint=paint, trail=False) as play:
+    colours = deviation_colours(found.deviation_mm, found.tolerance_um / UM_PER_MM)
+    paint = np.dstack([colours, 255 * found.measured.astype(np.uint8)])
+    with stage(scene, size, quality_named(quality).for_still, paint=paint, trail=False) as play:
         for samples in scene.recording.chunks():
             play.advance(samples)
+        play.clear_view()
         pixels = play.picture(camera).copy()
     margin = max(1, round(18 * size[1] / 720))
     lay_over(pixels, _legend(found, size[1] / 720), margin, margin)

@@ -55,7 +55,7 @@ class Skin:
             height_map: What is painted.
             net_step: Cells from one vertex of the drawn net to the next.
             marks: Way of the tool at the last cut, shape (ny, nx) [mm]; of no size: no marks.
-            paint: Colours to use instead, shape (ny, nx, 3).
+            paint: Colours to use instead where the fourth channel is not 0, shape (ny, nx, 4).
         """
         self._map = height_map
         self._marks = marks
@@ -104,10 +104,6 @@ class Skin:
         row, column = (max(0, changed[i] // step - reach) for i in (0, 2))
         row_end, column_end = (-(-changed[i] // step) + reach for i in (1, 3))
         rows, columns = slice(row, row_end), slice(column, column_end)
-        if self._paint is not None:
-            self._texels[rows, columns] = self._paint[::step, ::step][rows, columns]
-            self._even_walls(rows, columns)
-            return
         # The shade looks further than what is painted, so that no seam is left.
         wide_row, wide_column = max(0, row - reach), max(0, column - reach)
         wide = self._map.heights[::step, ::step][
@@ -124,6 +120,9 @@ class Skin:
         light = np.where(machined, self._marked(rows, columns), self._grain[rows, columns])
         light *= 1.0 - SHADE_DEPTH * sunk
         colours = np.where(machined[..., None], MACHINED_RGB, RAW_RGB) * light[..., None]
+        if self._paint is not None:
+            paint = self._paint[::step, ::step][rows, columns]
+            colours = np.where(paint[..., 3:], paint[..., :3], colours)
         self._texels[rows, columns] = np.clip(colours, 0, 255).astype(np.uint8)
         self._even_walls(rows, columns)
 

@@ -18,7 +18,8 @@ from twin.program_notes import ProgramNotes
 from twin.recording import Recording, Samples
 from twin.render.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
 from twin.render.canvas import Canvas, Focus, Pixels, Quality, canvas, prepare
-from twin.render.placement import ROTARY_TABLE, Joints, Placement, place
+from twin.render.chips import Chips, chips
+from twin.render.placement import ROTARY_TABLE, Joints, Placement, place, tip_position
 from twin.render.skin import Skin
 from twin.render.stock_surface import StockSurface
 from twin.render.tool_body import ToolBodies
@@ -33,6 +34,9 @@ WARNINGS = {
     "shank": "shank in the material",
     "holder": "holder in the material",
 }
+
+OF_LATE_S = 0.02
+"""What was cut within this time throws chips [s]."""
 
 _NO_POINTS = np.zeros(0, np.int64)
 
@@ -127,21 +131,37 @@ class Stage:
         self._move = 0
         self._joints = Joints(scene.machine, model)
         self._samples = 0
+        self._rate = 0.0
         self._changed: Rectangle = (0, 0, 0, 0)
-        self._position = np.zeros(len(scene.machine.axes))
+        self._position = self._start = np.zeros(len(scene.machine.axes))
         mujoco.mj_forward(model, self.data)
 
     def advance(self, samples: Samples) -> None:
         """Go on by samples that follow the last ones: move the axes, cut the stock."""
         if not len(samples):
             return
+        if not self._samples:
+            self._start = samples.joint_position[0]
         self._samples += len(samples)
         self._position = samples.joint_position[-1]
         self._move = int(samples.setpoint.move[-1])
         self._tool = self._scene.notes.tools.at(self._move)
         if self._cutter is not None:
-            self._cutter.add(samples, self._scene.notes.is_rapid(samples.setpoint.move))
-            self._changed = union(self._changed, self._cutter.changed)
+            period = self._scene.recording.header.period_s
+            late = min(len(samples), max(1, round(OF_LATE_S / period)))
+            self._cut(samples[:-late])
+            self._rate = self._cut(samples[-late:]) / (late * period)
+
+    def clear_view(self) -> None:
+        """Take the tool back to where it stood at the start, so that it does not hide the part."""
+        self._position, self._rate = self._start, 0.0
+
+    def _cut(self, samples: Samples) -> float:
+        """Take the samples' material off; returns how much [mm³]."""
+        assert self._cutter is not None
+        removed = self._cutter.add(samples, self._scene.notes.is_rapid(samples.setpoint.move))
+        self._changed = union(self._changed, self._cutter.changed)
+        return removed
 
     def warning(self, line: int) -> str:
         """What the running block does to the part that it must not; empty for nothing."""
@@ -154,6 +174,7 @@ class Stage:
     def picture(self, *cameras: str) -> Pixels:
         """Draw what cameras see now, side by side in equal fields, shape (height, width, 3)."""
         self._refresh()
+        spray = self._spray()
         width, height = self._size
         columns = math.ceil(math.sqrt(len(cameras)))
         rows = -(-len(cameras) // columns)
@@ -161,7 +182,7 @@ class Stage:
         whole = np.full((height, width, 3), BETWEEN_FIELDS, np.uint8)
         for number, camera in enumerate(cameras):
             number_of = int(self.model.camera(camera).id)
-            view = self._drawing.draw(self.data, number_of, field, self._focus(camera))
+            view = self._drawing.draw(self.data, number_of, field, self._focus(camera), spray)
             if len(cameras) == 1:
                 return view
             top, left = field[1] * (number // columns), field[0] * (number % columns)
@@ -173,6 +194,19 @@ class Stage:
         """Number of the geom that every pixel shows now, -1 for none, shape (height, width)."""
         self._refresh()
         return self._drawing.draw_objects(self.data, int(self.model.camera(camera).id))
+
+    @property
+    def _tip(self) -> FloatArray:
+        """Where the tool point is, in the part's frame, shape (3,) [mm]."""
+        tip = self._scene.recording.header.part_frame.position(self._position[None])[0]
+        return tip - [0.0, 0.0, self._scene.notes.tools.longer(self._tool)]
+
+    def _spray(self) -> Chips:
+        """Chips of what was removed of late; out of a slot they fly from its upper edge."""
+        tip = tip_position(self.model, self.data, self._tool.length)
+        if self._cutter is not None:
+            tip[2] += MM * max(0.0, self._cutter.map.top - self._tip[2])
+        return chips(tip, MM * self._tool.diameter, self._rate, self._samples)
 
     def _focus(self, camera: str) -> Focus:
         """Where a camera needs shadows: around the part, or all over the machine."""
@@ -193,9 +227,7 @@ class Stage:
             self._surface.update(self._drawing, self._changed)
             self._changed = (0, 0, 0, 0)
         if self._samples:
-            tip = self._scene.recording.header.part_frame.position(self._position[None])[0]
-            tip[2] -= self._scene.notes.tools.longer(self._tool)
-            self._trail.show(self._drawing, self._samples, tip)
+            self._trail.show(self._drawing, self._samples, self._tip)
 
 
 @contextlib.contextmanager
@@ -213,7 +245,8 @@ def stage(
         scene: What is to be seen.
         size: Width and height of the pictures [px].
         quality: What a picture may cost.
-        paint: Colours of the stock's cells, shape (ny, nx, 3); None: as metal looks.
+        paint: Colours of the stock's cells, shape (ny, nx, 4); as metal looks where the fourth is 0,
+            or without any.
         trail: Whether the way of the tool is seen.
 
     Raises:

@@ -56,7 +56,7 @@ def stills(
     shots = sorted(shots, key=lambda shot: shot.end)
     gauge = Gauge(scene)
     panels = gauge.display(size, None) if display else None
-    with stage(scene, size, quality_named(quality)) as play:
+    with stage(scene, size, quality_named(quality).for_still) as play:
         waiting = iter(shots)
         for samples, due in deal(scene.recording, np.array([shot.end for shot in shots])):
             play.advance(samples)

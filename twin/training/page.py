@@ -15,6 +15,7 @@ import matplotlib as mpl
 from mujoco.studio import (
     endpoints,
     launch_thread,
+    messages,
     plugin,
     viewer_handle,
     viewer_protocol,
@@ -86,6 +87,12 @@ class RoomViewer(web_viewer.WebViewer):
         # What is dropped onto the page is thrown away.
         if self._web_server is not None:
             self._web_server.drop_queue = None
+
+    @messages.handler(priority=messages.Priority.INTERNAL)
+    def _on_post_model(self, event: messages.PostModelEvent) -> None:
+        """Serve another model: as Studio does, without its line on the operator's terminal."""
+        del event
+        self._update_model()
 
     def prepare_next_frame(self) -> bool:
         """Begin a frame when the page has shown the last one.

@@ -37,6 +37,9 @@ def score_sheet(session: Session, words: Words) -> dict[str, Any]:
         "points": room.judge.score,
         "of": scene.points,
         "hints": room.judge.hints,
+        "alarms": [
+            {"code": code, "name": words.alarm(code).name} for code in room.judge.evidence.alarms
+        ],
         "tasks": [
             {
                 "text": in_language(task.text, language),
@@ -62,7 +65,7 @@ def score_page(sheet: dict[str, Any], words: Words) -> str:
     """The score sheet as one self-contained page."""
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
-    labels = {key: words[key] for key in ("tasks", "score", "machine", "hint", "seconds")}
+    labels = {key: words[key] for key in ("tasks", "score", "alarm", "hint", "seconds")}
     return template.render(sheet=sheet, words=labels)
 
 

@@ -1,10 +1,11 @@
 """A scripted operator: plays the steps of a scene as fast as the computer can."""
 
+import dataclasses
 from collections.abc import Iterable
 
 from twin.errors import TwinError
 from twin.training.room import Room
-from twin.training.scene import StepTable
+from twin.training.scene import Scene, StepTable
 from twin.training.session import Session
 
 PATIENCE_S = 600.0
@@ -36,6 +37,48 @@ def play(session: Session, steps: Iterable[StepTable], *, hand_in: bool = True) 
             _wait(session, step, number)
     if hand_in:
         session.submit({"do": "finish"})
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Rehearsal:
+    """What became of a scene's scripted operators.
+
+    Attributes:
+        what: ``solution`` or ``mistake``.
+        score: Points reached.
+        failed: Numbers of the tasks that failed.
+        intended: Whether that is what the scene says it should be.
+    """
+
+    what: str
+    score: int
+    failed: tuple[int, ...]
+    intended: bool
+
+
+def rehearse(scene: Scene) -> list[Rehearsal]:
+    """Play a scene's solution and its mistake without a picture.
+
+    Raises:
+        ScriptError: A step cannot be done; or the scene has no solution, or no mistake.
+    """
+    found = []
+    expected = (("solution", scene.file.solution, ()),
+                ("mistake", scene.file.mistake, scene.file.mistake_fails))  # fmt: skip
+    for what, steps, fails in expected:
+        if not steps:
+            raise ScriptError(
+                f"{scene.name}: no {what} to rehearse; write its steps into the scene"
+            )
+        session = Session(scene)
+        play(session, steps)
+        judge = session.room.judge
+        states = [verdict.state for verdict in judge.verdicts]
+        failed = tuple(number for number, state in enumerate(states, 1) if state == "failed")
+        full = judge.score == scene.points
+        intended = failed == fails and (full if what == "solution" else not full)
+        found.append(Rehearsal(what, judge.score, failed, intended))
+    return found
 
 
 def _wait(session: Session, step: StepTable, number: int) -> None:

@@ -9,7 +9,15 @@ from typing import Any
 
 from twin.errors import TwinError
 from twin.training.actions import carry_out
-from twin.training.commands import TRAINERS, Command, Finish, command_data, command_from
+from twin.training.commands import (
+    TRAINERS,
+    Answer,
+    Command,
+    Finish,
+    Hint,
+    command_data,
+    command_from,
+)
 from twin.training.log import Entry, Replay, Who, relive
 from twin.training.room import SLICE, Room
 from twin.training.scene import Scene
@@ -65,7 +73,7 @@ class Session:
     def _require_allowed(self, command: Command, who: Who) -> None:
         if isinstance(command, TRAINERS) and who != "trainer":
             raise TwinError("only the trainer can do that")
-        if self.room.judge.over and who != "trainer" and isinstance(command, Finish):
+        if self.room.judge.over and isinstance(command, Answer | Finish | Hint):
             raise TwinError("the scene has been handed in already")
 
     def advance(self, slices: int = 1) -> None:

@@ -30,7 +30,7 @@ PICTURE_S = 1.0 / 60.0
 """How often states are sent and requests are heard [s]."""
 MOST_BEHIND_S = 0.25
 """How far machine time may fall behind the wall's before it is given up [s]."""
-_COSTLY = ("SHADOW", "REFLECTION", "HAZE", "POST_PROCESSING")
+_COSTLY = ("SHADOW", "REFLECTION", "HAZE")
 """Effects that a plain picture does without."""
 REPLAY_SPEED = 4.0
 """Times faster than it was, a session is shown again."""
@@ -199,7 +199,11 @@ class PanelPlugin(plugin.ViewerPlugin):
     @messages.handler
     def on_room(self, snapshot: RoomSnapshot) -> None:
         """Take over what the machine shows."""
-        self.now = snapshot.now
+        now, before = snapshot.now, self.now
+        if now.modal is None and before is not None:
+            # A screen goes on showing what was in force when the last block ended.
+            now = dataclasses.replace(now, modal=before.modal)
+        self.now = now
         self._trail.add(snapshot.now.trail)
 
     @messages.handler

@@ -79,6 +79,7 @@ def recalculate_start(control: Control, rapid: bool) -> None:
 
 
 _CYRILLIC_WORD = re.compile("[А-Яа-яЁё]{2}")
+_PROSE = re.compile(r"[ \t]*[А-Яа-яЁё]{4}")
 _READABLE_WORD = re.compile(r"[ \t]*[A-Z][ \t]*[+-]?[0-9.]", re.IGNORECASE)
 
 
@@ -87,12 +88,13 @@ def excuse(line: str, previous: str) -> str | None:
 
     The control's document breaks long comments over two printed lines and shows omitted blocks by
     dots; programs copied from it hold both. Decision: a line of Cyrillic prose right after a line
-    with a comment is that comment's tail, as long as it does not begin with a readable word.
+    with a comment is that comment's tail, as long as it does not begin with a readable word; and
+    a line that begins with a Cyrillic word of four letters or more, as no block does, is a heading.
     """
     if iso.is_ellipsis(line):
         return "ellipsis"
     prose = _CYRILLIC_WORD.search(line) and not _READABLE_WORD.match(line)
-    if prose and "$" in previous:
+    if prose and ("$" in previous or _PROSE.match(line)):
         return "comment-tail"
     return None
 
@@ -129,10 +131,11 @@ DECISIONS = (
         example="exact_path",
     ),
     Decision(
-        "What is a line of prose behind a line with a comment?",
-        "The comment's tail, left out with a warning, unless it begins with a readable word; a line "
-        "of dots is left out with a warning too.",
-        "The control's document breaks long comments and shows omitted blocks by dots.",
+        "What is a line of prose?",
+        "Behind a line with a comment its tail, left out with a warning, unless it begins with a "
+        "readable word; so are lines of dots, and lines that begin with a Cyrillic word of four "
+        "letters or more.",
+        "The control's document breaks long comments, shows omitted blocks by dots and has headings.",
         example="comment_tail",
     ),
     Decision(
@@ -175,7 +178,7 @@ GOST = Dialect(
     decisions=DECISIONS,
     marks=(
         Mark(r"\bG102[ \t]*[A-Z]", "G102 with an axis"),
-        Mark(r"^[^$]*(?:\$\w+\$[^$]*)*\$(?=\s|$|[А-Яа-я])", "$ before a comment"),
+        Mark(r"^[^$;\"]*(?:\$\w+\$[^$;\"]*)*\$(?=\s|$|[А-Яа-я])", "$ before a comment"),
     ),
     memory=Periods,
     before_motion=recalculate_start,

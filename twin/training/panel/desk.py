@@ -1,11 +1,12 @@
-"""The desk below the screen: mode, start and stop, dials, jog keys, spindle, MDI, line editor."""
+"""The desk below the screen: mode, start and stop, dials, jog keys, spindle; MDI and line editor."""
 
 import dataclasses
 
 from mujoco.studio.dear_imgui import dear_imgui as imgui
 
 from twin.training.commands import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
-from twin.training.panel.kit import BLUE, GREEN, RED, YELLOW, Kit
+from twin.training.panel.instruments import dial, mushroom
+from twin.training.panel.kit import BLUE, BRIGHT_GREEN, CYAN, GREEN, RED, YELLOW, Kit
 from twin.training.panel.request import Request, do
 from twin.training.snapshot import Snapshot
 from twin.training.vocabulary import Words
@@ -17,7 +18,11 @@ JOG_FEED = {"mm": 2000.0, "deg": 1800.0}
 SPINDLE_SPEED = 3000.0
 """What the spindle key starts [1/min]."""
 
-_KEY = 34.0
+_KEY, _WIDE, _NARROW = 56.0, 106.0, 88.0
+"""Height of a key, and its widths [px]."""
+_JOG, _JOG_HEIGHT, _STEP = 46.0, 42.0, 24.0
+_DIAL = 96.0
+_MUSHROOM = 128.0
 
 
 @dataclasses.dataclass
@@ -33,45 +38,44 @@ class DeskState:
     """Key that is being held down."""
 
 
-def build_modes(kit: Kit, words: Words, now: Snapshot, width: float) -> list[Request]:
-    """The mode switch."""
+def build_modes(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
+    """The mode switch, two keys by two."""
     asked: list[Request] = []
     for number, mode in enumerate(MODES):
         if number % 2:
             imgui.SameLine()
-        lit = BLUE if mode == now.mode else None
-        if kit.key(
-            f"mode {mode}", words[f"mode_{mode}"], lit=lit, width=width / 2 - 4, height=_KEY
+        if kit.hard_key(
+            f"mode {mode}", words[f"mode_{mode}"], _WIDE, _KEY, lamp=CYAN, lit=mode == now.mode
         ):
             asked.append(do("mode", mode=mode))
     return asked
 
 
-def build_cycle(kit: Kit, words: Words, now: Snapshot, width: float) -> list[Request]:
-    """Cycle start, feed hold, reset."""
+def build_cycle(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
+    """Cycle start and feed hold above each other, reset beside them."""
     asked: list[Request] = []
     running = bool(now.running) and not now.held
-    if kit.key(
-        "cycle start", words["cycle_start"], lit=GREEN if running else None,
-        width=width, height=_KEY,
-    ):  # fmt: skip
+    imgui.BeginGroup()
+    if kit.hard_key(
+        "cycle start", words["cycle_start"], _WIDE, _KEY, lamp=BRIGHT_GREEN, lit=running
+    ):
         asked.append(do("cycle_start"))
-    if kit.key(
-        "feed hold", words["feed_hold"], lit=YELLOW if now.held else None,
-        width=width / 2 - 4, height=_KEY, at_once=True,
-    ):  # fmt: skip
+    if kit.hard_key(
+        "feed hold", words["feed_hold"], _WIDE, _KEY, lamp=YELLOW, lit=now.held, at_once=True
+    ):
         asked.append(do("feed_hold"))
+    imgui.EndGroup()
     imgui.SameLine()
-    if kit.key("reset", words["reset"], width=width / 2 - 4, height=_KEY):
+    alarm = now.alarm is not None
+    if kit.hard_key("reset", words["reset"], _NARROW, 2.0 * _KEY + 4.0, lamp=RED, lit=alarm):
         asked.append(do("reset"))
     return asked
 
 
-def build_emergency(kit: Kit, words: Words, now: Snapshot, width: float) -> list[Request]:
+def build_emergency(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
     """The mushroom button."""
-    label = words["release"] if now.pressed else words["emergency"].replace(" ", "\n", 1)
-    lit = YELLOW if now.pressed else RED
-    if kit.key("emergency", label, lit=lit, width=width, height=2 * _KEY + 6, at_once=True):
+    label = words["release"] if now.pressed else words["emergency"]
+    if mushroom(kit, "emergency", label, pressed=now.pressed, size=_MUSHROOM):
         return [do("emergency_stop", pressed=not now.pressed)]
     return []
 
@@ -79,38 +83,41 @@ def build_emergency(kit: Kit, words: Words, now: Snapshot, width: float) -> list
 def build_dials(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
     """Feed and rapid override."""
     asked: list[Request] = []
-    feed = kit.dial(
-        "feed override", words["feed_override"], now.feed_override, FEED_OVERRIDES[1], 62.0
-    )
-    if feed != now.feed_override:
-        asked.append(do("override", dial="feed", percent=feed))
-    rapid = kit.dial(
-        "rapid override", words["rapid_override"], now.rapid_override, RAPID_OVERRIDES[1], 62.0
-    )
-    if rapid != now.rapid_override:
-        asked.append(do("override", dial="rapid", percent=rapid))
+    for name, percent, highest in (
+        ("feed", now.feed_override, FEED_OVERRIDES[1]),
+        ("rapid", now.rapid_override, RAPID_OVERRIDES[1]),
+    ):
+        label = words[f"{name}_override"]
+        turned = dial(kit, f"{name} override", label, percent, highest, _DIAL)
+        if turned != percent:
+            asked.append(do("override", dial=name, percent=turned))
+        imgui.SameLine()
+    imgui.NewLine()
     return asked
 
 
 def build_jog(kit: Kit, words: Words, now: Snapshot, state: DeskState) -> list[Request]:
     """Jog keys, two per axis, and their step."""
     asked: list[Request] = []
-    for number, axis in enumerate(now.axes):
-        for direction, sign in ((1, "+"), (-1, "-")):
-            if number or direction < 0:
+    for direction, sign in ((1, "+"), (-1, "-")):
+        for number, axis in enumerate(now.axes):
+            if number:
                 imgui.SameLine()
             name = f"jog {axis}{sign}"
-            lit = BLUE if now.running == "jog" and state.jogging == name else None
-            pressed = kit.key(name, f"{axis}{sign}", lit=lit, width=36, height=_KEY, at_once=True)
+            lit = now.running == "jog" and state.jogging in (name, "")
+            pressed = kit.hard_key(
+                name, f"{axis}{sign}", _JOG, _JOG_HEIGHT, lamp=CYAN,
+                lit=lit and bool(now.distance_to_go[number] * direction > 0.0), at_once=True,
+            )  # fmt: skip
             asked += jog_key(now, state, name, axis, direction, pressed)
             if state.jogging == name and not imgui.IsItemActive():
                 state.jogging = ""
                 asked.append(do("jog_stop"))
     for number, step in enumerate(JOG_STEPS):
         if number:
-            imgui.SameLine()
+            imgui.SameLine(0.0, 4.0)
         label = words["continuous"] if step is None else f"{step:g}"
-        if kit.key(f"step {step}", label, lit=BLUE if step == state.step else None, height=26.0):
+        if kit.key(f"step {step}", label, lit=BLUE if step == state.step else None, height=_STEP):
             state.step = step
     return asked
 
@@ -129,14 +136,14 @@ def jog_key(
     return [do("jog", axis=axis, direction=direction, feed=feed)]
 
 
-def build_supplies(kit: Kit, words: Words, now: Snapshot, width: float) -> list[Request]:
+def build_supplies(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
     """Spindle and coolant."""
     asked: list[Request] = []
-    lit = GREEN if now.spindle else None
-    if kit.key("spindle", words["spindle"], lit=lit, width=width, height=_KEY):
+    if kit.hard_key(
+        "spindle", words["spindle"], _NARROW, _KEY, lamp=BRIGHT_GREEN, lit=bool(now.spindle)
+    ):
         asked.append(do("spindle", on=not now.spindle, speed=SPINDLE_SPEED))
-    lit = BLUE if now.coolant else None
-    if kit.key("coolant", words["coolant"], lit=lit, width=width, height=_KEY):
+    if kit.hard_key("coolant", words["coolant"], _NARROW, _KEY, lamp=CYAN, lit=now.coolant):
         asked.append(do("coolant", on=not now.coolant))
     return asked
 

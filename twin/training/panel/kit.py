@@ -1,7 +1,6 @@
-"""What the panel is built of: colours, lit keys, bars, dials; and a note of where each one is."""
+"""What the panel is built of: colours, keys, lamps, texts; and a note of where each one is."""
 
 import contextlib
-import math
 from collections.abc import Iterator
 
 from mujoco.studio.dear_imgui import dear_imgui as imgui
@@ -30,6 +29,10 @@ _STYLE = (
     ("Border", KEY), ("TableHeaderBg", FIELD), ("TableBorderLight", KEY), ("PopupBg", PAPER),
     ("ScrollbarBg", PAPER), ("ScrollbarGrab", KEY),
 )  # fmt: skip
+
+
+GROUP_GAP = 22.0
+"""Between two groups of the desk [px]."""
 
 
 class Kit:
@@ -98,6 +101,68 @@ class Kit:
         self.note(name)
         return imgui.IsItemActivated() if at_once else clicked
 
+    def hard_key(
+        self,
+        name: str,
+        label: str,
+        width: float,
+        height: float,
+        *,
+        lamp: Colour,
+        lit: bool,
+        at_once: bool = False,
+    ) -> bool:
+        """A key of the machine's desk, with a lamp along its upper edge.
+
+        Args:
+            name: What it is found by.
+            label: What stands on it, in as many lines as it takes.
+            width: [px].
+            height: [px].
+            lamp: Colour of its lamp.
+            lit: Whether the lamp is on.
+            at_once: Whether it acts when it is pressed, not when it is let go.
+        """
+        clicked = imgui.Button(f"###{name}", imgui.Vec2(width, height))
+        acted = imgui.IsItemActivated() if at_once else clicked
+        self.note(name)
+        left, top, right, bottom = self.places[name]
+        shade = lamp if lit else dimmed(lamp)
+        draw = imgui.GetWindowDrawList()
+        low, high = imgui.Vec2(left + 6.0, top + 5.0), imgui.Vec2(right - 6.0, top + 9.0)
+        draw.AddRectFilled(low, high, packed(shade), 2.0)
+        if lit:
+            corner = imgui.Vec2(left, top), imgui.Vec2(right, bottom)
+            draw.AddRect(*corner, packed(lamp), 3.0, 1.5)
+        centred(label, left, top + 7.0, right, bottom, TEXT)
+        return acted
+
+    @contextlib.contextmanager
+    def group(self, caption: str, height: float) -> Iterator[None]:
+        """Parts that belong together, below a caption, with a line at their right."""
+        imgui.BeginGroup()
+        self.text(caption, QUIET)
+        yield
+        imgui.EndGroup()
+        low, high = imgui.GetItemRectMin(), imgui.GetItemRectMax()
+        right = high.x + 0.5 * GROUP_GAP
+        imgui.GetWindowDrawList().AddLine(
+            imgui.Vec2(right, low.y), imgui.Vec2(right, low.y + height), packed(KEY), 1.0
+        )
+        imgui.SameLine(0.0, GROUP_GAP)
+
+    @staticmethod
+    def chip(text: str, colour: Colour, scale: float = 1.0) -> None:
+        """A word on a coloured ground."""
+        imgui.SetWindowFontScale(scale)
+        size, corner = imgui.CalcTextSize(text), imgui.GetCursorScreenPos()
+        high = imgui.Vec2(corner.x + size.x + 16.0, corner.y + size.y + 4.0)
+        draw = imgui.GetWindowDrawList()
+        draw.AddRectFilled(corner, high, packed(colour), 3.0)
+        draw.AddText(imgui.Vec2(corner.x + 8.0, corner.y + 2.0), packed(TEXT), text)
+        imgui.Dummy(imgui.Vec2(size.x + 16.0, size.y + 4.0))
+        imgui.SetWindowFontScale(1.0)
+
     def note(self, name: str) -> None:
         """Remember where the last item lies."""
         low, high = imgui.GetItemRectMin(), imgui.GetItemRectMax()
@@ -134,61 +199,6 @@ class Kit:
         for line in known[1]:
             self.text(line, colour)
 
-    @staticmethod
-    def bar(share: float, width: float, height: float = 10.0) -> None:
-        """A bar that turns yellow at two thirds and red near its end."""
-        colour = RED if share > 0.9 else YELLOW if share > 0.66 else GREEN
-        corner = imgui.GetCursorScreenPos()
-        top = corner.y + 0.5 * (imgui.GetTextLineHeight() - height)
-        draw = imgui.GetWindowDrawList()
-        low, high = imgui.Vec2(corner.x, top), imgui.Vec2(corner.x + width, top + height)
-        draw.AddRectFilled(low, high, _packed(BLACK), 2.0)
-        filled = imgui.Vec2(corner.x + width * min(max(share, 0.0), 1.0), top + height)
-        draw.AddRectFilled(low, filled, _packed(colour), 2.0)
-        imgui.Dummy(imgui.Vec2(width, imgui.GetTextLineHeight()))
-
-    def dial(self, name: str, label: str, value: int, highest: int, size: float) -> int:
-        """A rotary switch in steps of 10 %; click left or right of it, or drag up and down.
-
-        Returns:
-            Where it stands now.
-        """
-        imgui.BeginGroup()
-        corner = imgui.GetCursorScreenPos()
-        middle = imgui.Vec2(corner.x + 0.5 * size, corner.y + 0.5 * size)
-        imgui.InvisibleButton(f"###{name}", imgui.Vec2(size, size))
-        self.note(name)
-        clicked, hovered = imgui.IsItemClicked(), imgui.IsItemHovered()
-        radius = 0.36 * size
-        draw = imgui.GetWindowDrawList()
-        for step in range(0, highest + 1, 10):
-            angle = _angle(step, highest)
-            reach = radius * (1.32 if step % 50 == 0 else 1.22)
-            at = [(middle.x + r * math.cos(angle), middle.y + r * math.sin(angle))
-                  for r in (1.08 * radius, reach)]  # fmt: skip
-            lit = CYAN if step == value else QUIET
-            draw.AddLine(imgui.Vec2(*at[0]), imgui.Vec2(*at[1]), _packed(lit), 2.0)
-        draw.AddCircleFilled(middle, radius, _packed(KEY), 40)
-        draw.AddCircleFilled(middle, 0.82 * radius, _packed(BLACK), 40)
-        angle = _angle(value, highest)
-        tip = imgui.Vec2(
-            middle.x + 0.95 * radius * math.cos(angle), middle.y + 0.95 * radius * math.sin(angle)
-        )
-        draw.AddLine(middle, tip, _packed(CYAN), 3.0)
-        wheel = imgui.GetIO().MouseWheel if hovered else 0.0
-        turned = value
-        if clicked:
-            turned += 10 if imgui.GetMousePos().x > middle.x else -10
-        elif wheel:
-            turned += 10 if wheel > 0 else -10
-        imgui.SameLine()
-        imgui.BeginGroup()
-        self.text(label, QUIET)
-        self.text(f"{value} %", CYAN, 1.5)
-        imgui.EndGroup()
-        imgui.EndGroup()
-        return min(max(turned, 0), highest)
-
 
 def _break(text: str, width: float) -> list[str]:
     """The lines of a paragraph that is so wide [px]."""
@@ -202,10 +212,25 @@ def _break(text: str, width: float) -> list[str]:
     return lines
 
 
-def _angle(value: int, highest: int) -> float:
-    """Where a value stands on a dial, from the lower left clockwise over the top [rad]."""
-    return math.radians(135.0 + 270.0 * value / highest)
+def centred(
+    label: str, left: float, top: float, right: float, bottom: float, colour: Colour
+) -> None:
+    """A label in the middle of a field, in as many lines as it takes."""
+    lines = _break(label, right - left - 8.0)
+    height = imgui.GetTextLineHeight()
+    y = 0.5 * (top + bottom - height * len(lines))
+    draw = imgui.GetWindowDrawList()
+    for line in lines:
+        x = 0.5 * (left + right - imgui.CalcTextSize(line).x)
+        draw.AddText(imgui.Vec2(x, y), packed(colour), line)
+        y += height
 
 
-def _packed(colour: Colour) -> int:
+def dimmed(colour: Colour) -> Colour:
+    """The colour of a lamp that is out."""
+    return (0.3 * colour[0], 0.3 * colour[1], 0.3 * colour[2], colour[3])
+
+
+def packed(colour: Colour) -> int:
+    """A colour as the draw list takes it."""
     return imgui.ColorConvertFloat4ToU32(imgui.Vec4(*colour))

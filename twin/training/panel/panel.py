@@ -28,11 +28,13 @@ from twin.training.scene import SceneFile
 from twin.training.snapshot import Snapshot
 from twin.training.vocabulary import Words
 
-HEAD = 84.0
+HEAD = 88.0
 """Height of the head [px]."""
-DESK = 172.0
+DESK = 178.0
 """Height of the desk [px]."""
-SCREEN = 440.0
+ENTRY = 62.0
+"""Height of the MDI line or the line editor below the program [px]."""
+SCREEN = 460.0
 """Width of the screen [px]."""
 SIDE = 316.0
 """Width of the side [px]."""
@@ -78,7 +80,9 @@ class Panel:
             with kit.window("screen", GAP, HEAD + 2 * GAP, SCREEN, middle):
                 build_axes(kit, words, now)
                 build_speeds(kit, words, now)
-                self._choose(now, build_program(kit, now, self.desk.chosen))
+                below = ENTRY if now.mode == "mdi" or self.desk.chosen else 0.0
+                self._choose(now, build_program(kit, now, self.desk.chosen, below))
+                asked += build_entry(kit, words, now, self.desk)
             with kit.window("side", size.x - SIDE - GAP, HEAD + 2 * GAP, SIDE, middle):
                 asked += self._build_side(now)
             with kit.window("desk", GAP, size.y - DESK - GAP, size.x - 2 * GAP, DESK):
@@ -92,31 +96,18 @@ class Panel:
     def _build_desk(self, now: Snapshot) -> list[Request]:
         kit, words = self.kit, self._words
         asked: list[Request] = []
-        imgui.BeginGroup()
-        asked += build_modes(kit, words, now, 224.0)
-        imgui.BeginChild("entry", imgui.Vec2(224.0, 64.0))
-        asked += build_entry(kit, words, now, self.desk)
-        imgui.EndChild()
-        imgui.EndGroup()
-        imgui.SameLine(0.0, 12.0)
-        imgui.BeginGroup()
-        asked += build_cycle(kit, words, now, 200.0)
-        imgui.EndGroup()
-        imgui.SameLine(0.0, 12.0)
-        imgui.BeginGroup()
-        asked += build_jog(kit, words, now, self.desk)
-        imgui.EndGroup()
-        imgui.SameLine(0.0, 12.0)
-        imgui.BeginGroup()
-        asked += build_dials(kit, words, now)
-        imgui.EndGroup()
-        imgui.SameLine(0.0, 12.0)
-        imgui.BeginGroup()
-        asked += build_supplies(kit, words, now, 104.0)
-        imgui.EndGroup()
-        imgui.SameLine(0.0, 12.0)
-        asked += build_emergency(kit, words, now, 130.0)
-        return asked
+        tall = DESK - 24.0
+        with kit.group(words["mode"], tall):
+            asked += build_modes(kit, words, now)
+        with kit.group(words["cycle"], tall):
+            asked += build_cycle(kit, words, now)
+        with kit.group(words["jog"], tall):
+            asked += build_jog(kit, words, now, self.desk)
+        with kit.group(words["override"], tall):
+            asked += build_dials(kit, words, now)
+        with kit.group("", tall):
+            asked += build_supplies(kit, words, now)
+        return asked + build_emergency(kit, words, now)
 
     def _build_side(self, now: Snapshot) -> list[Request]:
         kit, words = self.kit, self._words

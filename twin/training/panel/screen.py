@@ -2,32 +2,46 @@
 
 from mujoco.studio.dear_imgui import dear_imgui as imgui
 
-from twin.training.panel.kit import BLUE, BRIGHT_GREEN, CYAN, QUIET, RED, TEXT, YELLOW, Kit
+from twin.training.panel.instruments import bar
+from twin.training.panel.kit import (
+    BLUE,
+    BRIGHT_GREEN,
+    CYAN,
+    GREEN,
+    KEY,
+    QUIET,
+    RED,
+    TEXT,
+    YELLOW,
+    Kit,
+)
 from twin.training.snapshot import Snapshot
 from twin.training.vocabulary import Words
 
-_LAG_SHOWN = {"mm": 1.0, "deg": 1.0}
-"""Following error at the end of its bar."""
-_BAR = 62.0
+_LAG_SHOWN = 1.0
+"""Following error at the end of its bar [mm or deg]."""
+_BIG = 1.9
+"""How much larger the axes' positions are than other texts."""
 _CODES_IN_A_LINE = 11
 
 
 def build_head(kit: Kit, words: Words, now: Snapshot) -> None:
-    """Control, mode, state; the alarm line below."""
+    """Control, mode, state, clock; the alarm line below."""
     state, colour = _state(words, now)
-    kit.text(words["title"], QUIET)
+    kit.chip(words["mode_" + now.mode], KEY, 1.25)
     imgui.SameLine()
-    kit.text(f"  {words['mode_' + now.mode]}", CYAN)
+    kit.chip(state, colour, 1.25)
     imgui.SameLine()
-    kit.text(f"  {state}", colour)
+    kit.text(f"  {words['title']}", TEXT, 1.25)
     imgui.SameLine()
-    kit.text(f"   {now.time_s:7.1f} {words['seconds']}   {words['speed']} x{now.speed:.2f}", QUIET)
+    clock = f"{now.time_s:.1f} {words['seconds']}    {words['speed']} x{now.speed:.2f}"
+    kit.right(clock, QUIET)
     if now.alarm is not None:
         alarm = words.alarm(now.alarm.code)
-        where = f" [N {now.alarm.line}]" if now.alarm.line else ""
-        kit.text(f"{words['alarm']}: {alarm.name}{where}.", RED)
+        where = f"  N {now.alarm.line}" if now.alarm.line else ""
+        kit.chip(f"{alarm.name}{where}", RED)
         imgui.SameLine()
-        kit.text(f"{now.alarm.message}.", TEXT)
+        kit.text(f" {now.alarm.message}", TEXT)
         kit.text(alarm.advice, YELLOW)
     elif now.refusal:
         kit.text(f"{words['refused']}: {now.refusal}", YELLOW)
@@ -37,14 +51,14 @@ def build_head(kit: Kit, words: Words, now: Snapshot) -> None:
 
 def _state(words: Words, now: Snapshot) -> tuple[str, tuple[float, float, float, float]]:
     if now.replaying:
-        return words["replaying"], CYAN
+        return words["replaying"], BLUE
     if now.frozen:
-        return words["frozen"], CYAN
+        return words["frozen"], BLUE
     if now.alarm is not None:
         return words["alarm"], RED
     if now.held:
         return words["held"], YELLOW
-    return (words["running"], BRIGHT_GREEN) if now.running else (words["ready"], TEXT)
+    return (words["running"], GREEN) if now.running else (words["ready"], KEY)
 
 
 def build_axes(kit: Kit, words: Words, now: Snapshot) -> None:
@@ -52,7 +66,7 @@ def build_axes(kit: Kit, words: Words, now: Snapshot) -> None:
     if not imgui.BeginTable("axes", 6, int(imgui.TableFlags.SizingStretchProp)):
         return
     heads = ("axis", "position", "to_go", "machine", "following_error", "load")
-    weights = (0.5, 2.3, 1.3, 1.3, 1.1, 1.1)
+    weights = (0.45, 2.2, 1.25, 1.3, 1.15, 0.95)
     for head, weight in zip(heads, weights, strict=True):
         imgui.TableSetupColumn(head, int(imgui.TableColumnFlags.WidthStretch), weight)
     imgui.TableNextRow()
@@ -62,18 +76,33 @@ def build_axes(kit: Kit, words: Words, now: Snapshot) -> None:
     for number, axis in enumerate(now.axes):
         imgui.TableNextRow()
         imgui.TableNextColumn()
-        kit.text(axis, CYAN, 1.55)
+        kit.text(axis, CYAN, _BIG)
         imgui.TableNextColumn()
-        kit.right(f"{now.position[number]:10.3f}", TEXT, 1.55)
+        kit.right(_figure(now.position[number]), BRIGHT_GREEN, _BIG)
         imgui.TableNextColumn()
-        kit.right(f"{now.distance_to_go[number]:9.3f}", QUIET)
+        _down()
+        kit.right(_figure(now.distance_to_go[number]), TEXT)
         imgui.TableNextColumn()
-        kit.right(f"{now.machine_position[number]:9.3f}", QUIET)
+        _down()
+        kit.right(_figure(now.machine_position[number]), QUIET)
         imgui.TableNextColumn()
-        kit.bar(abs(now.following_error[number]) / _LAG_SHOWN[now.units[number]], _BAR)
+        _down()
+        lag = now.following_error[number]
+        bar(abs(lag) / _LAG_SHOWN, f"{abs(1000.0 * lag):.0f}", imgui.GetContentRegionAvail().x)
         imgui.TableNextColumn()
-        kit.bar(now.load[number], _BAR)
+        _down()
+        bar(now.load[number], f"{100.0 * now.load[number]:.0f}", imgui.GetContentRegionAvail().x)
     imgui.EndTable()
+
+
+def _figure(value: float) -> str:
+    """A position with three decimals, without a sign before nothing."""
+    return f"{round(value, 3) + 0.0:.3f}"
+
+
+def _down() -> None:
+    """Go down to the middle of a row of large figures."""
+    imgui.SetCursorPosY(imgui.GetCursorPosY() + 0.5 * (_BIG - 1.0) * imgui.GetTextLineHeight())
 
 
 def build_speeds(kit: Kit, words: Words, now: Snapshot) -> None:
@@ -97,18 +126,19 @@ def build_speeds(kit: Kit, words: Words, now: Snapshot) -> None:
         kit.text("  ".join(codes[first : first + _CODES_IN_A_LINE]), CYAN)
 
 
-def build_program(kit: Kit, now: Snapshot, chosen: int) -> int:
+def build_program(kit: Kit, now: Snapshot, chosen: int, below: float) -> int:
     """The program with the running block marked.
 
     Args:
         kit: Draws.
         now: The machine.
         chosen: The line that is being edited, 0 for none.
+        below: Room to leave below it [px].
 
     Returns:
         The line that is chosen now.
     """
-    imgui.BeginChild("program", imgui.Vec2(0.0, 0.0))
+    imgui.BeginChild("program", imgui.Vec2(0.0, -below))
     clipper = imgui.ListClipper()
     clipper.Begin(len(now.program))
     height = imgui.GetTextLineHeightWithSpacing()

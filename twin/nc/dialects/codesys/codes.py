@@ -1,208 +1,197 @@
-"""What the G codes of CODESYS SoftMotion do, arcs, curves and the program apart."""
+"""G codes of CODESYS SoftMotion."""
 
-import math
-
-from twin.nc.blends import Blend, BlendKind
-from twin.nc.blocks import Word
-from twin.nc.control import Control
-from twin.nc.dialect import Action
-from twin.nc.dialects.codesys.program import variables
-from twin.nc.offsets import LEFT, RIGHT, compensate
-from twin.nc.planes import XY, plane_with_normal
-
-ADDITIONAL = "ABCPQUVW"
-"""Letters of additional axes, in the order of their numbers."""
-FIRST_ADDITIONAL = 4
-"""Number of the first of them, A (manual)."""
-
-
-def dwell(control: Control) -> None:
-    """G4: wait T seconds."""
-    word = control.take("T")
-    if word is None or control.number(word) < 0.0:
-        control.fail("dwell", "G4 needs T, its seconds", word, hint="write G4 T1")
-    control.dwell(control.number(word))
+from twin.nc import iso, offsets
+from twin.nc.blends import BlendKind
+from twin.nc.dialect import GCode, Interpolation
+from twin.nc.dialects.codesys import actions, jumps, program
+from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
+from twin.nc.dialects.codesys.curves import (
+    CLOCKWISE_ELLIPSE,
+    COUNTER_CLOCKWISE_ELLIPSE,
+    FLAT_SPLINE,
+    PARABOLA,
+    SPATIAL_SPLINE,
+)
+from twin.nc.linear import rapid_line
+from twin.nc.planes import XY, YZ, ZX, Plane
 
 
-def free_plane(control: Control) -> None:
-    """G16: the plane whose normal is I, J, K.
-
-    Decision: without them the plane in force stays; the manual's example of a jump is written so.
-    """
-    if not any(letter in control.words for letter in "IJK"):
-        return
-    i, j, k = (control.take_number(letter) for letter in "IJK")
-    if not (i or j or k):
-        control.fail("plane-normal", "G16 needs the plane's normal", control.code_word(16))
-    control.modal.plane = plane_with_normal((i, j, k))
+def _motion(meaning: str, interpolation: Interpolation, *, seed: bool = False) -> GCode:
+    return GCode(
+        meaning=meaning,
+        group="motion",
+        sets={"interpolation": interpolation},
+        ground="seed" if seed else "manual",
+    )
 
 
-def probe(control: Control) -> None:
-    """G31: move to the end of the probing path and report it.
-
-    Decision: nothing touches the twin's probe, so that the path is run to its end.
-    """
-    if control.path.cutting_loops:
-        control.fail("loops", "a probe cannot run where loops are cut out", hint="write G60")
-    control.function("G31", {})
-    control.line_to(control.target(), rapid=False)
-
-
-def left_of_contour(control: Control) -> None:
-    """G41 D: compensate; D is the radius."""
-    _compensate(control, LEFT)
+def _plane(meaning: str, plane: Plane) -> GCode:
+    return GCode(
+        meaning=meaning,
+        group="plane",
+        sets={"plane": plane},
+        action=offsets.refuse_plane_change,
+        ground="manual",
+    )
 
 
-def right_of_contour(control: Control) -> None:
-    """G42 D."""
-    _compensate(control, RIGHT)
+RAPID = Interpolation(rapid_line, rapid=True)
+"""Its pace may follow F (``words.before_motion``): no plain block."""
+
+_PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
 
-def _compensate(control: Control, side: float) -> None:
-    word = control.take("D")
-    if word is not None:
-        variables(control).tool_radius = control.length(word)
-    compensate(control, side, variables(control).tool_radius)
+CODES: dict[int, GCode] = {
+    0: _motion("positioning in a straight line; FF is its feed", RAPID),
+    1: _motion("straight line", iso.FEED, seed=True),
+    2: _motion("arc clockwise", CLOCKWISE, seed=True),
+    3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
+    4: GCode(meaning="dwell, seconds in T", perform=actions.dwell, ground="manual"),
+    5: _motion("point of a spline in X Y", FLAT_SPLINE),
+    6: _motion("parabola: X Y, vertex I J", PARABOLA),
+    8: _motion("ellipse clockwise: X Y I J K R", CLOCKWISE_ELLIPSE),
+    9: _motion("ellipse counter-clockwise: X Y I J K R", COUNTER_CLOCKWISE_ELLIPSE),
+    10: _motion("point of a spline in space", SPATIAL_SPLINE),
+    15: _plane("2D mode: arcs in X Y", XY),
+    16: GCode(
+        meaning="3D mode, plane with normal I J K",
+        group="plane",
+        action=actions.free_plane,
+        ground="manual",
+    ),
+    17: _plane("3D mode, plane X Y", XY),
+    18: _plane("3D mode, plane Z X", ZX),
+    19: _plane("3D mode, plane Y Z", YZ),
+    20: GCode(
+        meaning="jump to L (or the label L? behind) when K is not 0",
+        perform=jumps.conditional_jump,
+        takes="L!",
+        ground="manual",
+    ),
+    31: GCode(meaning="probe", perform=actions.probe, ground="manual"),
+    36: GCode(
+        meaning="write D to the variable O",
+        perform=program.write_variable,
+        takes="D",
+        ground="manual",
+    ),
+    37: GCode(
+        meaning="add D to the variable O",
+        perform=program.add_to_variable,
+        takes="D",
+        ground="manual",
+    ),
+    38: GCode(meaning="state flags", refused=_PROFILE, ground="manual"),
+    39: GCode(meaning="parameters of the preprocessing", refused=_PROFILE, ground="manual"),
+    40: GCode(
+        meaning="radius compensation off",
+        group="compensation",
+        action=offsets.end_compensation,
+        ground="manual",
+    ),
+    41: GCode(
+        meaning="radius compensation left, radius D",
+        group="compensation",
+        action=actions.left_of_contour,
+        ground="manual",
+    ),
+    42: GCode(
+        meaning="radius compensation right, radius D",
+        group="compensation",
+        action=actions.right_of_contour,
+        ground="manual",
+    ),
+    43: GCode(
+        meaning="tool length vector I J K",
+        group="length",
+        action=actions.length_vector,
+        ground="manual",
+    ),
+    50: GCode(
+        meaning="smoothing off",
+        group="smoothing",
+        action=actions.keep_corners,
+        ground="manual",
+    ),
+    51: GCode(
+        meaning="corners become splines, cut at the distance D",
+        group="smoothing",
+        action=actions.smooth_corners(BlendKind.SPLINE),
+        ground="manual",
+    ),
+    52: GCode(
+        meaning="corners become arcs, cut at the distance D",
+        group="smoothing",
+        action=actions.smooth_corners(BlendKind.ARC),
+        ground="manual",
+    ),
+    53: GCode(meaning="coordinate shift off", perform=actions.reset_shift, ground="manual"),
+    54: GCode(
+        meaning="coordinate shift, absolute", perform=actions.shift_absolutely, ground="manual"
+    ),
+    55: GCode(
+        meaning="coordinate shift, relative", perform=actions.shift_relatively, ground="manual"
+    ),
+    56: GCode(meaning="set the reference here", perform=actions.set_reference, ground="manual"),
+    60: GCode(
+        meaning="loop avoidance off", group="loops", action=actions.keep_loops, ground="manual"
+    ),
+    61: GCode(
+        meaning="loop avoidance on: loops are cut out",
+        group="loops",
+        action=actions.cut_loops,
+        ground="manual",
+    ),
+    70: GCode(
+        meaning="additional axis L (6 is C) goes with each move; without L all",
+        perform=actions.go_as_programmed,
+        takes="L",
+        ground="manual",
+    ),
+    71: GCode(
+        meaning="additional axis L goes evenly over the moves up to G70",
+        perform=actions.go_evenly,
+        takes="L",
+        ground="manual",
+    ),
+    75: GCode(meaning="wait for the motion before variables are read", ground="manual"),
+    90: GCode(
+        meaning="absolute coordinates",
+        group="distance",
+        sets={"incremental": False},
+        ground="manual",
+    ),
+    91: GCode(
+        meaning="relative coordinates",
+        group="distance",
+        sets={"incremental": True},
+        ground="manual",
+    ),
+    92: GCode(
+        meaning="position from which the path goes on",
+        perform=actions.set_position,
+        ground="manual",
+    ),
+    98: GCode(
+        meaning="centre I J K absolute",
+        group="centre",
+        sets={"center_absolute": True},
+        ground="seed",
+    ),
+    99: GCode(
+        meaning="centre I J K relative to the start",
+        group="centre",
+        sets={"center_absolute": False},
+        ground="seed",
+    ),
+}
 
-
-def smooth_corners(kind: BlendKind) -> Action:
-    """G51, G52: every corner between two moves with a feed is blended.
-
-    The points where both moves are cut lie D from the corner, and at most half a move (manual).
-    """
-
-    def action(control: Control) -> None:
-        memory = variables(control)
-        word = control.take("D")
-        if word is not None:
-            memory.smoothing = control.length(word)
-        memory.smoothed_by = kind
-        _smooth(control, word)
-
-    return action
-
-
-def set_smoothing(control: Control, word: Word) -> None:
-    """D elsewhere: the distance of the corners that follow (manual, from 4.18)."""
-    variables(control).smoothing = control.length(word)
-    if variables(control).smoothed_by is not None:
-        _smooth(control, word)
-
-
-def _smooth(control: Control, word: Word | None) -> None:
-    memory = variables(control)
-    assert memory.smoothed_by is not None
-    if memory.smoothing < 0.0:
-        control.fail("blend", "the distance of smoothing cannot be negative", word)
-    plane = control.part_plane()
-    control.path.blend_always(Blend(memory.smoothed_by, memory.smoothing, plane, halves=True))
-
-
-def keep_corners(control: Control) -> None:
-    """G50."""
-    variables(control).smoothed_by = None
-    control.path.blend_always(None)
-
-
-def cut_loops(control: Control) -> None:
-    """G61: loops are cut out, in 2D mode only (manual)."""
-    if control.modal.plane is not XY:
-        control.fail("loops", "loops are cut out in the plane X Y only", hint="write G15 before")
-    control.path.cut_loops(control.part_plane())
-
-
-def keep_loops(control: Control) -> None:
-    """G60."""
-    control.path.keep_loops()
-
-
-def go_evenly(control: Control) -> None:
-    """G71 L: the additional axis L goes evenly over the moves up to G70."""
-    word = control.take("L")
-    if word is None:
-        hint = "write G71 L6 for C"
-        control.fail("even-axis", "G71 needs L, the number of the axis", hint=hint)
-    control.path.go_evenly(_numbered_axis(control, word))
-
-
-def go_as_programmed(control: Control) -> None:
-    """G70 L: it goes with each move again; without L all do."""
-    word = control.take("L")
-    axes = range(len(control.settings.axes)) if word is None else [_numbered_axis(control, word)]
-    for axis in axes:
-        control.path.go_as_programmed(axis)
-
-
-def _numbered_axis(control: Control, word: Word) -> int:
-    """Column of the additional axis with a number: 4 is A, 11 is W (manual)."""
-    number = control.number(word) - FIRST_ADDITIONAL
-    if number not in range(len(ADDITIONAL)):
-        control.fail("even-axis", f"{word.text} numbers no additional axis", word, "4 is A, 6 is C")
-    letter = ADDITIONAL[int(number)]
-    index = control.axis_index.get(letter)
-    if index is None:
-        control.refuse_axis(word._replace(address=letter))
-    return index
-
-
-def length_vector(control: Control) -> None:
-    """G43 I J K: the tool's vector is added to every position; 0 0 0 is off."""
-    i, j, k = (control.length(control.take(letter)) for letter in "IJK")
-    shift = [i, j, k, *([0.0] * (len(control.settings.axes) - 3))]
-    control.frame.set_shift("length", shift)
-    control.reframed()
-
-
-def reset_shift(control: Control) -> None:
-    """G53: decoder and machine coordinates coincide."""
-    control.frame.set_shift("offset", [0.0] * len(control.settings.axes))
-    control.reframed()
-
-
-def shift_absolutely(control: Control) -> None:
-    """G54: the decoder's zero lies at the given position of the machine's coordinates."""
-    _shift(control, [0.0] * len(control.settings.axes))
-
-
-def shift_relatively(control: Control) -> None:
-    """G55: the decoder's zero moves on by the given distances."""
-    _shift(control, control.frame.shift("offset"))
-
-
-def _shift(control: Control, shift: list[float]) -> None:
-    for index, word in control.take_axis_words():
-        shift[index] += control.axis_value(index, word)
-    control.frame.set_shift("offset", shift)
-    control.reframed()
-
-
-def set_reference(control: Control) -> None:
-    """G56: the place where the machine stands gets the given coordinates.
-
-    Decision: the manual's page is not fully known; this is what its title says.
-    """
-    programmed = list(control.programmed)
-    for index, word in control.take_axis_words():
-        programmed[index] = control.axis_value(index, word)
-    control.relabel(programmed, "offset")
-
-
-def set_position(control: Control) -> None:
-    """G92: the path goes on from the given position.
-
-    Before the first move it is where the path begins. The path jumps there later, which no machine
-    can: its axes travel as fast as they can (the manual's ``bAvoidGaps``). Of several in a row the
-    last counts (manual).
-    """
-    words = control.words.keys() & control.dialect.axis_letters
-    if not words:
-        control.fail("preset", "G92 needs the position from which the path goes on")
-    target = control.target()
-    following = control.flow.following()
-    if following is not None and any(w.address == "G" and w.value == 92.0 for w in following.words):
-        return
-    if control.has_moved:
-        control.rapid_feed = math.nan
-        control.line_to(target, rapid=True)
-    else:
-        control.stand_at(target)
+INSTEAD = {
+    **dict.fromkeys(range(80, 90), "there are no canned cycles: write their moves"),
+    **dict.fromkeys((57, 58, 59), "shifts are G54 and G55 with their distances"),
+    **dict.fromkeys((94, 95), "F counts units per second"),
+    21: "lengths are in the axes' unit, millimetres",
+    28: "write G53, then G0 and the axes",
+    49: "write G43 I0 J0 K0",
+}
+"""Codes of other controls, and what this one has for them."""

@@ -7,6 +7,8 @@ from twin.nc.control import Control
 from twin.nc.dialect import WordAction
 from twin.nc.dialects.codesys.program import variables
 
+LARGEST_SWITCH = 32_767
+"""Largest number of a switch point (manual)."""
 SWITCHES = 3
 """Switch points that one element may have (manual)."""
 
@@ -129,8 +131,8 @@ def place_switches(control: Control, length: float) -> None:
     for begin, end in zip(switches, [*switches[1:], len(words)], strict=True):
         place = words[begin + 1 : end]
         number = control.number(words[begin])
-        if len(place) != 1 or number == 0.0 or number != int(number):
-            message = "a switch point is H with one of O and L after it"
+        if len(place) != 1 or number != int(number) or not 0 < abs(number) <= LARGEST_SWITCH:
+            message = f"a switch point is H, 1 to {LARGEST_SWITCH}, with one of O and L after it"
             control.fail("switch-point", message, words[begin])
         value = control.number(place[0])
         if place[0].address == "O":

@@ -89,10 +89,7 @@ FAGOR8070 = Dialect(
     word_meanings={
         "N": "block number",
         "G": "preparatory code",
-        **{
-            axis: f"{axis} axis; {axis}1= and a trailing I (incremental) too"
-            for axis in "XYZABCUVW"
-        },
+        **dict.fromkeys("XYZABCUVW", "axis; as X1= and with a trailing I (incremental) too"),
         "I": "centre along X; abscissa of G30; depth of a cycle; size of G36 and G39",
         "J": "centre along Y; ordinate of G30; number of pecks",
         "K": "centre along Z; pitch of a helix; seconds of G04 and of a cycle",

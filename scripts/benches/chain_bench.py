@@ -1,0 +1,48 @@
+"""Whole runs from the command line: machine time beside processor time, start-up, memory.
+
+Times are the processor's, of one core, the start of Python and the loading of kernels in them.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from benches.long_programs import short_lines
+from benches.row import Row, median_cpu_seconds
+
+MINUTES = 10.0
+"""Machine time of the program that is run [min]; the rate is that of an hour but for the start."""
+TEN_LINES = "G90 G17 G71\nF1000\nG1 X10\nY10\nX0\nY0\nG2 X10 Y0 R5\nG0 Z5\nM5\nM30\n"
+
+
+def rows() -> Iterator[Row]:
+    """A run's rate, and how long small commands take."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        program = folder / "surface.nc"
+        machine_s = short_lines(program, MINUTES * 60.0)
+        seconds = median_cpu_seconds(
+            lambda: _twin("run", program, "--dialect", "gost", "--out", folder / "out")
+        )
+        yield Row(
+            "chain", f"run, {MINUTES:g} min of short lines", machine_s / seconds, "x real time"
+        )
+        yield Row("chain", "one hour of machine time", 3600.0 / machine_s * seconds, "s")
+        size = (folder / "out" / "recording.h5").stat().st_size
+        yield Row("chain", "recording of one hour", 3600.0 / machine_s * size / 1e6, "MB")
+        small = folder / "ten.nc"
+        small.write_text(TEN_LINES)
+        yield Row("chain", "twin --help", median_cpu_seconds(lambda: _twin("--help")), "s")
+        interpreting = median_cpu_seconds(lambda: _twin("interpret", small, "--dialect", "gost"))
+        yield Row("chain", "twin interpret, ten lines", interpreting, "s")
+
+
+def _twin(*arguments: object) -> None:
+    command: Sequence[str] = [sys.executable, "-m", "twin", *map(str, arguments)]
+    surroundings = {**os.environ, "OMP_NUM_THREADS": "1"}
+    subprocess.run(  # noqa: S603 (this project's own command)
+        command, env=surroundings, check=True, capture_output=True
+    )

@@ -1,0 +1,77 @@
+"""``twin train`` as a stranger meets it."""
+
+import http.client
+import json
+import re
+import signal
+import subprocess
+import sys
+import urllib.parse
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from twin.cli import app
+from twin.errors import TwinError
+from twin.training.scene import scene_names
+
+PATIENCE_S = 120.0
+
+
+def test_the_list_names_every_scene_in_the_language_asked_for() -> None:
+    done = CliRunner().invoke(app, ["train", "--list"])
+    assert done.exit_code == 0, done.output
+    lines = done.stdout.splitlines()
+    assert [line.split()[0] for line in lines] == list(scene_names())
+    assert "Three quarters of a circle" in done.stdout
+    russian = CliRunner().invoke(app, ["train", "--list", "--language", "ru"])
+    assert "Где деталь?" in russian.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nope"], "no scene 'nope': shipped scenes are codesys_arc_or_line"),
+        (["--language", "de"], "the panel speaks en, ru, it, cs"),
+        (["--host", "192.0.2.1"], "give a --token too"),
+        (["--host", "::"], "give a --token too"),
+        (["--certificate", "nowhere.pem"], "no certificate with its key"),
+        (["--key", "nowhere.pem"], "belongs to a --certificate"),
+        (["--port", "99999"], ""),
+    ],
+)
+def test_what_cannot_be_opened_is_refused(arguments: list[str], message: str) -> None:
+    done = CliRunner().invoke(app, ["train", *arguments])
+    refusal = done.exception
+    if isinstance(refusal, TwinError):
+        assert int(refusal.exit_code) == 2
+        assert message in str(refusal)
+    else:
+        assert done.exit_code == 2
+        assert not message
+
+
+def test_the_room_opens_on_loopback_and_ctrl_c_keeps_the_sheet(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "twin", "train", "mefi_lead", "--out", str(tmp_path)]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as twin:
+        assert twin.stdout is not None
+        first = twin.stdout.readline()
+        found = re.fullmatch(r"mefi_lead: open (\S+) in a browser; Ctrl\+C ends\n", first)
+        assert found, first
+        address = urllib.parse.urlsplit(found[1])
+        assert address.hostname == "127.0.0.1"
+        page = http.client.HTTPConnection("127.0.0.1", address.port or 0, timeout=PATIENCE_S)
+        page.request("GET", "/")
+        assert page.getresponse().status == 200
+        page.close()
+        twin.send_signal(signal.SIGINT)
+        rest, errors = twin.communicate(timeout=PATIENCE_S)
+    assert twin.returncode == 0, errors
+    assert not errors
+    assert "mefi_lead: 0 of 10 points; sheet in" in rest
+    folder = next(tmp_path.glob("mefi_lead_*"))
+    assert json.loads((folder / "score.json").read_text(encoding="utf-8"))["handed_in"] is False
+    assert {file.name for file in folder.iterdir()} == {"score.json", "score.html", "log.jsonl"}

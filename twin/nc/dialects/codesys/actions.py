@@ -1,0 +1,208 @@
+"""What the G codes of CODESYS SoftMotion do, arcs, curves and the program apart."""
+
+import math
+
+from twin.nc.blends import Blend, BlendKind
+from twin.nc.blocks import Word
+from twin.nc.control import Control
+from twin.nc.dialect import Action
+from twin.nc.dialects.codesys.program import variables
+from twin.nc.offsets import LEFT, RIGHT, compensate
+from twin.nc.planes import XY, plane_with_normal
+
+ADDITIONAL = "ABCPQUVW"
+"""Letters of additional axes, in the order of their numbers."""
+FIRST_ADDITIONAL = 4
+"""Number of the first of them, A (manual)."""
+
+
+def dwell(control: Control) -> None:
+    """G4: wait T seconds."""
+    word = control.take("T")
+    if word is None or control.number(word) < 0.0:
+        control.fail("dwell", "G4 needs T, its seconds", word, hint="write G4 T1")
+    control.dwell(control.number(word))
+
+
+def free_plane(control: Control) -> None:
+    """G16: the plane whose normal is I, J, K.
+
+    Decision: without them the plane in force stays; the manual's example of a jump is written so.
+    """
+    if not any(letter in control.words for letter in "IJK"):
+        return
+    i, j, k = (control.take_number(letter) for letter in "IJK")
+    if not (i or j or k):
+        control.fail("plane-normal", "G16 needs the plane's normal", control.code_word(16))
+    control.modal.plane = plane_with_normal((i, j, k))
+
+
+def probe(control: Control) -> None:
+    """G31: move to the end of the probing path and report it.
+
+    Decision: nothing touches the twin's probe, so that the path is run to its end.
+    """
+    if control.path.cutting_loops:
+        control.fail("loops", "a probe cannot run where loops are cut out", hint="write G60")
+    control.function("G31", {})
+    control.line_to(control.target(), rapid=False)
+
+
+def left_of_contour(control: Control) -> None:
+    """G41 D: compensate; D is the radius."""
+    _compensate(control, LEFT)
+
+
+def right_of_contour(control: Control) -> None:
+    """G42 D."""
+    _compensate(control, RIGHT)
+
+
+def _compensate(control: Control, side: float) -> None:
+    word = control.take("D")
+    if word is not None:
+        variables(control).tool_radius = control.length(word)
+    compensate(control, side, variables(control).tool_radius)
+
+
+def smooth_corners(kind: BlendKind) -> Action:
+    """G51, G52: every corner between two moves with a feed is blended.
+
+    The points where both moves are cut lie D from the corner, and at most half a move (manual).
+    """
+
+    def action(control: Control) -> None:
+        memory = variables(control)
+        word = control.take("D")
+        if word is not None:
+            memory.smoothing = control.length(word)
+        memory.smoothed_by = kind
+        _smooth(control, word)
+
+    return action
+
+
+def set_smoothing(control: Control, word: Word) -> None:
+    """D elsewhere: the distance of the corners that follow (manual, from 4.18)."""
+    variables(control).smoothing = control.length(word)
+    if variables(control).smoothed_by is not None:
+        _smooth(control, word)
+
+
+def _smooth(control: Control, word: Word | None) -> None:
+    memory = variables(control)
+    assert memory.smoothed_by is not None
+    if memory.smoothing < 0.0:
+        control.fail("blend", "the distance of smoothing cannot be negative", word)
+    plane = control.part_plane()
+    control.path.blend_always(Blend(memory.smoothed_by, memory.smoothing, plane, halves=True))
+
+
+def keep_corners(control: Control) -> None:
+    """G50."""
+    variables(control).smoothed_by = None
+    control.path.blend_always(None)
+
+
+def cut_loops(control: Control) -> None:
+    """G61: loops are cut out, in 2D mode only (manual)."""
+    if control.modal.plane is not XY:
+        control.fail("loops", "loops are cut out in the plane X Y only", hint="write G15 before")
+    control.path.cut_loops(control.part_plane())
+
+
+def keep_loops(control: Control) -> None:
+    """G60."""
+    control.path.keep_loops()
+
+
+def go_evenly(control: Control) -> None:
+    """G71 L: the additional axis L goes evenly over the moves up to G70."""
+    word = control.take("L")
+    if word is None:
+        hint = "write G71 L6 for C"
+        control.fail("even-axis", "G71 needs L, the number of the axis", hint=hint)
+    control.path.go_evenly(_numbered_axis(control, word))
+
+
+def go_as_programmed(control: Control) -> None:
+    """G70 L: it goes with each move again; without L all do."""
+    word = control.take("L")
+    axes = range(len(control.settings.axes)) if word is None else [_numbered_axis(control, word)]
+    for axis in axes:
+        control.path.go_as_programmed(axis)
+
+
+def _numbered_axis(control: Control, word: Word) -> int:
+    """Column of the additional axis with a number: 4 is A, 11 is W (manual)."""
+    number = control.number(word) - FIRST_ADDITIONAL
+    if number not in range(len(ADDITIONAL)):
+        control.fail("even-axis", f"{word.text} numbers no additional axis", word, "4 is A, 6 is C")
+    letter = ADDITIONAL[int(number)]
+    index = control.axis_index.get(letter)
+    if index is None:
+        control.refuse_axis(word._replace(address=letter))
+    return index
+
+
+def length_vector(control: Control) -> None:
+    """G43 I J K: the tool's vector is added to every position; 0 0 0 is off."""
+    i, j, k = (control.length(control.take(letter)) for letter in "IJK")
+    shift = [i, j, k, *([0.0] * (len(control.settings.axes) - 3))]
+    control.frame.set_shift("length", shift)
+    control.reframed()
+
+
+def reset_shift(control: Control) -> None:
+    """G53: decoder and machine coordinates coincide."""
+    control.frame.set_shift("offset", [0.0] * len(control.settings.axes))
+    control.reframed()
+
+
+def shift_absolutely(control: Control) -> None:
+    """G54: the decoder's zero lies at the given position of the machine's coordinates."""
+    _shift(control, [0.0] * len(control.settings.axes))
+
+
+def shift_relatively(control: Control) -> None:
+    """G55: the decoder's zero moves on by the given distances."""
+    _shift(control, control.frame.shift("offset"))
+
+
+def _shift(control: Control, shift: list[float]) -> None:
+    for index, word in control.take_axis_words():
+        shift[index] += control.axis_value(index, word)
+    control.frame.set_shift("offset", shift)
+    control.reframed()
+
+
+def set_reference(control: Control) -> None:
+    """G56: the place where the machine stands gets the given coordinates.
+
+    Decision: the manual's page is not fully known; this is what its title says.
+    """
+    programmed = list(control.programmed)
+    for index, word in control.take_axis_words():
+        programmed[index] = control.axis_value(index, word)
+    control.relabel(programmed, "offset")
+
+
+def set_position(control: Control) -> None:
+    """G92: the path goes on from the given position.
+
+    Before the first move it is where the path begins. The path jumps there later, which no machine
+    can: its axes travel as fast as they can (the manual's ``bAvoidGaps``). Of several in a row the
+    last counts (manual).
+    """
+    words = control.words.keys() & control.dialect.axis_letters
+    if not words:
+        control.fail("preset", "G92 needs the position from which the path goes on")
+    target = control.target()
+    following = control.flow.following()
+    if following is not None and any(w.address == "G" and w.value == 92.0 for w in following.words):
+        return
+    if control.has_moved:
+        control.rapid_feed = math.nan
+        control.line_to(target, rapid=True)
+    else:
+        control.stand_at(target)
