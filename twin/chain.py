@@ -105,7 +105,13 @@ class Run:
             SimulationError: The simulation failed; the recording is not kept.
         """
         preparation = self.preparation
-        comparison = Comparison(preparation.machine.axes, self.part_frame, self.part_zero)
+        tolerance = preparation.job.file.tolerance
+        comparison = Comparison(
+            preparation.machine.axes,
+            self.part_frame,
+            self.part_zero,
+            apart=[part.lines for part in tolerance.blocks],
+        )
         cutter, guard = self._cutter(survey.notes), self._guard(survey.notes)
         track = _Track(self.part_zero, preparation.start)
         self._spindle = Spindle(held_to_program=survey.speaks_of_spindle)
@@ -134,7 +140,6 @@ class Run:
         figures = comparison.result()
         alarms = () if alarm is None else (alarm,)
         duration_s = min(self._planned_s, track.time_s)
-        tolerance = preparation.job.file.tolerance
         return Outcome(
             verdict=judge(figures, tolerance, alarms, cycle_time_s=duration_s),
             figures=figures,

@@ -1,5 +1,7 @@
 """The comparison of a run with its program: following error and contour error, chunk by chunk."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from twin.compare.arcs import ArcCollector
@@ -37,9 +39,16 @@ class Comparison:
         axes: Axes of moves and samples.
         part_frame: How the part turns under the tool.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        apart: First and last line of ranges that have a tolerance of their own.
     """
 
-    def __init__(self, axes: Axes, part_frame: PartFrame, part_zero: FloatArray) -> None:
+    def __init__(
+        self,
+        axes: Axes,
+        part_frame: PartFrame,
+        part_zero: FloatArray,
+        apart: Sequence[tuple[int, int]] = (),
+    ) -> None:
         self.axes = axes
         self._frame = part_frame
         self._part_zero = np.asarray(part_zero, np.float64)
@@ -54,7 +63,7 @@ class Comparison:
         self._axis_worst = [(0, 0.0) for _ in axes.names]
         self._contour = Distribution()
         self._arcs = ArcCollector()
-        self._blocks = BlockCollector()
+        self._blocks = BlockCollector(apart)
         self._features = FeatureCollector()
         self._corners = CornerCollector()
         self._worst: dict[int, WorstPlace] = {}
@@ -172,7 +181,7 @@ class Comparison:
         floor = least if len(self._worst) >= WORST_PLACES else -1.0
         error, when = self._blocks.greatest, self._blocks.when
         for row in rows[(error[rows] > floor) & (when[rows] >= setpoint.time[0])]:
-            line = int(row) // 2
+            line = int(self._blocks.block[row]) // 2
             known = self._worst.get(line)
             if known is None or error[row] > known.error_um:
                 sample = int(np.searchsorted(setpoint.time, when[row]))

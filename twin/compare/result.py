@@ -90,6 +90,7 @@ def result(
         },
         "corners": dataclasses.asdict(figures.corners),
         "blocks": _worst_blocks(figures.blocks),
+        "blocks_forgotten": figures.blocks.forgotten,
         "arcs": [_arc(arc) for arc in figures.arcs],
         "bidirectional_arcs": [dataclasses.asdict(pair) for pair in figures.bidirectional],
         "tolerance": tolerance.model_dump(exclude_none=True),
