@@ -155,3 +155,22 @@ def test_other_files_are_refused(tmp_path: Path):
         file.attrs["complete"] = False
     with pytest.raises(RecordingError, match="not complete"):
         open_and_close(other)
+
+
+@pytest.mark.parametrize("lengths", [(5000, 5000, 5000), (4096, 1), (3, 4093, 9000), (9000,), (1,)])
+def test_what_is_appended_is_read_however_it_was_cut(tmp_path: Path, lengths: tuple[int, ...]):
+    """The file's own chunks hold 4096 samples; those behind the last full one wait."""
+    path, first = tmp_path / "recording.h5", 0
+    with record(path, header()) as writer:
+        for length in lengths:
+            writer.append(samples(first, length), np.arange(first, first + length) / 2.0)
+            first += length
+    whole = samples(0, first)
+    with open_recording(path) as recording:
+        assert len(recording) == first
+        step = 2.0**-24
+        np.testing.assert_array_equal(
+            recording.column("joint/position"), np.rint(whole.joint_position / step) * step
+        )
+        np.testing.assert_array_equal(recording.column("line"), whole.setpoint.line)
+        np.testing.assert_array_equal(recording.column("contour"), np.arange(first) / 2.0)

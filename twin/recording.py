@@ -8,16 +8,14 @@ same folder, for HDF5 writes it so that others may read it (single writer, multi
 
 import contextlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
-from twin.disk_room import DiskRoom
 from twin.errors import RecordingError
-from twin.files import complete_or_absent
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray
 from twin.recording_form import (
@@ -26,12 +24,12 @@ from twin.recording_form import (
     JOINT_COLUMNS,
     LATER_ATTRIBUTES,
     LONGEST_TEXT,
-    STEPS,
     TEXT_ATTRIBUTES,
     RecordingHeader,
     Samples,
 )
-from twin.seal import seal, seal_is_broken
+from twin.recording_writer import PROGRAM_TEXT, RecordingWriter, record
+from twin.seal import seal_is_broken
 from twin.toolpath.part_frame import PartFrame
 
 __all__ = [
@@ -45,122 +43,6 @@ __all__ = [
     "open_recording",
     "record",
 ]
-
-
-_ROWS_PER_CHUNK = 4096
-_FORMAT = ("v110", "v110")
-"""The oldest format of HDF5 that can be read while it is written."""
-
-_TEXT = "program_text"
-
-_BOOKKEEPING = 1 << 20
-"""What HDF5 may write besides columns [bytes]: attributes, and where the chunks lie."""
-_MOST_OF_A_LETTER = 4
-"""In UTF-8 [bytes]."""
-
-
-class RecordingWriter:
-    """Appends chunks of samples to an open recording."""
-
-    def __init__(self, file: h5py.File, header: RecordingHeader) -> None:
-        self._file = file
-        self._count = 0
-        width = len(header.axes)
-        self._room = DiskRoom(file.id.get_vfd_handle(), Path(file.filename))
-        self._hold_room(len(header.program_text) * _MOST_OF_A_LETTER)
-        values = sum(width if "/" in path else 1 for path in (*COLUMNS, *JOINT_COLUMNS, CONTOUR))
-        self._row_bytes = values * np.dtype(np.float64).itemsize
-        for path, (name, unit) in {**COLUMNS, **JOINT_COLUMNS}.items():
-            kind = np.int64 if name in ("line", "move") else np.float64
-            self._create(path, (0, width) if "/" in path else (0,), kind, unit)
-        _write_attributes(file, header)
-
-    def _create(self, path: str, shape: tuple[int, ...], kind: type[np.generic], unit: str) -> None:
-        dataset = self._file.create_dataset(
-            path, shape, maxshape=(None, *shape[1:]), dtype=kind, chunks=(_ROWS_PER_CHUNK, *shape[1:]),
-            compression="gzip", compression_opts=1, shuffle=True,
-        )  # fmt: skip
-        if unit:
-            dataset.attrs["unit"] = unit
-
-    def note_alarms(self, alarms: Iterable[tuple[float, str]]) -> None:
-        """Add what the machine raised when [s, text]."""
-        self._file.attrs["alarms"] = json.dumps(list(alarms))
-
-    def append(self, samples: Samples, contour_um: FloatArray | None = None) -> None:
-        """Add a chunk that follows the last one.
-
-        Args:
-            samples: n samples.
-            contour_um: Their contour errors, shape (n,) [µm]; for all chunks or for none.
-
-        Raises:
-            OSError: The disk is full.
-        """
-        end = self._count + len(samples)
-        # The last chunk of each column is written once more when it was not full.
-        self._hold_room((len(samples) + _ROWS_PER_CHUNK) * self._row_bytes)
-        if contour_um is not None:
-            if CONTOUR not in self._file:
-                self._create(CONTOUR, (0,), np.float64, "um")
-            self._put(CONTOUR, contour_um, end)
-        for path, (name, _) in COLUMNS.items():
-            self._put(path, getattr(samples.setpoint, name), end)
-        for path, (name, _) in JOINT_COLUMNS.items():
-            self._put(path, getattr(samples, name), end)
-        self._count = end
-        self._file.flush()
-
-    def _hold_room(self, size: int) -> None:
-        self._room.hold(self._file.id.get_filesize() + size + _BOOKKEEPING)
-
-    def _put(self, path: str, values: np.ndarray[Any, Any], end: int) -> None:
-        dataset = self._file[path]
-        assert isinstance(dataset, h5py.Dataset)
-        dataset.resize(end, axis=0)
-        step = STEPS.get(path)
-        dataset[self._count : end] = values if step is None else np.rint(values / step) * step
-
-
-def _write_attributes(file: h5py.File, header: RecordingHeader) -> None:
-    attributes = file.attrs
-    attributes["axes"] = list(header.axes.names)
-    attributes["kinds"] = list(header.axes.kinds)
-    attributes["period_s"] = header.period_s
-    attributes["part_zero"] = header.part_zero
-    attributes["table_axis"] = (
-        "" if header.part_frame.rotary is None else header.axes.names[header.part_frame.rotary]
-    )
-    attributes["table_center"] = header.part_frame.center
-    attributes["table_zero"] = header.part_frame.turn_zero
-    for name in (*TEXT_ATTRIBUTES, *LATER_ATTRIBUTES):
-        attributes[name] = getattr(header, name)
-    text = np.frombuffer(header.program_text.encode("utf-8", "surrogatepass"), np.uint8)
-    compression = "gzip" if len(text) else None
-    file.create_dataset(_TEXT, data=text, compression=compression)
-    attributes["complete"] = False
-
-
-@contextlib.contextmanager
-def record(path: Path, header: RecordingHeader) -> Iterator[RecordingWriter]:
-    """Open a recording for writing; it appears under ``path`` when the block ends without error.
-
-    Args:
-        path: The file to be.
-        header: What the recording says about itself.
-
-    Raises:
-        OSError: It cannot be written.
-    """
-    with complete_or_absent(path) as temporary:
-        with h5py.File(temporary, "w", libver=_FORMAT) as file:
-            writer = RecordingWriter(file, header)
-            file.swmr_mode = True
-            yield writer
-        # Opened again, HDF5 also gives the room back that was held and not needed.
-        with h5py.File(temporary, "r+", libver=_FORMAT) as file:
-            file.attrs["complete"] = True
-        seal(temporary)
 
 
 _DAMAGE = (KeyError, ValueError, IndexError, TypeError, AttributeError, OSError, RuntimeError)
@@ -276,10 +158,10 @@ def _read_header(file: h5py.File) -> RecordingHeader:
 
 
 def _program_text(file: h5py.File) -> str:
-    kept = file.get(_TEXT)
+    kept = file.get(PROGRAM_TEXT)
     if isinstance(kept, h5py.Dataset):
         return kept[:].tobytes().decode("utf-8", "surrogatepass")
-    return str(file.attrs[_TEXT])  # recordings of earlier versions
+    return str(file.attrs[PROGRAM_TEXT])  # recordings of earlier versions
 
 
 @contextlib.contextmanager

@@ -78,18 +78,21 @@ class Lines(Sequence[str]):
             at = int(self.starts[index + 1])
 
 
-def _line_starts(data: npt.NDArray[np.uint8]) -> npt.NDArray[np.int64]:
+def _line_starts(data: npt.NDArray[np.uint8]) -> npt.NDArray[np.signedinteger]:
     """Where lines begin that end with LF, CR or CR LF; the text behind the last end is a line."""
-    found: list[npt.NDArray[np.int64]] = [np.zeros(1, np.int64)]
+    # Of millions of lines, half the memory.
+    kind = np.int32 if len(data) <= np.iinfo(np.int32).max else np.int64
+    found: list[npt.NDArray[np.signedinteger]] = [np.zeros(1, kind)]
     for begin in range(0, len(data), _BLOCK):
         # One byte more, so that a CR at the border sees the LF behind it.
         block = data[begin : begin + _BLOCK + 1]
         feed = block == _LINE_FEED
         ends = feed | (block == _RETURN)
         ends[:-1] &= ~((block[:-1] == _RETURN) & feed[1:])
-        found.append(np.flatnonzero(ends[:_BLOCK]) + (begin + 1))
+        found.append((np.flatnonzero(ends[:_BLOCK]) + (begin + 1)).astype(kind))
     starts = np.concatenate(found)
-    return starts if starts[-1] == len(data) else np.append(starts, len(data))
+    end = np.array([len(data)], kind)
+    return starts if starts[-1] == len(data) else np.concatenate([starts, end])
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
