@@ -14,10 +14,11 @@ import numpy as np
 from benches import linuxcnc_simulator
 from benches.row import Row, median_seconds
 
+from twin.columns import join
 from twin.motion.limits import MotionLimits
 from twin.motion.phases import plan_phases
 from twin.motion.planner import plan
-from twin.motion.setpoints import Setpoints, join
+from twin.motion.setpoints import Setpoints
 from twin.motion_limits import motion_limits
 from twin.nc.canonical import Chunk, FloatArray
 from twin.preparation import Preparation, prepare
