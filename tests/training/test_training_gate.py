@@ -169,7 +169,9 @@ def test_the_page_that_studio_opens_the_stream_to_has_the_panel(inside, says, gi
 
 
 def test_two_gates_of_one_computer_keep_their_own_tokens(inside):
-    with Gate(inside, token="one") as first, Gate(inside, token="two") as second:  # noqa: S106 (no secrets of anybody)
+    first, second = Gate(inside, token="one"), Gate(inside, token="two")  # noqa: S106 (no secrets of anybody)
+    assert first.port != second.port
+    with first, second:
         jar = []
         for gate in (first, second):
             answer = get(gate, f"/?token={gate.token}")

@@ -271,7 +271,7 @@ async def _until_first(*works: Coroutine[None, None, None] | None) -> None:
 
 
 def _bound(host: str, port: int) -> socket.socket:
-    """A socket that is bound to a port of a host.
+    """A socket that listens on a port of a host.
 
     Raises:
         UsageError: There is no such host, or no such port is free.
@@ -288,6 +288,8 @@ def _bound(host: str, port: int) -> socket.socket:
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             bound.bind((name, candidate))
+            # At once: until somebody listens on it, another gate could bind the same port.
+            bound.listen()
         except OSError as error:
             bound.close()
             reason = error.strerror or str(error)
