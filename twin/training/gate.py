@@ -73,6 +73,7 @@ class Gate:
         self.token = token
         self.heard = 0
         self._panels = 0
+        self._guests: set[asyncio.Task[None] | None] = set()
         self._inside = inside
         self._tls = tls
         self._socket = _bound(host, port)
@@ -130,6 +131,9 @@ class Gate:
         self._loop.stop()
 
     async def _welcome(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        guest = asyncio.current_task()
+        # asyncio forgets the task of a line that was hung up, even while it still works.
+        self._guests.add(guest)
         try:
             head = await asyncio.wait_for(reader.readuntil(b"\r\n\r\n"), _HEAD_TIME_S)
             await self._lead(head, reader, writer)
@@ -138,6 +142,7 @@ class Gate:
         except asyncio.CancelledError:
             pass  # The gate closes; asyncio's streams would report this as an error.
         finally:
+            self._guests.discard(guest)
             with contextlib.suppress(OSError):
                 writer.close()
 
