@@ -108,7 +108,7 @@ def test_a_token_is_asked_for_and_remembered(inside):
         assert "token=" not in (answer.getheader("Location") or "")
         cookie = (answer.getheader("Set-Cookie") or "").split(";")[0]
         assert get(gate, Cookie=cookie).status == 200
-        assert get(gate, Cookie="twin_token=wrong").status == 401
+        assert get(gate, Cookie=f"twin_token_{gate.port}=wrong").status == 401
 
 
 def test_a_taken_port_is_refused(inside):
@@ -127,7 +127,7 @@ def test_noise_does_not_stop_the_gate(inside, noise):
                 line.shutdown(socket.SHUT_WR)
                 while line.recv(4096):
                     pass
-            except (ConnectionResetError, BrokenPipeError):
+            except OSError:
                 pass  # It hung up on the noise.
         assert get(gate).status == 200
 
@@ -145,6 +145,40 @@ def test_a_stream_is_passed_on_both_ways_and_counted(inside):
         while get(gate).status != 200 and time.monotonic() < end:
             time.sleep(0.05)
         assert get(gate).status == 200
+
+
+@pytest.mark.parametrize(("says", "given"), [(b"\x82frame", True), (b"\x88goodbye", False)])
+def test_the_page_that_studio_opens_the_stream_to_has_the_panel(inside, says, given):
+    with Gate(inside) as gate:
+        assert not gate.has_panel
+        with socket.create_connection(("127.0.0.1", gate.port), timeout=5) as line:
+            host = f"Host: 127.0.0.1:{gate.port}"
+            head = f"GET /ui?sid=1 HTTP/1.1\r\n{host}\r\nUpgrade: websocket\r\n\r\n"
+            line.sendall(head.encode())
+            assert b"101" in line.recv(4096)
+            line.sendall(says)
+            answer = b""
+            while len(answer) < len(says):
+                answer += line.recv(4096)
+            assert answer == says
+            assert gate.has_panel == given
+        end = time.monotonic() + 5
+        while gate.has_panel and time.monotonic() < end:
+            time.sleep(0.01)
+        assert not gate.has_panel
+
+
+def test_two_gates_of_one_computer_keep_their_own_tokens(inside):
+    first, second = Gate(inside, token="one"), Gate(inside, token="two")  # noqa: S106 (no secrets of anybody)
+    assert first.port != second.port
+    with first, second:
+        jar = []
+        for gate in (first, second):
+            answer = get(gate, f"/?token={gate.token}")
+            jar.append((answer.getheader("Set-Cookie") or "").split(";")[0])
+        assert get(first, Cookie="; ".join(jar)).status == 200
+        assert get(second, Cookie="; ".join(jar)).status == 200
+        assert get(second, Cookie=jar[0]).status == 401
 
 
 def test_a_second_request_on_the_same_line_is_not_passed_on(inside):

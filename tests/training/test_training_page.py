@@ -56,9 +56,10 @@ class Operator:
         self._browser = browser
         self.open()
 
-    def open(self) -> None:
+    def open(self, *, as_trainer: bool = False) -> None:
         """Go to the page; the panel stands where the page's width puts it once it is there."""
-        gate, panel = self.room.gate, self.room.shown.panel
+        self._gate = self.room.trainer_gate if as_trainer else self.room.gate
+        gate, panel = self._gate, self.room.shown.panel
         assert gate is not None
         panel.width = 0.0
         self.page = self._browser.new_page()
@@ -90,7 +91,7 @@ class Operator:
         self.room.shown.viewer.send_to_sim(RequestEvent(do(name, **arguments)))
 
     def _frames(self, count: int) -> None:
-        gate = self.room.gate
+        gate = self._gate
         assert gate is not None
         goal = gate.heard + count
         self.until(lambda: gate.heard >= goal, "the page's next frame")
@@ -187,6 +188,13 @@ def test_a_scene_is_played_in_the_browser_and_survives_its_loss(operator, tmp_pa
     operator.until(lambda: room.machine.position[2] > place + 29.9, "the end of the jog")
     assert room.alarm is None
     assert operator.room.handle.is_running()
-    operator.open()
+
+    # Only the trainer's own page has the trainer's sheet.
+    assert "tab trainer" not in operator.room.shown.panel.kit.places
+    operator.open(as_trainer=True)
     operator.click("mode auto")
     operator.until(lambda: room.mode == "auto", "the panel of the second page")
+    assert operator.room.session.log[-1].who == "trainer"
+    operator.click("tab trainer")
+    operator.click("freeze")
+    operator.until(lambda: operator.room.session.frozen, "the frozen machine")

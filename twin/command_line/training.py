@@ -32,7 +32,7 @@ def train(
     certificate: Annotated[Path | None, typer.Option("--certificate", help="For https.")] = None,
     key: Annotated[Path | None, typer.Option("--key", help="Of the certificate.")] = None,
     trainer: Annotated[
-        bool, typer.Option("--trainer", help="Show the trainer's sheet: faults, freeze, replay.")
+        bool, typer.Option("--trainer", help="A second address with the trainer's sheet.")
     ] = False,
     plain: Annotated[
         bool, typer.Option("--plain", help="Draw plainly: for browsers without a graphics card.")

@@ -93,6 +93,8 @@ def train(
     ) as room:
         if room.gate is not None:
             typer.echo(f"{scene.name}: open {room.gate.address} in a browser; Ctrl+C ends")
+            if room.trainer_gate is not None:
+                typer.echo(f"the trainer's own page: {room.trainer_gate.address}")
             if host is not None and certificate is None:
                 typer.echo(
                     "other computers' browsers show the page over https only: give --certificate "

@@ -27,10 +27,13 @@ PORTS = 20
 _HEAD_LIMIT = 16384
 _HEAD_TIME_S = 10.0
 _COOKIE = "twin_token"
+"""Name of the cookie that keeps the token, before the port: browsers share cookies between ports."""
 OPERATOR_STREAM = "/ui"
 _STREAMS = (OPERATOR_STREAM, "/state")
 _LOCAL_NAMES = ("localhost", LOOPBACK, "[::1]")
 _PIECE = 65536
+_BINARY = b"\x82"
+"""Beginning of a whole binary message (RFC 6455, 5.2)."""
 
 
 class Gate:
@@ -40,7 +43,7 @@ class Gate:
         host: Where it listens.
         port: The port.
         token: What a browser must know, empty for nothing.
-        heard: How often the operator's page has spoken: once a frame while it is shown.
+        heard: How often the page that has the panel has spoken: once a frame while it is shown.
     """
 
     def __init__(
@@ -69,6 +72,8 @@ class Gate:
         self.host = host
         self.token = token
         self.heard = 0
+        self._panels = 0
+        self._guests: set[asyncio.Task[None] | None] = set()
         self._inside = inside
         self._tls = tls
         self._socket = _bound(host, port)
@@ -85,6 +90,15 @@ class Gate:
         query = f"?token={urllib.parse.quote(self.token)}" if self.token else ""
         shown = f"[{self.host}]" if ":" in self.host else self.host
         return f"{scheme}://{shown}:{self.port}/{query}"
+
+    @property
+    def has_panel(self) -> bool:
+        """Whether it is a browser of this gate that has the panel."""
+        return self._panels > 0
+
+    @property
+    def _cookie(self) -> str:
+        return f"{_COOKIE}_{self.port}"
 
     def __enter__(self) -> "Gate":
         """Open it."""
@@ -117,12 +131,18 @@ class Gate:
         self._loop.stop()
 
     async def _welcome(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        guest = asyncio.current_task()
+        # asyncio forgets the task of a line that was hung up, even while it still works.
+        self._guests.add(guest)
         try:
             head = await asyncio.wait_for(reader.readuntil(b"\r\n\r\n"), _HEAD_TIME_S)
             await self._lead(head, reader, writer)
         except (TimeoutError, asyncio.IncompleteReadError, asyncio.LimitOverrunError, OSError):
             pass  # Whoever came has gone, or says nothing that could be understood.
+        except asyncio.CancelledError:
+            pass  # The gate closes; asyncio's streams would report this as an error.
         finally:
+            self._guests.discard(guest)
             with contextlib.suppress(OSError):
                 writer.close()
 
@@ -137,9 +157,7 @@ class Gate:
         if not self._knows_token(request):
             return await _answer(writer, "401 Unauthorized")
         if request.token and self.token:
-            cookie = (
-                f"{_COOKIE}={urllib.parse.quote(self.token)}; HttpOnly; SameSite=Strict; Path=/"
-            )
+            cookie = f"{self._cookie}={urllib.parse.quote(self.token)}; HttpOnly; SameSite=Strict; Path=/"
             return await _answer(writer, "303 See Other", Location="/", **{"Set-Cookie": cookie})
         if not request.wanted:
             return await _answer(writer, "404 Not Found")
@@ -148,7 +166,7 @@ class Gate:
             inside_writer.write(head)
             await inside_writer.drain()
             await _until_first(
-                _pass_on(inside_reader, writer),
+                self._show(inside_reader, writer, request),
                 # Only a stream has anything more to say; a second request on this line has not
                 # been looked at.
                 self._listen(reader, inside_writer, request) if request.is_stream else None,
@@ -166,6 +184,27 @@ class Gate:
                 writer.write(piece)
                 await writer.drain()
 
+    async def _show(
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, request: "_Request"
+    ) -> None:
+        """Pass on what Studio says, and note whether it gives the panel to this page.
+
+        Every page asks for the operator's stream. Studio opens it to one at a time, which gets the
+        panel's first message; to the others it says goodbye.
+        """
+        with contextlib.suppress(OSError, asyncio.IncompleteReadError):
+            if not (request.is_stream and request.path == OPERATOR_STREAM):
+                return await _pass_on(reader, writer)
+            writer.write(await reader.readuntil(b"\r\n\r\n"))
+            first = await reader.read(_PIECE)
+            given = first.startswith(_BINARY)
+            self._panels += given
+            try:
+                writer.write(first)
+                await _pass_on(reader, writer)
+            finally:
+                self._panels -= given
+
     def _may_come(self, request: "_Request") -> bool:
         """Whether the request is meant for this gate, by a page of this gate."""
         names = {f"{name}:{self.port}" for name in _LOCAL_NAMES}
@@ -182,7 +221,7 @@ class Gate:
         cookie = http.cookies.SimpleCookie()
         with contextlib.suppress(http.cookies.CookieError):
             cookie.load(request.headers.get("cookie", ""))
-        kept = cookie[_COOKIE].value if _COOKIE in cookie else ""
+        kept = cookie[self._cookie].value if self._cookie in cookie else ""
         shown = [request.token, urllib.parse.unquote(kept)]
         return any(hmac.compare_digest(each.encode(), self.token.encode()) for each in shown)
 
@@ -237,7 +276,7 @@ async def _until_first(*works: Coroutine[None, None, None] | None) -> None:
 
 
 def _bound(host: str, port: int) -> socket.socket:
-    """A socket that is bound to a port of a host.
+    """A socket that listens on a port of a host.
 
     Raises:
         UsageError: There is no such host, or no such port is free.
@@ -254,6 +293,8 @@ def _bound(host: str, port: int) -> socket.socket:
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             bound.bind((name, candidate))
+            # At once: until somebody listens on it, another gate could bind the same port.
+            bound.listen()
         except OSError as error:
             bound.close()
             reason = error.strerror or str(error)

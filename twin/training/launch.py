@@ -1,6 +1,7 @@
 """From a scene to a page or a window, and the files that are left of it."""
 
 import contextlib
+import secrets
 import ssl
 import sys
 import tempfile
@@ -22,6 +23,8 @@ from twin.training.vocabulary import Words
 
 _WINDOW_PYTHON = (3, 12)
 """What Studio's window needs: its Filament helper imports ``collections.abc.Buffer``."""
+_TOKEN_BYTES = 12
+"""Length of the trainer's token, made anew for every session."""
 
 
 class OpenRoom:
@@ -33,6 +36,7 @@ class OpenRoom:
         shown: Shows it.
         handle: Studio's side of it.
         gate: Where browsers come in; None for a window.
+        trainer_gate: Where the trainer's browser comes in; None where there is no trainer.
         folder: Where log and score sheet lie; None for nowhere.
     """
 
@@ -43,6 +47,7 @@ class OpenRoom:
         shown: PanelPlugin,
         handle: viewer_handle.ViewerHandle,
         gate: Gate | None,
+        trainer_gate: Gate | None,
         folder: Path | None,
     ) -> None:
         self.session = session
@@ -50,6 +55,7 @@ class OpenRoom:
         self.shown = shown
         self.handle = handle
         self.gate = gate
+        self.trainer_gate = trainer_gate
         self.folder = folder
 
     def serve(self) -> None:
@@ -82,7 +88,7 @@ def open_room(
         port: Its port; 0: the first free one.
         token: What a browser must know.
         tls: Certificate for https.
-        trainer: Show the trainer's sheet.
+        trainer: There is a trainer: with an address of their own, or at the window.
         plain: Draw plainly, for computers without a graphics card.
         out: Folder for log and score sheet; none: none are written.
 
@@ -94,25 +100,44 @@ def open_room(
     session = Session(scene)
     writer = SheetWriter(session, words, out)
     driver = RoomPlugin(session, plain=plain, changed=writer.write)
-    panel = Panel(scene.file, words, trainer=trainer)
-    shown = PanelPlugin(panel, driver.display, scene.file.picture.camera, plain=plain)
     title = f"{in_language(scene.file.title, words.language)} - {words['title']}"
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="twin-train-")))
         (folder / "assets").mkdir()
         stack.enter_context(readable_fonts(folder / "assets"))
-        gate = None
-        if window:
+        inside = folder / "studio.sock"
+        gate = trainer_gate = None
+        if not window:
+            gate = Gate(inside, host=host, port=port, token=token, tls=tls)
+            if trainer:
+                own = secrets.token_urlsafe(_TOKEN_BYTES)
+                trainer_gate = Gate(inside, host=host, token=own, tls=tls)
+        gates = [each for each in (gate, trainer_gate) if each is not None]
+
+        def trainer_has_panel() -> bool:
+            if gate is None:
+                return trainer
+            return trainer_gate is not None and trainer_gate.has_panel and not gate.has_panel
+
+        shown = PanelPlugin(
+            Panel(scene.file, words),
+            driver.display,
+            scene.file.picture.camera,
+            plain=plain,
+            trainer=trainer_has_panel,
+        )
+        if gate is None:
             handle = _open_window(title, [shown, driver])
         else:
-            inside = folder / "studio.sock"
-            gate = Gate(inside, host=host, port=port, token=token, tls=tls)
-            handle = open_page(title, [shown, driver], inside, lambda: gate.heard)
-            stack.enter_context(gate)
+            handle = open_page(
+                title, [shown, driver], inside, lambda: sum(each.heard for each in gates)
+            )
+        for each in gates:
+            stack.enter_context(each)
         stack.enter_context(handle)
         handle.dispatch(messages.LoadModelEvent(path=""))
         try:
-            yield OpenRoom(session, driver, shown, handle, gate, writer.folder)
+            yield OpenRoom(session, driver, shown, handle, gate, trainer_gate, writer.folder)
         finally:
             writer.write(session)
 

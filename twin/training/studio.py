@@ -165,8 +165,26 @@ class PanelPlugin(plugin.ViewerPlugin):
         now: The last snapshot.
     """
 
-    def __init__(self, panel: Panel, display: Display, camera: str, *, plain: bool) -> None:
+    def __init__(
+        self,
+        panel: Panel,
+        display: Display,
+        camera: str,
+        *,
+        plain: bool,
+        trainer: Callable[[], bool],
+    ) -> None:
+        """Prepare the panel for Studio.
+
+        Args:
+            panel: The panel.
+            display: The drawn machine.
+            camera: Named camera that the view begins with.
+            plain: Draw plainly, for computers without a graphics card.
+            trainer: Tells whether it is the trainer who has the panel.
+        """
         self.panel = panel
+        self._trainer = trainer
         self._plain = plain
         self.now: Snapshot | None = None
         self._frame = display.frame
@@ -223,6 +241,9 @@ class PanelPlugin(plugin.ViewerPlugin):
     @messages.handler
     def on_build_gui(self, _event: messages.BuildGuiEvent) -> None:
         """Show the panel, and send what it asks for."""
-        if self.now is not None:
-            for request in self.panel.build(self.now):
-                self.viewer.send_to_sim(RequestEvent(request))
+        if self.now is None:
+            return
+        trainer = self._trainer()
+        for request in self.panel.build(self.now, trainer=trainer):
+            by = dataclasses.replace(request, who="trainer") if trainer else request
+            self.viewer.send_to_sim(RequestEvent(by))

@@ -18,7 +18,7 @@ JOG_FEED = {"mm": 2000.0, "deg": 1800.0}
 SPINDLE_SPEED = 3000.0
 """What the spindle key starts [1/min]."""
 
-_KEY, _WIDE, _NARROW = 56.0, 106.0, 88.0
+_KEY, _WIDE, _NARROW = 56.0, 116.0, 100.0
 """Height of a key, and its widths [px]."""
 _JOG, _JOG_HEIGHT, _STEP = 46.0, 42.0, 24.0
 _DIAL = 96.0

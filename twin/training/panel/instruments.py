@@ -94,7 +94,7 @@ def mushroom(kit: Kit, name: str, label: str, *, pressed: bool, size: float) -> 
     cap = 0.38 if pressed else 0.41
     draw.AddCircleFilled(middle, cap * size, packed(dimmed(RED) if pressed else RED), 64)
     draw.AddCircle(middle, 0.8 * cap * size, packed(dimmed(RED)), 64, 2.0)
-    inset = 0.16 * size
+    inset = 0.11 * size
     centred(label, corner.x + inset, corner.y, corner.x + size - inset, corner.y + size, TEXT)
     return hit
 

@@ -31,6 +31,8 @@ _STYLE = (
 )  # fmt: skip
 
 
+_SMALLEST = 0.7
+"""Scale of letters that can still be read."""
 GROUP_GAP = 22.0
 """Between two groups of the desk [px]."""
 
@@ -141,6 +143,8 @@ class Kit:
     def group(self, caption: str, height: float) -> Iterator[None]:
         """Parts that belong together, below a caption, with a line at their right."""
         imgui.BeginGroup()
+        # Without this the captions of groups beside each other would stand at different heights.
+        imgui.AlignTextToFramePadding()
         self.text(caption, QUIET)
         yield
         imgui.EndGroup()
@@ -189,6 +193,21 @@ class Kit:
         imgui.TextUnformatted(text)
         imgui.PopStyleColor()
         imgui.SetWindowFontScale(1.0)
+
+    @staticmethod
+    def fitting(text: str, colour: Colour = TEXT) -> None:
+        """A line of text, in smaller letters where its room is too narrow for it."""
+        width = imgui.CalcTextSize(text).x
+        scale = min(1.0, imgui.GetContentRegionAvail().x / max(width, 1.0))
+        Kit.text(text, colour, max(scale, _SMALLEST))
+
+    @staticmethod
+    def beside(label: str) -> None:
+        """Go on beside the last part where a key with this label has room there, else below it."""
+        imgui.SameLine()
+        needed = imgui.CalcTextSize(label).x + 2.0 * imgui.GetStyle().FramePadding.x
+        if needed > imgui.GetContentRegionAvail().x:
+            imgui.NewLine()
 
     def wrapped(self, text: str, colour: Colour = TEXT) -> None:
         """A paragraph, broken between words."""

@@ -13,7 +13,7 @@ from twin.training.panel.desk import (
     build_supplies,
 )
 from twin.training.panel.keyboard import read_keyboard
-from twin.training.panel.kit import Kit
+from twin.training.panel.kit import BLUE, Kit
 from twin.training.panel.request import Request
 from twin.training.panel.screen import build_axes, build_head, build_program, build_speeds
 from twin.training.panel.side import (
@@ -34,7 +34,7 @@ DESK = 178.0
 """Height of the desk [px]."""
 ENTRY = 62.0
 """Height of the MDI line or the line editor below the program [px]."""
-SCREEN = 460.0
+SCREEN = 484.0
 """Width of the screen [px]."""
 SIDE = 316.0
 """Width of the side [px]."""
@@ -51,20 +51,20 @@ class Panel:
         width: Of the page in the last frame [px].
     """
 
-    def __init__(self, scene: SceneFile, words: Words, *, trainer: bool) -> None:
+    def __init__(self, scene: SceneFile, words: Words) -> None:
         self._scene = scene
         self._words = words
-        self._trainer = trainer
         self.kit = Kit()
         self.desk = DeskState()
         self.side = SideState()
         self.width = 0.0
 
-    def build(self, now: Snapshot) -> list[Request]:
+    def build(self, now: Snapshot, *, trainer: bool) -> list[Request]:
         """Build the panel of one frame.
 
         Args:
             now: The machine.
+            trainer: Whether it is the trainer who sees it.
 
         Returns:
             What was asked for.
@@ -84,7 +84,7 @@ class Panel:
                 self._choose(now, build_program(kit, now, self.desk.chosen, below))
                 asked += build_entry(kit, words, now, self.desk)
             with kit.window("side", size.x - SIDE - GAP, HEAD + 2 * GAP, SIDE, middle):
-                asked += self._build_side(now)
+                asked += self._build_side(now, trainer=trainer)
             with kit.window("desk", GAP, size.y - DESK - GAP, size.x - 2 * GAP, DESK):
                 asked += self._build_desk(now)
         return asked
@@ -109,27 +109,27 @@ class Panel:
             asked += build_supplies(kit, words, now)
         return asked + build_emergency(kit, words, now)
 
-    def _build_side(self, now: Snapshot) -> list[Request]:
+    def _build_side(self, now: Snapshot, *, trainer: bool) -> list[Request]:
         kit, words = self.kit, self._words
         asked: list[Request] = []
-        if not imgui.BeginTabBar("side"):
-            return asked
-        sheets = ["tasks", "offsets", "tools", "display"] + ["trainer"] * self._trainer
-        for sheet in sheets:
-            open_ = imgui.BeginTabItem(f"{words[sheet]}###{sheet}")
-            kit.note(f"tab {sheet}")
-            if not open_:
-                continue
-            if sheet == "tasks":
-                asked += build_tasks(kit, words, now, self._scene)
-            elif sheet == "offsets":
-                asked += build_zero(kit, words, now, self.side)
-            elif sheet == "tools":
-                asked += build_tools(kit, words, now)
-            elif sheet == "display":
-                build_view(kit, words, self.side)
-            else:
-                asked += build_trainer(kit, words, now, self.side)
-            imgui.EndTabItem()
-        imgui.EndTabBar()
+        side = self.side
+        sheets = ["tasks", "offsets", "tools", "display"] + ["trainer"] * trainer
+        if side.sheet not in sheets:
+            side.sheet = "tasks"
+        for number, sheet in enumerate(sheets):
+            if number:
+                kit.beside(words[sheet])
+            if kit.key(f"tab {sheet}", words[sheet], lit=BLUE if sheet == side.sheet else None):
+                side.sheet = sheet
+        imgui.Separator()
+        if side.sheet == "tasks":
+            asked += build_tasks(kit, words, now, self._scene)
+        elif side.sheet == "offsets":
+            asked += build_zero(kit, words, now, side)
+        elif side.sheet == "tools":
+            asked += build_tools(kit, words, now)
+        elif side.sheet == "display":
+            build_view(kit, words, side)
+        else:
+            asked += build_trainer(kit, words, now, side)
         return asked

@@ -20,6 +20,8 @@ from twin.training.vocabulary import Words
 
 _LAG_SHOWN = 1.0
 """Following error at the end of its bar [mm or deg]."""
+_THOUSANDTH = {"mm": "µm", "deg": "m°"}
+"""Unit of a following error."""
 _BIG = 1.9
 """How much larger the axes' positions are than other texts."""
 _CODES_IN_A_LINE = 11
@@ -41,12 +43,12 @@ def build_head(kit: Kit, words: Words, now: Snapshot) -> None:
         where = f"  N {now.alarm.line}" if now.alarm.line else ""
         kit.chip(f"{alarm.name}{where}", RED)
         imgui.SameLine()
-        kit.text(f" {now.alarm.message}", TEXT)
+        kit.fitting(f" {now.alarm.message}", TEXT)
         kit.text(alarm.advice, YELLOW)
     elif now.refusal:
-        kit.text(f"{words['refused']}: {now.refusal}", YELLOW)
+        kit.fitting(f"{words['refused']}: {now.refusal}", YELLOW)
     else:
-        kit.text(words["keys"], QUIET)
+        kit.fitting(words["keys"], QUIET)
 
 
 def _state(words: Words, now: Snapshot) -> tuple[str, tuple[float, float, float, float]]:
@@ -66,13 +68,13 @@ def build_axes(kit: Kit, words: Words, now: Snapshot) -> None:
     if not imgui.BeginTable("axes", 6, int(imgui.TableFlags.SizingStretchProp)):
         return
     heads = ("axis", "position", "to_go", "machine", "following_error", "load")
-    weights = (0.45, 2.2, 1.25, 1.3, 1.15, 0.95)
+    weights = (0.45, 2.15, 1.25, 1.35, 1.3, 1.15)
     for head, weight in zip(heads, weights, strict=True):
         imgui.TableSetupColumn(head, int(imgui.TableColumnFlags.WidthStretch), weight)
     imgui.TableNextRow()
     for head in heads:
         imgui.TableNextColumn()
-        kit.text(words[head] if head != "axis" else "", QUIET)
+        kit.fitting(words[head] if head != "axis" else "", QUIET)
     for number, axis in enumerate(now.axes):
         imgui.TableNextRow()
         imgui.TableNextColumn()
@@ -88,10 +90,12 @@ def build_axes(kit: Kit, words: Words, now: Snapshot) -> None:
         imgui.TableNextColumn()
         _down()
         lag = now.following_error[number]
-        bar(abs(lag) / _LAG_SHOWN, f"{abs(1000.0 * lag):.0f}", imgui.GetContentRegionAvail().x)
+        told = f"{abs(1000.0 * lag):.0f} {_THOUSANDTH[now.units[number]]}"
+        bar(abs(lag) / _LAG_SHOWN, told, imgui.GetContentRegionAvail().x)
         imgui.TableNextColumn()
         _down()
-        bar(now.load[number], f"{100.0 * now.load[number]:.0f}", imgui.GetContentRegionAvail().x)
+        told = f"{100.0 * now.load[number]:.0f} %"
+        bar(now.load[number], told, imgui.GetContentRegionAvail().x)
     imgui.EndTable()
 
 
@@ -110,17 +114,17 @@ def build_speeds(kit: Kit, words: Words, now: Snapshot) -> None:
     programmed = "-" if now.modal is None or now.modal.feed is None else f"{now.modal.feed:g}"
     kit.text(f"F {now.feed:7.0f}", TEXT, 1.3)
     imgui.SameLine()
-    kit.text(f"({programmed})", QUIET)
+    kit.text(f"({programmed})", QUIET, 1.3)
     imgui.SameLine()
     kit.text(f"  S {now.spindle:.0f}", BRIGHT_GREEN if now.spindle else QUIET, 1.3)
     imgui.SameLine()
     kit.text(f"  T {now.tool}", TEXT, 1.3)
     if now.coolant:
         imgui.SameLine()
-        kit.text(f"  {words['coolant']}", CYAN)
+        kit.text(f"  {words['coolant']}", CYAN, 1.15)
     if now.touches:
         imgui.SameLine()
-        kit.text(f"  ● {words['contact']}", YELLOW)
+        kit.text(f"  ● {words['contact']}", YELLOW, 1.15)
     codes = () if now.modal is None else now.modal.codes
     for first in range(0, max(len(codes), 1), _CODES_IN_A_LINE):
         kit.text("  ".join(codes[first : first + _CODES_IN_A_LINE]), CYAN)

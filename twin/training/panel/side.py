@@ -20,6 +20,7 @@ _BACK_S = (10.0, 60.0)
 class SideState:
     """What is set at the side and concerns nobody else."""
 
+    sheet: str = "tasks"
     readings: dict[str, float] = dataclasses.field(default_factory=dict)
     show_trail: bool = True
     show_stock: bool = True
@@ -58,7 +59,7 @@ def build_tasks(kit: Kit, words: Words, now: Snapshot, scene: SceneFile) -> list
         cost = words["hint_cost"].format(cost=scene.hint_cost)
         if kit.key("hint", f"{words['hint']} ({cost})"):
             asked.append(do("hint"))
-        imgui.SameLine()
+        kit.beside(words["finish"])
     if kit.key("finish", words["finish"]):
         asked.append(do("finish"))
     return asked
@@ -68,18 +69,29 @@ def build_zero(kit: Kit, words: Words, now: Snapshot, state: SideState) -> list[
     """Part zero by axis, with a field to preset it by where the axis stands."""
     asked: list[Request] = []
     kit.wrapped(words["preset_help"], QUIET)
+    if not imgui.BeginTable("zero", 4, int(imgui.TableFlags.SizingStretchProp)):
+        return asked
+    for part, weight in enumerate((0.2, 0.9, 1.0, 0.9)):
+        imgui.TableSetupColumn(f"{part}", int(imgui.TableColumnFlags.WidthStretch), weight)
     for axis, zero in zip(now.axes, now.zero, strict=True):
-        kit.text(f"{axis} {zero:10.3f}", TEXT)
-        imgui.SameLine()
-        imgui.SetNextItemWidth(90.0)
+        imgui.TableNextRow()
+        imgui.TableNextColumn()
+        imgui.AlignTextToFramePadding()
+        kit.text(axis, CYAN)
+        imgui.TableNextColumn()
+        kit.right(f"{zero:.3f}")
+        imgui.TableNextColumn()
+        imgui.SetNextItemWidth(imgui.GetContentRegionAvail().x)
         _, value = imgui.InputDouble(
             f"###reading {axis}", state.readings.get(axis, 0.0), 0.0, 0.0, "%.3f"
         )
         state.readings[axis] = value
         kit.note(f"reading {axis}")
-        imgui.SameLine()
-        if kit.key(f"preset {axis}", words["preset"]):
+        imgui.TableNextColumn()
+        width = imgui.GetContentRegionAvail().x
+        if kit.key(f"preset {axis}", words["preset"], width=width):
             asked.append(do("set_zero", axis=axis, reading=value))
+    imgui.EndTable()
     return asked
 
 
@@ -88,11 +100,13 @@ def build_tools(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
     asked: list[Request] = []
     for tool in now.tools:
         here = tool.number == now.tool
-        kit.text(f"T{tool.number}  {tool.kind}  {words['diameter']} {tool.diameter:g}",
+        kind = words[f"tool_{tool.kind}"]
+        kit.text(f"T{tool.number}  {kind}, {words['diameter']} {tool.diameter:g}",
                  CYAN if here else TEXT)  # fmt: skip
+        imgui.AlignTextToFramePadding()
         kit.text(f"   {words['length']} {tool.length:.3f}", TEXT)
         if here:
-            imgui.SameLine()
+            kit.beside(words["touch_off"])
             if kit.key("touch off", words["touch_off"]):
                 length = tool.length + now.position[now.axes.index("Z")]
                 asked.append(do("set_tool", number=tool.number, length=round(length, 4)))
@@ -116,14 +130,16 @@ def build_trainer(kit: Kit, words: Words, now: Snapshot, state: SideState) -> li
     elif kit.key("freeze", words["freeze"]):
         asked.append(Request("trainer", change="freeze"))
     for seconds in _BACK_S:
-        imgui.SameLine()
-        if kit.key(f"rewind {seconds:g}", words["rewind"].format(seconds=f"{seconds:g}")):
+        label = words["rewind"].format(seconds=f"{seconds:g}")
+        kit.beside(label)
+        if kit.key(f"rewind {seconds:g}", label):
             asked.append(Request("trainer", change="rewind", seconds=seconds))
-    imgui.SameLine()
+    kit.beside(words["replay"])
     if kit.key("replay", words["replay"]):
         asked.append(Request("trainer", change="replay"))
     imgui.Separator()
     names = [words[f"fault_{kind}"] for kind in FAULT_KINDS]
+    imgui.SetNextItemWidth(imgui.GetContentRegionAvail().x)
     _, state.fault = imgui.Combo("###fault", state.fault, names)
     kind = FAULT_KINDS[state.fault]
     fault: dict[str, object] = {"kind": kind}
@@ -138,7 +154,7 @@ def build_trainer(kit: Kit, words: Words, now: Snapshot, state: SideState) -> li
         fault |= {"axis": now.axes[state.fault_axis], "value": state.fault_value}
     if kit.key("inject", words["inject"]):
         asked.append(Request("trainer", command={"do": "inject", "fault": fault}))
-    imgui.SameLine()
+    kit.beside(words["repair"])
     if kit.key("repair", words["repair"]):
         asked.append(Request("trainer", command={"do": "repair"}))
     kit.text(f"{now.time_s:.3f} {words['seconds']}", QUIET)
