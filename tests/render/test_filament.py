@@ -105,7 +105,7 @@ def test_both_renderers_frame_the_same_objects(scene: Scene, camera: str) -> Non
                 play.advance(samples)
             seen[renderer] = play.objects(camera)
     differ = seen["opengl"] != seen["filament"]
-    assert differ.mean() < 0.03  # the rims, where a pixel belongs to either
+    assert differ.mean() < 0.005  # two columns aside it is 0.03
     assert len(np.unique(seen["filament"])) >= 5
 
 
@@ -131,10 +131,10 @@ def test_cut_stock_and_trail_are_seen(scene: Scene) -> None:
 def test_a_picture_is_bright_but_not_burnt_out(scene: Scene) -> None:
     with stage(scene, SIZE, Quality(passes=2, drawn_cells=60), renderer="filament") as play:
         pixels: Pixels = play.picture("part")
-    stock = pixels[play.objects("part") >= 0]
-    assert 60 < stock.mean() < 220
-    assert (stock.min(axis=1) >= 254).mean() < 0.2
-    assert (stock.max(axis=1) <= 2).mean() < 0.1
+        machine = pixels[play.objects("part") >= 0]
+    assert 60 < machine.mean() < 220
+    assert (machine.min(axis=1) >= 254).mean() < 0.2
+    assert (machine.max(axis=1) <= 2).mean() < 0.1
 
 
 @pytest.mark.usefixtures("filament_driver")
@@ -243,7 +243,7 @@ def test_the_studio_is_brightest_at_its_soft_boxes() -> None:
 
 def test_lamps_get_an_intensity_unless_the_model_has_one() -> None:
     spec = mujoco.MjSpec.from_string(BALLS)
-    spec.stat.center = [0.0, 0.0, 0.0]
+    spec.stat.center[:] = 0.0
     spec.worldbody.add_light(
         name="spot",
         type=mujoco.mjtLightType.mjLIGHT_SPOT,

@@ -80,11 +80,14 @@ class FilamentCanvas(Canvas):
         self._bodies.set_options(self._option)
         self._groups = model.geom_group.copy()
         self._meshes: dict[int, FilamentMesh] = {}
+        self._changed_meshes: set[int] = set()
+        self._changed_textures: set[int] = set()
         self._targets: dict[tuple[int, int], Any] = {}
         self._chips: list[Any] = []
         self._flying = 0
         self._on_the_way: list[Any] = []
-        self._context.flush()
+        # Its own thread works on, and may report something, until a frame was waited for.
+        self._context.wait_for_frame(self._context.render([], []))
 
     def close(self) -> None:
         """Give back what Filament holds, users before what they use."""
@@ -112,13 +115,24 @@ class FilamentCanvas(Canvas):
         return geoms[number]
 
     def upload_mesh(self, mesh: int) -> None:
-        """Send a mesh of the model that was changed to Filament."""
-        if mesh not in self._meshes:
-            self._meshes[mesh] = self._own_mesh(mesh)
-        self._on_the_way.append(self._meshes[mesh].send())
+        """Send a mesh of the model that was changed to Filament, with the next picture."""
+        self._changed_meshes.add(mesh)
 
     def upload_texture(self, texture: int) -> None:
-        """Send a texture of the model that was changed to Filament."""
+        """Send a texture of the model that was changed to Filament, with the next picture."""
+        self._changed_textures.add(texture)
+
+    def _send_changes(self) -> None:
+        for mesh in self._changed_meshes:
+            if mesh not in self._meshes:
+                self._meshes[mesh] = self._own_mesh(mesh)
+            self._on_the_way.append(self._meshes[mesh].send())
+        for texture in self._changed_textures:
+            self._send_texture(texture)
+        self._changed_meshes.clear()
+        self._changed_textures.clear()
+
+    def _send_texture(self, texture: int) -> None:
         model = self._model
         materials = np.flatnonzero((model.mat_texid == texture).any(axis=1))
         geoms = np.flatnonzero(np.isin(model.geom_matid, materials))
@@ -128,14 +142,13 @@ class FilamentCanvas(Canvas):
         size = model.tex_height[texture] * model.tex_width[texture] * model.tex_nchannel[texture]
         data = self._filament.TextureData()
         data.set_image(model.tex_data[first : first + int(size)].tobytes())
-        # All geoms of the model's textures share one on Filament's side.
+        # Filament has each texture of the model once: that of one geom is that of all.
         self._body(int(geoms[0])).get_material().color_texture.upload(data)
         self._on_the_way.append(data)
 
     def _own_mesh(self, mesh: int) -> FilamentMesh:
         """A mesh that can change, in the place of the one that Filament made of the model's."""
-        with self._hush():
-            own = FilamentMesh(self._filament, self._context, self._model, mesh)
+        own = FilamentMesh(self._filament, self._context, self._model, mesh)
         shown = self._model.geom_type == mujoco.mjtGeom.mjGEOM_MESH
         for geom in np.flatnonzero(shown & (self._model.geom_dataid == mesh)):
             self._body(int(geom)).set_mesh(own.handle, 0, own.corners)
@@ -150,10 +163,12 @@ class FilamentCanvas(Canvas):
 
     def _update(self, data: mujoco.MjData, spray: Chips | None = None) -> None:
         mujoco.mjv_updateCamera(self._model, data, self._camera, self._scene)
-        self._regroup()
-        self._lights.update(data)
-        self._bodies.update(data)
-        self._show_chips(spray)
+        with self._hush():
+            self._send_changes()
+            self._regroup()
+            self._lights.update(data)
+            self._bodies.update(data)
+            self._show_chips(spray)
 
     def _regroup(self) -> None:
         """Show and hide the geoms whose group changed; Filament looks at groups only once."""
