@@ -9,13 +9,23 @@ import sys
 
 def main() -> None:
     """Run the command line and exit with the code that the contract promises."""
+    stopped: list[int] = []
+
+    def stop(number: int, _: object) -> None:
+        stopped.append(number)
+        raise KeyboardInterrupt
+
     # Asked to end, by a batch system say, is the same as Ctrl-C: files are left whole or absent.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, stop)
+    signal.signal(signal.SIGINT, stop)
     try:
         from twin.cli import main as run
 
         run()
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, ImportError):
+        # A library that is interrupted while it is being loaded says that it cannot be.
+        if not stopped:
+            raise
         print("interrupted before anything was begun", file=sys.stderr)
         raise SystemExit(130) from None
     except MemoryError:

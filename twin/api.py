@@ -18,10 +18,11 @@ from typing import Any
 import numpy.typing as npt
 
 from twin.chain import Run
+from twin.columns import join
 from twin.compare.track_comparison import compare_files
 from twin.errors import RecordingError
 from twin.motion.planner import plan as plan_chunks
-from twin.motion.setpoints import Setpoints, join
+from twin.motion.setpoints import Setpoints
 from twin.motion_limits import motion_limits
 from twin.nc.canonical import Moves, concatenate
 from twin.outcome import Outcome

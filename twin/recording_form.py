@@ -3,13 +3,14 @@
 import dataclasses
 from collections.abc import Mapping
 
+from twin.columns import Columns
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Samples:
+class Samples(Columns):
     """A chunk of n samples over k axes: what was asked for and what the joints did.
 
     Attributes:
@@ -23,13 +24,6 @@ class Samples:
     joint_position: FloatArray
     joint_velocity: FloatArray
     drive_force: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.setpoint)
-
-    def __getitem__(self, index: slice) -> "Samples":
-        """A run of samples, as columns again."""
-        return Samples(*(getattr(self, field.name)[index] for field in dataclasses.fields(self)))
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)

@@ -120,7 +120,7 @@ for program in sorted(pathlib.Path(__file__).parent.glob("*.ngc")):
         command.program_open(str(program))
         command.wait_complete()
         command.auto(linuxcnc.AUTO_RUN, 0)
-        time.sleep(0.3)
+        wait(lambda: not status.inpos)
         wait(lambda: status.interp_state == linuxcnc.INTERP_IDLE and status.inpos)
         time.sleep(0.3)
         subprocess.run(["halcmd", "setp", "sampler.0.enable", "0"], check=True)
@@ -193,4 +193,6 @@ def _moving(samples: str) -> FloatArray:
         raise subprocess.SubprocessError("LinuxCNC's sampler lost samples")
     position = np.array([[float(word) for word in line.split()] for line in lines])
     moves = np.flatnonzero(np.any(np.diff(position, axis=0) != 0.0, axis=1))
+    if len(moves) == 0:
+        raise subprocess.SubprocessError("LinuxCNC did not move")
     return position[moves[0] : moves[-1] + 2]

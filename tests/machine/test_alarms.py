@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from machine_fixtures import PERIOD, line, ramp_up, setpoints, shipped_machine
 
+from twin.columns import join
 from twin.machine.alarms import Alarm
 from twin.machine.clearance import RESOLUTION, Clearance
 from twin.machine.config import FixtureTable, Machine, MachineFile
 from twin.machine.model import build_spec, clearance_model
 from twin.machine.simulate import simulate
 from twin.machine.tool_shape import DefaultTool
-from twin.motion.setpoints import Setpoints, join
+from twin.motion.setpoints import Setpoints
 from twin.recording import Samples
 
 

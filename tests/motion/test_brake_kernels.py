@@ -6,7 +6,7 @@ import math
 import hypothesis
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from motion_programs import SETTINGS
 
@@ -126,9 +126,20 @@ def stretches(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
 
 
 def plain_is_safe(
-    limits: FloatArray, entry: FloatArray, reach: FloatArray, i: int, v: float, slack: float
+    limits: FloatArray,
+    entry: FloatArray,
+    reach: FloatArray,
+    i: int,
+    v: float,
+    slack: float,
+    *,
+    onward: bool = False,
 ) -> bool:
-    """Whether some brake from border i with a = 0 keeps every limit, by looking at all of it."""
+    """Whether some brake from border i with a = 0 keeps every limit, by looking at all of it.
+
+    ``onward``: it must not stop before the stretch that it is meant to end in. From v to a small w
+    it takes longer than to a stop, but nobody wants to stop where the path goes on.
+    """
     count = limits.shape[1]
     for k in range(i + 1, count + 1):
         deceleration, jerk = limits[3, i:k].min(), limits[4, i:k].min()
@@ -136,6 +147,8 @@ def plain_is_safe(
         _, x, velocity, _ = plain_brake(v, 0.0, w, deceleration, jerk)
         borders = np.cumsum(limits[0, i:k])
         if x[-1] > borders[-1] * (1.0 + slack) + 1e-12:
+            continue
+        if onward and k > i + 1 and x[-1] <= borders[-2]:
             continue
         within = np.minimum(np.searchsorted(borders, x), k - i - 1)
         caps = limits[1, i:k][within]
@@ -146,7 +159,22 @@ def plain_is_safe(
     return False
 
 
+A_STOP_WOULD_BE_SHORTER = (
+    np.array(
+        [
+            [1.0, 3.0, 1.0],
+            [80.0, 100.0, 4.0],
+            [200.0, 100.0, 440.0],
+            [4200.0, 2500.0, 600.0],
+            [7130.0, 23000.0, 97000.0],
+        ]
+    ),
+    np.array([30.0, 1.5, 190.0, 0.0]),
+)
+
+
 @FEWER
+@example(A_STOP_WOULD_BE_SHORTER)
 @given(stretches())
 def test_reach_is_safe_and_nearly_the_most_that_is(case: tuple[FloatArray, FloatArray]) -> None:
     limits, entry = case
@@ -159,8 +187,13 @@ def test_reach_is_safe_and_nearly_the_most_that_is(case: tuple[FloatArray, Float
         assert plain_is_safe(limits, entry, reach, i, reach[i], 1e-3)
         highest = min(entry[i], limits[1, i], limits[1, i - 1] if i > 0 else math.inf)
         if reach[i] < 0.98 * highest:
-            assert not plain_is_safe(limits, entry, reach, i, min(highest, 1.02 * reach[i]), 0.0)
-        assert find_brake(limits, entry, reach, i, 0.0, 0.999 * reach[i], 0.0, 1e-9, 0) > i
+            faster = min(highest, 1.02 * reach[i])
+            assert not plain_is_safe(limits, entry, reach, i, faster, 0.0, onward=True)
+        slower, end = 0.999 * reach[i], int(to[i])
+        stop = brake_distance(slower, 0.0, limits[3, i:end].min(), limits[4, i:end].min())
+        # Slower is as safe, unless it is so slow that it would stop before that brake's last stretch.
+        if stop > limits[0, i : end - 1].sum():
+            assert find_brake(limits, entry, reach, i, 0.0, slower, 0.0, 1e-9, 0) > i
 
 
 @SETTINGS

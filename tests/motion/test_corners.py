@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from motion_checks import assert_consistent, assert_on_path, assert_within_limits, points_on_path
 from motion_programs import PERIOD, SETTINGS, ZERO, Program, duration, limits, mill, programs, run
 
+from twin.columns import join
 from twin.motion.corner_kernels import add_rounding
 from twin.motion.limits import MotionLimits
-from twin.motion.pieces import join_pieces, pieces_of_chunks
+from twin.motion.pieces import pieces_of_chunks
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Corner, FloatArray
 
@@ -154,7 +155,7 @@ def test_chain_of_short_blocks_runs_near_its_feed() -> None:
 
 def derivative_steps(program: Program, machine: MotionLimits, order: int) -> FloatArray:
     """Steps of a derivative of the path from piece to piece where it does not stop, shape (n, k)."""
-    pieces = join_pieces(list(pieces_of_chunks(program.chunks(), machine, program.start)))
+    pieces = join(list(pieces_of_chunks(program.chunks(), machine, program.start)))
     rows = np.arange(len(pieces))
 
     def at(x: FloatArray) -> FloatArray:

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from motion_programs import mill
 
+from twin.columns import join
 from twin.motion.phases import plan_phases
 from twin.motion.planner import plan
-from twin.motion.setpoints import Setpoints, join
+from twin.motion.setpoints import Setpoints
 from twin.preparation import Preparation, prepare
 
 NIMBLE = mill(

@@ -8,9 +8,10 @@ from hypothesis import strategies as st
 from motion_checks import assert_consistent, assert_on_path, assert_within_limits
 from motion_programs import AXES, PERIOD, SETTINGS, ZERO, Program, limits, mill, programs, run
 
+from twin.columns import join
 from twin.motion.limits import MotionLimits
 from twin.motion.live_motion import LiveMotion
-from twin.motion.setpoints import Setpoints, join
+from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Corner, Moves
 
 FEWER = hypothesis.settings(SETTINGS, max_examples=40)

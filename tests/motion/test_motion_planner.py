@@ -26,11 +26,11 @@ from motion_programs import (
     run,
 )
 
+from twin.columns import join
 from twin.motion.blocks import SHORTEST
 from twin.motion.limits import MotionLimits
 from twin.motion.phases import plan_phases
 from twin.motion.planner import plan
-from twin.motion.setpoints import join
 from twin.nc.canonical import Chunk, Corner, Dwell, FloatArray, Function, Moves
 
 

@@ -1,6 +1,7 @@
 import numpy as np
 
-from twin.motion.setpoints import Setpoints, join
+from twin.columns import join
+from twin.motion.setpoints import Setpoints
 from twin.motion.settle import settle
 
 

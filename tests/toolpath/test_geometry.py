@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+from twin.columns import join
 from twin.nc.canonical import Axes, FloatArray, Moves, Shape
-from twin.toolpath.geometry import Geometry, geometry, joined
+from twin.toolpath.geometry import Geometry, geometry
 
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 
@@ -101,8 +102,6 @@ def test_ends_are_exact_and_a_miss_is_closed() -> None:
 
 def test_joining_and_selecting() -> None:
     first, second = geometry(line()), geometry(helix())
-    both = joined([first, second])
+    both = join([first, second])
     assert len(both) == 2
     assert np.array_equal(both[1:].end, second.end)
-    with pytest.raises(ValueError, match="no geometries"):
-        joined([])

@@ -6,13 +6,14 @@ import mujoco
 import numpy as np
 from mujoco.rollout import Rollout
 
+from twin.columns import join
 from twin.machine.alarms import SimulationError
 from twin.machine.config import Machine
 from twin.machine.drives import feedforward_name, integral_name
 from twin.machine.model import drives
 from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.transmission import give_name, has_give
-from twin.motion.setpoints import Setpoints, join
+from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording import Samples
 from twin.units import kv_per_second

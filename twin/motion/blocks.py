@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from twin.columns import Columns, join
 from twin.nc.canonical import (
     Chunk,
     CodeArray,
@@ -16,7 +17,7 @@ from twin.nc.canonical import (
     Motion,
     Moves,
 )
-from twin.toolpath.geometry import Geometry, geometry, joined
+from twin.toolpath.geometry import Geometry, geometry
 from twin.units import SECONDS_PER_MINUTE
 
 SHORTEST = 1e-9
@@ -33,7 +34,7 @@ BoolArray = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Blocks:
+class Blocks(Columns):
     """A run of n blocks, as columns. A dwell is a block without length.
 
     Attributes:
@@ -65,30 +66,6 @@ class Blocks:
     tolerance: FloatArray
     pause: FloatArray
     geometry: Geometry
-
-    def __len__(self) -> int:
-        return len(self.line)
-
-    def __getitem__(self, index: slice | IntArray) -> "Blocks":
-        """A selection of the blocks, as columns again."""
-        return Blocks(**{name: getattr(self, name)[index] for name in _NAMES})
-
-
-_NAMES = tuple(field.name for field in dataclasses.fields(Blocks))
-
-
-def join_blocks(parts: list[Blocks]) -> Blocks:
-    """Consecutive runs of blocks as one.
-
-    Raises:
-        ValueError: There is nothing to join.
-    """
-    columns = {
-        name: np.concatenate([getattr(part, name) for part in parts])
-        for name in _NAMES
-        if name != "geometry"
-    }
-    return Blocks(**columns, geometry=joined([part.geometry for part in parts]))
 
 
 def blocks_of_chunks(chunks: Iterable[Chunk], start: FloatArray) -> Iterator[Blocks]:
@@ -239,10 +216,10 @@ def with_neighbours(parts: Iterable[Blocks], batch: int, context: int) -> Iterat
         waiting.append(part)
         count += len(part)
         while count - first >= batch + context:
-            window = join_blocks(waiting)
+            window = join(waiting)
             last = first + batch
             yield Surroundings(window[: last + context], first, last, to_the_end=False)
             kept = max(0, last - context)
             waiting, count, first = [window[kept:]], count - kept, last - kept
     if count > first:
-        yield Surroundings(join_blocks(waiting), first, count, to_the_end=True)
+        yield Surroundings(join(waiting), first, count, to_the_end=True)

@@ -1,10 +1,16 @@
 """Rounding polynomials of borders, and how wide they may be.
 
 With t = y / width from -1 to 1, y being the distance from the border, the rounding of a knee is
-``knee width (smooth_ramp(t) - max(t, 0))``: the kink of a ramp, smoothed by the parabolic kernel
-3/4 (1 - t²). It is largest at the border, 3/16, and convex on either side. The rounding of a bend
-is ``bend width² (smooth_square(t) - max(t, 0)²/2)``, ``smooth_square`` being the quintic that
-meets 0 and t²/2 with two derivatives. It is odd, ``(3 t - 8 t² + 6 t³ - t⁵) / 32`` for t > 0.
+``knee width (smooth_ramp(t) - max(t, 0))``, the kink of a ramp, smoothed by the parabolic kernel
+3/4 (1 - t²)::
+
+    smooth_ramp(t) = (3 + 8 t + 6 t² - t⁴) / 16
+
+It is largest at the border, 3/16, and convex on either side. The rounding of a bend is
+``bend width² (smooth_square(t) - max(t, 0)²/2)`` with the quintic that meets 0 and t²/2 with two
+derivatives; it is odd::
+
+    smooth_square(t) = (3 t + 8 t² + 6 t³ - t⁵) / 32
 """
 
 import numba
@@ -24,12 +30,6 @@ BEND_PEAK = 0.01074
 
 OVERLAP_POINTS = 16
 """At which roundings from both ends of a block are added up."""
-
-SMOOTH_RAMP = np.array([3.0, 8.0, 6.0, 0.0, -1.0, 0.0]) / 16.0
-"""Coefficients by powers of t."""
-
-SMOOTH_SQUARE = np.array([0.0, 3.0, 8.0, 6.0, 0.0, -1.0]) / 32.0
-"""The same: -1/8 (1 + t)³ + 5/32 (1 + t)⁴ - 1/32 (1 + t)⁵."""
 
 
 @numba.njit(cache=True)
@@ -183,27 +183,30 @@ def add_rounding(
         knee: Step of dq/dx, shape (k,).
         bend: Step of d²q/dx², shape (k,).
     """
-    beyond = away >= 0.0
     t = away / width
+    squared = t * t
+    beyond = 1.0 if away >= 0.0 else 0.0
+    # Taylor's coefficients about the piece's begin, in t.
+    ramp = (
+        (3.0 + t * (8.0 + t * (6.0 - squared))) / 16.0 - beyond * t,
+        (2.0 + t * (3.0 - squared)) / 4.0 - beyond,
+        3.0 * (1.0 - squared) / 8.0,
+        -t / 4.0,
+        -1.0 / 16.0,
+        0.0,
+    )
+    square = (
+        t * (3.0 + t * (8.0 + t * (6.0 - squared))) / 32.0 - 0.5 * beyond * squared,
+        (3.0 + t * (16.0 + t * (18.0 - 5.0 * squared))) / 32.0 - beyond * t,
+        (4.0 + t * (9.0 - 5.0 * squared)) / 16.0 - 0.5 * beyond,
+        (3.0 - 5.0 * squared) / 16.0,
+        -5.0 * t / 32.0,
+        -1.0 / 32.0,
+    )
+    scale = width
     for power in range(6):
-        # Taylor's coefficients about the piece's begin, in t; then in x.
-        ramp, square = 0.0, 0.0
-        choose = 1.0
-        raised = 1.0
-        for n in range(power, 6):
-            ramp += choose * raised * SMOOTH_RAMP[n]
-            square += choose * raised * SMOOTH_SQUARE[n]
-            choose *= (n + 1.0) / (n + 1.0 - power)
-            raised *= t
-        if beyond:
-            if power == 0:
-                ramp -= t
-                square -= 0.5 * t * t
-            elif power == 1:
-                ramp -= 1.0
-                square -= t
-            elif power == 2:
-                square -= 0.5
-        scale = width ** (1 - power)
         for axis in range(len(knee)):
-            coefficients[axis, power] += scale * (knee[axis] * ramp + bend[axis] * width * square)
+            coefficients[axis, power] += scale * (
+                knee[axis] * ramp[power] + bend[axis] * width * square[power]
+            )
+        scale /= width

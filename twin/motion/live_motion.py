@@ -23,12 +23,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from twin.columns import join
 from twin.motion.limits import MotionLimits
 from twin.motion.overridden_plan import OverriddenPlan, Wishes
 from twin.motion.pieces import pieces_of_chunks
 from twin.motion.planner import WatchedEnd
 from twin.motion.sampling import at_end, sample, standing
-from twin.motion.setpoints import Setpoints, join
+from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray
 
 LARGEST_OVERRIDE = 1.5

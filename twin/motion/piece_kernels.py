@@ -47,14 +47,15 @@ def cut_blocks(
     offset = np.zeros(capacity)
     extent = np.zeros(capacity)
     used = 0
+    rounds = np.any(width > 0.0)
+    cuts = np.zeros(math.ceil(np.abs(angle).max() / PIECE_ANGLE) + 1 + 4 * MOST_NEIGHBOURS)
     for i in range(count):
         parts = max(1, math.ceil(abs(angle[i]) / PIECE_ANGLE))
-        cuts = np.zeros(parts + 4 * MOST_NEIGHBOURS)
         for part in range(parts):
             cuts[part] = length[i] * part / parts
         found = parts
         low, high = max(0, i - MOST_NEIGHBOURS + 1), min(count, i + MOST_NEIGHBOURS + 1)
-        for other in range(low, high):
+        for other in range(low, high if rounds else low):
             if width[other] > 0.0:
                 for side in (-1.0, 1.0):
                     cut = place[other] - place[i] + side * width[other]
@@ -71,7 +72,7 @@ def cut_blocks(
             used += 1
             begin = end
     rounding = np.zeros((used, knee.shape[1], 6))
-    for piece in range(used):
+    for piece in range(used if rounds else 0):
         i = owner[piece]
         begin = place[i] + offset[piece]
         middle = begin + 0.5 * extent[piece]
@@ -114,6 +115,9 @@ def bound_derivatives(
     product = np.zeros((count, 2, axes))
     slopes = np.zeros((POINTS, axes))
     for i in range(count):
+        if angle[i] == 0.0 and not np.any(rounding[i]):
+            bounds[i, 0] = np.abs(drift[i]) * fraction_per_length[i]
+            continue
         h = length[i] / (POINTS - 1)
         turn = angle[i] * fraction_per_length[i]
         for order in range(1, 4):

@@ -15,12 +15,13 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from twin.columns import Columns
 from twin.motion.blocks import Blocks, BoolArray, Surroundings, blocks_of_chunks, with_neighbours
 from twin.motion.corners import CONTEXT, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.piece_kernels import bound_derivatives, cut_blocks, reachable_velocities
 from twin.nc.canonical import Chunk, FloatArray, IntArray
-from twin.toolpath.geometry import Geometry, joined
+from twin.toolpath.geometry import Geometry
 
 BATCH = 1024
 """Blocks that are cut into pieces at a time."""
@@ -33,7 +34,7 @@ CURVE_JERK_SHARE = 0.5
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Pieces:
+class Pieces(Columns):
     """A run of n pieces over k axes, as columns. A dwell is a piece without length.
 
     Attributes:
@@ -70,30 +71,6 @@ class Pieces:
     pause: FloatArray
     rounding: FloatArray
     geometry: Geometry
-
-    def __len__(self) -> int:
-        return len(self.line)
-
-    def __getitem__(self, index: slice | IntArray) -> "Pieces":
-        """A selection of the pieces, as columns again."""
-        return Pieces(**{name: getattr(self, name)[index] for name in _NAMES})
-
-
-_NAMES = tuple(field.name for field in dataclasses.fields(Pieces))
-
-
-def join_pieces(parts: list[Pieces]) -> Pieces:
-    """Consecutive runs of pieces as one.
-
-    Raises:
-        ValueError: There is nothing to join.
-    """
-    columns = {
-        name: np.concatenate([getattr(part, name) for part in parts])
-        for name in _NAMES
-        if name != "geometry"
-    }
-    return Pieces(**columns, geometry=joined([part.geometry for part in parts]))
 
 
 def pieces_of_chunks(

@@ -27,6 +27,9 @@ REACH_PRECISION = 1e-9
 SLOWEST = 1e-6
 """A border that must be passed more slowly than this is passed from a stop [mm/s or deg/s]."""
 
+REACH_GAIN = 1e-5
+"""A brake that does not allow this much more than the best so far is not looked into."""
+
 REACH_HALVINGS = 16
 """Where a limit on the way bounds the velocity: what is lost is a hundred thousandth of it."""
 
@@ -195,7 +198,11 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
                         lowest = w
                         failed += 1
                         low, high = best, v
-                        for _ in range(REACH_HALVINGS):
+                        v = max(best * (1.0 + REACH_GAIN), SLOWEST)
+                        worth = v < high and holds_on_the_way(
+                            limits, entry, i, 0.0, v, 0.0, k, min(w, v), deceleration, jerk, 1.0
+                        )
+                        for _ in range(REACH_HALVINGS if worth else 0):
                             v = 0.5 * (low + high)
                             if holds_on_the_way(
                                 limits, entry, i, 0.0, v, 0.0, k, min(w, v), deceleration, jerk, 1.0

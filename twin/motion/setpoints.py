@@ -2,13 +2,12 @@
 
 import dataclasses
 
-import numpy as np
-
+from twin.columns import Columns
 from twin.nc.canonical import FloatArray, IntArray
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Setpoints:
+class Setpoints(Columns):
     """A chunk of n setpoints over k axes, as columns.
 
     Positions are machine coordinates (part coordinates plus part zero), continuous. Consecutive
@@ -32,22 +31,3 @@ class Setpoints:
     position: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def __getitem__(self, index: slice) -> "Setpoints":
-        """A run of samples, as columns again."""
-        return Setpoints(*(getattr(self, field.name)[index] for field in dataclasses.fields(self)))
-
-
-def join(chunks: list[Setpoints]) -> Setpoints:
-    """Join consecutive chunks; for tests and short programs.
-
-    Raises:
-        ValueError: There are no chunks to join.
-    """
-    if not chunks:
-        raise ValueError("no chunks to join")
-    names = [field.name for field in dataclasses.fields(Setpoints)]
-    return Setpoints(*(np.concatenate([getattr(c, name) for c in chunks]) for name in names))

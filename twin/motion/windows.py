@@ -9,7 +9,8 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from twin.motion.pieces import Pieces, join_pieces
+from twin.columns import join
+from twin.motion.pieces import Pieces
 from twin.motion.stretch_kernels import find_stretches, merge_limits
 from twin.nc.canonical import FloatArray, IntArray
 
@@ -107,7 +108,7 @@ def windows(parts: Iterable[Pieces], look_ahead: int = LOOK_AHEAD) -> Iterator[W
 
 
 def _window(batches: list[_Batch], due: int) -> Window:
-    pieces = join_pieces([batch.pieces for batch in batches])
+    pieces = join([batch.pieces for batch in batches])
     begins, behind = [], 0
     for batch in batches:
         begins.append(batch.begins[:-1] + behind)
@@ -140,11 +141,11 @@ def _batches(parts: Iterable[Pieces], blocks: int) -> Iterator[Pieces]:
             if end == len(part) and end < room:
                 break
             waiting.append(part[first:end])
-            yield join_pieces(waiting)
+            yield join(waiting)
             waiting, count, found, first = [], 0, 0, end
         if first < len(part):
             waiting.append(part[first:])
             count += len(part) - first
             found += int(np.count_nonzero(starts[first:]))
     if count > 0:
-        yield join_pieces(waiting)
+        yield join(waiting)

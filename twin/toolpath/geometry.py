@@ -9,16 +9,16 @@ any order follow from it.
 """
 
 import dataclasses
-from typing import Any
 
 import numpy as np
 
+from twin.columns import Columns
 from twin.nc.canonical import FloatArray, IntArray, Moves, Shape
 from twin.toolpath.geometry_kernels import evaluate
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Geometry:
+class Geometry(Columns):
     """The geometry of n moves over k axes, as columns, in the coordinates of the moves.
 
     An arc whose end misses the circle by rounding is closed on its end: the miss is spread evenly
@@ -39,13 +39,6 @@ class Geometry:
     sine: FloatArray
     angle: FloatArray
     end: FloatArray
-
-    def __len__(self) -> int:
-        return len(self.angle)
-
-    def __getitem__(self, index: slice | IntArray) -> "Geometry":
-        """A selection of the moves, as columns again."""
-        return Geometry(*(getattr(self, field.name)[index] for field in dataclasses.fields(self)))
 
     def position(self, move: IntArray, fraction: FloatArray) -> FloatArray:
         """Where the axes are.
@@ -112,18 +105,3 @@ def geometry(moves: Moves) -> Geometry:
     drift = moves.end - base
     drift[:, :3] -= cosine * np.cos(angle)[:, None] + sine * np.sin(angle)[:, None]
     return Geometry(base, drift, cosine, sine, angle, moves.end)
-
-
-def joined(parts: list[Geometry]) -> Geometry:
-    """Consecutive geometries as one.
-
-    Raises:
-        ValueError: There is nothing to join.
-    """
-    if not parts:
-        raise ValueError("no geometries to join")
-    columns: Any = (
-        np.concatenate([getattr(part, field.name) for part in parts])
-        for field in dataclasses.fields(Geometry)
-    )
-    return Geometry(*columns)

@@ -1,0 +1,51 @@
+import dataclasses
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from twin.columns import Columns, join
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Inner(Columns):
+    value: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Outer(Columns):
+    number: np.ndarray
+    inner: Inner
+    row: np.ndarray
+
+
+def table(count: int) -> Outer:
+    number = np.arange(count)
+    return Outer(number, Inner(number * 10.0), np.stack([number, -number], axis=1))
+
+
+@settings(derandomize=True)
+@given(st.lists(st.integers(0, 30), max_size=4))
+def test_cut_anywhere_and_joined_it_is_the_same(cuts: list[int]) -> None:
+    whole = table(30)
+    borders = [0, *sorted(cuts), 30]
+    parts = [whole[begin:end] for begin, end in itertools.pairwise(borders)]
+    assert [len(part) for part in parts] == [b - a for a, b in itertools.pairwise(borders)]
+    again = join(parts)
+    assert isinstance(again, Outer)
+    assert isinstance(again.inner, Inner)
+    assert np.array_equal(again.number, whole.number)
+    assert np.array_equal(again.inner.value, whole.inner.value)
+    assert np.array_equal(again.row, whole.row)
+
+
+def test_rows_are_chosen_by_mask_and_by_number() -> None:
+    assert table(6)[table(6).number % 2 == 1].inner.value.tolist() == [10.0, 30.0, 50.0]
+    assert table(6)[np.array([4, 0])].row.tolist() == [[4, -4], [0, 0]]
+
+
+def test_nothing_to_join_is_refused() -> None:
+    with pytest.raises(ValueError, match="nothing to join"):
+        join(list[Outer]())

@@ -1,0 +1,41 @@
+"""Tables held as columns: the form in which chunks go from room to room."""
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Any, Self, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+Rows = slice | npt.NDArray[np.bool_] | npt.NDArray[np.int64]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Columns:
+    """n rows; every field is an array whose first axis counts the rows, or again a table of n rows."""
+
+    def __len__(self) -> int:
+        return len(getattr(self, dataclasses.fields(self)[0].name))
+
+    def __getitem__(self, rows: Rows) -> Self:
+        """A selection of the rows, as columns again."""
+        return type(self)(*(getattr(self, field.name)[rows] for field in dataclasses.fields(self)))
+
+
+ColumnsT = TypeVar("ColumnsT", bound=Columns)
+
+
+def join(parts: Sequence[ColumnsT]) -> ColumnsT:
+    """Consecutive tables as one.
+
+    Raises:
+        ValueError: There is nothing to join.
+    """
+    if not parts:
+        raise ValueError("nothing to join")
+    names = [field.name for field in dataclasses.fields(parts[0])]
+    return type(parts[0])(*(_joined([getattr(part, name) for part in parts]) for name in names))
+
+
+def _joined(values: Sequence[Any]) -> Any:
+    return join(values) if isinstance(values[0], Columns) else np.concatenate(values)
