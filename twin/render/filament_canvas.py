@@ -228,6 +228,8 @@ class FilamentCanvas(Canvas):
         read.set_buffer(pixels)
         with self._hush():
             self._context.wait_for_frame(self._context.render([request], [read]))
+        for sent in self._on_the_way:
+            sent.free()
         self._on_the_way.clear()
         return pixels
 
