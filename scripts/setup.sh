@@ -51,6 +51,12 @@ setup_environment() {
     PATH="$PWD/.venv/bin:$PATH"
 }
 
+setup_vulkan() {
+    # For the tests of the Filament renderer, which are left out without a Vulkan driver.
+    compgen -G '/usr/share/vulkan/icd.d/*.json' >/dev/null ||
+        _need_packages libvulkan1 mesa-vulkan-drivers || true
+}
+
 setup_browser() {
     # For the test of the report's page, which is left out without one.
     command -v chromium >/dev/null || _need_packages chromium || true

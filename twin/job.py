@@ -193,6 +193,8 @@ class VideoTable(Table):
     """Times faster than in reality, instead of a length."""
     quality: Literal["draft", "final"] = "draft"
     """``final`` has shadows, smooth edges and a finer stock, and takes several times as long."""
+    renderer: Literal["opengl", "filament"] = "opengl"
+    """``filament`` is physically based: it needs a Vulkan driver and takes longer."""
     fps: Annotated[int, Field(ge=1, le=60)] = 25
     size: tuple[Annotated[int, Field(ge=64, le=1920)], Annotated[int, Field(ge=64, le=1080)]] = (
         1280,

@@ -15,6 +15,7 @@ def test_doctor_finds_opengl_and_encoder() -> None:
     assert facts.backend in gl.BACKENDS
     assert facts.renderer
     assert facts.encoder == "libx264"
+    assert facts.filament == gl.probe(gl.FILAMENT).renderer
 
 
 def test_doctor_says_what_to_free(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

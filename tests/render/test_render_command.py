@@ -10,6 +10,9 @@ import trimesh
 from command_line import Twin
 from PIL import Image
 
+from twin.render import filament
+from twin.render.gl import FILAMENT, Probe, probe
+
 PROGRAM = """S2000 M3
 G0 X-20 Z2
 G1 Z-3 F800
@@ -103,6 +106,27 @@ def test_a_split_film_for_a_page_without_display(
     assert left.tobytes() != right.tobytes()
 
 
+def test_filament_draws_by_choice(recorded: Path, twin: Twin, tmp_path: Path) -> None:
+    if probe(FILAMENT).error:
+        pytest.skip("no Vulkan driver for Filament here: see twin doctor")
+    arguments = ("--renderer", "filament", "--at", 0.5, "--film", "--inspect", "commanded")
+    done = twin("render", recorded, "--out", tmp_path, *arguments, "--size", "160x90")
+    assert done.code == 0, done.stderr
+    names = {"still-0.5s.png", "video.mp4", "inspection.png", "inspection.json"}
+    assert {path.name for path in tmp_path.iterdir()} == names
+    assert all("film:" in line for line in done.stderr.splitlines() if line)
+
+
+def test_filament_without_a_driver_is_refused(
+    recorded: Path, twin: Twin, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(filament, "probe", lambda name: Probe(name, error="no driver"))
+    done = twin("render", recorded, "--out", tmp_path, "--renderer", "filament", "--at", 0.5)
+    assert done.code == 2
+    assert "apt-get install libvulkan1 mesa-vulkan-drivers" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
 def test_the_part_is_written_and_measured(recorded: Path, twin: Twin, tmp_path: Path) -> None:
     arguments = ("--glb", "--inspect", "commanded", "--tolerance", 5)
     done = twin("render", recorded, "--out", tmp_path, *arguments)
@@ -150,6 +174,7 @@ def test_the_second_tool_cuts_at_its_own_length(recorded: Path) -> None:
         (("--size", "big"), "--size"),
         (("--fps", 0), "--fps"),
         (("--quality", "best"), "--quality"),
+        (("--renderer", "pencil"), "--renderer: Input should be 'opengl' or 'filament'"),
         (("--speed", -1), "--speed"),
         (("--inspect", "nowhere.stl"), "give 'commanded' or an STL file"),
         (("--machine", "lathe"), "no machine 'lathe'"),

@@ -48,6 +48,10 @@ def render(
         typer.Option("--display/--no-display", help="Program, axes and error over the picture."),
     ] = None,
     quality: Annotated[str | None, typer.Option("--quality", help="draft or final.")] = None,
+    renderer: Annotated[
+        str | None,
+        typer.Option("--renderer", help="opengl, or filament: physically based and slower."),
+    ] = None,
     seconds: Annotated[
         float | None, typer.Option("--seconds", help="Length of the film (s).")
     ] = None,
@@ -81,6 +85,7 @@ def render(
             "layout": "split" if split else None,
             "display": display,
             "quality": quality,
+            "renderer": renderer,
             "seconds": seconds,
             "speed": speed,
             "fps": fps,

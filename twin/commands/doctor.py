@@ -15,6 +15,7 @@ LIBRARIES = ("mujoco", "numpy", "numba", "h5py", "trimesh", "av", "pillow", "mat
 def print_doctor() -> ExitCode:
     """Print what was found; pictures that cannot be made are an error, the rest runs without."""
     from twin.render.doctor import render_facts
+    from twin.render.filament import PACKAGES
 
     typer.echo(f"python     {platform.python_version()} ({sys.executable})")
     for name in LIBRARIES:
@@ -22,6 +23,8 @@ def print_doctor() -> ExitCode:
     typer.echo(f"machines   {', '.join(machine_names())}")
     facts = render_facts()
     typer.echo(f"OpenGL     {facts.backend or 'none'} {facts.renderer}".rstrip())
+    filament = facts.filament or f"none (optional): apt-get install {PACKAGES}"
+    typer.echo(f"Filament   {filament}")
     typer.echo(f"video      {facts.encoder or 'none'}")
     memory = "unknown" if facts.memory_mb is None else f"{facts.memory_mb:.0f} MB free"
     typer.echo(f"memory     {memory}")

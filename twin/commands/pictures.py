@@ -36,4 +36,10 @@ def film_run(run: Run, survey: Survey, folder: Path, progress: Progress) -> None
             progress=lambda done, frames: progress("film", done / frames),
         )
         shot = Shot(folder / STILL_NAME, len(recording))
-        stills(scene, [shot], cameras=video.cameras[:1], quality=video.quality)
+        stills(
+            scene,
+            [shot],
+            cameras=video.cameras[:1],
+            quality=video.quality,
+            renderer=video.renderer,
+        )

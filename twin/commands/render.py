@@ -129,6 +129,7 @@ class _Maker:
                 else self._video.cameras[:1],
                 size=self._video.size,
                 quality=self._video.quality,
+                renderer=self._video.renderer,
                 display=self._video.display,
             )
             for shot in shots:
@@ -187,7 +188,12 @@ class _Maker:
         self._write(
             self._folder / "inspection.png",
             lambda out: inspection_still(
-                scene, found, out=out, size=self._video.size, quality=self._video.quality
+                scene,
+                found,
+                out=out,
+                size=self._video.size,
+                quality=self._video.quality,
+                renderer=self._video.renderer,
             ),
         )
         typer.echo(found.summary)

@@ -8,7 +8,7 @@ import av
 from av.codec.codec import UnknownCodecError
 
 from twin.errors import RenderError
-from twin.render.gl import choose_backend
+from twin.render.gl import FILAMENT, choose_backend, probe
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -18,6 +18,7 @@ class RenderFacts:
     Attributes:
         backend: OpenGL backend that drew a test frame; empty when none did.
         renderer: What OpenGL calls itself.
+        filament: What Filament draws through; empty where it does not work.
         encoder: Name of the H.264 encoder; empty when there is none.
         memory_mb: Memory that is free for a run; None where the system does not tell [MB].
         disk_mb: Space on the disk of the working folder [MB].
@@ -26,6 +27,7 @@ class RenderFacts:
 
     backend: str
     renderer: str
+    filament: str
     encoder: str
     memory_mb: float | None
     disk_mb: float
@@ -70,7 +72,9 @@ def render_facts() -> RenderFacts:
             f"{disk:.0f} MB of disk are free in {Path.cwd()}, runs want {LEAST_DISK_MB:.0f}: "
             "free some, or write elsewhere by --out"
         )
-    return RenderFacts(backend, renderer, encoder, memory, disk, tuple(problems))
+    return RenderFacts(
+        backend, renderer, probe(FILAMENT).renderer, encoder, memory, disk, tuple(problems)
+    )
 
 
 def free_memory_mb() -> float | None:

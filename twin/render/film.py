@@ -31,7 +31,7 @@ def film(scene: Scene, *, video: VideoTable, out: Path, progress: Progress | Non
         ``out``.
 
     Raises:
-        RenderError: There is nothing to film, no such camera, no OpenGL, no encoder, or the file
+        RenderError: There is nothing to film, no such camera, no renderer, no encoder, or the file
             cannot be written.
         ConfigError: The stock is too large for its grid.
     """
@@ -50,7 +50,10 @@ def film(scene: Scene, *, video: VideoTable, out: Path, progress: Progress | Non
     ends = frame_ends(len(recording), frames)
     gauge = Gauge(scene)
     display = gauge.display(size, duration * video.fps / frames)
-    with stage(scene, size, quality) as play, video_writer(out, size, video.fps) as writer:
+    with (
+        stage(scene, size, quality, renderer=video.renderer) as play,
+        video_writer(out, size, video.fps) as writer,
+    ):
         done = 0
         for samples, due in deal(recording, ends):
             play.advance(samples)

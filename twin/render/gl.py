@@ -19,6 +19,9 @@ from twin.errors import RenderError
 BACKENDS = ("egl", "osmesa")
 """In the order in which they are tried: EGL also draws on a GPU."""
 
+FILAMENT = "filament"
+"""Not OpenGL, but tried in the same way."""
+
 PACKAGES = {"egl": "libegl1 libgl1-mesa-dri", "osmesa": "libosmesa6"}
 """What Debian and Ubuntu call them."""
 
@@ -30,7 +33,7 @@ class Probe:
     """What trying a backend gave.
 
     Attributes:
-        backend: ``egl`` or ``osmesa``.
+        backend: ``egl``, ``osmesa`` or ``filament``.
         renderer: What OpenGL calls itself; empty when it does not work.
         error: Why it does not work; empty when it does.
     """

@@ -10,6 +10,7 @@ from twin.cutting.inspection import Inspection
 from twin.render.cameras import PART
 from twin.render.canvas import quality_named
 from twin.render.hud import INK, MUTED, PAPER, font, lay_over
+from twin.render.renderer import Renderer
 from twin.render.stage import Scene, stage
 from twin.render.still import save
 from twin.units import UM_PER_MM
@@ -23,6 +24,7 @@ def inspection_still(
     camera: str = PART,
     size: tuple[int, int] = (1280, 720),
     quality: str = "final",
+    renderer: Renderer = "opengl",
 ) -> None:
     """Draw the part at the end of a run, coloured by what measuring it found.
 
@@ -33,15 +35,17 @@ def inspection_still(
         camera: Name of the camera.
         size: Width and height [px].
         quality: ``draft`` or ``final``.
+        renderer: ``opengl`` or ``filament``.
 
     Raises:
-        RenderError: There is no such camera, no OpenGL, or the file cannot be written.
+        RenderError: There is no such camera, no renderer, or the file cannot be written.
         ConfigError: The stock is wrong.
     """
     scene.require((camera,))
     colours = deviation_colours(found.deviation_mm, found.tolerance_um / UM_PER_MM)
     paint = np.dstack([colours, 255 * found.measured.astype(np.uint8)])
-    with stage(scene, size, quality_named(quality).for_still, paint=paint, trail=False) as play:
+    cost = quality_named(quality).for_still
+    with stage(scene, size, cost, renderer=renderer, paint=paint, trail=False) as play:
         for samples in scene.recording.chunks():
             play.advance(samples)
         play.clear_view()

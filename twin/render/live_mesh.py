@@ -11,12 +11,20 @@ from twin.units import MM
 SHOWN_GROUP = 2
 """Geom group of what is only looked at."""
 
+_SEEN = {"contype": 0, "conaffinity": 0, "mass": 0.0, "group": SHOWN_GROUP}
+
 _GOLDEN_ANGLE = 2.4
 """Turn from one stand-in vertex to the next [rad]."""
 
 
 def add_live_mesh(
-    spec: mujoco.MjSpec, name: str, material: str, texels: FloatArray, faces: IntArray
+    spec: mujoco.MjSpec,
+    name: str,
+    material: str,
+    texels: FloatArray,
+    faces: IntArray,
+    *,
+    shadow: bool = True,
 ) -> None:
     """Add a mesh and its geom to the rotary table of a machine that is yet to be compiled.
 
@@ -29,6 +37,7 @@ def add_live_mesh(
         material: Name of its material.
         texels: Place of every vertex in the material's texture, shape (n, 2) [0 to 1].
         faces: Vertices of every face, counter-clockwise from outside, shape (m, 3).
+        shadow: Whether it casts one.
     """
     turn = _GOLDEN_ANGLE * np.arange(len(texels))
     stand_in = np.stack([np.cos(turn), np.sin(turn), turn / 50], 1)
@@ -47,10 +56,7 @@ def add_live_mesh(
         type=mujoco.mjtGeom.mjGEOM_MESH,
         meshname=name,
         material=material,
-        contype=0,
-        conaffinity=0,
-        group=SHOWN_GROUP,
-        mass=0.0,
+        **{**_SEEN, "castshadow": shadow},
     )
 
 

@@ -1,6 +1,7 @@
-"""Draw one test frame and say so: run as a process of its own, because a bad driver can crash it.
+"""Draw one test frame and say so: run as a process of its own, because a bad driver can end it.
 
-``python -m twin.render.probe egl`` prints one JSON object, with ``renderer`` or ``error``.
+``python -m twin.render.probe egl`` prints one JSON object, with ``renderer`` or ``error``; so do
+``osmesa`` and ``filament``.
 """
 
 import json
@@ -9,7 +10,8 @@ import sys
 import mujoco
 import numpy as np
 
-from twin.render.gl import BACKENDS, open_context
+from twin.render.canvas import DRAFT, Pixels
+from twin.render.gl import BACKENDS, FILAMENT, open_context
 
 _SCENE = """
 <mujoco>
@@ -23,7 +25,7 @@ _SCENE = """
 _SIDE = 64
 
 
-def test_frame(backend: str) -> dict[str, str]:
+def opengl_frame() -> dict[str, str]:
     """Draw a red ball and look at its middle.
 
     Returns:
@@ -49,18 +51,43 @@ def test_frame(backend: str) -> dict[str, str]:
     mujoco.mjr_readPixels(pixels, None, view, context)
     name = GL.glGetString(GL.GL_RENDERER)
     context.free()
+    return _judged(pixels, name.decode(errors="replace") if isinstance(name, bytes) else str(name))
+
+
+def filament_frame() -> dict[str, str]:
+    """The same by Filament; what it reports stays visible, it says why the process ends."""
+    from twin.render.filament_canvas import FilamentCanvas, prepare
+
+    spec = mujoco.MjSpec.from_string(_SCENE)
+    prepare(spec, DRAFT, (_SIDE, _SIDE))
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    try:
+        canvas = FilamentCanvas(model, (_SIDE, _SIDE), DRAFT, quiet=False)
+    except ImportError as error:
+        return {"error": str(error)}
+    pixels = canvas.draw(data, 0)
+    canvas.close()
+    return _judged(pixels, "Vulkan")
+
+
+def _judged(pixels: Pixels, renderer: str) -> dict[str, str]:
     red, green, blue = (int(value) for value in pixels[_SIDE // 2, _SIDE // 2])
-    if red < 100 or max(green, blue) > 50:
-        return {"error": f"{backend} draws wrong colours: {red} {green} {blue} for a red ball"}
-    return {"renderer": name.decode(errors="replace") if isinstance(name, bytes) else str(name)}
+    if red < 2 * max(green, blue, 50):
+        return {"error": f"wrong colours are drawn: {red} {green} {blue} for a red ball"}
+    return {"renderer": renderer}
 
 
 def main() -> None:
     """Probe the backend named on the command line."""
     backend = sys.argv[1]
-    assert backend in BACKENDS
+    assert backend in (*BACKENDS, FILAMENT)
+    if backend == FILAMENT:
+        sys.stdout.write(json.dumps(filament_frame()) + "\n")
+        return
     context = open_context(backend, _SIDE, _SIDE)
-    sys.stdout.write(json.dumps(test_frame(backend)) + "\n")
+    sys.stdout.write(json.dumps(opengl_frame()) + "\n")
     sys.stdout.flush()
     context.free()
 

@@ -75,7 +75,9 @@ class Skin:
             height=self._rows,
             builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
         )
-        material = spec.add_material(name=MATERIAL, specular=0.45, shininess=0.55)
+        material = spec.add_material(
+            name=MATERIAL, specular=0.45, shininess=0.55, metallic=1.0, roughness=0.35
+        )
         material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = MATERIAL
 
     def bind(self, model: mujoco.MjModel) -> None:

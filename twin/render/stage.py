@@ -17,9 +17,10 @@ from twin.nc.canonical import FloatArray
 from twin.program_notes import ProgramNotes
 from twin.recording import Recording, Samples
 from twin.render.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
-from twin.render.canvas import Canvas, Focus, Pixels, Quality, canvas, prepare
+from twin.render.canvas import Canvas, Focus, Pixels, Quality
 from twin.render.chips import Chips, chips
 from twin.render.placement import ROTARY_TABLE, Joints, Placement, place, tip_position
+from twin.render.renderer import Renderer, open_canvas, prepare
 from twin.render.skin import Skin
 from twin.render.stock_surface import StockSurface
 from twin.render.tool_body import ToolBodies
@@ -236,6 +237,7 @@ def stage(
     size: tuple[int, int],
     quality: Quality,
     *,
+    renderer: Renderer = "opengl",
     paint: Colours | None = None,
     trail: bool = True,
 ) -> Iterator[Stage]:
@@ -245,17 +247,17 @@ def stage(
         scene: What is to be seen.
         size: Width and height of the pictures [px].
         quality: What a picture may cost.
+        renderer: What draws.
         paint: Colours of the stock's cells, shape (ny, nx, 4); as metal looks where the fourth is 0,
             or without any.
         trail: Whether the way of the tool is seen.
 
     Raises:
-        RenderError: No OpenGL works here.
+        RenderError: The renderer does not work here.
         ConfigError: The stock is too large for its grid.
     """
     header = scene.recording.header
     spec = scene.spec.copy()
-    prepare(spec, quality, size)
     turn_zero = header.part_frame.turn_zero
     placement = place(scene.machine, spec.compile(), scene.notes.tools.tools[0].length, turn_zero)
     cutter = surface = None
@@ -278,12 +280,13 @@ def stage(
     way.add_to(spec)
     tools = ToolBodies(scene.notes.tools, scene.machine.file.spindle.flange_diameter)
     tools.add_to(spec)
+    prepare(spec, renderer, quality, size)
     model = spec.compile()
     if surface is not None:
         surface.bind(model, placement)
     way.bind(model, placement)
     tools.bind(model)
-    with canvas(model, size, quality) as drawing:
+    with open_canvas(model, renderer, size, quality) as drawing:
         yield Stage(scene, model, placement, drawing, size, surface, cutter, way, tools, seen)
 
 

@@ -12,6 +12,7 @@ from twin.files import complete_or_absent
 from twin.recording import Recording
 from twin.render.canvas import Pixels, quality_named
 from twin.render.gauge import Gauge
+from twin.render.renderer import Renderer
 from twin.render.replay import deal
 from twin.render.stage import Scene, stage
 
@@ -36,6 +37,7 @@ def stills(
     cameras: Sequence[str] = ("overview",),
     size: tuple[int, int] = (1280, 720),
     quality: str = "final",
+    renderer: Renderer = "opengl",
     display: bool = True,
 ) -> None:
     """Draw moments of a recorded run in one pass over it.
@@ -46,17 +48,18 @@ def stills(
         cameras: Names of the cameras; several are shown side by side.
         size: Width and height [px].
         quality: ``draft`` or ``final``.
+        renderer: ``opengl`` or ``filament``.
         display: Whether the head-up display is on the pictures.
 
     Raises:
-        RenderError: There is no such camera, no OpenGL, or a file cannot be written.
+        RenderError: There is no such camera, no renderer, or a file cannot be written.
         ConfigError: The stock is too large for its grid.
     """
     scene.require(cameras)
     shots = sorted(shots, key=lambda shot: shot.end)
     gauge = Gauge(scene)
     panels = gauge.display(size, None) if display else None
-    with stage(scene, size, quality_named(quality).for_still) as play:
+    with stage(scene, size, quality_named(quality).for_still, renderer=renderer) as play:
         waiting = iter(shots)
         for samples, due in deal(scene.recording, np.array([shot.end for shot in shots])):
             play.advance(samples)

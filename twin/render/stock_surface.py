@@ -89,7 +89,9 @@ class StockSurface:
         """Add the stock's meshes, geoms and texture to a machine's specification."""
         self._skin.add_to(spec)
         raw = [value / 255 for value in (*RAW_RGB, 255)]
-        spec.add_material(name=SIDE, rgba=raw, specular=0.45, shininess=0.55)
+        spec.add_material(
+            name=SIDE, rgba=raw, specular=0.45, shininess=0.55, metallic=0.3, roughness=0.45
+        )
         texels = self._skin.texels(self._net.x, self._net.y)
         for tile in self._tiles:
             block = texels[tile.rows, tile.columns].reshape(-1, 2)

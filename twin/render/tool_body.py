@@ -20,6 +20,7 @@ REPLACED = ("tool_cutter", "tool_ball", "tool_shank", "tool_flange", "tool_nut")
 HOLDER = ("tool_flange", "tool_nut")
 
 HOLDER_MATERIAL = "holder_steel"
+CUTTER_RGBA = (0.66, 0.63, 0.56, 1.0)
 HOLDER_RGBA = (0.42, 0.43, 0.45, 1.0)
 _SEEN = {"contype": 0, "conaffinity": 0, "mass": 0.0, "group": SHOWN_GROUP}
 
@@ -55,8 +56,10 @@ class ToolBodies:
         for geom in replaced:
             spec.delete(geom)
         nose = spec.site(SPINDLE_NOSE)
-        spec.add_material(name=PREFIX, rgba=[0.66, 0.63, 0.56, 1.0], specular=0.9, shininess=0.8)
-        spec.add_material(name=HOLDER_MATERIAL, rgba=HOLDER_RGBA, specular=0.9, shininess=0.85)
+        for name, rgba in ((PREFIX, CUTTER_RGBA), (HOLDER_MATERIAL, HOLDER_RGBA)):
+            spec.add_material(
+                name=name, rgba=rgba, specular=0.9, shininess=0.85, metallic=0.6, roughness=0.3
+            )
         for tool in self._tools.values():
             body = nose.parent.add_body(
                 name=f"{PREFIX}{tool.number}", pos=nose.pos.tolist(), quat=nose.quat.tolist()

@@ -141,13 +141,14 @@ class Trail:
             builtin=mujoco.mjtBuiltin.mjBUILTIN_FLAT,
         )
         material = spec.add_material(name=MATERIAL, emission=0.6, specular=0.0, shininess=0.0)
+        material.metallic, material.roughness = 0.0, 1.0
         material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = MATERIAL
         places = (self._colours() + 0.5) / _PALETTE
         for first in self._pieces:
             across = np.repeat(places[first : first + POINTS_PER_MESH], 2 * SIDES)
             texels = np.stack([across, np.full(len(across), 0.5)], 1)
             faces = _tube_faces(len(across) // (2 * SIDES))
-            add_live_mesh(spec, f"{MATERIAL}_{first}", MATERIAL, texels, faces)
+            add_live_mesh(spec, f"{MATERIAL}_{first}", MATERIAL, texels, faces, shadow=False)
 
     def _colours(self) -> IntArray:
         """Each stretch's column of the palette, shape (n - 1,)."""
