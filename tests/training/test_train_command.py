@@ -1,5 +1,6 @@
 """``twin train`` as a stranger meets it."""
 
+import contextlib
 import http.client
 import json
 import re
@@ -54,9 +55,14 @@ def test_what_cannot_be_opened_is_refused(arguments: list[str], message: str) ->
 
 def test_the_room_opens_on_loopback_and_ctrl_c_keeps_the_sheet(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "twin", "train", "mefi_lead", "--out", str(tmp_path)]
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as twin:
+    with (
+        subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as twin,
+        contextlib.ExitStack() as at_the_end,
+    ):
+        # Else a failed assertion would wait for a room that nobody closes.
+        at_the_end.callback(twin.kill)
         assert twin.stdout is not None
         first = twin.stdout.readline()
         found = re.fullmatch(r"mefi_lead: open (\S+) in a browser; Ctrl\+C ends\n", first)

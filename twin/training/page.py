@@ -83,6 +83,8 @@ class RoomViewer(web_viewer.WebViewer):
         self._http_sock.close()
         self._http_sock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._http_sock.bind(str(self._inside))
+        # Whoever comes before Studio's thread has begun to serve waits, and is not turned away.
+        self._http_sock.listen()
         super()._start_server()
         # What is dropped onto the page is thrown away.
         if self._web_server is not None:
