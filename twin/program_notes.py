@@ -7,18 +7,24 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from twin.cutting.spindle import SPEED, STARTS, STOPS
 from twin.cutting.tools import ToolPlan
 from twin.errors import ConfigError
 from twin.job import JobFile, ToolTable
 from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
+from twin.nc.functions import (
+    PROGRAM_ENDS,
+    SPINDLE_COUNTER_CLOCKWISE,
+    SPINDLE_SPEED,
+    SPINDLE_STARTS,
+    SPINDLE_STOPS,
+    TOOL_CHANGE,
+)
 
 BoolArray = npt.NDArray[np.bool_]
 ValueT = TypeVar("ValueT")
 
-SPINDLE_OFF = STOPS | {"M2", "M30"}
+SPINDLE_OFF = SPINDLE_STOPS | PROGRAM_ENDS
 """The program's end stops the spindle too (ISO 6983-1)."""
-TOOL_CHANGE = "M6"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -124,14 +130,17 @@ class NoteTaker:
             self._selected = int(word[1:])
         elif word == TOOL_CHANGE and self._selected is not None:
             self._change_tool(self._selected, event.line, move)
-        elif word in STARTS:
+        elif word in SPINDLE_STARTS:
             self._speed = event.arguments.get("S", self._speed)
             self._turn(
-                None if self._speed is None else (1 - 2 * (word == "M4")) * self._speed, move
+                None
+                if self._speed is None
+                else (1 - 2 * (word == SPINDLE_COUNTER_CLOCKWISE)) * self._speed,
+                move,
             )
         elif word in SPINDLE_OFF:
             self._turn(0.0, move)
-        elif word == SPEED:
+        elif word == SPINDLE_SPEED:
             self._speed = event.arguments["S"]
             if self._turns:
                 self._turn(float(np.copysign(self._speed, self._turns)), move)

@@ -10,9 +10,9 @@ import statistics
 import threading
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 from benches.row import REPEATS, Row
+from chromium import CHROMIUM, QUIET
 
 from twin.training.launch import OpenRoom, open_room
 from twin.training.panel.request import do
@@ -21,17 +21,6 @@ from twin.training.session import Session
 from twin.training.studio import RequestEvent
 
 SCENE = "mefi_helix_hold"
-CHROMIUM = Path("/usr/bin/chromium")
-FLAGS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 OVERRIDE = 20
 """Feed override, so that the program lasts [%]."""
 FEED = 400.0
@@ -45,7 +34,7 @@ GONE = 0.02
 def rows() -> Iterator[Row]:
     """Machine time per time without a page; factor and reaction with one."""
     yield Row("training", "headless, in slices of 10 ms", _headless(), "x real time")
-    if not CHROMIUM.exists() or importlib.util.find_spec("playwright") is None:
+    if CHROMIUM is None or importlib.util.find_spec("playwright") is None:
         return
     with _open_page() as (room, click):
         room.session.room.feed_override = OVERRIDE
@@ -86,7 +75,7 @@ def _open_page() -> Iterator[tuple[OpenRoom, Callable[[], float]]]:
         gate = room.gate
         assert gate is not None
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+            browser = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
             page = browser.new_context(
                 viewport={"width": 1280, "height": 760}, device_scale_factor=0.25
             ).new_page()

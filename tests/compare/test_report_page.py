@@ -1,20 +1,14 @@
 """The report in a real browser: nothing is asked for, nothing goes wrong, hovering tells."""
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from chromium import CHROMIUM, QUIET
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.compare.test_report import MOVES, report_of
 from twin.compare.report import write_report
-
-CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "chrome"))), None)
-FLAGS = [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync",
-]  # fmt: skip
 
 pytestmark = pytest.mark.skipif(
     CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
@@ -24,7 +18,7 @@ pytestmark = pytest.mark.skipif(
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
-        found = playwright.chromium.launch(executable_path=CHROMIUM, headless=True, args=FLAGS)
+        found = playwright.chromium.launch(executable_path=CHROMIUM, headless=True, args=QUIET)
         yield found
         found.close()
 

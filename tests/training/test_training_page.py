@@ -7,7 +7,6 @@ processor, which takes a good part of a second for a picture. So every step wait
 import gc
 import importlib.util
 import json
-import os
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from chromium import CHROMIUM, QUIET
 
 from twin.training.launch import OpenRoom, open_room
 from twin.training.panel.request import do
@@ -24,24 +24,15 @@ from twin.training.studio import RequestEvent
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext
 
-CHROMIUM = Path(os.environ.get("TWIN_CHROMIUM", "/usr/bin/chromium"))
-FLAGS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 PATIENCE_S = 180.0
 WIDTH, HEIGHT = 1280, 760
 
 pytestmark = [
     # Studio leaves the sockets of its own server to the collector.
     pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
-    pytest.mark.skipif(not CHROMIUM.exists(), reason=f"no browser: {CHROMIUM} does not exist"),
+    pytest.mark.skipif(
+        CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
+    ),
     pytest.mark.skipif(
         importlib.util.find_spec("playwright") is None, reason="no playwright to lead the browser"
     ),
@@ -119,7 +110,7 @@ def operator(tmp_path) -> Iterator[Operator]:
         thread = threading.Thread(target=room.serve, daemon=True)
         thread.start()
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=str(CHROMIUM), args=FLAGS)
+            browser = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
             # A quarter of the dots each way: little work for a processor that has to draw them.
             context = browser.new_context(
                 viewport={"width": WIDTH, "height": HEIGHT}, device_scale_factor=0.25

@@ -27,6 +27,7 @@ from twin.compare.plot_style import (
 from twin.compare.trace import Trace, line_changes
 from twin.job import ToleranceTable
 from twin.nc.canonical import FloatArray
+from twin.units import SECONDS_PER_MINUTE
 
 _SMALLEST_SPAN = 1.0
 """Of the drawn part of a coordinate [mm]."""
@@ -125,9 +126,9 @@ def speed_plot(trace: Trace) -> Plot:
     """Commanded speed of the path and of every axis over time."""
     return _axes_plot(
         trace,
-        trace.velocity * 60.0,
+        trace.velocity * SECONDS_PER_MINUTE,
         ("speed [mm/min]", "rotary axes [deg/min]"),
-        trace.path_speed * 60.0,
+        trace.path_speed * SECONDS_PER_MINUTE,
     )
 
 

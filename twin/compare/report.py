@@ -22,6 +22,7 @@ from twin.files import write_text
 from twin.job import ToleranceTable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording import RecordingHeader
+from twin.units import SECONDS_PER_MINUTE
 
 _HEADINGS = {
     "pass": ("✔", "Pass", "every tolerance holds"),
@@ -164,7 +165,7 @@ def _hover_data(trace: Trace, source: list[str]) -> str:
         "line": line.tolist(),
         "error": _column(trace.error_um[rows], 2),
         "lag": [_column(row, 1) for row in trace.lag[rows] * 1e3],
-        "speed": _column(trace.path_speed[rows] * 60.0, 0),
+        "speed": _column(trace.path_speed[rows] * SECONDS_PER_MINUTE, 0),
         "text": texts,
     }
     # A program may hold what ends a script.

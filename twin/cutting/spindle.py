@@ -5,12 +5,7 @@ import numpy.typing as npt
 
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Function
-
-STARTS = frozenset({"M3", "M4"})
-STOPS = frozenset({"M5", "M19"})
-"""M19 holds the spindle at an angle."""
-SPEED = "S"
-"""Sets the speed, and starts nothing."""
+from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, SPINDLE_STOPS
 
 _BEFORE_THE_NEXT = 1.0 - 1e-12
 """The end of a move's path still belongs to it: a function between two moves is not yet heard."""
@@ -19,7 +14,8 @@ _BEFORE_THE_NEXT = 1.0 - 1e-12
 def speaks_of_spindle(chunk: Chunk) -> bool:
     """Whether any function of a chunk starts, stops or sets the speed of the spindle."""
     return any(
-        isinstance(event, Function) and event.word in STARTS | STOPS | {SPEED}
+        isinstance(event, Function)
+        and event.word in SPINDLE_STARTS | SPINDLE_STOPS | {SPINDLE_SPEED}
         for event in chunk.events
     )
 
@@ -59,10 +55,10 @@ class Spindle:
         return ~np.array(self._turns)[state]
 
     def _hear(self, event: Function) -> None:
-        if event.word in STARTS | {SPEED}:
+        if event.word in SPINDLE_STARTS | {SPINDLE_SPEED}:
             self._speed = event.arguments.get("S", self._speed)
-        if event.word in STARTS | STOPS:
-            self._started = event.word in STARTS
+        if event.word in SPINDLE_STARTS | SPINDLE_STOPS:
+            self._started = event.word in SPINDLE_STARTS
         turns = self._started and self._speed != 0.0
         if turns != self._turns[-1]:
             self._places.append(self._moves + event.before + event.at)

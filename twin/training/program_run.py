@@ -23,6 +23,7 @@ from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves
 from twin.nc.control import Control
 from twin.nc.diagnostics import ProgramError
 from twin.nc.dialect import Dialect
+from twin.nc.functions import PROGRAM_STOPS, TOOL_CHANGE
 from twin.nc.settings import ControlSettings
 from twin.nc.source import Source
 
@@ -31,10 +32,6 @@ MOVES_AT_ONCE = 256
 
 LARGEST_OVERRIDE = 1.2
 """Factor at the end of the feed override dial."""
-
-STOPS = ("M0", "M1")
-"""Functions at which the program waits for cycle start."""
-TOOL_CHANGE = "M6"
 
 Ending = Literal["end", "stop", "tool", "soft-limit", "program"]
 
@@ -179,7 +176,7 @@ class ProgramRun:
                  and isinstance(word.value, float)]  # fmt: skip
         if TOOL_CHANGE in words:
             self.ending, self.tool = "tool", self._control.tools.spindle
-        elif any(word in STOPS for word in words):
+        elif any(word in PROGRAM_STOPS for word in words):
             self.ending = "stop"
         if self.ending is not None:
             self.ending_line = block.line

@@ -15,6 +15,7 @@ from twin.machine.live import LiveMachine
 from twin.machine.model import spindle_over_table_mm
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
+from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS, SPINDLE_STARTS, SPINDLE_STOPS
 from twin.nc.settings import ToolData
 from twin.nc.source import Source
 from twin.placement import part_zero, start_position
@@ -209,13 +210,13 @@ class Room:
             self.label = display - end
 
     def _function(self, function: Function) -> None:
-        if function.word in ("M3", "M4"):
+        if function.word in SPINDLE_STARTS:
             self.spindle = float(function.arguments.get("S", self.spindle or 3000.0))
-        elif function.word in ("M5", "M19", "M2", "M30"):
+        elif function.word in SPINDLE_STOPS | PROGRAM_ENDS:
             self.spindle = 0.0
-        if function.word in ("M7", "M8"):
+        if function.word in COOLANT_ON:
             self.coolant = True
-        elif function.word in ("M9", "M2", "M30"):
+        elif function.word in COOLANT_OFF | PROGRAM_ENDS:
             self.coolant = False
 
     def _latch(self, alarm: Alarm | None) -> None:
