@@ -3,8 +3,12 @@
 A signal may come while the libraries are still being loaded: even then a sentence is said.
 """
 
+import resource
 import signal
 import sys
+
+LEAST_ADDRESS_SPACE = 512_000_000
+"""In less the libraries cannot be loaded, and some of them die of it without a word [bytes]."""
 
 
 def main() -> None:
@@ -18,6 +22,14 @@ def main() -> None:
     # Asked to end, by a batch system say, is the same as Ctrl-C: files are left whole or absent.
     signal.signal(signal.SIGTERM, stop)
     signal.signal(signal.SIGINT, stop)
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if 0 <= limit < LEAST_ADDRESS_SPACE:
+        print(
+            f"there is not enough memory to begin: {limit / 1e6:.0f} MB of address space are allowed "
+            f"(ulimit -v), and {LEAST_ADDRESS_SPACE / 1e6:.0f} MB is the least",
+            file=sys.stderr,
+        )
+        raise SystemExit(2)
     try:
         from twin.cli import main as run
 
