@@ -268,6 +268,8 @@ class Dialect:
         memory: Makes the object that holds what only this dialect remembers.
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
+        is_local: Whether calls with variables of their own have a variable of this name anew.
+        given_variable: The value of a variable among those of the job, or None.
         place_switches: Reports the block's switch points, told the length of its move.
         library: Adds files that the program calls, looked for in the folder of the program.
         prepare: Done before the first block.
@@ -305,6 +307,10 @@ class Dialect:
     memory: Callable[[], object] = object
     before_motion: Callable[["Control", bool], None] | None = None
     read_variable: Callable[["Control", str, float | None], float] | None = None
+    is_local: Callable[[str], bool] = lambda _name: False
+    given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
+        given.get(name)
+    )
     place_switches: Callable[["Control", float], None] | None = None
     library: Callable[["Source", Path], "Source"] | None = None
     prepare: Action | None = None

@@ -3,7 +3,7 @@
 import dataclasses
 import re
 from collections.abc import Callable, Container, Iterator
-from typing import NamedTuple, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from twin.nc.blocks import Block
 from twin.nc.canonical import NO_BLOCK_NUMBER
@@ -11,6 +11,9 @@ from twin.nc.diagnostics import ProgramError
 from twin.nc.lexer import Lexer
 from twin.nc.reporter import Reporter
 from twin.nc.source import Lines, Source
+
+if TYPE_CHECKING:
+    from twin.nc.dialect import Modal
 
 _LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
 _CACHED_LINES = 10_000
@@ -30,17 +33,19 @@ class Return:
 
     Attributes:
         back: Where to go on.
-        leave: Done on the way back, such as forgetting local variables.
-        again: How often the part still runs anew before that.
         first: Where it begins.
+        again: How often the part still runs anew before that.
         last: Its last block where it ends by place; None where it ends by a word.
+        own_variables: It has local variables of its own, which its end forgets.
+        restores: What is put back into force at its end; None: nothing.
     """
 
     back: "Place"
     first: "Place"
-    leave: Callable[[], None] | None = None
     again: int = 0
     last: "Place | None" = None
+    own_variables: bool = False
+    restores: "tuple[Modal, dict[str, int]] | None" = None
 
 
 class Flow:
@@ -51,10 +56,27 @@ class Flow:
         calls: The parts of the program that are being run for a caller, the innermost last.
     """
 
-    def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
+    def __init__(
+        self,
+        source: Source,
+        lexer: Lexer,
+        step_limit: int,
+        report: Reporter,
+        leave: Callable[[Return], None],
+    ) -> None:
+        """Stand before the program.
+
+        Args:
+            source: The program.
+            lexer: Reads its lines.
+            step_limit: Blocks that may be run again.
+            report: Where diagnostics go.
+            leave: Done when a called part ends.
+        """
         self._lines = source.lines
         self._lexer = lexer
         self._report = report
+        self._leave = leave
         self._step_limit = step_limit
         self._steps_left = step_limit
         self._furthest = Place(-1, 0)
@@ -148,8 +170,7 @@ class Flow:
             return
         self.calls.pop()
         self.place = call.back
-        if call.leave is not None:
-            call.leave()
+        self._leave(call)
 
     def go(self, place: Place) -> None:
         """Go on at a place."""

@@ -7,6 +7,7 @@ import dataclasses
 
 from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
+from twin.nc.blocks import Block
 from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
 from twin.nc.dialect import (
@@ -24,17 +25,15 @@ from twin.nc.dialect import (
 
 @dataclasses.dataclass(slots=True)
 class Dragging:
-    """What G10, G09 and G73 leave behind.
+    """What G10 and G09 leave behind.
 
     Attributes:
         leads: Lead of each dragged axis per full circle, by column [mm or deg].
         on: G09 is in force.
-        repeats: Jumps left of each G73 block that is being repeated, by line and part.
     """
 
     leads: dict[int, float] = dataclasses.field(default_factory=dict)
     on: bool = False
-    repeats: dict[tuple[int, int], int] = dataclasses.field(default_factory=dict)
 
 
 def _dragging(control: Control) -> Dragging:
@@ -72,6 +71,11 @@ def switch_off(control: Control) -> None:
     _dragging(control).on = False
 
 
+def repeat_counter(block: Block) -> str:
+    """The variable that holds how many jumps of a G73 block are left."""
+    return f"G73 {block.line}.{block.part}"
+
+
 def jump_with_repeat(control: Control) -> None:
     """G73: after the block's own motion go on at block L, Q times.
 
@@ -88,13 +92,14 @@ def jump_with_repeat(control: Control) -> None:
     wanted = 1.0 if count is None else control.number(count)
     if not (wanted >= 0.0 and wanted == int(wanted)):
         control.fail("repeat-count", "Q must count jumps", count)
-    repeats = _dragging(control).repeats
-    place = (control.block.line, control.block.part)
-    left = repeats.get(place, int(wanted))
-    if left == 0:
-        repeats.pop(place, None)
+    counter = repeat_counter(control.block)
+    left = control.variables.read(counter)
+    if left is None:
+        left = wanted
+    if left == 0.0:
+        control.variables.forget(counter)
         return
-    repeats[place] = left - 1
+    control.variables.write(counter, left - 1.0)
     number = control.number(target)
     if number != int(number):
         control.fail("jump-target", f"{target.text} is no block number", target)

@@ -1,7 +1,7 @@
 """Jumps of CODESYS SoftMotion."""
 
 from twin.nc.control import Control
-from twin.nc.dialects.codesys.program import variables
+from twin.nc.dialects.codesys.program import COUNTER, read_variable
 from twin.nc.dialects.codesys.subprograms import own_lines
 
 
@@ -12,7 +12,7 @@ def conditional_jump(control: Control) -> None:
     not run (manual).
     """
     number, label = control.take("L"), control.take("L?")
-    condition = control.take_number("K", variables(control).counter)
+    condition = control.take_number("K", read_variable(control, COUNTER, None))
     target = number or label
     if target is None:
         control.fail("jump-target", "G20 needs L: the block to jump to", hint="write G20 L10 K1")

@@ -123,17 +123,14 @@ def call(control: Control, statement: Statement) -> None:
             statement.column,
             len(name),
         )
-    known = variables(control)
-    before = control.saved_modal() if subprogram.restores else None
-
-    def leave() -> None:
-        known.local.pop()
-        if before is not None:
-            control.restore_modal(before)
-
-    back = Return(control.flow.place, Place(subprogram.lines.start, 0), leave)
-    control.flow.call(back, DEEPEST_CALL, statement.column, len(name))
-    known.local.append(dict(zip(subprogram.formals, values, strict=True)))
+    part = Return(
+        control.flow.place,
+        Place(subprogram.lines.start, 0),
+        own_variables=True,
+        restores=control.saved_modal() if subprogram.restores else None,
+    )
+    control.flow.call(part, DEEPEST_CALL, statement.column, len(name))
+    control.variables.enter(dict(zip(subprogram.formals, values, strict=True)))
 
 
 def assign_or_call(control: Control, statement: Statement) -> None:

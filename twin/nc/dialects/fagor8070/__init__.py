@@ -134,6 +134,7 @@ FAGOR8070 = Dialect(
     memory=FagorMemory,
     before_motion=frames.turn_in_commanded_direction,
     read_variable=variables.read_variable,
+    is_local=variables.is_local,
     library=with_globals,
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,

@@ -7,7 +7,7 @@ from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.structure import Construct, Structure, structure_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
-from twin.nc.dialects.fagor8070.variables import read_variable, refuse, variable_table
+from twin.nc.dialects.fagor8070.variables import read_variable, refuse
 from twin.nc.flow import Place
 
 _PLACE = re.compile(r"[ \t]*(?:N[ \t]*([0-9]+)|\[[ \t]*([A-Z_]\w*)[ \t]*\])[ \t]*", re.IGNORECASE)
@@ -103,7 +103,7 @@ def for_(control: Control, statement: Statement) -> None:
     """$FOR P1 = first, last, step."""
     construct = _construct(control, statement)
     name, first, last, step = _for_values(control, statement)
-    variable_table(control, name)[name] = first
+    control.variables.write(name, first)
     if (first - last) * step > 0.0:
         control.flow.go(_behind(construct))
 
@@ -117,7 +117,7 @@ def end_for(control: Control, statement: Statement) -> None:
     assert block.statement is not None
     name, _, last, step = _for_values(control, block.statement)
     value = read_variable(control, name, None) + step
-    variable_table(control, name)[name] = value
+    control.variables.write(name, value)
     control.report.line = line
     if (value - last) * step <= 0.0:
         control.flow.go(Place(construct.begin + 1, 0))

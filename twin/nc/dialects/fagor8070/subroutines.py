@@ -55,7 +55,7 @@ def repeat_range(control: Control, statement: Statement) -> None:
         refuse(control, statement, "repeat-range", "the range or the number of runs is none")
     if first <= Place(control.block.line - 1, 0) <= last:
         refuse(control, statement, "repeat-range", "the range must not hold its own #RPT")
-    part = Return(control.flow.place, first, None, int(count) - 1, last)
+    part = Return(control.flow.place, first, int(count) - 1, last)
     control.flow.call(part, DEEPEST_CALL, *_span(statement))
 
 
@@ -202,13 +202,10 @@ def _call(
         message = f"there is no subroutine {name}"
         hint = f"a global one is a file {name} or {name}.nc beside the program; {known}"
         refuse(control, statement, "unknown-subprogram", message, hint)
-    leave = None
+    part = Return(control.flow.place, Place(line, 0), own_variables=values is not None)
+    control.flow.call(part, DEEPEST_CALL, *_span(statement))
     if values is not None:
-        leave = memory.forget_local
-    back = Return(control.flow.place, Place(line, 0), leave)
-    control.flow.call(back, DEEPEST_CALL, *_span(statement))
-    if values is not None:
-        memory.local.append(values)
+        control.variables.enter(values)
 
 
 def return_(control: Control) -> None:

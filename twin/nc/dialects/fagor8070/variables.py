@@ -2,13 +2,13 @@
 
 import math
 import re
-from collections.abc import Callable
 from typing import NoReturn
 
+from twin.nc import arithmetic
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.expression_reader import computed
+from twin.nc.expression_tree import Computed, Number
 from twin.nc.expressions import (
     ARITHMETIC,
     COMPARISON,
@@ -24,41 +24,37 @@ LOCAL_PARAMETERS = 26
 _LOCAL = frozenset(f"P{number}" for number in range(LOCAL_PARAMETERS))
 
 
-def _integers(compute: Callable[[int, int], int]) -> Callable[[float, float], float]:
-    return lambda a, b: float(compute(int(a), int(b)))
-
-
 EXPRESSIONS = ExpressionSyntax(
     operators={
         **ARITHMETIC,
         **COMPARISON,
         "**": Operator(7, math.pow),
-        "==": Operator(3, lambda a, b: float(a == b)),
-        "!=": Operator(3, lambda a, b: float(a != b)),
-        "&": Operator(2, _integers(lambda a, b: a & b)),
-        "^": Operator(1, _integers(lambda a, b: a ^ b)),
-        "|": Operator(0, _integers(lambda a, b: a | b)),
+        "==": Operator(3, arithmetic.equal),
+        "!=": Operator(3, arithmetic.unequal),
+        "&": Operator(2, arithmetic.bits_of_both),
+        "^": Operator(1, arithmetic.bits_of_one_alone),
+        "|": Operator(0, arithmetic.bits_of_either),
     },
     functions={
-        "SIN": FunctionOf(lambda a: math.sin(math.radians(a))),
-        "COS": FunctionOf(lambda a: math.cos(math.radians(a))),
-        "TAN": FunctionOf(lambda a: math.tan(math.radians(a))),
-        "ASIN": FunctionOf(lambda a: math.degrees(math.asin(a))),
-        "ACOS": FunctionOf(lambda a: math.degrees(math.acos(a))),
-        "ATAN": FunctionOf(lambda a: math.degrees(math.atan(a))),
-        "ARG": FunctionOf(lambda x, y: math.degrees(math.atan2(y, x)), 2),
+        "SIN": FunctionOf(arithmetic.sine_of_degrees),
+        "COS": FunctionOf(arithmetic.cosine_of_degrees),
+        "TAN": FunctionOf(arithmetic.tangent_of_degrees),
+        "ASIN": FunctionOf(arithmetic.arc_sine_in_degrees),
+        "ACOS": FunctionOf(arithmetic.arc_cosine_in_degrees),
+        "ATAN": FunctionOf(arithmetic.arc_tangent_in_degrees),
+        "ARG": FunctionOf(arithmetic.direction_in_degrees, 2),
         "ABS": FunctionOf(math.fabs),
-        "SQR": FunctionOf(lambda a: a * a),
+        "SQR": FunctionOf(arithmetic.square),
         "SQRT": FunctionOf(math.sqrt),
         "LOG": FunctionOf(math.log10),
         "LN": FunctionOf(math.log),
         "EXP": FunctionOf(math.exp),
-        "DEXP": FunctionOf(lambda a: math.pow(10.0, a)),
-        "INT": FunctionOf(lambda a: float(math.trunc(a))),
-        "FRACT": FunctionOf(lambda a: a - math.trunc(a)),
-        "ROUND": FunctionOf(lambda a: float(math.floor(a + 0.5))),
-        "FUP": FunctionOf(lambda a: float(math.ceil(a))),
-        "INV": FunctionOf(lambda a: float(~int(a))),
+        "DEXP": FunctionOf(arithmetic.power_of_ten),
+        "INT": FunctionOf(arithmetic.whole_part),
+        "FRACT": FunctionOf(arithmetic.fraction),
+        "ROUND": FunctionOf(arithmetic.nearest_whole),
+        "FUP": FunctionOf(arithmetic.next_whole),
+        "INV": FunctionOf(arithmetic.inverted_bits),
     },
     constants={},
     variable=r"P[0-9]+|V\.[A-Z]\.[A-Z_][\w.]*",
@@ -96,11 +92,9 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
         return memory.origin[0]
     if name == "V.G.PORGS":
         return memory.origin[1]
-    table = variable_table(control, name)
-    if name in table:
-        return table[name]
-    if name in control.settings.variables:
-        return control.settings.variables[name]
+    value = control.variables.read(name)
+    if value is not None:
+        return value
     raise ExpressionError(
         "unknown-variable",
         f"{name} has no value",
@@ -109,11 +103,9 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
     )
 
 
-def variable_table(control: Control, name: str) -> dict[str, float]:
-    """Where a variable is kept: with the call, or for the whole program."""
-    memory = memory_of(control)
-    local = name in _LOCAL or (name.startswith("P0") and int(name[1:]) < LOCAL_PARAMETERS)
-    return memory.local[-1] if local else memory.common
+def is_local(name: str) -> bool:
+    """Whether a variable belongs to the call, not to the whole program."""
+    return name in _LOCAL or (name.startswith("P0") and int(name[1:]) < LOCAL_PARAMETERS)
 
 
 def assign(control: Control, statement: Statement) -> None:
@@ -137,7 +129,7 @@ def assign(control: Control, statement: Statement) -> None:
             value = control.compute(
                 _combined(old, match[1], value), statement.text_column + match.end()
             )
-        variable_table(control, name)[name] = value
+        control.variables.write(name, value)
         separator = _SEPARATOR.match(text, end)
         assert separator is not None
         at = separator.end()
@@ -156,10 +148,8 @@ def assign(control: Control, statement: Statement) -> None:
 
 def _combined(old: float, operator: str, value: float) -> Expression:
     compute = EXPRESSIONS.operators[operator].compute
-
-    return Expression(
-        f"{old:g}{operator}{value:g}", lambda _scope: computed(operator, compute, old, value)
-    )
+    tree = Computed(operator, compute, (Number(old), Number(value)))
+    return Expression(f"{old:g}{operator}{value:g}", tree)
 
 
 def _old_value(control: Control, statement: Statement, name: str) -> float:
