@@ -30,52 +30,52 @@ def divide(a: float, b: float) -> float:
 
 def less(a: float, b: float) -> float:
     """Whether ``a`` is below ``b``."""
-    return float(a < b)
+    return 1.0 if a < b else 0.0
 
 
 def greater(a: float, b: float) -> float:
     """Whether ``a`` is above ``b``."""
-    return float(a > b)
+    return 1.0 if a > b else 0.0
 
 
 def at_most(a: float, b: float) -> float:
     """Whether ``a`` is not above ``b``."""
-    return float(a <= b)
+    return 1.0 if a <= b else 0.0
 
 
 def at_least(a: float, b: float) -> float:
     """Whether ``a`` is not below ``b``."""
-    return float(a >= b)
+    return 1.0 if a >= b else 0.0
 
 
 def equal(a: float, b: float) -> float:
     """Whether they are the same number."""
-    return float(a == b)
+    return 1.0 if a == b else 0.0
 
 
 def unequal(a: float, b: float) -> float:
     """Whether they are different numbers."""
-    return float(a != b)
+    return 1.0 if a != b else 0.0
 
 
 def both(a: float, b: float) -> float:
     """Whether both are true."""
-    return float(a != 0.0 and b != 0.0)
+    return 1.0 if a != 0.0 and b != 0.0 else 0.0
 
 
 def either(a: float, b: float) -> float:
     """Whether one of them is true."""
-    return float(a != 0.0 or b != 0.0)
+    return 1.0 if a != 0.0 or b != 0.0 else 0.0
 
 
 def one_alone(a: float, b: float) -> float:
     """Whether exactly one of them is true."""
-    return float((a != 0.0) != (b != 0.0))
+    return 1.0 if (a != 0.0) != (b != 0.0) else 0.0
 
 
 def opposite(a: float) -> float:
     """Whether it is false."""
-    return float(a == 0.0)
+    return 1.0 if a == 0.0 else 0.0
 
 
 def bits_of_both(a: float, b: float) -> float:

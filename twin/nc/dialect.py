@@ -12,7 +12,8 @@ from twin.nc.expressions import ExpressionSyntax
 from twin.nc.planes import XY, Plane
 
 if TYPE_CHECKING:
-    from twin.nc.blocks import Statement, Word
+    from twin.nc.block_writer import BlockWriter
+    from twin.nc.blocks import Block, Statement, Word
     from twin.nc.control import Control
     from twin.nc.source import Source
 
@@ -270,11 +271,14 @@ class Dialect:
         read_variable: Value of a variable, given its name and index.
         is_local: Whether calls with variables of their own have a variable of this name anew.
         given_variable: The value of a variable among those of the job, or None.
+        live_variables: Variables that no memory holds: the dialect knows their value itself.
         place_switches: Reports the block's switch points, told the length of its move.
         library: Adds files that the program calls, looked for in the folder of the program.
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
+        translate: Writes as instructions what one of its blocks does that is not plain words alone;
+            raises ``NotTranslatableError`` for what is left to the general way; None: all is.
         disturbed: Something that only this dialect remembers acts on plain blocks now, so that they
             must go the general way; None: nothing can.
     """
@@ -311,9 +315,11 @@ class Dialect:
     given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
         given.get(name)
     )
+    live_variables: frozenset[str] = frozenset()
     place_switches: Callable[["Control", float], None] | None = None
     library: Callable[["Source", Path], "Source"] | None = None
     prepare: Action | None = None
     after_motion: Action | None = None
     finish: Action | None = None
+    translate: Callable[["Control", "Block", "BlockWriter"], None] | None = None
     disturbed: Callable[["Control"], bool] | None = None

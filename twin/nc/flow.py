@@ -48,6 +48,20 @@ class Return:
     restores: "tuple[Modal, dict[str, int]] | None" = None
 
 
+class Progress(NamedTuple):
+    """How far a program has come.
+
+    Attributes:
+        place: What comes next.
+        furthest: The furthest place that was run.
+        steps_left: Blocks that may still be run again.
+    """
+
+    place: Place
+    furthest: Place
+    steps_left: int
+
+
 class Flow:
     """The program counter.
 
@@ -122,28 +136,35 @@ class Flow:
         self.place = Place(line, 0)
         return None
 
-    def straight_on(self) -> range:
-        """The lines, from 0, that run one after another from here whatever they hold but jumps."""
+    def progress(self) -> Progress:
+        """How far the program has come."""
         line, part = self.place
-        if part > 0:
-            if line != self._here_line or part < len(self._here):
-                return range(0)
-            line += 1
-        last = len(self._lines)
-        call = self.calls[-1] if self.calls else None
-        if call is not None and call.last is not None:
-            last = min(last, call.last.line)
-        if line <= self._furthest.line:
-            last = min(last, self._furthest.line, line + self._steps_left)
-        return range(line, last)
+        if part > 0 and line == self._here_line and part >= len(self._here):
+            line, part = line + 1, 0
+        return Progress(Place(line, part), self._furthest, self._steps_left)
 
-    def passed(self, line: int, blocks: int) -> None:
-        """Lines of ``straight_on`` up to ``line`` have been run, with so many blocks."""
-        if line <= self._furthest.line:
-            self._steps_left -= blocks
-        elif blocks:
-            self._furthest = Place(line - 1, 0)
-        self.place = Place(line, 0)
+    def resume(self, progress: Progress, calls: list[Return]) -> None:
+        """The program has gone on past here, into these calls."""
+        self.place, self._furthest, self._steps_left = progress
+        self.calls = calls
+        self._jumped = self._jumped or self.place <= self._furthest
+
+    def quiet_blocks(self, line: int) -> tuple[Block, ...] | None:
+        """A line's blocks, read before it is run; None where there is something to say of it."""
+        before = self._report.line, len(self._report.warnings)
+        try:
+            blocks = self._lexer.blocks(self._lines[line], line + 1)
+        except ProgramError:
+            return None
+        finally:
+            said = len(self._report.warnings) - before[1]
+            self._report.line = before[0]
+            del self._report.warnings[before[1] :]
+        if said:
+            return None
+        if blocks:
+            self._here, self._here_line = blocks, line
+        return blocks
 
     def _past_end(self, call: Return) -> bool:
         return call.last is not None and self.place > call.last

@@ -60,12 +60,14 @@ class PlainTables:
         lines: How lines are read.
         blocks: What blocks mean.
         groups: The modal groups in the order of their numbers in ``blocks``.
+        roles: What the letters of plain words are.
     """
 
     def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
         self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
         self._interpolations = _interpolations(dialect)
-        self.lines = _line_tables(dialect, settings)
+        self.roles = _roles(dialect, settings)
+        self.lines = _line_tables(dialect, self.roles)
         self.blocks = self._block_tables(dialect, settings)
 
     def modal(self, modal: Modal) -> FloatArray:
@@ -143,13 +145,13 @@ def _kind(interpolation: Interpolation | None) -> int:
     return RAPID_LINE if interpolation.rapid else FEED_LINE
 
 
-def _line_tables(dialect: Dialect, settings: ControlSettings) -> LineTables:
-    roles = np.full(26, OTHER, np.int64)
-    for letter, role in _roles(dialect, settings).items():
-        roles[ord(letter) - ord("A")] = role
+def _line_tables(dialect: Dialect, roles: Mapping[str, int]) -> LineTables:
+    by_letter = np.full(26, OTHER, np.int64)
+    for letter, role in roles.items():
+        by_letter[ord(letter) - ord("A")] = role
     comments = dialect.syntax.comments
     return LineTables(
-        roles,
+        by_letter,
         _marks([comment.opening for comment in comments]),
         _marks([comment.closing for comment in comments]),
         _whole_line(comments),

@@ -92,7 +92,7 @@ def read_words(
                 return NOT_PLAIN
             continue
         role = tables.roles[letter - _LETTER_A]
-        if role == OTHER or count == MOST_WORDS:
+        if role == OTHER or count == MOST_WORDS or (role == NUMBER and count > 0):
             return NOT_PLAIN
         value, at = _read_number(data, skip_blanks(data, at + 1, end), end)
         if at == NOT_PLAIN:

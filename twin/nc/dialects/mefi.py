@@ -7,6 +7,7 @@ import dataclasses
 
 from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Block
 from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
@@ -104,6 +105,28 @@ def jump_with_repeat(control: Control) -> None:
     if number != int(number):
         control.fail("jump-target", f"{target.text} is no block number", target)
     control.flow.jump(int(number), (target.column, target.width), "L")
+
+
+def translate(control: Control, block: Block, writer: BlockWriter) -> None:
+    """Write a block as instructions for the fast way, with its jump as ``jump_with_repeat`` does.
+
+    Raises:
+        NotTranslatableError: It is left to the general way.
+    """
+    jumps = [word for word in block.words if word.address == "G" and word.value == 73.0]
+    targets = [word for word in block.words if jumps and word.address == "L"]
+    counts = [word for word in block.words if jumps and word.address == "Q"]
+    taken = (*jumps[:1], *targets[:1], *counts[:1])
+    writer.words(block, [word for word in block.words if word not in taken])
+    if jumps:
+        times = control.number(counts[0]) if counts else 1.0
+        if not targets or times < 0.0 or times != int(times):
+            raise NotTranslatableError
+        number, span = control.number(targets[0]), (targets[0].column, targets[0].width)
+        if number != int(number):
+            raise NotTranslatableError
+        place = control.flow.find_label(int(number), span, "L")
+        writer.jump_counted(place, repeat_counter(block), times)
 
 
 def _arc(control: Control, *, clockwise: bool) -> None:
@@ -257,5 +280,6 @@ MEFI = Dialect(
         Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
     ),
     memory=Dragging,
+    translate=translate,
     disturbed=lambda control: _dragging(control).on,
 )

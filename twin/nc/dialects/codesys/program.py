@@ -145,20 +145,36 @@ def given_variable(given: Mapping[str, float], name: str) -> float | None:
     return None
 
 
-def let(control: Control, statement: Statement) -> None:
-    """LET: declare a local variable, 0 unless it is given a value."""
+def declaration(control: Control, statement: Statement) -> tuple[str, Expression | None, int]:
+    """What LET declares: name, value or None, and where that stands.
+
+    Raises:
+        ProgramError: It cannot be read.
+    """
     match = _LET.match(statement.text)
     if match is None:
         control.report.fail(
             "declaration", "LET needs a variable", statement.column, 3, "LET #x : LREAL := 1"
         )
     rest, column = statement.text[match.end() :], statement.text_column + match.end()
-    value = 0.0
+    value = None
     if match[2]:
-        value = control.compute(control.expression(rest, column), column)
+        value = control.expression(rest, column)
     elif rest.strip():
         control.report.fail("declaration", "this cannot follow a declaration", column)
-    control.variables.write(match[1].upper(), value)
+    return match[1].upper(), value, column
+
+
+def let(control: Control, statement: Statement) -> None:
+    """LET: declare a local variable, 0 unless it is given a value."""
+    name, value, column = declaration(control, statement)
+    control.variables.write(name, 0.0 if value is None else control.compute(value, column))
+
+
+def assigned(control: Control, statement: Statement) -> tuple[str, Expression, int]:
+    """What ``#x := value`` assigns: name, value, and where that stands."""
+    text, column = statement.text.lstrip()[2:], statement.text_column + 2
+    return statement.keyword.strip(), control.expression(text, column), column
 
 
 def assign(control: Control, statement: Statement) -> None:
@@ -169,11 +185,11 @@ def assign(control: Control, statement: Statement) -> None:
         control.report.fail(
             "unknown-variable", f"{name} is not declared", statement.column, len(name), hint
         )
-    text, column = statement.text.lstrip()[2:], statement.text_column + 2
-    control.variables.write(name, control.compute(control.expression(text, column), column))
+    _, value, column = assigned(control, statement)
+    control.variables.write(name, control.compute(value, column))
 
 
-def _reference(control: Control, word: Word | None) -> str:
+def reference(control: Control, word: Word | None) -> str:
     """The variable that O names; without O the internal one."""
     if word is None:
         return COUNTER
@@ -203,7 +219,7 @@ def add_to_variable(control: Control) -> None:
 
 
 def _change(control: Control, *, add: bool) -> None:
-    name, word = _reference(control, control.take("O")), control.take("D")
+    name, word = reference(control, control.take("O")), control.take("D")
     if word is None:
         control.fail("variable-value", "the code needs its value D")
     _store(control, name, control.number(word), add=add)

@@ -1,7 +1,9 @@
 """Parameters, variables and expressions of the Fagor CNC 8070."""
 
+import dataclasses
 import math
 import re
+from collections.abc import Iterator
 from typing import NoReturn
 
 from twin.nc import arithmetic
@@ -64,6 +66,10 @@ EXPRESSIONS = ExpressionSyntax(
 )
 """Angles are degrees."""
 
+POLAR_ABSCISSA, POLAR_ORDINATE = "V.G.PORGF", "V.G.PORGS"
+LIVE = frozenset({POLAR_ABSCISSA, POLAR_ORDINATE})
+"""The polar origin."""
+
 STATEMENT = (
     r"%|\$(?:GOTO|IF|ELSEIF|ELSE|ENDIF|SWITCH|CASE|DEFAULT|ENDSWITCH|FOR|ENDFOR|WHILE|ENDWHILE"
     r"|DO|ENDDO|BREAK|CONTINUE)\b"
@@ -88,9 +94,9 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
     memory = memory_of(control)
     if name == "P" and index is not None:
         name = f"P{index:g}"
-    if name == "V.G.PORGF":
+    if name == POLAR_ABSCISSA:
         return memory.origin[0]
-    if name == "V.G.PORGS":
+    if name == POLAR_ORDINATE:
         return memory.origin[1]
     value = control.variables.read(name)
     if value is not None:
@@ -108,28 +114,40 @@ def is_local(name: str) -> bool:
     return name in _LOCAL or (name.startswith("P0") and int(name[1:]) < LOCAL_PARAMETERS)
 
 
-def assign(control: Control, statement: Statement) -> None:
-    """``P1 = 5``, ``P[P2] += 1``, ``V.P.depth = 3``; several on a line."""
+@dataclasses.dataclass(frozen=True, slots=True)
+class Assignment:
+    """One assignment of a statement.
+
+    Attributes:
+        name: The variable, or ``P`` where its number is computed.
+        index: That number, or None.
+        index_column: Where it stands.
+        operator: What joins old and new value; empty: the new one alone counts.
+        value: The new value.
+        column: Where it stands.
+    """
+
+    name: str
+    index: Expression | None
+    index_column: int
+    operator: str
+    value: Expression
+    column: int
+
+
+def assignments(control: Control, statement: Statement) -> Iterator[Assignment]:
+    """Read ``P1 = 5``, ``P[P2] += 1``, ``V.P.depth = 3``; several on a line."""
     name, text, at = statement.keyword.strip(), statement.text, 0
+    begin = statement.text_column
     while True:
+        index, index_at = None, at
         if name == "P":
-            index, at = _index(control, statement, at)
-            name = f"P{index}"
+            index, at = _read(control, statement, at)
         match = _SET.match(text, at)
         if match is None:
             refuse(control, statement, "assignment", "'=' is missing behind the name")
-        try:
-            expression, end = control.flow.lexer.expressions.read(text, match.end())
-        except ExpressionError as error:
-            column = statement.text_column + (error.column or 0)
-            control.report.fail(error.code, str(error), column, 1, error.hint)
-        value = control.compute(expression, statement.text_column + match.end())
-        if match[1]:
-            old = _old_value(control, statement, name)
-            value = control.compute(
-                _combined(old, match[1], value), statement.text_column + match.end()
-            )
-        control.variables.write(name, value)
+        value, end = _read(control, statement, match.end())
+        yield Assignment(name, index, begin + index_at, match[1], value, begin + match.end())
         separator = _SEPARATOR.match(text, end)
         assert separator is not None
         at = separator.end()
@@ -146,6 +164,31 @@ def assign(control: Control, statement: Statement) -> None:
         name, at = following[0].upper(), following.end()
 
 
+def _read(control: Control, statement: Statement, at: int) -> tuple[Expression, int]:
+    try:
+        return control.flow.lexer.expressions.read(statement.text, at)
+    except ExpressionError as error:
+        column = statement.text_column + (error.column or 0)
+        control.report.fail(error.code, str(error), column, 1, error.hint)
+
+
+def assign(control: Control, statement: Statement) -> None:
+    """Give variables their values, one after the other."""
+    for each in assignments(control, statement):
+        name = each.name
+        if each.index is not None:
+            index = control.compute(each.index, each.index_column)
+            if index < 0.0 or index != int(index):
+                message = f"there is no parameter P[{index:g}]"
+                refuse(control, statement, "parameter-number", message)
+            name = f"P{int(index)}"
+        value = control.compute(each.value, each.column)
+        if each.operator:
+            old = _old_value(control, statement, name)
+            value = control.compute(_combined(old, each.operator, value), each.column)
+        control.variables.write(name, value)
+
+
 def _combined(old: float, operator: str, value: float) -> Expression:
     compute = EXPRESSIONS.operators[operator].compute
     tree = Computed(operator, compute, (Number(old), Number(value)))
@@ -157,15 +200,3 @@ def _old_value(control: Control, statement: Statement, name: str) -> float:
         return read_variable(control, name, None)
     except ExpressionError as error:
         refuse(control, statement, error.code, str(error), error.hint)
-
-
-def _index(control: Control, statement: Statement, at: int) -> tuple[int, int]:
-    try:
-        expression, end = control.flow.lexer.expressions.read(statement.text, at)
-    except ExpressionError as error:
-        column = statement.text_column + (error.column or 0)
-        control.report.fail(error.code, str(error), column, 1, error.hint)
-    value = control.compute(expression, statement.text_column + at)
-    if value < 0.0 or value != int(value):
-        refuse(control, statement, "parameter-number", f"there is no parameter P[{value:g}]")
-    return int(value), end

@@ -1,0 +1,178 @@
+"""The compiled run through a program: lines of text, translated blocks, parts that are called.
+
+It stops before a block that it does not know or that something is wrong with, with everything as it
+was before that block.
+"""
+
+import numba
+
+from twin.nc.canonical import IntArray
+from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
+from twin.nc.lexer import LONGEST_LINE
+from twin.nc.plain_kernels import run_words
+from twin.nc.plain_state import BlockTables, Constants, Rows, State
+from twin.nc.plain_words_kernels import (
+    NOT_PLAIN,
+    ByteArray,
+    LineTables,
+    line_end,
+    read_words,
+    skip_blanks,
+)
+from twin.nc.routine_state import (
+    AGAIN,
+    BACK,
+    BLOCKS,
+    CALLS,
+    DEPTH,
+    ENDED,
+    FIRST,
+    FULL,
+    FURTHEST,
+    INKED,
+    LAST,
+    LEFT,
+    LINE,
+    MADE,
+    NO_PLACE,
+    OWN,
+    PART,
+    PAUSED,
+    STEPS_LEFT,
+    UNREAD,
+    Routine,
+)
+from twin.nc.steps_kernels import DONE, Bench, new_bench, run_steps
+
+_BLOCK = int(Step.BLOCK)
+_PART_MASK = (1 << PART_BITS) - 1
+
+
+@numba.njit(cache=True)
+def run_program(
+    data: ByteArray,
+    starts: IntArray,
+    line_tables: LineTables,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    rows: Rows,
+    table: Table,
+    routine: Routine,
+    most: int,
+) -> int:
+    """Run blocks until one is for the general way or for the translator, or the rows are full.
+
+    Args:
+        data: The program as UTF-8.
+        starts: Where each line begins, and where the last one ends, shape (lines + 1,).
+        line_tables: How lines are read.
+        tables: What blocks mean.
+        constants: What stays.
+        state: What changes with moves.
+        rows: Room for the moves.
+        table: What translated lines do.
+        routine: How far the program has come.
+        most: Lines and blocks after which it pauses.
+
+    Returns:
+        Why it ended.
+    """
+    progress, calls = routine.progress, routine.calls
+    bench = new_bench(len(state.modal))
+    lines = len(starts) - 1
+    for _ in range(most):
+        _end_parts(progress, calls)
+        line = progress[LINE]
+        if line >= lines:
+            return ENDED
+        if progress[MADE] == len(rows.codes):
+            return FULL
+        row = table.first[line]
+        if row == GENERAL:
+            return LEFT
+        if row == UNKNOWN:
+            if progress[PART] > 0:
+                return UNREAD
+            result = _run_text(
+                data, starts, line_tables, tables, constants, state, rows, progress, bench
+            )
+        else:
+            for _part in range(progress[PART]):
+                row = table.argument[row] if table.step[row] == _BLOCK else 0
+            if table.step[row] != _BLOCK:
+                progress[LINE], progress[PART] = line + 1, 0
+                continue
+            result = run_steps(row, table, tables, constants, state, rows, routine, bench)
+        if result != DONE:
+            return result
+    return PAUSED
+
+
+@numba.njit(cache=True)
+def _end_parts(progress: IntArray, calls: IntArray) -> None:
+    """Parts that end by place and have been passed run again, or go back to their caller."""
+    while progress[CALLS] > 0:
+        call = calls[progress[CALLS] - 1]
+        here = progress[LINE] << PART_BITS | progress[PART]
+        if call[LAST] == NO_PLACE or here <= call[LAST]:
+            return
+        to = call[FIRST]
+        if call[AGAIN] > 0:
+            call[AGAIN] -= 1
+        else:
+            to = call[BACK]
+            progress[CALLS] -= 1
+            progress[DEPTH] -= call[OWN]
+        progress[LINE], progress[PART] = to >> PART_BITS, to & _PART_MASK
+
+
+@numba.njit(cache=True)
+def _run_text(
+    data: ByteArray,
+    starts: IntArray,
+    line_tables: LineTables,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    rows: Rows,
+    progress: IntArray,
+    bench: Bench,
+) -> int:
+    """Run a line of plain words as it is written."""
+    line = progress[LINE]
+    begin = starts[line]
+    end = line_end(data, begin, starts[line + 1])
+    if end - begin > LONGEST_LINE:
+        return LEFT
+    count = read_words(data, begin, end, line_tables, bench.roles, bench.values)
+    if count == NOT_PLAIN:
+        return UNREAD
+    if count > 0:
+        place = line << PART_BITS
+        again = place <= progress[FURTHEST]
+        if again and progress[STEPS_LEFT] == 0:
+            return LEFT
+        made = run_words(
+            line + 1,
+            bench.roles[:count],
+            bench.values[:count],
+            tables,
+            constants,
+            state,
+            bench.modal,
+            rows,
+            progress[MADE],
+        )
+        if made == NOT_PLAIN:
+            return LEFT
+        if again:
+            progress[STEPS_LEFT] -= 1
+        else:
+            progress[FURTHEST] = place
+        progress[MADE] = made
+        progress[BLOCKS] += 1
+    if skip_blanks(data, begin, end) < end:
+        progress[INKED] = line
+    progress[LINE], progress[PART] = line + 1, 0
+    return DONE

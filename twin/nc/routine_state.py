@@ -1,0 +1,53 @@
+"""What the compiled run through a program is given and changes besides its moves, as columns."""
+
+from typing import NamedTuple
+
+from twin.nc.canonical import FloatArray, IntArray
+
+LINE, PART, FURTHEST, STEPS_LEFT, DEPTH, CALLS, INKED, BLOCKS, MADE = range(9)
+"""Places in the progress: line and part that come next, from 0; the furthest place that was run;
+blocks that may still be run again; row of the local variables; parts that are being run for a
+caller; last line that was not blank, or -1; blocks run; moves made."""
+PROGRESS = 9
+
+BACK, FIRST, AGAIN, LAST, OWN, RESTORES = range(6)
+"""Columns of the calls, as ``Return`` has them; ``LAST`` is ``NO_PLACE`` where a word ends the
+part, ``RESTORES`` is 1 where something is put back into force."""
+CALL_COLUMNS = 6
+NO_PLACE = -1
+MOST_CALLS = 64
+"""Parts within each other: more than any dialect allows."""
+
+ENDED, FULL, PAUSED, UNREAD, LEFT = range(5)
+"""Why a run ends: behind the last line; no room for a move; the caller has not been heard for
+long; at a line that is to be translated; at a block for the general way."""
+
+
+class Memory(NamedTuple):
+    """The columns of ``Variables``.
+
+    Attributes:
+        common: Shape (n,).
+        given_common: Shape (n,).
+        local: Shape (calls, m).
+        given_local: Shape (m,).
+    """
+
+    common: FloatArray
+    given_common: FloatArray
+    local: FloatArray
+    given_local: FloatArray
+
+
+class Routine(NamedTuple):
+    """How far a program has come.
+
+    Attributes:
+        progress: Shape (``PROGRESS``,).
+        calls: The innermost last, shape (``MOST_CALLS``, ``CALL_COLUMNS``).
+        memory: Its variables.
+    """
+
+    progress: IntArray
+    calls: IntArray
+    memory: Memory

@@ -1,0 +1,403 @@
+"""One translated block: its steps on a stack, all of them or none.
+
+Each step is what ``instructions.Step`` says of it.
+"""
+
+import math
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.expression_kernels import of_one, of_three, of_two
+from twin.nc.expressions import LARGEST_NUMBER
+from twin.nc.instructions import PART_BITS, Step, Table
+from twin.nc.plain_kernels import run_words
+from twin.nc.plain_state import BlockTables, Constants, Rows, State
+from twin.nc.plain_words_kernels import MOST_WORDS, NOT_PLAIN
+from twin.nc.routine_state import (
+    AGAIN,
+    BACK,
+    BLOCKS,
+    CALLS,
+    DEPTH,
+    FIRST,
+    FULL,
+    FURTHEST,
+    INKED,
+    LAST,
+    LEFT,
+    LINE,
+    MADE,
+    NO_PLACE,
+    OWN,
+    PART,
+    RESTORES,
+    STEPS_LEFT,
+    Memory,
+    Routine,
+)
+
+DONE = -1
+"""The block was run."""
+MOST_VALUES = 256
+"""Values that a block's stack holds."""
+MOST_STORES = 64
+"""Variables that a block may set."""
+
+(
+    _BLOCK,
+    _NEXT,
+    _LEAVE,
+    _NUMBER,
+    _LOAD,
+    _LOAD_NUMBERED,
+    _LOAD_BELOW,
+    _LOAD_NUMBERED_BELOW,
+    _DEFINED,
+    _NEGATE,
+    _ONE,
+    _TWO,
+    _THREE,
+    _DROP,
+    _STORE,
+    _STORE_DECLARED,
+    _STORE_NUMBERED,
+    _WORD,
+    _WORD_NUMBER,
+    _RUN,
+    _RUN_OFTEN,
+    _JUMP,
+    _JUMP_IF,
+    _JUMP_UNLESS,
+    _JUMP_CASE,
+    _BEGIN_FOR,
+    _STEP_FOR,
+    _COUNT_DOWN,
+    _MAY_CALL,
+    _OWN_VARIABLES,
+    _CALL,
+    _RANGE,
+    _REPEAT,
+    _MAY_RETURN,
+    _RETURN,
+) = range(len(Step))  # plain integers compile faster than members
+_NO_SLOT = np.iinfo(np.int64).min
+_PART_MASK = (1 << PART_BITS) - 1
+
+
+class Bench(NamedTuple):
+    """Room to work in.
+
+    Attributes:
+        roles: Of words, shape (``MOST_WORDS``,).
+        values: Of words, shape (``MOST_WORDS``,).
+        modal: Modal state of the block.
+        stack: Shape (``MOST_VALUES``,).
+        slots: Variables that the block has set, shape (``MOST_STORES``,).
+        before: What they held before, shape (``MOST_STORES``,).
+    """
+
+    roles: IntArray
+    values: FloatArray
+    modal: FloatArray
+    stack: FloatArray
+    slots: IntArray
+    before: FloatArray
+
+
+@numba.njit(cache=True)
+def new_bench(modal: int) -> Bench:
+    """Room to work in, for so many fields of the modal state."""
+    return Bench(
+        np.zeros(MOST_WORDS, np.int64),
+        np.zeros(MOST_WORDS),
+        np.zeros(modal),
+        np.zeros(MOST_VALUES),
+        np.zeros(MOST_STORES, np.int64),
+        np.zeros(MOST_STORES),
+    )
+
+
+@numba.njit(cache=True)
+def run_steps(
+    row: int,
+    table: Table,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    rows: Rows,
+    routine: Routine,
+    bench: Bench,
+) -> int:
+    """Run the block that begins at a row; ``DONE``, or why it was left as if not begun.
+
+    Args:
+        row: Row of its ``BLOCK``.
+        table: The instructions.
+        tables: What words mean.
+        constants: What stays.
+        state: What changes with moves.
+        rows: Room for the moves, one at least.
+        routine: How far the program has come.
+        bench: Room to work in.
+    """
+    progress, calls, memory = routine.progress, routine.calls, routine.memory
+    stack = bench.stack
+    line, made, depth, called = progress[LINE], progress[MADE], progress[DEPTH], progress[CALLS]
+    place = line << PART_BITS | progress[PART]
+    steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
+    behind = (line + 1) << PART_BITS if table.argument[row] == 0 else place + 1
+    going, range_end = behind, NO_PLACE
+    top, words, stores, own, why = 0, 0, 0, 0, LEFT
+    while steps_left >= 0:
+        row += 1
+        step, argument = table.step[row], table.argument[row]
+        if step == _NUMBER:
+            stack[top] = table.number[row]
+            top += 1
+        elif step == _LOAD:
+            value = _load(memory, depth, argument)
+            if np.isnan(value):
+                break
+            stack[top] = value
+            top += 1
+        elif step == _TWO:
+            top -= 1
+            value = of_two(argument, stack[top - 1], stack[top])
+            if not abs(value) <= LARGEST_NUMBER:
+                break
+            stack[top - 1] = value
+        elif step == _ONE:
+            value = of_one(argument, stack[top - 1])
+            if not abs(value) <= LARGEST_NUMBER:
+                break
+            stack[top - 1] = value
+        elif step == _THREE:
+            top -= 2
+            value = of_three(argument, stack[top - 1], stack[top], stack[top + 1])
+            if not abs(value) <= LARGEST_NUMBER:
+                break
+            stack[top - 1] = value
+        elif step == _NEGATE:
+            stack[top - 1] = -stack[top - 1]
+        elif step == _LOAD_NUMBERED:
+            slot = _numbered(table.numbered, stack[top - 1])
+            value = np.nan if slot == _NO_SLOT else _load(memory, depth, slot)
+            if np.isnan(value):
+                break
+            stack[top - 1] = value
+        elif step in (_LOAD_BELOW, _LOAD_NUMBERED_BELOW):
+            slot = argument
+            if step == _LOAD_NUMBERED_BELOW:
+                slot = _numbered(table.numbered, stack[top - 2])
+            value = np.nan if slot == _NO_SLOT else _load(memory, depth, slot)
+            if np.isnan(value):
+                break
+            stack[top] = stack[top - 1]
+            stack[top - 1] = value
+            top += 1
+        elif step == _DEFINED:
+            stack[top] = 0.0 if np.isnan(_load(memory, depth, argument)) else 1.0
+            top += 1
+        elif step == _DROP:
+            top -= 1
+        elif step in (_STORE, _STORE_DECLARED, _STORE_NUMBERED):
+            top -= 1
+            slot = argument
+            if step == _STORE_NUMBERED:
+                slot = _numbered(table.numbered, stack[top - 1])
+                if slot == _NO_SLOT:
+                    break
+            before = _own_value(memory, depth, slot)
+            if step == _STORE_DECLARED and np.isnan(before):
+                break
+            bench.slots[stores], bench.before[stores] = slot, before
+            stores += 1
+            _set(memory, depth, slot, stack[top])
+        elif step in (_WORD, _WORD_NUMBER):
+            bench.roles[words] = argument
+            if step == _WORD:
+                top -= 1
+                bench.values[words] = stack[top]
+            else:
+                bench.values[words] = table.number[row]
+            words += 1
+        elif step == _RUN:
+            after = run_words(
+                line + 1,
+                bench.roles[:words],
+                bench.values[:words],
+                tables,
+                constants,
+                state,
+                bench.modal,
+                rows,
+                made,
+            )
+            if after == NOT_PLAIN:
+                break
+            made = after
+        elif step == _RUN_OFTEN:
+            top -= 1
+            count = stack[top]
+            if not 1.0 <= count <= table.number[row] or count != np.floor(count):
+                break
+            if made + count > len(rows.codes):
+                why = FULL
+                break
+            made = _run_often(line, int(count), words, tables, constants, state, rows, made, bench)
+            if made == NOT_PLAIN:
+                break
+        elif step == _JUMP:
+            going = argument
+        elif step in (_JUMP_IF, _JUMP_UNLESS):
+            top -= 1
+            if (stack[top] != 0.0) == (step == _JUMP_IF):
+                going = argument
+                step = _NEXT
+        elif step == _JUMP_CASE:
+            top -= 1
+            if stack[top] == stack[top - 1]:
+                going = argument
+                step = _NEXT
+        elif step == _BEGIN_FOR:
+            first, last, width = stack[top - 3], stack[top - 2], stack[top - 1]
+            if width == 0.0:
+                break
+            stack[top - 3] = 1.0 if (first - last) * width > 0.0 else 0.0
+            stack[top - 2] = first
+            top -= 1
+        elif step == _STEP_FOR:
+            last, width = stack[top - 3], stack[top - 2]
+            if width == 0.0:
+                break
+            value = stack[top - 1] + width
+            stack[top - 4] = 1.0 if (value - last) * width <= 0.0 else 0.0
+            stack[top - 3] = value
+            top -= 2
+        elif step == _COUNT_DOWN:
+            left = _own_value(memory, depth, argument)
+            if np.isnan(left):
+                left = table.number[row]
+            _set(memory, depth, argument, np.nan if left == 0.0 else left - 1.0)
+            stack[top] = 0.0 if left == 0.0 else 1.0
+            top += 1
+        elif step == _MAY_CALL:
+            if called >= argument or called >= len(calls) or depth + 1 >= len(memory.local):
+                break
+        elif step == _OWN_VARIABLES:
+            depth += 1
+            own = 1
+            memory.local[depth, :] = np.nan
+        elif step in (_CALL, _REPEAT):
+            again = 0.0
+            if step == _REPEAT:
+                top -= 1
+                again = stack[top] - 1.0
+                if not again >= 0.0 or again != np.floor(again):
+                    break
+            call = calls[called]
+            call[BACK], call[FIRST], call[AGAIN] = behind, argument, int(again)
+            call[LAST], call[OWN], call[RESTORES] = range_end, own, 0
+            called += 1
+            going = argument
+        elif step == _RANGE:
+            range_end = argument
+        elif step == _MAY_RETURN:
+            from_part = _innermost(calls, called)
+            if from_part == 0 or calls[from_part - 1, RESTORES] != 0:
+                break
+        elif step == _RETURN:
+            called = _innermost(calls, called) - 1
+            depth -= calls[called, OWN]
+            going = calls[called, BACK]
+        elif step == _LEAVE:
+            break
+        if step == _NEXT:
+            progress[LINE], progress[PART] = going >> PART_BITS, going & _PART_MASK
+            progress[FURTHEST] = max(progress[FURTHEST], place)
+            progress[STEPS_LEFT], progress[DEPTH], progress[CALLS] = steps_left, depth, called
+            progress[INKED], progress[MADE] = line, made
+            progress[BLOCKS] += 1
+            return DONE
+    while stores > 0:
+        stores -= 1
+        _set(memory, progress[DEPTH], bench.slots[stores], bench.before[stores])
+    return why
+
+
+@numba.njit(cache=True)
+def _run_often(
+    line: int,
+    count: int,
+    words: int,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    rows: Rows,
+    made: int,
+    bench: Bench,
+) -> int:
+    """Run words again and again; the number of rows, or ``NOT_PLAIN`` with the state untouched."""
+    modal, in_force, feed = state.modal.copy(), state.in_force.copy(), state.feed.copy()
+    programmed, part = state.programmed.copy(), state.part.copy()
+    for _ in range(count):
+        made = run_words(
+            line + 1,
+            bench.roles[:words],
+            bench.values[:words],
+            tables,
+            constants,
+            state,
+            bench.modal,
+            rows,
+            made,
+        )
+        if made == NOT_PLAIN:
+            state.modal[:], state.in_force[:], state.feed[:] = modal, in_force, feed
+            state.programmed[:], state.part[:] = programmed, part
+            break
+    return made
+
+
+@numba.njit(cache=True)
+def _innermost(calls: IntArray, called: int) -> int:
+    """How many parts are being run up to the innermost that a word ends; 0: there is none."""
+    while called > 0 and calls[called - 1, LAST] != NO_PLACE:
+        called -= 1
+    return called
+
+
+@numba.njit(cache=True)
+def _numbered(numbered: IntArray, index: float) -> int:
+    """Slot of the variable with a number; ``_NO_SLOT`` where it has none."""
+    if not 0.0 <= index < len(numbered) or index != np.floor(index):
+        return _NO_SLOT
+    if math.copysign(1.0, index) < 0.0:  # -0 is written otherwise than 0
+        return _NO_SLOT
+    return numbered[int(index)]
+
+
+@numba.njit(cache=True)
+def _own_value(memory: Memory, depth: int, slot: int) -> float:
+    """What the program has given a variable; NaN: nothing."""
+    return memory.common[slot] if slot >= 0 else memory.local[depth, ~slot]
+
+
+@numba.njit(cache=True)
+def _load(memory: Memory, depth: int, slot: int) -> float:
+    """Value of a variable, the job's where it has none of its own; NaN: none at all."""
+    value = _own_value(memory, depth, slot)
+    if np.isnan(value):
+        value = memory.given_common[slot] if slot >= 0 else memory.given_local[~slot]
+    return value
+
+
+@numba.njit(cache=True)
+def _set(memory: Memory, depth: int, slot: int, value: float) -> None:
+    if slot >= 0:
+        memory.common[slot] = value
+    else:
+        memory.local[depth, ~slot] = value
