@@ -62,12 +62,13 @@ class BlockWriter:
         self._stores = 0
         self._begin = 0
 
-    def begin(self) -> int:
-        """A block begins; its row."""
+    def begin(self, block: Block) -> None:
+        """A block begins, with its N number."""
         self._stores = 0
         self._begin = self._instructions.rows
         self._add(Step.BLOCK)
-        return self._begin
+        if block.number != NO_BLOCK_NUMBER:
+            self._add(Step.WORD_NUMBER, self._number_role, float(block.number))
 
     def _add(self, step: Step, argument: int = 0, number: float = 0.0) -> None:
         if self._instructions.rows - self._begin > _MOST_ROWS:
@@ -76,26 +77,24 @@ class BlockWriter:
 
     # --- words
 
-    def words(self, block: Block, words: Iterable[Word], *, often: int = 0) -> None:
+    def words(self, words: Iterable[Word], *, often: int = 0) -> None:
         """Run plain words; ``often``: as many times as the value on the stack, at most these.
 
         Raises:
             NotTranslatableError: One of them has another meaning than plain words.
         """
-        count = 0
-        if block.number != NO_BLOCK_NUMBER:
-            self._add(Step.WORD_NUMBER, self._number_role, float(block.number))
-            count = 1
+        words = list(words)
+        if len(words) >= _MOST_WORDS:
+            raise NotTranslatableError
         for word in words:
             role = self._roles.get(word.address)
-            if role is None or word.incremental or count == _MOST_WORDS:
+            if role is None or word.incremental:
                 raise NotTranslatableError
             if isinstance(word.value, Expression):
                 self.value(word.value)
                 self._add(Step.WORD, role)
             else:
                 self._add(Step.WORD_NUMBER, role, word.value)
-            count += 1
         if often:
             self._add(Step.RUN_OFTEN, 0, float(often))
         else:

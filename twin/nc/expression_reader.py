@@ -60,6 +60,12 @@ class ExpressionReader:
                 self._kept[text, start] = read
         return read
 
+    def read_operand(self, text: str, start: int) -> tuple[Expression, int]:
+        """As ``read``, but up to the first operator only, such as the index of ``P[5] += 1``."""
+        reading = _Reading(self._syntax, self, text, start)
+        tree = reading.operand(0)
+        return Expression(text[start : reading.at].strip(), tree), reading.at
+
     def read_list(self, text: str, start: int) -> tuple[list[Expression], int]:
         """Read expressions separated by commas; return them with the end of the last."""
         expressions = []
@@ -111,7 +117,7 @@ class _Reading:
         """Operands joined by operators that bind at least as tightly as ``lowest``."""
         if depth > _DEEPEST:
             self._fail("expression-depth", f"more than {_DEEPEST} brackets within brackets")
-        left = self._operand(depth)
+        left = self.operand(depth)
         while (match := self._reader.operator_at(self._text, self.at)) is not None:
             operator = self._syntax.operators[match[1].upper()]
             if operator.precedence < lowest:
@@ -122,7 +128,8 @@ class _Reading:
             left = Computed(match[1].upper(), operator.compute, (left, right))
         return left
 
-    def _operand(self, depth: int) -> Tree:
+    def operand(self, depth: int) -> Tree:
+        """A value without operators behind it."""
         self._skip_blanks()
         opening, closing = self._syntax.brackets
         character = self._text[self.at : self.at + 1]
@@ -131,7 +138,7 @@ class _Reading:
             self.at += 1
             if depth > _DEEPEST:
                 self._fail("expression-depth", f"more than {_DEEPEST} signs in a row")
-            inner = self._operand(depth + 1)
+            inner = self.operand(depth + 1)
             return inner if character == "+" else Negative(inner)
         if character == opening:
             self.at += 1
@@ -163,7 +170,7 @@ class _Reading:
         if name in self._syntax.prefixes:
             self._count()
             self.at = after
-            return Prefixed(self._syntax.prefixes[name], self._operand(depth + 1))
+            return Prefixed(self._syntax.prefixes[name], self.operand(depth + 1))
         if name in self._syntax.constants:
             self.at = after
             return Number(self._syntax.constants[name])

@@ -97,6 +97,7 @@ class Flow:
         self._labels: dict[int | str, list[Place]] | None = None
         self._cache: dict[int, tuple[Block, ...]] = {}
         self._jumped = False
+        self._told_to_end = False
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
         self.place = Place(0, 0)
@@ -134,7 +135,14 @@ class Flow:
                 return blocks[part]
             line, part = line + 1, 0
         self.place = Place(line, 0)
+        if not self._told_to_end:
+            self._run_out()
         return None
+
+    def _run_out(self) -> None:
+        """The last line has been passed; what is to be said of that stands at the last text."""
+        written = (line for line in range(len(self._lines), 0, -1) if self._lines[line - 1].strip())
+        self._report.line = next(written, 0)
 
     def progress(self) -> Progress:
         """How far the program has come."""
@@ -199,7 +207,8 @@ class Flow:
         self.place = place
 
     def end(self) -> None:
-        """Go on behind the last line."""
+        """Go on behind the last line, which ends the program here."""
+        self._told_to_end = True
         self.place = Place(len(self._lines), 0)
 
     def seek(self, wanted: Callable[[Block], bool]) -> bool:

@@ -4,9 +4,8 @@ import numpy as np
 
 from twin.nc.canonical import IntArray
 from twin.nc.control import Control
-from twin.nc.flow import Progress, Return
+from twin.nc.flow import Place, Progress, Return
 from twin.nc.instructions import number_of_place, place_of_number
-from twin.nc.plain_words_kernels import NOT_PLAIN
 from twin.nc.routine_state import (
     AGAIN,
     BACK,
@@ -16,7 +15,6 @@ from twin.nc.routine_state import (
     DEPTH,
     FIRST,
     FURTHEST,
-    INKED,
     LAST,
     LINE,
     MADE,
@@ -44,7 +42,6 @@ class HandOver:
         self._progress[FURTHEST] = number_of_place(furthest)
         self._progress[STEPS_LEFT] = steps_left
         self._progress[DEPTH] = control.variables.depth
-        self._progress[INKED] = NOT_PLAIN
         self._given = control.flow.calls
         self._progress[CALLS] = len(self._given)
         self._calls = np.zeros((MOST_CALLS, CALL_COLUMNS), np.int64)
@@ -83,7 +80,7 @@ class HandOver:
     def give_back(self) -> None:
         """The control goes on from where the run has come to."""
         progress, control = self._progress, self._control
-        place = place_of_number(int(progress[LINE]) << 20 | int(progress[PART]))
+        place = Place(int(progress[LINE]), int(progress[PART]))
         furthest = place_of_number(int(progress[FURTHEST]))
         calls = [
             _call(row, self._given[index].restores if row[RESTORES] else None)
@@ -91,8 +88,6 @@ class HandOver:
         ]
         control.flow.resume(Progress(place, furthest, int(progress[STEPS_LEFT])), calls)
         control.variables.depth = int(progress[DEPTH])
-        if progress[INKED] != NOT_PLAIN:
-            control.report.line = int(progress[INKED]) + 1
 
 
 def _numbers(call: Return) -> list[int]:

@@ -125,6 +125,7 @@ class Instructions:
         self._step = np.zeros(256, np.int64)
         self._argument = np.zeros(256, np.int64)
         self._number = np.zeros(256)
+        self._step[0] = Step.NEXT
         self._rows = 1
         self.numbered = np.zeros(0, np.int64)
 
@@ -141,12 +142,32 @@ class Instructions:
     def add(self, step: Step, argument: int = 0, number: float = 0.0) -> None:
         """Append a row."""
         row = self._rows
-        if row == len(self._step):
+        self._grow(1)
+        self._step[row], self._argument[row], self._number[row] = step, argument, number
+        self._rows = row + 1
+
+    def add_rows(
+        self,
+        steps: IntArray,
+        arguments: IntArray,
+        numbers: FloatArray,
+        own: FloatArray,
+        at: IntArray,
+    ) -> int:
+        """Append rows, with other numbers at some of them; the first of them."""
+        first, count = self._rows, len(steps)
+        self._grow(count)
+        rows = slice(first, first + count)
+        self._step[rows], self._argument[rows], self._number[rows] = steps, arguments, numbers
+        self._number[at + first] = own
+        self._rows = first + count
+        return first
+
+    def _grow(self, rows: int) -> None:
+        while self._rows + rows > len(self._step):
             self._step = np.concatenate([self._step, np.zeros_like(self._step)])
             self._argument = np.concatenate([self._argument, np.zeros_like(self._argument)])
             self._number = np.concatenate([self._number, np.zeros_like(self._number)])
-        self._step[row], self._argument[row], self._number[row] = step, argument, number
-        self._rows = row + 1
 
     def lead_here(self, row: int) -> None:
         """The next row is the argument of an earlier one."""

@@ -50,7 +50,7 @@ class PlainRunner:
         self.full = False
 
     def run(self) -> bool:
-        """Run the blocks that come next as far as possible; False when there are none."""
+        """Run the blocks that come next as far as possible; False when one is for the control."""
         self.full = False
         if self._wait > 0:
             self._wait -= 1
@@ -62,14 +62,14 @@ class PlainRunner:
         state, rows = self._state(), self._rows.first(room)
         handed = HandOver(control)
         why = self._run(state, rows, handed)
-        self.full = why == FULL and room < CHUNK
+        self.full = why == FULL and room - handed.made < CHUNK
         if handed.blocks >= _WORTHWHILE or why != LEFT:
             self._pause = 1
         else:
             self._wait = self._pause
             self._pause = min(2 * self._pause, _LONGEST_PAUSE)
         if not handed.gone_on:
-            return False
+            return self.full
         self._give_back(state, rows.first(handed.made))
         handed.give_back()
         return True

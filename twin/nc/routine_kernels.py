@@ -5,6 +5,8 @@ was before that block.
 """
 
 import numba
+import numpy as np
+import numpy.typing as npt
 
 from twin.nc.canonical import IntArray
 from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
@@ -12,12 +14,12 @@ from twin.nc.lexer import LONGEST_LINE
 from twin.nc.plain_kernels import run_words
 from twin.nc.plain_state import BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import (
+    MOST_WORDS,
     NOT_PLAIN,
     ByteArray,
     LineTables,
     line_end,
     read_words,
-    skip_blanks,
 )
 from twin.nc.routine_state import (
     AGAIN,
@@ -29,7 +31,6 @@ from twin.nc.routine_state import (
     FIRST,
     FULL,
     FURTHEST,
-    INKED,
     LAST,
     LEFT,
     LINE,
@@ -172,7 +173,38 @@ def _run_text(
             progress[FURTHEST] = place
         progress[MADE] = made
         progress[BLOCKS] += 1
-    if skip_blanks(data, begin, end) < end:
-        progress[INKED] = line
     progress[LINE], progress[PART] = line + 1, 0
     return DONE
+
+
+@numba.njit(cache=True)
+def unread_lines(
+    data: ByteArray,
+    starts: IntArray,
+    line_tables: LineTables,
+    first: npt.NDArray[np.int32],
+    line: int,
+    most: int,
+) -> IntArray:
+    """Those of the next lines that a run would not read by itself.
+
+    Args:
+        data: As for ``run_program``.
+        starts: The same.
+        line_tables: The same.
+        first: First row of each translated line.
+        line: The line before them, from 0.
+        most: How many lines are looked at.
+    """
+    roles, values = np.zeros(MOST_WORDS, np.int64), np.zeros(MOST_WORDS)
+    last = min(line + 1 + most, len(starts) - 1)
+    found, count = np.zeros(most, np.int64), 0
+    for each in range(line + 1, last):
+        begin = starts[each]
+        end = line_end(data, begin, starts[each + 1])
+        if first[each] != UNKNOWN or end - begin > LONGEST_LINE:
+            continue
+        if read_words(data, begin, end, line_tables, roles, values) == NOT_PLAIN:
+            found[count] = each
+            count += 1
+    return found[:count]

@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 from twin.nc.canonical import FloatArray, IntArray
 
-LINE, PART, FURTHEST, STEPS_LEFT, DEPTH, CALLS, INKED, BLOCKS, MADE = range(9)
+LINE, PART, FURTHEST, STEPS_LEFT, DEPTH, CALLS, BLOCKS, MADE = range(8)
 """Places in the progress: line and part that come next, from 0; the furthest place that was run;
 blocks that may still be run again; row of the local variables; parts that are being run for a
-caller; last line that was not blank, or -1; blocks run; moves made."""
-PROGRESS = 9
+caller; blocks run; moves made."""
+PROGRESS = 8
 
 BACK, FIRST, AGAIN, LAST, OWN, RESTORES = range(6)
 """Columns of the calls, as ``Return`` has them; ``LAST`` is ``NO_PLACE`` where a word ends the

@@ -25,7 +25,6 @@ from twin.nc.routine_state import (
     FIRST,
     FULL,
     FURTHEST,
-    INKED,
     LAST,
     LEFT,
     LINE,
@@ -319,7 +318,7 @@ def run_steps(
             progress[LINE], progress[PART] = going >> PART_BITS, going & _PART_MASK
             progress[FURTHEST] = max(progress[FURTHEST], place)
             progress[STEPS_LEFT], progress[DEPTH], progress[CALLS] = steps_left, depth, called
-            progress[INKED], progress[MADE] = line, made
+            progress[MADE] = made
             progress[BLOCKS] += 1
             return DONE
     while stores > 0:

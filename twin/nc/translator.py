@@ -1,13 +1,20 @@
 """Translates lines that are not plain into instructions, when a run comes to them."""
 
+import numpy as np
+
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Block
 from twin.nc.control import Control
 from twin.nc.diagnostics import ProgramError
 from twin.nc.expression_kernels import ONE, THREE, TWO
 from twin.nc.instructions import GENERAL, LARGEST_PART, Instructions, Step
+from twin.nc.line_shapes import LineShapes
 from twin.nc.plain_tables import PlainTables
-from twin.nc.plain_words_kernels import NUMBER
+from twin.nc.plain_words_kernels import CODE, NUMBER
+from twin.nc.routine_kernels import unread_lines
+
+_AHEAD = 1000
+"""Lines that are looked at for further ones of known shapes: one call for many of them."""
 
 
 class Translator:
@@ -19,7 +26,10 @@ class Translator:
 
     def __init__(self, control: Control, tables: PlainTables) -> None:
         self._control = control
+        self._lines = tables.lines
         self.instructions = Instructions(len(control.flow.lines))
+        letters = [letter for letter, role in tables.roles.items() if role not in (CODE, NUMBER)]
+        self._shapes = LineShapes(letters)
         self._writer = BlockWriter(
             self.instructions,
             control.variables,
@@ -32,13 +42,42 @@ class Translator:
     def translate(self, line: int) -> bool:
         """Translate a line, from 0; False where the general way must run all of it."""
         instructions = self.instructions
+        instructions.make_room()
+        lines = self._control.flow.lines
+        key, numbers = self._shapes.split(lines[line])
+        if self._copy(line, key, numbers):
+            ahead = unread_lines(
+                lines.data, lines.starts, self._lines, instructions.table.first, line, _AHEAD
+            )
+            for each in ahead.tolist():
+                self._copy(each, *self._shapes.split(lines[each]))
+            return True
+        first = instructions.rows
+        known = self._translate_line(line)
+        if known:
+            rows = slice(first, instructions.rows)
+            self._shapes.keep(key, numbers, instructions.table, rows)
+        return known
+
+    def _copy(self, line: int, key: tuple[str, ...], numbers: list[float]) -> bool:
+        """Translate a line as one of its shape was; False where there was none."""
+        shape = self._shapes.find(key, numbers)
+        if shape is None:
+            return False
+        row = self.instructions.add_rows(
+            shape.steps, shape.arguments, shape.numbers, np.array(numbers), shape.places
+        )
+        self.instructions.begins(line, row)
+        return True
+
+    def _translate_line(self, line: int) -> bool:
+        instructions = self.instructions
         blocks = None
         if self._control.dialect.translate is not None:
             blocks = self._control.flow.quiet_blocks(line)
         if blocks is None or len(blocks) > LARGEST_PART:
             instructions.begins(line, GENERAL)
             return False
-        instructions.make_room()
         first, before = instructions.rows, None
         any_known = not blocks
         for block in blocks:
@@ -51,7 +90,8 @@ class Translator:
                 instructions.add(Step.BLOCK)
                 instructions.add(Step.LEAVE)
             any_known = any_known or known
-        instructions.add(Step.NEXT)
+        if not blocks:
+            instructions.add(Step.NEXT)
         if not any_known:
             instructions.take_back(first)
         instructions.begins(line, first if any_known else GENERAL)
@@ -62,7 +102,7 @@ class Translator:
         before = control.block, control.report.line
         control.block = block
         try:
-            self._writer.begin()
+            self._writer.begin(block)
             if not (block.skippable and control.settings.block_skip):
                 assert control.dialect.translate is not None
                 control.dialect.translate(control, block, self._writer)

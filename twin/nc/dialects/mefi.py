@@ -117,7 +117,7 @@ def translate(control: Control, block: Block, writer: BlockWriter) -> None:
     targets = [word for word in block.words if jumps and word.address == "L"]
     counts = [word for word in block.words if jumps and word.address == "Q"]
     taken = (*jumps[:1], *targets[:1], *counts[:1])
-    writer.words(block, [word for word in block.words if word not in taken])
+    writer.words([word for word in block.words if word not in taken])
     if jumps:
         times = control.number(counts[0]) if counts else 1.0
         if not targets or times < 0.0 or times != int(times):

@@ -27,7 +27,7 @@ def translate(control: Control, block: Block, writer: BlockWriter) -> None:
     elif _WRITE in codes or _ADD in codes:
         _change(control, _words_beside(block, "OD"), writer, add=_ADD in codes)
     else:
-        writer.words(block, block.words)
+        writer.words(block.words)
 
 
 def _words_beside(block: Block, letters: str) -> dict[str, Word]:

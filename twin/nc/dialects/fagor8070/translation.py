@@ -45,13 +45,13 @@ def _words(control: Control, block: Block, writer: BlockWriter) -> None:
             writer.value(count)
         else:
             writer.number(count)
-        writer.words(block, rest, often=control.settings.step_limit)
+        writer.words(rest, often=control.settings.step_limit)
     elif returns:
         writer.may_return()
-        writer.words(block, rest)
+        writer.words(rest)
         writer.go_back()
     else:
-        writer.words(block, rest)
+        writer.words(rest)
 
 
 def _assign(control: Control, statement: Statement, writer: BlockWriter) -> None:

@@ -142,7 +142,7 @@ def assignments(control: Control, statement: Statement) -> Iterator[Assignment]:
     while True:
         index, index_at = None, at
         if name == "P":
-            index, at = _read(control, statement, at)
+            index, at = _read(control, statement, at, whole=False)
         match = _SET.match(text, at)
         if match is None:
             refuse(control, statement, "assignment", "'=' is missing behind the name")
@@ -164,9 +164,12 @@ def assignments(control: Control, statement: Statement) -> Iterator[Assignment]:
         name, at = following[0].upper(), following.end()
 
 
-def _read(control: Control, statement: Statement, at: int) -> tuple[Expression, int]:
+def _read(
+    control: Control, statement: Statement, at: int, *, whole: bool = True
+) -> tuple[Expression, int]:
+    reader = control.flow.lexer.expressions
     try:
-        return control.flow.lexer.expressions.read(statement.text, at)
+        return (reader.read if whole else reader.read_operand)(statement.text, at)
     except ExpressionError as error:
         column = statement.text_column + (error.column or 0)
         control.report.fail(error.code, str(error), column, 1, error.hint)
