@@ -1,6 +1,6 @@
 """Writes one block as instructions: the vocabulary in which dialects say what their blocks do."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from twin.nc.blocks import Block, Word
 from twin.nc.canonical import NO_BLOCK_NUMBER
@@ -16,15 +16,15 @@ from twin.nc.expression_tree import (
 )
 from twin.nc.expressions import Expression
 from twin.nc.flow import Place
-from twin.nc.instructions import Instructions, Step, number_of_place
+from twin.nc.instructions import MOST_ROWS, MOST_STORES, Instructions, Step, number_of_place
+from twin.nc.plain_state import MOST_WORDS
 from twin.nc.variables import Variables
 
 MOST_NUMBERED = 1000
 """Variables with a computed number are known to the fast way below this number."""
-_MOST_ROWS = 200
-"""Rows of a block: so many fit the stack whatever they do."""
-_MOST_STORES = 64
-_MOST_WORDS = 32
+
+
+Functions = Mapping[Callable[..., float], int]
 
 
 class NotTranslatableError(Exception):
@@ -39,7 +39,7 @@ class BlockWriter:
         instructions: Instructions,
         variables: Variables,
         roles: Mapping[str, int],
-        functions: tuple[Mapping[object, int], Mapping[object, int], Mapping[object, int]],
+        functions: tuple[Functions, Functions, Functions],
         number_role: int,
         live: frozenset[str],
     ) -> None:
@@ -71,20 +71,20 @@ class BlockWriter:
             self._add(Step.WORD_NUMBER, self._number_role, float(block.number))
 
     def _add(self, step: Step, argument: int = 0, number: float = 0.0) -> None:
-        if self._instructions.rows - self._begin > _MOST_ROWS:
+        if self._instructions.rows - self._begin > MOST_ROWS:
             raise NotTranslatableError
         self._instructions.add(step, argument, number)
 
     # --- words
 
-    def words(self, words: Iterable[Word], *, often: int = 0) -> None:
+    def words(self, words: Iterable[Word], *, often: int | None = None) -> None:
         """Run plain words; ``often``: as many times as the value on the stack, at most these.
 
         Raises:
             NotTranslatableError: One of them has another meaning than plain words.
         """
         words = list(words)
-        if len(words) >= _MOST_WORDS:
+        if len(words) >= MOST_WORDS:
             raise NotTranslatableError
         for word in words:
             role = self._roles.get(word.address)
@@ -95,10 +95,10 @@ class BlockWriter:
                 self._add(Step.WORD, role)
             else:
                 self._add(Step.WORD_NUMBER, role, word.value)
-        if often:
-            self._add(Step.RUN_OFTEN, 0, float(often))
-        else:
+        if often is None:
             self._add(Step.RUN)
+        else:
+            self._add(Step.RUN_OFTEN, 0, float(often))
 
     # --- values
 
@@ -137,7 +137,7 @@ class BlockWriter:
         """Put a number on the stack."""
         self._add(Step.NUMBER, 0, value)
 
-    def _compute(self, compute: object, values: int) -> None:
+    def _compute(self, compute: Callable[..., float], values: int) -> None:
         number = self._functions[values - 1].get(compute)
         if number is None:
             raise NotTranslatableError
@@ -164,18 +164,18 @@ class BlockWriter:
 
     def _store(self, step: Step, slot: int = 0) -> None:
         self._stores += 1
-        if self._stores > _MOST_STORES:
+        if self._stores > MOST_STORES:
             raise NotTranslatableError
         self._add(step, slot)
 
-    def change(self, name: str, compute: object) -> None:
+    def change(self, name: str, compute: Callable[..., float]) -> None:
         """The topmost value changes a variable: an operator's result for the old and this value."""
         slot = self._slot(name)
         self._add(Step.LOAD_BELOW, slot)
         self._compute(compute, 2)
         self._store(Step.STORE, slot)
 
-    def assign_numbered(self, name: str, compute: object | None = None) -> None:
+    def assign_numbered(self, name: str, compute: Callable[..., float] | None = None) -> None:
         """As ``assign`` or ``change``, of the variable whose number lies below the value."""
         self._number_variables(name)
         if compute is not None:

@@ -36,7 +36,14 @@ class FeedMode(enum.Enum):
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class PlainLine:
-    """A block of plain axis words goes straight to their target."""
+    """A block of plain axis words goes straight to their target.
+
+    Attributes:
+        rapid_feed: Of a rapid at a pace that the program sets: its own feed per second, 0 where it
+            follows F; None: the machine's pace.
+    """
+
+    rapid_feed: Callable[["Control"], float] | None = None
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,6 +4,7 @@ import numpy as np
 
 from twin.nc.canonical import IntArray
 from twin.nc.control import Control
+from twin.nc.dialect import Modal
 from twin.nc.flow import Place, Progress, Return
 from twin.nc.instructions import number_of_place, place_of_number
 from twin.nc.routine_state import (
@@ -101,7 +102,7 @@ def _numbers(call: Return) -> list[int]:
     return numbers
 
 
-def _call(row: IntArray, restores: object) -> Return:
+def _call(row: IntArray, restores: tuple[Modal, dict[str, int]] | None) -> Return:
     back, first, again, last, own, _ = row.tolist()
     return Return(
         place_of_number(back),

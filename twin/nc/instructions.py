@@ -15,6 +15,12 @@ from twin.nc.flow import Place
 
 MOST_INSTRUCTIONS = 1 << 19
 """Rows that are kept; a program that needs more is translated anew from there on."""
+MOST_STORES = 64
+"""Variables that a block may set."""
+MOST_ROWS = 200
+"""Rows of a block."""
+MOST_VALUES = MOST_ROWS
+"""Values that wait on the stack: no row adds more than one."""
 PART_BITS = 20
 """A place as one number: the line, and in these bits the part."""
 LARGEST_PART = (1 << PART_BITS) - 1

@@ -114,7 +114,7 @@ class PlainRunner:
         )
 
     def _constants(self) -> Constants:
-        control = self._control
+        control, rapid = self._control, self._tables.rapid_feed
         return Constants(
             total=np.array(control.frame.total),
             plane=np.array(control.modal.plane.axes),
@@ -122,6 +122,7 @@ class PlainRunner:
             default_rotary_feed=control.settings.default_rotary_feed,
             feed_may_lack=control.report.has_said("no-feed"),
             rapid_feed=control.rapid_feed,
+            own_rapid_feed=math.nan if rapid is None else rapid(control),
             last_values=np.array(
                 [control.modal.corner_tolerance, control.acceleration, control.deceleration]
             ),

@@ -176,7 +176,10 @@ def _move(
         rows.values[row, :6] = np.nan
         rows.values[row, 6] = 0.0
     pace = constants.rapid_feed
-    if kind != RAPID_LINE:
+    own = constants.own_rapid_feed
+    if kind == RAPID_LINE and not np.isnan(own):
+        pace = (own if own != 0.0 else feed) * 60.0
+    elif kind != RAPID_LINE:
         if np.isnan(feed):
             if not constants.feed_may_lack:
                 return NOT_PLAIN

@@ -13,6 +13,8 @@ INTERPOLATION, INCREMENTAL, CENTER_ABSOLUTE, UNIT, CORNER, FEED_FACTOR, NOTHING 
 NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
 """Kinds of interpolation."""
 
+MOST_WORDS = 32
+"""Words of a plain block; longer ones are read by the general way."""
 CODES = 1000
 """G codes are below this number."""
 
@@ -58,6 +60,8 @@ class Constants(NamedTuple):
         default_rotary_feed: The same for rotary axes alone [deg/min].
         feed_may_lack: A feed move without a programmed feed was warned of already.
         rapid_feed: [mm/min]; NaN: the machine's.
+        own_rapid_feed: Feed per second of rapids that the program paces, 0 where they follow F;
+            NaN: ``rapid_feed`` counts.
         last_values: Corner tolerance, acceleration and deceleration of every move, shape (3,).
     """
 
@@ -67,6 +71,7 @@ class Constants(NamedTuple):
     default_rotary_feed: float
     feed_may_lack: bool
     rapid_feed: float
+    own_rapid_feed: float
     last_values: FloatArray
 
 

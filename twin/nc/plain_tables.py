@@ -4,13 +4,23 @@ Nothing is said here of any dialect: a code, a letter or an interpolation that t
 not describe completely is not plain.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from twin.nc import iso
 from twin.nc.canonical import FloatArray
-from twin.nc.dialect import Comment, Dialect, FeedMode, GCode, Interpolation, Modal, PlainArc
+from twin.nc.control import Control
+from twin.nc.dialect import (
+    Comment,
+    Dialect,
+    FeedMode,
+    GCode,
+    Interpolation,
+    Modal,
+    PlainArc,
+    PlainLine,
+)
 from twin.nc.plain_state import (
     ARC,
     CENTER_ABSOLUTE,
@@ -61,11 +71,13 @@ class PlainTables:
         blocks: What blocks mean.
         groups: The modal groups in the order of their numbers in ``blocks``.
         roles: What the letters of plain words are.
+        rapid_feed: What ``PlainLine`` says of rapids.
     """
 
     def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
         self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
         self._interpolations = _interpolations(dialect)
+        self.rapid_feed = _rapid_feed(self._interpolations)
         self.roles = _roles(dialect, settings)
         self.lines = _line_tables(dialect, self.roles)
         self.blocks = self._block_tables(dialect, settings)
@@ -135,6 +147,13 @@ def _interpolations(dialect: Dialect) -> list[Interpolation | None]:
         if isinstance(value, Interpolation) and value.plain is not None and value not in found:
             found.append(value)
     return found
+
+
+def _rapid_feed(
+    interpolations: list[Interpolation | None],
+) -> Callable[[Control], float] | None:
+    plain = [each.plain for each in interpolations if each is not None and each.rapid]
+    return next((each.rapid_feed for each in plain if isinstance(each, PlainLine)), None)
 
 
 def _kind(interpolation: Interpolation | None) -> int:

@@ -12,12 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.plain_state import MOST_WORDS
 
 ByteArray = npt.NDArray[np.uint8]
 
 NOT_PLAIN = -1
-MOST_WORDS = 32
-"""Words of a plain line; longer ones are read by the general way."""
 
 OTHER, NUMBER, CODE, FEED, RADIUS, CENTER, AXIS = 0, 1, 2, 3, 4, 5, 8
 """What a letter is: N, G, F, R; I, J, K from ``CENTER`` on; axes by their column from ``AXIS``."""

@@ -12,9 +12,8 @@ from twin.nc.canonical import IntArray
 from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
 from twin.nc.lexer import LONGEST_LINE
 from twin.nc.plain_kernels import run_words
-from twin.nc.plain_state import BlockTables, Constants, Rows, State
+from twin.nc.plain_state import MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import (
-    MOST_WORDS,
     NOT_PLAIN,
     ByteArray,
     LineTables,
@@ -84,12 +83,12 @@ def run_program(
     lines = len(starts) - 1
     for _ in range(most):
         _end_parts(progress, calls)
-        line = progress[LINE]
+        line = int(progress[LINE])
         if line >= lines:
             return ENDED
         if progress[MADE] == len(rows.codes):
             return FULL
-        row = table.first[line]
+        row = int(table.first[line])
         if row == GENERAL:
             return LEFT
         if row == UNKNOWN:
@@ -100,7 +99,7 @@ def run_program(
             )
         else:
             for _part in range(progress[PART]):
-                row = table.argument[row] if table.step[row] == _BLOCK else 0
+                row = int(table.argument[row]) if table.step[row] == _BLOCK else 0
             if table.step[row] != _BLOCK:
                 progress[LINE], progress[PART] = line + 1, 0
                 continue
@@ -141,7 +140,7 @@ def _run_text(
     bench: Bench,
 ) -> int:
     """Run a line of plain words as it is written."""
-    line = progress[LINE]
+    line = int(progress[LINE])
     begin = starts[line]
     end = line_end(data, begin, starts[line + 1])
     if end - begin > LONGEST_LINE:

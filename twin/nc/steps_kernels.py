@@ -12,10 +12,10 @@ import numpy as np
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
-from twin.nc.instructions import PART_BITS, Step, Table
+from twin.nc.instructions import MOST_STORES, MOST_VALUES, PART_BITS, Step, Table
 from twin.nc.plain_kernels import run_words
-from twin.nc.plain_state import BlockTables, Constants, Rows, State
-from twin.nc.plain_words_kernels import MOST_WORDS, NOT_PLAIN
+from twin.nc.plain_state import MOST_WORDS, BlockTables, Constants, Rows, State
+from twin.nc.plain_words_kernels import NOT_PLAIN
 from twin.nc.routine_state import (
     AGAIN,
     BACK,
@@ -40,10 +40,6 @@ from twin.nc.routine_state import (
 
 DONE = -1
 """The block was run."""
-MOST_VALUES = 256
-"""Values that a block's stack holds."""
-MOST_STORES = 64
-"""Variables that a block may set."""
 
 (
     _BLOCK,
