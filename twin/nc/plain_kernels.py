@@ -69,7 +69,7 @@ def run_words(
     Returns:
         The number of rows after it, or ``NOT_PLAIN`` with the state untouched.
     """
-    _copy(state.modal, modal)
+    copy(state.modal, modal)
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
     feed = state.feed[0]
     for word in range(len(roles)):
@@ -106,16 +106,17 @@ def run_words(
         if roles[word] == CODE:
             code = int(values[word])
             state.in_force[tables.group[code]] = code
-    _copy(modal, state.modal)
+    copy(modal, state.modal)
     state.feed[0] = feed
     if seen >> RADIUS:
-        _copy(rows.positions[row, 1], state.part)
-        _copy(rows.positions[row, 2], state.programmed)
+        copy(rows.positions[row, 1], state.part)
+        copy(rows.positions[row, 2], state.programmed)
     return after
 
 
 @numba.njit(cache=True)
-def _copy(source: FloatArray, target: FloatArray) -> None:
+def copy(source: FloatArray, target: FloatArray) -> None:
+    """Copy a column."""
     for index in range(len(target)):
         target[index] = source[index]
 
@@ -187,7 +188,7 @@ def _move(
         else:
             pace = (feed if turning else feed * modal[UNIT]) * modal[FEED_FACTOR]
     rows.values[row, 7] = pace
-    _copy(constants.last_values, rows.values[row, 8:])
+    copy(constants.last_values, rows.values[row, 8:])
     rows.codes[row, 0] = _RAPID if kind == RAPID_LINE else _FEED
     rows.codes[row, 1] = _ARC if is_arc else _LINE
     rows.codes[row, 2] = line

@@ -9,9 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import IntArray
-from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
+from twin.nc.instructions import GENERAL, PART_BITS, PLAIN_ROW, UNKNOWN, Step, Table
 from twin.nc.lexer import LONGEST_LINE
-from twin.nc.plain_kernels import run_words
 from twin.nc.plain_state import MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import (
     NOT_PLAIN,
@@ -23,13 +22,11 @@ from twin.nc.plain_words_kernels import (
 from twin.nc.routine_state import (
     AGAIN,
     BACK,
-    BLOCKS,
     CALLS,
     DEPTH,
     ENDED,
     FIRST,
     FULL,
-    FURTHEST,
     LAST,
     LEFT,
     LINE,
@@ -38,11 +35,10 @@ from twin.nc.routine_state import (
     OWN,
     PART,
     PAUSED,
-    STEPS_LEFT,
     UNREAD,
     Routine,
 )
-from twin.nc.steps_kernels import DONE, Bench, new_bench, run_steps
+from twin.nc.steps_kernels import DONE, new_bench, run_steps
 
 _BLOCK = int(Step.BLOCK)
 _PART_MASK = (1 << PART_BITS) - 1
@@ -79,7 +75,7 @@ def run_program(
         Why it ended.
     """
     progress, calls = routine.progress, routine.calls
-    bench = new_bench(len(state.modal))
+    bench = new_bench(state)
     lines = len(starts) - 1
     for _ in range(most):
         _end_parts(progress, calls)
@@ -91,19 +87,26 @@ def run_program(
         row = int(table.first[line])
         if row == GENERAL:
             return LEFT
+        words = int(np.int64(0))  # a literal would have every function below compiled twice
         if row == UNKNOWN:
-            if progress[PART] > 0:
+            begin = int(starts[line])
+            end = line_end(data, begin, int(starts[line + 1]))
+            if progress[PART] > 0 or end - begin > LONGEST_LINE:
                 return UNREAD
-            result = _run_text(
-                data, starts, line_tables, tables, constants, state, rows, progress, bench
-            )
+            words = read_words(data, begin, end, line_tables, bench.roles, bench.values)
+            if words == NOT_PLAIN:
+                return UNREAD
+            if words == 0:
+                progress[LINE] = line + 1
+                continue
+            row = PLAIN_ROW
         else:
             for _part in range(progress[PART]):
                 row = int(table.argument[row]) if table.step[row] == _BLOCK else 0
             if table.step[row] != _BLOCK:
                 progress[LINE], progress[PART] = line + 1, 0
                 continue
-            result = run_steps(row, table, tables, constants, state, rows, routine, bench)
+        result = run_steps(row, words, table, tables, constants, state, rows, routine, bench)
         if result != DONE:
             return result
     return PAUSED
@@ -125,55 +128,6 @@ def _end_parts(progress: IntArray, calls: IntArray) -> None:
             progress[CALLS] -= 1
             progress[DEPTH] -= call[OWN]
         progress[LINE], progress[PART] = to >> PART_BITS, to & _PART_MASK
-
-
-@numba.njit(cache=True)
-def _run_text(
-    data: ByteArray,
-    starts: IntArray,
-    line_tables: LineTables,
-    tables: BlockTables,
-    constants: Constants,
-    state: State,
-    rows: Rows,
-    progress: IntArray,
-    bench: Bench,
-) -> int:
-    """Run a line of plain words as it is written."""
-    line = int(progress[LINE])
-    begin = starts[line]
-    end = line_end(data, begin, starts[line + 1])
-    if end - begin > LONGEST_LINE:
-        return LEFT
-    count = read_words(data, begin, end, line_tables, bench.roles, bench.values)
-    if count == NOT_PLAIN:
-        return UNREAD
-    if count > 0:
-        place = line << PART_BITS
-        again = place <= progress[FURTHEST]
-        if again and progress[STEPS_LEFT] == 0:
-            return LEFT
-        made = run_words(
-            line + 1,
-            bench.roles[:count],
-            bench.values[:count],
-            tables,
-            constants,
-            state,
-            bench.modal,
-            rows,
-            progress[MADE],
-        )
-        if made == NOT_PLAIN:
-            return LEFT
-        if again:
-            progress[STEPS_LEFT] -= 1
-        else:
-            progress[FURTHEST] = place
-        progress[MADE] = made
-        progress[BLOCKS] += 1
-    progress[LINE], progress[PART] = line + 1, 0
-    return DONE
 
 
 @numba.njit(cache=True)

@@ -13,7 +13,7 @@ from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
 from twin.nc.instructions import MOST_STORES, MOST_VALUES, PART_BITS, Step, Table
-from twin.nc.plain_kernels import run_words
+from twin.nc.plain_kernels import copy, run_words
 from twin.nc.plain_state import MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import NOT_PLAIN
 from twin.nc.routine_state import (
@@ -89,6 +89,7 @@ class Bench(NamedTuple):
         roles: Of words, shape (``MOST_WORDS``,).
         values: Of words, shape (``MOST_WORDS``,).
         modal: Modal state of the block.
+        kept: State before a block that runs often.
         stack: Shape (``MOST_VALUES``,).
         slots: Variables that the block has set, shape (``MOST_STORES``,).
         before: What they held before, shape (``MOST_STORES``,).
@@ -97,18 +98,27 @@ class Bench(NamedTuple):
     roles: IntArray
     values: FloatArray
     modal: FloatArray
+    kept: State
     stack: FloatArray
     slots: IntArray
     before: FloatArray
 
 
 @numba.njit(cache=True)
-def new_bench(modal: int) -> Bench:
-    """Room to work in, for so many fields of the modal state."""
+def new_bench(state: State) -> Bench:
+    """Room to work in, for a state of this size."""
+    kept = State(
+        np.zeros_like(state.modal),
+        np.zeros_like(state.in_force),
+        np.zeros_like(state.feed),
+        np.zeros_like(state.programmed),
+        np.zeros_like(state.part),
+    )
     return Bench(
         np.zeros(MOST_WORDS, np.int64),
         np.zeros(MOST_WORDS),
-        np.zeros(modal),
+        np.zeros_like(state.modal),
+        kept,
         np.zeros(MOST_VALUES),
         np.zeros(MOST_STORES, np.int64),
         np.zeros(MOST_STORES),
@@ -118,6 +128,7 @@ def new_bench(modal: int) -> Bench:
 @numba.njit(cache=True)
 def run_steps(
     row: int,
+    words: int,
     table: Table,
     tables: BlockTables,
     constants: Constants,
@@ -130,6 +141,7 @@ def run_steps(
 
     Args:
         row: Row of its ``BLOCK``.
+        words: Words that lie on the bench already.
         table: The instructions.
         tables: What words mean.
         constants: What stays.
@@ -145,7 +157,7 @@ def run_steps(
     steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
     behind = (line + 1) << PART_BITS if table.argument[row] == 0 else place + 1
     going, range_end = behind, NO_PLACE
-    top, words, stores, own, why = 0, 0, 0, 0, LEFT
+    top, stores, own, why = 0, 0, 0, LEFT
     while steps_left >= 0:
         row += 1
         step, argument = table.step[row], table.argument[row]
@@ -219,32 +231,37 @@ def run_steps(
             else:
                 bench.values[words] = table.number[row]
             words += 1
-        elif step == _RUN:
-            after = run_words(
-                line + 1,
-                bench.roles[:words],
-                bench.values[:words],
-                tables,
-                constants,
-                state,
-                bench.modal,
-                rows,
-                made,
-            )
+        elif step in (_RUN, _RUN_OFTEN):
+            count = 1.0
+            if step == _RUN_OFTEN:
+                top -= 1
+                count = stack[top]
+                if not 1.0 <= count <= table.number[row] or count != np.floor(count):
+                    break
+                if made + count > len(rows.codes):
+                    why = FULL
+                    break
+                _copy_state(state, bench.kept)
+            after = made
+            for _ in range(int(count)):
+                after = run_words(
+                    line + 1,
+                    bench.roles[:words],
+                    bench.values[:words],
+                    tables,
+                    constants,
+                    state,
+                    bench.modal,
+                    rows,
+                    after,
+                )
+                if after == NOT_PLAIN:
+                    break
             if after == NOT_PLAIN:
+                if step == _RUN_OFTEN:
+                    _copy_state(bench.kept, state)
                 break
             made = after
-        elif step == _RUN_OFTEN:
-            top -= 1
-            count = stack[top]
-            if not 1.0 <= count <= table.number[row] or count != np.floor(count):
-                break
-            if made + count > len(rows.codes):
-                why = FULL
-                break
-            made = _run_often(line, int(count), words, tables, constants, state, rows, made, bench)
-            if made == NOT_PLAIN:
-                break
         elif step == _JUMP:
             going = argument
         elif step in (_JUMP_IF, _JUMP_UNLESS):
@@ -324,37 +341,13 @@ def run_steps(
 
 
 @numba.njit(cache=True)
-def _run_often(
-    line: int,
-    count: int,
-    words: int,
-    tables: BlockTables,
-    constants: Constants,
-    state: State,
-    rows: Rows,
-    made: int,
-    bench: Bench,
-) -> int:
-    """Run words again and again; the number of rows, or ``NOT_PLAIN`` with the state untouched."""
-    modal, in_force, feed = state.modal.copy(), state.in_force.copy(), state.feed.copy()
-    programmed, part = state.programmed.copy(), state.part.copy()
-    for _ in range(count):
-        made = run_words(
-            line + 1,
-            bench.roles[:words],
-            bench.values[:words],
-            tables,
-            constants,
-            state,
-            bench.modal,
-            rows,
-            made,
-        )
-        if made == NOT_PLAIN:
-            state.modal[:], state.in_force[:], state.feed[:] = modal, in_force, feed
-            state.programmed[:], state.part[:] = programmed, part
-            break
-    return made
+def _copy_state(source: State, target: State) -> None:
+    copy(source.modal, target.modal)
+    for group in range(len(source.in_force)):
+        target.in_force[group] = source.in_force[group]
+    copy(source.feed, target.feed)
+    copy(source.programmed, target.programmed)
+    copy(source.part, target.part)
 
 
 @numba.njit(cache=True)
