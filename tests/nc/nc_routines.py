@@ -3,13 +3,14 @@
 Most run to their end; some are wrong somewhere, which both ways must say alike.
 """
 
+import abc
 from collections.abc import Callable
 from random import Random
 
 NUMBERS = ["0", "1", "2", "3", ".5", "7.25", "10", "45", "90", "0.001", "360", "12.", "1000000"]
 
 
-class Writer:
+class Writer(abc.ABC):
     """Writes one program: its dialect's forms filled at random."""
 
     def __init__(self, random_: Random) -> None:
@@ -17,6 +18,10 @@ class Writer:
         self.lines: list[str] = []
         self.depth = 0
         self.label = 0
+
+    @abc.abstractmethod
+    def text(self) -> str:
+        """The program."""
 
     def add(self, *lines: str) -> None:
         self.lines += lines

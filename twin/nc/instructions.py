@@ -28,11 +28,6 @@ UNKNOWN, GENERAL = 0, -1
 """Instead of a line's first row: not translated yet; always run by the general way."""
 
 
-PLAIN_ROW = 1
-"""What a line of plain words does that was read from the text."""
-_FIRST_ROW = 4
-
-
 class Step(enum.IntEnum):
     """What a row does; ``argument`` and ``number`` are its columns."""
 
@@ -136,8 +131,8 @@ class Instructions:
         self._step = np.zeros(256, np.int64)
         self._argument = np.zeros(256, np.int64)
         self._number = np.zeros(256)
-        self._step[:_FIRST_ROW] = (Step.NEXT, Step.BLOCK, Step.RUN, Step.NEXT)
-        self._rows = _FIRST_ROW
+        self._step[0] = Step.NEXT
+        self._rows = 1
         self.numbered = np.zeros(0, np.int64)
 
     @property
@@ -202,7 +197,7 @@ class Instructions:
         if self._rows > MOST_INSTRUCTIONS or len(self._translated) > MOST_INSTRUCTIONS:
             self._first[self._translated] = UNKNOWN
             self._translated = []
-            self._rows = _FIRST_ROW
+            self._rows = 1
 
 
 def number_of_place(place: Place) -> int:

@@ -41,7 +41,7 @@ _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
 _STOP = int(Corner.EXACT_STOP)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, forceinline=True)
 def run_words(
     line: int,
     roles: IntArray,
@@ -121,7 +121,7 @@ def copy(source: FloatArray, target: FloatArray) -> None:
         target[index] = source[index]
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, forceinline=True)
 def _move(
     line: int,
     number: int,

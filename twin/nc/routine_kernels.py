@@ -8,9 +8,11 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from twin.nc.bench_kernels import new_bench
 from twin.nc.canonical import IntArray
-from twin.nc.instructions import GENERAL, PART_BITS, PLAIN_ROW, UNKNOWN, Step, Table
+from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
 from twin.nc.lexer import LONGEST_LINE
+from twin.nc.plain_kernels import run_words
 from twin.nc.plain_state import MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import (
     NOT_PLAIN,
@@ -22,11 +24,13 @@ from twin.nc.plain_words_kernels import (
 from twin.nc.routine_state import (
     AGAIN,
     BACK,
+    BLOCKS,
     CALLS,
     DEPTH,
     ENDED,
     FIRST,
     FULL,
+    FURTHEST,
     LAST,
     LEFT,
     LINE,
@@ -35,10 +39,11 @@ from twin.nc.routine_state import (
     OWN,
     PART,
     PAUSED,
+    STEPS_LEFT,
     UNREAD,
     Routine,
 )
-from twin.nc.steps_kernels import DONE, new_bench, run_steps
+from twin.nc.steps_kernels import DONE, run_steps
 
 _BLOCK = int(Step.BLOCK)
 _PART_MASK = (1 << PART_BITS) - 1
@@ -87,7 +92,6 @@ def run_program(
         row = int(table.first[line])
         if row == GENERAL:
             return LEFT
-        words = int(np.int64(0))  # a literal would have every function below compiled twice
         if row == UNKNOWN:
             begin = int(starts[line])
             end = line_end(data, begin, int(starts[line + 1]))
@@ -99,14 +103,34 @@ def run_program(
             if words == 0:
                 progress[LINE] = line + 1
                 continue
-            row = PLAIN_ROW
-        else:
-            for _part in range(progress[PART]):
-                row = int(table.argument[row]) if table.step[row] == _BLOCK else 0
-            if table.step[row] != _BLOCK:
-                progress[LINE], progress[PART] = line + 1, 0
-                continue
-        result = run_steps(row, words, table, tables, constants, state, rows, routine, bench)
+            place = line << PART_BITS
+            steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
+            if steps_left < 0:
+                return LEFT
+            made = run_words(
+                line + 1,
+                bench.roles[:words],
+                bench.values[:words],
+                tables,
+                constants,
+                state,
+                bench.modal,
+                rows,
+                progress[MADE],
+            )
+            if made == NOT_PLAIN:
+                return LEFT
+            progress[FURTHEST] = max(progress[FURTHEST], place)
+            progress[STEPS_LEFT], progress[MADE] = steps_left, made
+            progress[BLOCKS] += 1
+            progress[LINE] = line + 1
+            continue
+        for _part in range(progress[PART]):
+            row = int(table.argument[row]) if table.step[row] == _BLOCK else 0
+        if table.step[row] != _BLOCK:
+            progress[LINE], progress[PART] = line + 1, 0
+            continue
+        result = run_steps(row, table, tables, constants, state, rows, routine, bench)
         if result != DONE:
             return result
     return PAUSED

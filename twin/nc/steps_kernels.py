@@ -3,18 +3,17 @@
 Each step is what ``instructions.Step`` says of it.
 """
 
-import math
-from typing import NamedTuple
-
 import numba
 import numpy as np
 
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.bench_kernels import Bench, copy_state
+from twin.nc.canonical import IntArray
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
-from twin.nc.instructions import MOST_STORES, MOST_VALUES, PART_BITS, Step, Table
-from twin.nc.plain_kernels import copy, run_words
-from twin.nc.plain_state import MOST_WORDS, BlockTables, Constants, Rows, State
+from twin.nc.instructions import PART_BITS, Step, Table
+from twin.nc.memory_kernels import NO_SLOT, load, own_value, slot_of_number, store
+from twin.nc.plain_kernels import run_words
+from twin.nc.plain_state import BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import NOT_PLAIN
 from twin.nc.routine_state import (
     AGAIN,
@@ -34,7 +33,6 @@ from twin.nc.routine_state import (
     PART,
     RESTORES,
     STEPS_LEFT,
-    Memory,
     Routine,
 )
 
@@ -78,57 +76,12 @@ DONE = -1
     _MAY_RETURN,
     _RETURN,
 ) = range(len(Step))  # plain integers compile faster than members
-_NO_SLOT = np.iinfo(np.int64).min
 _PART_MASK = (1 << PART_BITS) - 1
-
-
-class Bench(NamedTuple):
-    """Room to work in.
-
-    Attributes:
-        roles: Of words, shape (``MOST_WORDS``,).
-        values: Of words, shape (``MOST_WORDS``,).
-        modal: Modal state of the block.
-        kept: State before a block that runs often.
-        stack: Shape (``MOST_VALUES``,).
-        slots: Variables that the block has set, shape (``MOST_STORES``,).
-        before: What they held before, shape (``MOST_STORES``,).
-    """
-
-    roles: IntArray
-    values: FloatArray
-    modal: FloatArray
-    kept: State
-    stack: FloatArray
-    slots: IntArray
-    before: FloatArray
-
-
-@numba.njit(cache=True)
-def new_bench(state: State) -> Bench:
-    """Room to work in, for a state of this size."""
-    kept = State(
-        np.zeros_like(state.modal),
-        np.zeros_like(state.in_force),
-        np.zeros_like(state.feed),
-        np.zeros_like(state.programmed),
-        np.zeros_like(state.part),
-    )
-    return Bench(
-        np.zeros(MOST_WORDS, np.int64),
-        np.zeros(MOST_WORDS),
-        np.zeros_like(state.modal),
-        kept,
-        np.zeros(MOST_VALUES),
-        np.zeros(MOST_STORES, np.int64),
-        np.zeros(MOST_STORES),
-    )
 
 
 @numba.njit(cache=True)
 def run_steps(
     row: int,
-    words: int,
     table: Table,
     tables: BlockTables,
     constants: Constants,
@@ -141,7 +94,6 @@ def run_steps(
 
     Args:
         row: Row of its ``BLOCK``.
-        words: Words that lie on the bench already.
         table: The instructions.
         tables: What words mean.
         constants: What stays.
@@ -157,7 +109,7 @@ def run_steps(
     steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
     behind = (line + 1) << PART_BITS if table.argument[row] == 0 else place + 1
     going, range_end = behind, NO_PLACE
-    top, stores, own, why = 0, 0, 0, LEFT
+    top, words, stores, own, why = 0, 0, 0, 0, LEFT
     while steps_left >= 0:
         row += 1
         step, argument = table.step[row], table.argument[row]
@@ -165,7 +117,7 @@ def run_steps(
             stack[top] = table.number[row]
             top += 1
         elif step == _LOAD:
-            value = _load(memory, depth, argument)
+            value = load(memory, depth, argument)
             if np.isnan(value):
                 break
             stack[top] = value
@@ -190,23 +142,23 @@ def run_steps(
         elif step == _NEGATE:
             stack[top - 1] = -stack[top - 1]
         elif step == _LOAD_NUMBERED:
-            slot = _numbered(table.numbered, stack[top - 1])
-            value = np.nan if slot == _NO_SLOT else _load(memory, depth, slot)
+            slot = slot_of_number(table.numbered, stack[top - 1])
+            value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
             if np.isnan(value):
                 break
             stack[top - 1] = value
         elif step in (_LOAD_BELOW, _LOAD_NUMBERED_BELOW):
             slot = argument
             if step == _LOAD_NUMBERED_BELOW:
-                slot = _numbered(table.numbered, stack[top - 2])
-            value = np.nan if slot == _NO_SLOT else _load(memory, depth, slot)
+                slot = slot_of_number(table.numbered, stack[top - 2])
+            value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
             if np.isnan(value):
                 break
             stack[top] = stack[top - 1]
             stack[top - 1] = value
             top += 1
         elif step == _DEFINED:
-            stack[top] = 0.0 if np.isnan(_load(memory, depth, argument)) else 1.0
+            stack[top] = 0.0 if np.isnan(load(memory, depth, argument)) else 1.0
             top += 1
         elif step == _DROP:
             top -= 1
@@ -214,15 +166,15 @@ def run_steps(
             top -= 1
             slot = argument
             if step == _STORE_NUMBERED:
-                slot = _numbered(table.numbered, stack[top - 1])
-                if slot == _NO_SLOT:
+                slot = slot_of_number(table.numbered, stack[top - 1])
+                if slot == NO_SLOT:
                     break
-            before = _own_value(memory, depth, slot)
+            before = own_value(memory, depth, slot)
             if step == _STORE_DECLARED and np.isnan(before):
                 break
             bench.slots[stores], bench.before[stores] = slot, before
             stores += 1
-            _set(memory, depth, slot, stack[top])
+            store(memory, depth, slot, stack[top])
         elif step in (_WORD, _WORD_NUMBER):
             bench.roles[words] = argument
             if step == _WORD:
@@ -241,7 +193,7 @@ def run_steps(
                 if made + count > len(rows.codes):
                     why = FULL
                     break
-                _copy_state(state, bench.kept)
+                copy_state(state, bench.kept)
             after = made
             for _ in range(int(count)):
                 after = run_words(
@@ -259,7 +211,7 @@ def run_steps(
                     break
             if after == NOT_PLAIN:
                 if step == _RUN_OFTEN:
-                    _copy_state(bench.kept, state)
+                    copy_state(bench.kept, state)
                 break
             made = after
         elif step == _JUMP:
@@ -290,10 +242,10 @@ def run_steps(
             stack[top - 3] = value
             top -= 2
         elif step == _COUNT_DOWN:
-            left = _own_value(memory, depth, argument)
+            left = own_value(memory, depth, argument)
             if np.isnan(left):
                 left = table.number[row]
-            _set(memory, depth, argument, np.nan if left == 0.0 else left - 1.0)
+            store(memory, depth, argument, np.nan if left == 0.0 else left - 1.0)
             stack[top] = 0.0 if left == 0.0 else 1.0
             top += 1
         elif step == _MAY_CALL:
@@ -336,18 +288,8 @@ def run_steps(
             return DONE
     while stores > 0:
         stores -= 1
-        _set(memory, progress[DEPTH], bench.slots[stores], bench.before[stores])
+        store(memory, progress[DEPTH], bench.slots[stores], bench.before[stores])
     return why
-
-
-@numba.njit(cache=True)
-def _copy_state(source: State, target: State) -> None:
-    copy(source.modal, target.modal)
-    for group in range(len(source.in_force)):
-        target.in_force[group] = source.in_force[group]
-    copy(source.feed, target.feed)
-    copy(source.programmed, target.programmed)
-    copy(source.part, target.part)
 
 
 @numba.njit(cache=True)
@@ -356,36 +298,3 @@ def _innermost(calls: IntArray, called: int) -> int:
     while called > 0 and calls[called - 1, LAST] != NO_PLACE:
         called -= 1
     return called
-
-
-@numba.njit(cache=True)
-def _numbered(numbered: IntArray, index: float) -> int:
-    """Slot of the variable with a number; ``_NO_SLOT`` where it has none."""
-    if not 0.0 <= index < len(numbered) or index != np.floor(index):
-        return _NO_SLOT
-    if math.copysign(1.0, index) < 0.0:  # -0 is written otherwise than 0
-        return _NO_SLOT
-    return numbered[int(index)]
-
-
-@numba.njit(cache=True)
-def _own_value(memory: Memory, depth: int, slot: int) -> float:
-    """What the program has given a variable; NaN: nothing."""
-    return memory.common[slot] if slot >= 0 else memory.local[depth, ~slot]
-
-
-@numba.njit(cache=True)
-def _load(memory: Memory, depth: int, slot: int) -> float:
-    """Value of a variable, the job's where it has none of its own; NaN: none at all."""
-    value = _own_value(memory, depth, slot)
-    if np.isnan(value):
-        value = memory.given_common[slot] if slot >= 0 else memory.given_local[~slot]
-    return value
-
-
-@numba.njit(cache=True)
-def _set(memory: Memory, depth: int, slot: int, value: float) -> None:
-    if slot >= 0:
-        memory.common[slot] = value
-    else:
-        memory.local[depth, ~slot] = value

@@ -42,6 +42,8 @@ class Translator:
     def translate(self, line: int) -> bool:
         """Translate a line, from 0; False where the general way must run all of it."""
         instructions = self.instructions
+        if self._control.dialect.translate is None:
+            return False
         instructions.make_room()
         lines = self._control.flow.lines
         key, numbers = self._shapes.split(lines[line])
@@ -72,9 +74,7 @@ class Translator:
 
     def _translate_line(self, line: int) -> bool:
         instructions = self.instructions
-        blocks = None
-        if self._control.dialect.translate is not None:
-            blocks = self._control.flow.quiet_blocks(line)
+        blocks = self._control.flow.quiet_blocks(line)
         if blocks is None or len(blocks) > LARGEST_PART:
             instructions.begins(line, GENERAL)
             return False
