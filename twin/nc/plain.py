@@ -63,11 +63,10 @@ class PlainRunner:
         handed = HandOver(control)
         why = self._run(state, rows, handed)
         self.full = why == FULL and room - handed.made < CHUNK
-        if handed.blocks >= _WORTHWHILE or why != LEFT:
-            self._pause = 1
-        else:
-            self._wait = self._pause
-            self._pause = min(2 * self._pause, _LONGEST_PAUSE)
+        worthwhile = handed.blocks >= _WORTHWHILE
+        if why == LEFT:
+            self._wait = 1 if worthwhile else self._pause
+        self._pause = 1 if worthwhile or why != LEFT else min(2 * self._pause, _LONGEST_PAUSE)
         if not handed.gone_on:
             return self.full
         self._give_back(state, rows.first(handed.made))

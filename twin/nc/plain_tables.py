@@ -77,6 +77,7 @@ class PlainTables:
     def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
         self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
         self._interpolations = _interpolations(dialect)
+        self._places = {id(each): float(at) for at, each in enumerate(self._interpolations)}
         self.rapid_feed = _rapid_feed(self._interpolations)
         self.roles = _roles(dialect, settings)
         self.lines = _line_tables(dialect, self.roles)
@@ -95,8 +96,7 @@ class PlainTables:
         if isinstance(value, FeedMode):
             return FEED_FACTORS.get(value)
         if name == "interpolation":
-            places = (i for i, each in enumerate(self._interpolations) if each == value)
-            return next(map(float, places), None)
+            return self._places.get(id(value))
         assert isinstance(value, (bool, int, float))
         return float(value)
 
@@ -144,7 +144,11 @@ def _interpolations(dialect: Dialect) -> list[Interpolation | None]:
     found: list[Interpolation | None] = [None]
     for code in dialect.g.values():
         value = code.sets.get("interpolation")
-        if isinstance(value, Interpolation) and value.plain is not None and value not in found:
+        if (
+            isinstance(value, Interpolation)
+            and value.plain is not None
+            and all(value is not each for each in found)
+        ):
             found.append(value)
     return found
 
