@@ -143,6 +143,12 @@ FORMS = {
             "N40 M30\nSUBPROGRAM S12{#a, #b}\nLET #c := #a*#b\nN1 X(#c)\nEND_SUBPROGRAM"
         ),
     ),
+    "restoring subprogram": (
+        "codesys",
+        "N5 LET #i := 0\nN6 G1 F10 X0\nN10 S12{#i}\nN15 X#i\nN20 #i := #i + 1\n"
+        "N30 G20 L10 K(#i < 999)\nN40 M30\nSUBPROGRAM S12{#a} RESTORE\nN1 G91 G0 X1 Y2\n"
+        "END_SUBPROGRAM",
+    ),
     "repeats": (
         "mefi",
         "N10 G91 G1 X1 F100\nN20 G2 X0 Y0 I10 G73 L10 Q9\nN30 G1 X-1 G73 L10 Q99\nN40 M30",

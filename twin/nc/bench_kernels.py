@@ -55,11 +55,19 @@ def new_bench(state: State) -> Bench:
 
 
 @numba.njit(cache=True)
+def copy_force(
+    modal: FloatArray, in_force: IntArray, to_modal: FloatArray, to_force: IntArray
+) -> None:
+    """Copy what is in force."""
+    copy(modal, to_modal)
+    for group in range(len(in_force)):
+        to_force[group] = in_force[group]
+
+
+@numba.njit(cache=True)
 def copy_state(source: State, target: State) -> None:
     """Copy every column of a state."""
-    copy(source.modal, target.modal)
-    for group in range(len(source.in_force)):
-        target.in_force[group] = source.in_force[group]
+    copy_force(source.modal, source.in_force, target.modal, target.in_force)
     copy(source.feed, target.feed)
     copy(source.programmed, target.programmed)
     copy(source.part, target.part)

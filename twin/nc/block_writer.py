@@ -219,13 +219,21 @@ class BlockWriter:
         self._add(Step.COUNT_DOWN, self._slot(counter), times)
         self.jump_if(place)
 
-    def call(self, place: Place, deepest: int, own: Iterable[str] | None = None) -> None:
+    def call(
+        self,
+        place: Place,
+        deepest: int,
+        own: Iterable[str] | None = None,
+        *,
+        restores: bool = False,
+    ) -> None:
         """Run the part that begins at a place.
 
         Args:
             place: Where it begins.
             deepest: Parts that may call each other.
             own: Its own variables, which get the topmost values; None: it has the caller's.
+            restores: Its end puts back into force what is in force now.
         """
         self._add(Step.MAY_CALL, deepest)
         if own is not None:
@@ -237,6 +245,8 @@ class BlockWriter:
                 else:
                     self._store(Step.STORE, self._slot(name))
                 done.add(name)
+        if restores:
+            self._add(Step.RESTORING)
         self._add(Step.CALL, number_of_place(place))
 
     def repeat(self, first: Place, last: Place, deepest: int) -> None:

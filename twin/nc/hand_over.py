@@ -7,6 +7,8 @@ from twin.nc.control import Control
 from twin.nc.dialect import Modal
 from twin.nc.flow import Place, Progress, Return
 from twin.nc.instructions import number_of_place, place_of_number
+from twin.nc.plain_state import State
+from twin.nc.plain_words_kernels import NOT_PLAIN
 from twin.nc.routine_state import (
     AGAIN,
     BACK,
@@ -21,21 +23,34 @@ from twin.nc.routine_state import (
     MADE,
     MOST_CALLS,
     NO_PLACE,
+    NOTHING_RESTORED,
     OWN,
     PART,
     PROGRESS,
+    RESTORED_BY_CONTROL,
     RESTORES,
     STEPS_LEFT,
     Memory,
     Routine,
+    Saved,
 )
 
 
 class HandOver:
     """One run: what the kernel is given of a control's program, and what it makes of it."""
 
-    def __init__(self, control: Control) -> None:
+    def __init__(self, control: Control, state: State) -> None:
+        """Begin a run.
+
+        Args:
+            control: Stands where the run begins.
+            state: What the run changes besides.
+        """
         self._control = control
+        self._saved = Saved(
+            np.zeros((MOST_CALLS, len(state.modal))),
+            np.zeros((MOST_CALLS, len(state.in_force)), np.int64),
+        )
         self._begin = control.flow.progress()
         place, furthest, steps_left = self._begin
         self._progress = np.zeros(PROGRESS, np.int64)
@@ -56,7 +71,7 @@ class HandOver:
         memory = Memory(
             variables.common, variables.given_common, variables.local, variables.given_local
         )
-        return Routine(self._progress, self._calls, memory)
+        return Routine(self._progress, self._calls, memory, self._saved)
 
     @property
     def line(self) -> int:
@@ -79,16 +94,36 @@ class HandOver:
         return self.blocks > 0 or self.line != self._begin.place.line
 
     def give_back(self) -> None:
-        """The control goes on from where the run has come to."""
+        """The control goes on from where the run has come to; its codes are those of the begin."""
         progress, control = self._progress, self._control
         place = Place(int(progress[LINE]), int(progress[PART]))
         furthest = place_of_number(int(progress[FURTHEST]))
         calls = [
-            _call(row, self._given[index].restores if row[RESTORES] else None)
+            _call(row, self._restored(index, int(row[RESTORES])))
             for index, row in enumerate(self._calls[: progress[CALLS]])
         ]
         control.flow.resume(Progress(place, furthest, int(progress[STEPS_LEFT])), calls)
         control.variables.depth = int(progress[DEPTH])
+
+    def _restored(self, index: int, by: int) -> tuple[Modal, dict[str, int]] | None:
+        """What the end of a call puts back into force."""
+        if by == RESTORED_BY_CONTROL:
+            return self._given[index].restores
+        if by == NOTHING_RESTORED:
+            return None
+        control = self._control
+        before = control.saved_modal()
+        put_into_force(control, self._saved.in_force[index])
+        restored = control.saved_modal()
+        control.restore_modal(before)
+        return restored
+
+
+def put_into_force(control: Control, numbers: IntArray) -> None:
+    """Apply the codes that a run has found in each group."""
+    for number in numbers.tolist():
+        if number != NOT_PLAIN:
+            control.put_into_force(number, control.dialect.g[number])
 
 
 def _numbers(call: Return) -> list[int]:
@@ -98,7 +133,7 @@ def _numbers(call: Return) -> list[int]:
     numbers[AGAIN] = call.again
     numbers[LAST] = NO_PLACE if call.last is None else number_of_place(call.last)
     numbers[OWN] = call.own_variables
-    numbers[RESTORES] = call.restores is not None
+    numbers[RESTORES] = NOTHING_RESTORED if call.restores is None else RESTORED_BY_CONTROL
     return numbers
 
 

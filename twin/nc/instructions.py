@@ -92,15 +92,17 @@ class Step(enum.IntEnum):
     """At most ``argument`` parts may call each other."""
     OWN_VARIABLES = 29
     """The part that is called next has local variables of its own."""
-    CALL = 30
+    RESTORING = 30
+    """Its end puts back into force what is in force now."""
+    CALL = 31
     """Run the part that begins at the place ``argument``."""
-    RANGE = 31
+    RANGE = 32
     """The range that is repeated next ends at the place ``argument``."""
-    REPEAT = 32
+    REPEAT = 33
     """Run the range that begins at the place ``argument`` as often as the topmost value says."""
-    MAY_RETURN = 33
+    MAY_RETURN = 34
     """There must be a part that can be returned from."""
-    RETURN = 34
+    RETURN = 35
     """Go back behind the call."""
 
 

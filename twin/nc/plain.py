@@ -11,7 +11,7 @@ import numpy as np
 
 from twin.nc.canonical import Corner, Motion
 from twin.nc.control import Control
-from twin.nc.hand_over import HandOver
+from twin.nc.hand_over import HandOver, put_into_force
 from twin.nc.move_columns import CHUNK, Segment
 from twin.nc.plain_state import Constants, Rows, State
 from twin.nc.plain_tables import FEED_FACTORS, PlainTables
@@ -60,7 +60,7 @@ class PlainRunner:
         if room <= 0 or not self._may_run():
             return False
         state, rows = self._state(), self._rows.first(room)
-        handed = HandOver(control)
+        handed = HandOver(control, state)
         why = self._run(state, rows, handed)
         self.full = why == FULL and room - handed.made < CHUNK
         worthwhile = handed.blocks >= _WORTHWHILE
@@ -69,8 +69,8 @@ class PlainRunner:
         self._pause = 1 if worthwhile or why != LEFT else min(2 * self._pause, _LONGEST_PAUSE)
         if not handed.gone_on:
             return self.full
-        self._give_back(state, rows.first(handed.made))
         handed.give_back()
+        self._give_back(state, rows.first(handed.made))
         return True
 
     def _run(self, state: State, rows: Rows, handed: HandOver) -> int:
@@ -139,9 +139,7 @@ class PlainRunner:
 
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control
-        for number in state.in_force.tolist():
-            if number != NOT_PLAIN:
-                control.put_into_force(number, control.dialect.g[number])
+        put_into_force(control, state.in_force)
         feed = float(state.feed[0])
         control.feed = None if math.isnan(feed) else feed
         last = None

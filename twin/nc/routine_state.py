@@ -12,7 +12,9 @@ PROGRESS = 8
 
 BACK, FIRST, AGAIN, LAST, OWN, RESTORES = range(6)
 """Columns of the calls, as ``Return`` has them; ``LAST`` is ``NO_PLACE`` where a word ends the
-part, ``RESTORES`` is 1 where something is put back into force."""
+part, ``RESTORES`` is one of the following."""
+NOTHING_RESTORED, RESTORED_BY_CONTROL, RESTORED_HERE = range(3)
+"""What its end puts back into force: nothing; what only the control knows; what ``Saved`` holds."""
 CALL_COLUMNS = 6
 NO_PLACE = -1
 MOST_CALLS = 64
@@ -39,6 +41,18 @@ class Memory(NamedTuple):
     given_local: FloatArray
 
 
+class Saved(NamedTuple):
+    """What was in force when each part was called, as in ``plain_state.State``.
+
+    Attributes:
+        modal: Shape (``MOST_CALLS``, 7).
+        in_force: Shape (``MOST_CALLS``, g).
+    """
+
+    modal: FloatArray
+    in_force: IntArray
+
+
 class Routine(NamedTuple):
     """How far a program has come.
 
@@ -46,8 +60,10 @@ class Routine(NamedTuple):
         progress: Shape (``PROGRESS``,).
         calls: The innermost last, shape (``MOST_CALLS``, ``CALL_COLUMNS``).
         memory: Its variables.
+        saved: What its calls put back into force.
     """
 
     progress: IntArray
     calls: IntArray
     memory: Memory
+    saved: Saved

@@ -6,7 +6,7 @@ Each step is what ``instructions.Step`` says of it.
 import numba
 import numpy as np
 
-from twin.nc.bench_kernels import Bench, copy_state
+from twin.nc.bench_kernels import Bench, copy_force, copy_state
 from twin.nc.canonical import IntArray
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
@@ -29,8 +29,11 @@ from twin.nc.routine_state import (
     LINE,
     MADE,
     NO_PLACE,
+    NOTHING_RESTORED,
     OWN,
     PART,
+    RESTORED_BY_CONTROL,
+    RESTORED_HERE,
     RESTORES,
     STEPS_LEFT,
     Routine,
@@ -70,6 +73,7 @@ DONE = -1
     _COUNT_DOWN,
     _MAY_CALL,
     _OWN_VARIABLES,
+    _RESTORING,
     _CALL,
     _RANGE,
     _REPEAT,
@@ -103,12 +107,12 @@ def run_steps(
         bench: Room to work in.
     """
     progress, calls, memory = routine.progress, routine.calls, routine.memory
-    stack = bench.stack
+    saved, stack = routine.saved, bench.stack
     line, made, depth, called = progress[LINE], progress[MADE], progress[DEPTH], progress[CALLS]
     place = line << PART_BITS | progress[PART]
     steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
     behind = (line + 1) << PART_BITS if table.argument[row] == 0 else place + 1
-    going, range_end = behind, NO_PLACE
+    going, range_end, restores = behind, NO_PLACE, NOTHING_RESTORED
     top, words, stores, own, why = 0, 0, 0, 0, LEFT
     while steps_left >= 0:
         row += 1
@@ -255,6 +259,8 @@ def run_steps(
             depth += 1
             own = 1
             memory.local[depth, :] = np.nan
+        elif step == _RESTORING:
+            restores = RESTORED_HERE
         elif step in (_CALL, _REPEAT):
             again = 0.0
             if step == _REPEAT:
@@ -264,19 +270,23 @@ def run_steps(
                     break
             call = calls[called]
             call[BACK], call[FIRST], call[AGAIN] = behind, argument, int(again)
-            call[LAST], call[OWN], call[RESTORES] = range_end, own, 0
+            call[LAST], call[OWN], call[RESTORES] = range_end, own, restores
+            if restores == RESTORED_HERE:
+                copy_force(state.modal, state.in_force, saved.modal[called], saved.in_force[called])
             called += 1
             going = argument
         elif step == _RANGE:
             range_end = argument
         elif step == _MAY_RETURN:
             from_part = _innermost(calls, called)
-            if from_part == 0 or calls[from_part - 1, RESTORES] != 0:
+            if from_part == 0 or calls[from_part - 1, RESTORES] == RESTORED_BY_CONTROL:
                 break
         elif step == _RETURN:
             called = _innermost(calls, called) - 1
             depth -= calls[called, OWN]
             going = calls[called, BACK]
+            if calls[called, RESTORES] == RESTORED_HERE:
+                copy_force(saved.modal[called], saved.in_force[called], state.modal, state.in_force)
         elif step == _LEAVE:
             break
         if step == _NEXT:

@@ -93,9 +93,8 @@ def _statement(control: Control, statement: Statement, writer: BlockWriter) -> N
 
 def _call(control: Control, statement: Statement, writer: BlockWriter) -> None:
     subprogram, values, _ = subprograms.called(control, statement)
-    if subprogram.restores:
-        raise NotTranslatableError
     for each in values:
         writer.value(each)
     begin = Place(subprogram.lines.start, 0)
-    writer.call(begin, subprograms.DEEPEST_CALL, subprogram.formals)
+    deepest, formals = subprograms.DEEPEST_CALL, subprogram.formals
+    writer.call(begin, deepest, formals, restores=subprogram.restores)
