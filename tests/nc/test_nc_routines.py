@@ -145,9 +145,11 @@ FORMS = {
     ),
     "restoring subprogram": (
         "codesys",
-        "N5 LET #i := 0\nN6 G1 F10 X0\nN10 S12{#i}\nN15 X#i\nN20 #i := #i + 1\n"
-        "N30 G20 L10 K(#i < 999)\nN40 M30\nSUBPROGRAM S12{#a} RESTORE\nN1 G91 G0 X1 Y2\n"
-        "END_SUBPROGRAM",
+        (
+            "N5 LET #i := 0\nN6 G1 F10 X0\nN10 S12{#i}\nN15 X#i\nN20 #i := #i + 1\n"
+            "N30 G20 L10 K(#i < 999)\nN40 M30\nSUBPROGRAM S12{#a} RESTORE\nN1 G91 G0 X1 Y2\n"
+            "END_SUBPROGRAM"
+        ),
     ),
     "repeats": (
         "mefi",
