@@ -128,6 +128,10 @@ FORMS = {
         "fagor8070",
         "G1 F100\n$FOR P1=100,999,1\nP[P1]=P1*2\nP[P1]+=1\nX[P[P1]]\n$ENDFOR\nM30",
     ),
+    "machine functions": (
+        "fagor8070",
+        "G1 F100\n$FOR P1=0,999,1\nM8\nX[P1] M9\nM7 Y[P1]\n$ENDFOR\nM30",
+    ),
     "goto": (
         "codesys",
         (
@@ -214,6 +218,26 @@ def test_lines_that_share_a_shape_keep_their_own_numbers(dialect: str) -> None:
         lines.append(random_.choice(words))
     result = assert_same(source_from_text("\n".join([*lines, "M30"])), dialect, SETTINGS)
     assert result.error is None
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_functions_keep_their_places_between_moves(dialect: str) -> None:
+    random_ = Random(6)  # noqa: S311 (programs need no cryptography)
+    blocks = ["X{}", "Y{} M8", "M9 Z{}", "M5", "M7", "M0", "G0 X{} M9", "M3", "M8 M5"]
+    if dialect == "codesys":
+        blocks += ["M77 Y{}", "M8 K2"]
+    lines = ["G1 F100"]
+    lines += [random_.choice(blocks).format(number % 90) for number in range(6000)]
+    result = assert_same(source_from_text("\n".join([*lines, "M30"])), dialect, SETTINGS)
+    assert result.error is None
+    assert len(result.events) > 3000
+
+
+def test_more_functions_than_a_chunk_has_moves() -> None:
+    text = "G1 X1 F100\n" + "M8\nM9\n" * 5000 + "X2\nM30"
+    result = assert_same(source_from_text(text), "gost", SETTINGS)
+    assert len(result.events) == 10_001
+    assert {before for before, _ in result.events} == {1, 2}
 
 
 def test_a_run_without_moves_is_not_endless() -> None:

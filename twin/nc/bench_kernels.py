@@ -42,6 +42,7 @@ def new_bench(state: State) -> Bench:
         np.zeros_like(state.feed),
         np.zeros_like(state.programmed),
         np.zeros_like(state.part),
+        np.zeros_like(state.happened),
     )
     return Bench(
         np.zeros(MOST_WORDS, np.int64),

@@ -13,7 +13,7 @@ import numpy as np
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.expressions import LARGEST_NUMBER, NUMBER
 from twin.nc.instructions import Step, Table
-from twin.nc.plain_words_kernels import CODE
+from twin.nc.plain_words_kernels import CODE, FUNCTION
 
 _LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)
 _MOST_SHAPES = 1000
@@ -78,7 +78,8 @@ class LineShapes:
         """Remember what a line does, where its numbers are all that it does not share."""
         steps, arguments = table.step[rows].copy(), table.argument[rows].copy()
         own = np.flatnonzero(
-            (steps == Step.NUMBER) | ((steps == Step.WORD_NUMBER) & (arguments != CODE))
+            (steps == Step.NUMBER)
+            | ((steps == Step.WORD_NUMBER) & ~np.isin(arguments, (CODE, FUNCTION)))
         )
         shared = (
             (steps <= Step.RUN).all()

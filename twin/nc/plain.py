@@ -43,7 +43,10 @@ class PlainRunner:
         self._tables = PlainTables(control.dialect, control.settings)
         self._translator = Translator(control, self._tables)
         self._rows = Rows(
-            np.zeros((CHUNK, 5), np.int64), np.zeros((CHUNK, 11)), np.zeros((CHUNK, 3, axes))
+            np.zeros((CHUNK, 5), np.int64),
+            np.zeros((CHUNK, 11)),
+            np.zeros((CHUNK, 3, axes)),
+            np.zeros((CHUNK, 3), np.int64),
         )
         self._pause = 1
         self._wait = 0
@@ -135,6 +138,7 @@ class PlainRunner:
             feed=np.array([math.nan if control.feed is None else control.feed]),
             programmed=np.array(control.programmed),
             part=np.array(control.part),
+            happened=np.zeros(1, np.int64),
         )
 
     def _give_back(self, state: State, rows: Rows) -> None:
@@ -142,10 +146,9 @@ class PlainRunner:
         put_into_force(control, state.in_force)
         feed = float(state.feed[0])
         control.feed = None if math.isnan(feed) else feed
-        last = None
-        if len(rows.codes):
-            last = _segment(rows)
-            control.path.add_rows(rows.codes, rows.values, rows.positions, last)
+        last = _segment(rows) if len(rows.codes) else None
+        functions = rows.functions[: state.happened[0]].tolist()
+        control.path.add_rows(rows.codes, rows.values, rows.positions, last, functions)
         control.came_to(state.programmed.tolist(), state.part.tolist(), last)
 
 

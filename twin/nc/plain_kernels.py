@@ -16,6 +16,7 @@ from twin.nc.plain_state import (
     ARC,
     CODES,
     CORNER,
+    EARLY,
     FEED_FACTOR,
     INCREMENTAL,
     INTERPOLATION,
@@ -31,6 +32,7 @@ from twin.nc.plain_words_kernels import (
     AXIS,
     CODE,
     FEED,
+    FUNCTION,
     NOT_PLAIN,
     NUMBER,
     RADIUS,
@@ -71,6 +73,7 @@ def run_words(
     """
     copy(state.modal, modal)
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
+    function = NOT_PLAIN
     feed = state.feed[0]
     for word in range(len(roles)):
         role, value = roles[word], values[word]
@@ -95,6 +98,12 @@ def run_words(
                 if not value > 0.0:
                     return NOT_PLAIN
                 feed = value
+            elif role == FUNCTION:
+                if not 0.0 <= value < CODES or value != np.floor(value):
+                    return NOT_PLAIN
+                function = int(value)
+                if tables.function[function] == NOT_PLAIN:
+                    return NOT_PLAIN
     after = row
     if seen >> RADIUS:
         after = _move(
@@ -102,6 +111,11 @@ def run_words(
         )
         if after == NOT_PLAIN:
             return NOT_PLAIN
+    if function != NOT_PLAIN:
+        happened = rows.functions[state.happened[0]]
+        happened[0] = row if tables.function[function] == EARLY else after
+        happened[1], happened[2] = line, function
+        state.happened[0] += 1
     for word in range(len(roles)):
         if roles[word] == CODE:
             code = int(values[word])

@@ -16,7 +16,9 @@ NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
 MOST_WORDS = 32
 """Words of a plain block; longer ones are read by the general way."""
 CODES = 1000
-"""G codes are below this number."""
+"""G and M codes are below this number."""
+EARLY, LATE = range(2)
+"""When functions are reported: before the move of their block, or behind it."""
 
 
 class BlockTables(NamedTuple):
@@ -27,6 +29,8 @@ class BlockTables(NamedTuple):
             for codes that do more.
         value: To what it sets it, shape (``CODES``,).
         group: Its modal group, shape (``CODES``,).
+        function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
+            shape (``CODES``,); ``NOT_PLAIN`` for codes that do more than that.
         kind: Kind of each interpolation, shape (i,).
         clockwise: Of arcs, shape (i,).
         mismatch: How far start and end radius of an arc may differ, shape (i,) [mm].
@@ -40,6 +44,7 @@ class BlockTables(NamedTuple):
     field: IntArray
     value: FloatArray
     group: IntArray
+    function: IntArray
     kind: IntArray
     clockwise: npt.NDArray[np.bool_]
     mismatch: FloatArray
@@ -84,6 +89,7 @@ class State(NamedTuple):
         feed: F as programmed, NaN for none, shape (1,).
         programmed: Programmed position, shape (k,) [mm or deg].
         part: Part position, shape (k,) [mm or deg].
+        happened: Functions that were reported, shape (1,).
     """
 
     modal: FloatArray
@@ -91,6 +97,7 @@ class State(NamedTuple):
     feed: FloatArray
     programmed: FloatArray
     part: FloatArray
+    happened: IntArray
 
 
 class Rows(NamedTuple):
@@ -100,12 +107,18 @@ class Rows(NamedTuple):
         codes: Shape (n, 5).
         values: Shape (n, 11).
         positions: Start, end and display, shape (n, 3, k).
+        functions: Moves before each function, its line and its number, shape (m, 3).
     """
 
     codes: IntArray
     values: FloatArray
     positions: FloatArray
+    functions: IntArray
 
     def first(self, count: int) -> "Rows":
-        """The first rows, as columns again."""
-        return Rows(self.codes[:count], self.values[:count], self.positions[:count])
+        """The first moves, as columns again."""
+        return self._replace(
+            codes=self.codes[:count],
+            values=self.values[:count],
+            positions=self.positions[:count],
+        )

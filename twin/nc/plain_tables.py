@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from twin.nc import iso
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.control import Control
 from twin.nc.dialect import (
     Comment,
@@ -21,15 +21,18 @@ from twin.nc.dialect import (
     PlainArc,
     PlainLine,
 )
+from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.plain_state import (
     ARC,
     CENTER_ABSOLUTE,
     CODES,
     CORNER,
+    EARLY,
     FEED_FACTOR,
     FEED_LINE,
     INCREMENTAL,
     INTERPOLATION,
+    LATE,
     NO_MOTION,
     NOTHING,
     RAPID_LINE,
@@ -41,6 +44,7 @@ from twin.nc.plain_words_kernels import (
     CENTER,
     CODE,
     FEED,
+    FUNCTION,
     NOT_PLAIN,
     NUMBER,
     OTHER,
@@ -115,6 +119,7 @@ class PlainTables:
             field=field,
             value=value,
             group=group,
+            function=_functions(dialect),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
             mismatch=np.array([arc.mismatch for arc in arcs]),
@@ -160,6 +165,17 @@ def _rapid_feed(
     return next((each.rapid_feed for each in plain if isinstance(each, PlainLine)), None)
 
 
+def _functions(dialect: Dialect) -> IntArray:
+    """M codes that are only reported; a spindle's start carries its speed, and is not plain."""
+    function = np.full(CODES, EARLY if dialect.any_m else NOT_PLAIN, np.int64)
+    for number, code in dialect.m.items():
+        only_told = code.action is None and not code.silent and not code.ends
+        function[number] = (LATE if code.late else EARLY) if only_told else NOT_PLAIN
+    for start in SPINDLE_STARTS:
+        function[int(start[1:])] = NOT_PLAIN
+    return function
+
+
 def _kind(interpolation: Interpolation | None) -> int:
     if interpolation is None:
         return NO_MOTION
@@ -194,7 +210,7 @@ def _roles(dialect: Dialect, settings: ControlSettings) -> dict[str, int]:
     roles = {letter: role for letter, role in roles.items() if letter not in taken}
     if dialect.words.get("F") is iso.set_feed:
         roles["F"] = FEED
-    return {**roles, "N": NUMBER, "G": CODE}
+    return {**roles, "N": NUMBER, "G": CODE, "M": FUNCTION}
 
 
 def _marks(texts: list[str]) -> np.ndarray[tuple[int, int], np.dtype[np.uint8]]:

@@ -18,8 +18,8 @@ ByteArray = npt.NDArray[np.uint8]
 
 NOT_PLAIN = -1
 
-OTHER, NUMBER, CODE, FEED, RADIUS, CENTER, AXIS = 0, 1, 2, 3, 4, 5, 8
-"""What a letter is: N, G, F, R; I, J, K from ``CENTER`` on; axes by their column from ``AXIS``."""
+OTHER, NUMBER, CODE, FEED, FUNCTION, RADIUS, CENTER, AXIS = 0, 1, 2, 3, 4, 5, 6, 9
+"""What a letter is: N, G, F, M, R; I, J, K from ``CENTER`` on; axes by their column from ``AXIS``."""
 
 _BLANK, _TAB, _PLUS, _MINUS, _POINT = 32, 9, 43, 45, 46
 _DIGIT_0, _DIGIT_9, _LETTER_A, _LETTER_Z, _TO_UPPER = 48, 57, 65, 90, 0xDF

@@ -87,7 +87,7 @@ def run_program(
         line = int(progress[LINE])
         if line >= lines:
             return ENDED
-        if progress[MADE] == len(rows.codes):
+        if progress[MADE] == len(rows.codes) or state.happened[0] == len(rows.functions):
             return FULL
         row = int(table.first[line])
         if row == GENERAL:
@@ -119,7 +119,7 @@ def run_program(
                 progress[MADE],
             )
             if made == NOT_PLAIN:
-                return LEFT
+                return UNREAD
             progress[FURTHEST] = max(progress[FURTHEST], place)
             progress[STEPS_LEFT], progress[MADE] = steps_left, made
             progress[BLOCKS] += 1

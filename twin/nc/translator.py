@@ -10,9 +10,11 @@ from twin.nc.expression_kernels import ONE, THREE, TWO
 from twin.nc.instructions import GENERAL, LARGEST_PART, Instructions, Step
 from twin.nc.line_shapes import LineShapes
 from twin.nc.plain_tables import PlainTables
-from twin.nc.plain_words_kernels import CODE, NUMBER
+from twin.nc.plain_words_kernels import CODE, FUNCTION, NUMBER
 from twin.nc.routine_kernels import unread_lines
 
+_MEANINGS = (NUMBER, CODE, FUNCTION)
+"""Roles of words whose value says what a block is."""
 _AHEAD = 1000
 """Lines that are looked at for further ones of known shapes: one call for many of them."""
 
@@ -28,7 +30,7 @@ class Translator:
         self._control = control
         self._lines = tables.lines
         self.instructions = Instructions(len(control.flow.lines))
-        letters = [letter for letter, role in tables.roles.items() if role not in (CODE, NUMBER)]
+        letters = [letter for letter, role in tables.roles.items() if role not in _MEANINGS]
         self._shapes = LineShapes(letters)
         self._writer = BlockWriter(
             self.instructions,

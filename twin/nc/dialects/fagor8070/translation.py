@@ -37,7 +37,7 @@ def _words(control: Control, block: Block, writer: BlockWriter) -> None:
     often = [word for word in block.words if word.address == "NR"]
     returns = [word for word in block.words if word.address == "M" and word.value in _RETURNS]
     rest = [word for word in block.words if word not in (*often[:1], *returns[:1])]
-    if often and returns:
+    if often and any(word.address == "M" for word in block.words):
         raise NotTranslatableError
     if often:
         count = often[0].value
