@@ -9,8 +9,9 @@ from twin.nc.blocks import Block
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.diagnostics import ProgramError
 from twin.nc.lexer import Lexer
+from twin.nc.lines import Lines
 from twin.nc.reporter import Reporter
-from twin.nc.source import Lines, Source
+from twin.nc.source import Source
 
 _LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
 _CACHED_LINES = 10_000

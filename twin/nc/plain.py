@@ -18,6 +18,8 @@ from twin.nc.plain_tables import FEED_FACTORS, PlainTables
 from twin.nc.plain_words_kernels import NOT_PLAIN
 from twin.nc.planes import XY, YZ, ZX
 
+_LINE = 2
+"""Column of ``Rows.codes``."""
 _WORTHWHILE = 4
 """Blocks that a run must have to pay for handing the state over and back."""
 _LONGEST_PAUSE = 256
@@ -48,20 +50,25 @@ class PlainRunner:
         room = CHUNK - len(control.path)
         if not lines or not self._may_run():
             return False
+        page = self._lines.page_of(lines.start)
+        first = page.lines.start
+        stop = min(lines.stop, page.lines.stop)
         state = self._state()
         rows = self._rows.first(room)
         reached, made, blocks, inked = run_blocks(
-            self._lines.data,
-            self._lines.starts,
-            lines.start,
-            lines.stop,
+            page.data,
+            page.starts,
+            lines.start - first,
+            stop - first,
             self._tables.lines,
             self._tables.blocks,
             self._constants(),
             state,
             rows,
         )
-        if blocks >= _WORTHWHILE or made == room or reached == lines.stop:
+        reached += first
+        rows.codes[:made, _LINE] += first
+        if blocks >= _WORTHWHILE or made == room or reached == stop:
             self._pause = 1
         else:
             self._wait = self._pause
@@ -70,7 +77,7 @@ class PlainRunner:
             return False
         control.flow.passed(reached, blocks)
         if inked != NOT_PLAIN:
-            control.report.line = inked + 1
+            control.report.line = first + inked + 1
         self._give_back(state, rows.first(made))
         return True
 
