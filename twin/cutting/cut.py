@@ -46,13 +46,18 @@ class CutResult:
     air_share: float
     """Share of the cutting feed's path that met no material."""
     gouges: tuple[CutEvent, ...]
-    """Flutes too short, shank or holder in the material; one each per program line."""
+    """Flutes too short, shank or holder in the material; one each per program line, the deepest
+    where there are very many."""
     rapid_into_stock: tuple[CutEvent, ...]
     """Rapids that met material, one per move."""
     spindle_off: tuple[CutEvent, ...]
     """Feeds that met material with the spindle off, one per move."""
     blocks: Mapping[int, BlockCut]
-    """What each program line took off."""
+    """What program lines took off: all, or of very many those that took off the most or met the
+    greatest force."""
+    blocks_forgotten: int
+    """How often a line was let go of because enough others took off more; what it had taken off
+    by then is missing in ``blocks`` if it comes again."""
     bin_s: float
     """Length of a bin of ``removed_over_time`` [s]."""
     removed_over_time: tuple[float, ...]
@@ -186,6 +191,7 @@ class Cutter:
             rapid_into_stock=self._rapids.events(),
             spindle_off=self._standing.events(),
             blocks=self._ledger.blocks,
+            blocks_forgotten=self._ledger.forgotten,
             bin_s=bin_s,
             removed_over_time=tuple(over_time.tolist()),
             force_n=self._force,
