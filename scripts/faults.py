@@ -82,7 +82,7 @@ def faults(folder: Path, code: int, said: str) -> Iterator[str]:
         return
     yield from complaints(folder)
     if code not in CODES:
-        yield f"exit code {code}"
+        yield f"exit code {code}, said {said[-300:]!r}"
     if "Traceback" in said or (code != 0 and not said.strip()):
         yield f"said {said[-300:]!r}"
     if list(folder.glob(".*")):
