@@ -3,12 +3,16 @@
 A signal may come while the libraries are still being loaded: even then a sentence is said.
 """
 
+import gc
 import resource
 import signal
 import sys
 
 LEAST_ADDRESS_SPACE = 512_000_000
 """In less the libraries cannot be loaded, and some of them die of it without a word [bytes]."""
+
+COLLECT_AFTER = 100_000
+"""New objects between two searches for garbage: what libraries make while they load all stays."""
 
 
 def main() -> None:
@@ -22,6 +26,7 @@ def main() -> None:
     # Asked to end, by a batch system say, is the same as Ctrl-C: files are left whole or absent.
     signal.signal(signal.SIGTERM, stop)
     signal.signal(signal.SIGINT, stop)
+    gc.set_threshold(COLLECT_AFTER)
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if 0 <= limit < LEAST_ADDRESS_SPACE:
         print(
