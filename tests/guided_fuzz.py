@@ -48,7 +48,10 @@ def changer(
 
 def main(name: str, tries: int, seed: int = 1) -> None:
     """Run as many tries, then end the process."""
-    atheris: Any = importlib.import_module("atheris")
+    try:
+        atheris: Any = importlib.import_module("atheris")
+    except ModuleNotFoundError:
+        sys.exit("atheris is missing: python -m pip install -e '.[fuzz]'")
     with atheris.instrument_imports(
         include=["twin", "tomllib", "trimesh"], exclude=compiled_modules()
     ):
