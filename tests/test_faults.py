@@ -73,6 +73,27 @@ def test_an_interruption_within_an_exec_ends_with_the_code_too(tmp_path: Path) -
     assert done.returncode == 130
 
 
+WHILE_PYTHON_LEAVES = """
+import atexit, os, signal
+import twin.__main__, twin.cli
+
+def done():
+    raise SystemExit(1)
+
+atexit.register(lambda: os.kill(os.getpid(), signal.SIGINT))
+twin.cli.main = done
+twin.__main__.main()
+"""
+
+
+def test_an_interruption_after_the_end_changes_nothing() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", WHILE_PYTHON_LEAVES],
+        cwd=Path(__file__).parents[1], capture_output=True, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (1, "")
+
+
 def test_a_full_disk_ends_the_run_with_a_sentence(tmp_path: Path) -> None:
     run = start(tmp_path, limited(resource.RLIMIT_FSIZE, 100_000))
     _, said = run.communicate(timeout=120)

@@ -34,6 +34,9 @@ def main() -> None:
     try:
         _run(stopped)
     except SystemExit as leaving:
+        # All is done and said: a signal that comes while Python puts itself away changes nothing.
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
         codes.append(leaving.code if isinstance(leaving.code, int) else 0)
         raise
 
