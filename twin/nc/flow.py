@@ -9,8 +9,9 @@ from twin.nc.blocks import Block
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.diagnostics import ProgramError
 from twin.nc.lexer import Lexer
+from twin.nc.lines import Lines
 from twin.nc.reporter import Reporter
-from twin.nc.source import Lines, Source
+from twin.nc.source import Source
 
 if TYPE_CHECKING:
     from twin.nc.dialect import Modal

@@ -12,13 +12,14 @@ import numpy as np
 from twin.nc.canonical import Corner, Motion
 from twin.nc.control import Control
 from twin.nc.hand_over import HandOver, put_into_force
+from twin.nc.lines import Page
 from twin.nc.move_columns import CHUNK, Segment
 from twin.nc.plain_state import Constants, Rows, State
 from twin.nc.plain_tables import FEED_FACTORS, PlainTables
 from twin.nc.plain_words_kernels import NOT_PLAIN
 from twin.nc.planes import XY, YZ, ZX
 from twin.nc.routine_kernels import run_program
-from twin.nc.routine_state import FULL, LEFT, PAUSED, UNREAD
+from twin.nc.routine_state import FULL, LEFT, OFF_PAGE, PAUSED, UNREAD
 from twin.nc.translator import Translator
 
 _WORTHWHILE = 4
@@ -40,6 +41,7 @@ class PlainRunner:
         axes = len(control.settings.axes)
         self._control = control
         self._lines = control.flow.lines
+        self._page = Page(0, b"")
         self._tables = PlainTables(control.dialect, control.settings)
         self._translator = Translator(control, self._tables)
         self._rows = Rows(
@@ -82,8 +84,9 @@ class PlainRunner:
         instructions = translator.instructions
         while True:
             why = run_program(
-                self._lines.data,
-                self._lines.starts,
+                self._page.data,
+                self._page.starts,
+                self._page.lines.start,
                 self._tables.lines,
                 self._tables.blocks,
                 constants,
@@ -93,7 +96,9 @@ class PlainRunner:
                 handed.routine,
                 _MOST,
             )
-            if why == UNREAD:
+            if why == OFF_PAGE:
+                self._page = self._lines.page_of(handed.line)
+            elif why == UNREAD:
                 if not translator.translate(handed.line):
                     return LEFT
             elif why != PAUSED:

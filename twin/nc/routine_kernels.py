@@ -36,6 +36,7 @@ from twin.nc.routine_state import (
     LINE,
     MADE,
     NO_PLACE,
+    OFF_PAGE,
     OWN,
     PART,
     PAUSED,
@@ -53,6 +54,7 @@ _PART_MASK = (1 << PART_BITS) - 1
 def run_program(
     data: ByteArray,
     starts: IntArray,
+    first_line: int,
     line_tables: LineTables,
     tables: BlockTables,
     constants: Constants,
@@ -65,8 +67,9 @@ def run_program(
     """Run blocks until one is for the general way or for the translator, or the rows are full.
 
     Args:
-        data: The program as UTF-8.
-        starts: Where each line begins, and where the last one ends, shape (lines + 1,).
+        data: A page of the program as UTF-8.
+        starts: Where each line of it begins, and where the last one ends, shape (lines + 1,).
+        first_line: Its first line, from 0.
         line_tables: How lines are read.
         tables: What blocks mean.
         constants: What stays.
@@ -81,7 +84,7 @@ def run_program(
     """
     progress, calls = routine.progress, routine.calls
     bench = new_bench(state)
-    lines = len(starts) - 1
+    lines = len(table.first) - 1
     for _ in range(most):
         _end_parts(progress, calls)
         line = int(progress[LINE])
@@ -93,8 +96,11 @@ def run_program(
         if row == GENERAL:
             return LEFT
         if row == UNKNOWN:
-            begin = int(starts[line])
-            end = line_end(data, begin, int(starts[line + 1]))
+            at = line - first_line
+            if at < 0 or at >= len(starts) - 1:
+                return OFF_PAGE
+            begin = int(starts[at])
+            end = line_end(data, begin, int(starts[at + 1]))
             if progress[PART] > 0 or end - begin > LONGEST_LINE:
                 return UNREAD
             words = read_words(data, begin, end, line_tables, bench.roles, bench.values)
@@ -158,27 +164,29 @@ def _end_parts(progress: IntArray, calls: IntArray) -> None:
 def unread_lines(
     data: ByteArray,
     starts: IntArray,
+    first_line: int,
     line_tables: LineTables,
     first: npt.NDArray[np.int32],
     line: int,
     most: int,
 ) -> IntArray:
-    """Those of the next lines that a run would not read by itself.
+    """Those of the next lines on the page that a run would not read by itself.
 
     Args:
         data: As for ``run_program``.
         starts: The same.
+        first_line: The same.
         line_tables: The same.
         first: First row of each translated line.
         line: The line before them, from 0.
         most: How many lines are looked at.
     """
     roles, values = np.zeros(MOST_WORDS, np.int64), np.zeros(MOST_WORDS)
-    last = min(line + 1 + most, len(starts) - 1)
+    last = min(line + 1 + most, first_line + len(starts) - 1)
     found, count = np.zeros(most, np.int64), 0
     for each in range(line + 1, last):
-        begin = starts[each]
-        end = line_end(data, begin, starts[each + 1])
+        begin = starts[each - first_line]
+        end = line_end(data, begin, starts[each - first_line + 1])
         if first[each] != UNKNOWN or end - begin > LONGEST_LINE:
             continue
         if read_words(data, begin, end, line_tables, roles, values) == NOT_PLAIN:

@@ -20,9 +20,10 @@ NO_PLACE = -1
 MOST_CALLS = 64
 """Parts within each other: more than any dialect allows."""
 
-ENDED, FULL, PAUSED, UNREAD, LEFT = range(5)
+ENDED, FULL, PAUSED, UNREAD, LEFT, OFF_PAGE = range(6)
 """Why a run ends: behind the last line; no room for a move; the caller has not been heard for
-long; at a line that is to be translated; at a block for the general way."""
+long; at a line that is to be translated; at a block for the general way; at a line of
+another page."""
 
 
 class Memory(NamedTuple):

@@ -50,8 +50,15 @@ class Translator:
         lines = self._control.flow.lines
         key, numbers = self._shapes.split(lines[line])
         if self._copy(line, key, numbers):
+            page = lines.page_of(line)
             ahead = unread_lines(
-                lines.data, lines.starts, self._lines, instructions.table.first, line, _AHEAD
+                page.data,
+                page.starts,
+                page.lines.start,
+                self._lines,
+                instructions.table.first,
+                line,
+                _AHEAD,
             )
             for each in ahead.tolist():
                 self._copy(each, *self._shapes.split(lines[each]))
