@@ -4,7 +4,6 @@ import sys
 from pathlib import Path
 
 from twin.errors import UsageError
-from twin.nc.interpreter import PLAIN_FROM
 from twin.nc.jsonl import json_lines, text_lines
 from twin.preparation import prepare
 
@@ -23,11 +22,8 @@ def print_interpretation(
     if form not in FORMATS:
         raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
     preparation = prepare(program, dialect=dialect, machine=machine, strict=strict)
-    if len(preparation.source.lines) >= PLAIN_FROM:
-        from twin.first_compilation import announce_compilation
-
-        announce_compilation()
     interpretation = preparation.interpretation()
+    interpretation.before_fast_way = _announce
     try:
         for line in FORMATS[form](interpretation):
             sys.stdout.write(f"{line}\n")
@@ -35,3 +31,9 @@ def print_interpretation(
         sys.stdout.flush()
         for warning in interpretation.diagnostics:
             sys.stderr.write(f"{warning}\n")
+
+
+def _announce() -> None:
+    from twin.first_compilation import announce_compilation
+
+    announce_compilation()

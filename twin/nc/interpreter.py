@@ -1,7 +1,7 @@
 """Runs a program: text in, chunks of canonical moves out."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from twin.nc.plain import PlainRunner
 
 PLAIN_FROM = 500
-"""Blocks after which a program of more lines takes the fast way, which costs time to load."""
-SHORT_PROGRAM = 20
+"""Blocks and moves after which a program of more lines takes the fast way, which costs time to load."""
+SHORT_PROGRAM = 100
 """A program of fewer lines, which can only loop, takes it after so many times as many blocks where
 it is not loaded yet."""
 _FAST_WAY = "twin.nc.plain"
@@ -32,6 +32,7 @@ class Interpretation:
         source: The program.
         dialect: The language it is read in.
         settings: What the control was told of the machine and the job.
+        before_fast_way: Done when the fast way is about to be loaded, which may have to compile it.
     """
 
     def __init__(
@@ -48,11 +49,13 @@ class Interpretation:
             source: The program.
             dialect: The language it is read in.
             settings: What the control is told of the machine and the job.
-            plain_from: Blocks after which plain ones take the fast way, where it has as many lines.
+            plain_from: Blocks and moves after which the fast way is taken where there are as many
+                lines, or where it is loaded.
         """
         self.source = source
         self.dialect = dialect
         self.settings = settings
+        self.before_fast_way: Callable[[], None] = lambda: None
         self._plain_from = plain_from
         self._control = Control(dialect, settings, source)
 
@@ -102,6 +105,7 @@ class Interpretation:
         yield control.path.take()
 
     def _plain_runner(self) -> "PlainRunner":
+        self.before_fast_way()
         from twin.nc.plain import PlainRunner
 
         return PlainRunner(self._control)
