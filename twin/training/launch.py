@@ -12,12 +12,13 @@ from mujoco.studio import messages, viewer_handle
 
 from twin.errors import UsageError
 from twin.training.gate import LOOPBACK, Gate
-from twin.training.page import open_page, readable_fonts
+from twin.training.page import open_page
 from twin.training.panel.panel import Panel
 from twin.training.scene import Scene
 from twin.training.score import SheetWriter
 from twin.training.session import Session
 from twin.training.studio import PanelPlugin, RoomPlugin
+from twin.training.studio_files import own_files
 from twin.training.texts import Language, in_language
 from twin.training.vocabulary import Words
 
@@ -103,8 +104,7 @@ def open_room(
     title = f"{in_language(scene.file.title, words.language)} - {words['title']}"
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="twin-train-")))
-        (folder / "assets").mkdir()
-        stack.enter_context(readable_fonts(folder / "assets"))
+        stack.enter_context(own_files(folder))
         inside = folder / "studio.sock"
         gate = trainer_gate = None
         if not window:
