@@ -163,5 +163,7 @@ def _open_window(title: str, plugins: list[RoomPlugin | PanelPlugin]) -> viewer_
         )
     from mujoco.studio import launch_native, viewer_protocol
 
-    config = viewer_protocol.ViewerConfig(title=title, width=1600, height=960)
+    config = viewer_protocol.ViewerConfig(
+        title=title, width=1600, height=960, gfx="opengl_headless"
+    )
     return launch_native.launch(config, plugins=plugins)

@@ -15,8 +15,6 @@ JOG_STEPS = (0.01, 0.1, 1.0, 10.0, None)
 """Steps of the jog keys [mm or deg]; None: as long as the key is held."""
 JOG_FEED = {"mm": 2000.0, "deg": 1800.0}
 """Feed of the jog keys at 100 % [mm/min or deg/min]."""
-SPINDLE_SPEED = 3000.0
-"""What the spindle key starts [1/min]."""
 
 _KEY, _WIDE, _NARROW = 56.0, 116.0, 100.0
 """Height of a key, and its widths [px]."""
@@ -140,9 +138,9 @@ def build_supplies(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
     """Spindle and coolant."""
     asked: list[Request] = []
     if kit.hard_key(
-        "spindle", words["spindle"], _NARROW, _KEY, lamp=BRIGHT_GREEN, lit=bool(now.spindle)
+        "spindle", words["spindle"], _NARROW, _KEY, lamp=BRIGHT_GREEN, lit=now.spindle.turns
     ):
-        asked.append(do("spindle", on=not now.spindle, speed=SPINDLE_SPEED))
+        asked.append(do("spindle", on=not now.spindle.turns))
     if kit.hard_key("coolant", words["coolant"], _NARROW, _KEY, lamp=CYAN, lit=now.coolant):
         asked.append(do("coolant", on=not now.coolant))
     return asked
