@@ -12,12 +12,12 @@ from twin.training.phrases import PhrasesFile, translated
 from twin.training.scene import read_scene, scene_names, scene_path
 from twin.training.script import play
 from twin.training.session import Session
-from twin.training.texts import LANGUAGES
+from twin.training.texts import LANGUAGES, Language
 
 ROOM = Path(phrases.__file__).parent
 SPEAKERS = ("actions.py", "room.py", "session.py", "tables.py")
 RAISED = ("UsageError", "TwinError", "AlarmStandsError")
-OTHERS = [lang for lang in LANGUAGES if lang != "en"]
+OTHERS: list[Language] = [lang for lang in LANGUAGES if lang != "en"]
 ALL = read_toml(phrases._FILE, PhrasesFile).phrases
 
 
@@ -31,7 +31,7 @@ def sample(node: ast.expr) -> str | None:
         return node.value
     if isinstance(node, ast.JoinedStr):
         return "".join(
-            part.value if isinstance(part, ast.Constant) else "1.5" for part in node.values
+            str(part.value) if isinstance(part, ast.Constant) else "1.5" for part in node.values
         )
     return None
 
@@ -41,8 +41,9 @@ def refusals() -> set[str]:
     found = set()
     for name in SPEAKERS:
         for node in ast.walk(ast.parse((ROOM / name).read_text(encoding="utf-8"))):
-            called = node.func if isinstance(node, ast.Call) else None
-            if isinstance(called, ast.Name) and called.id in RAISED and node.args:
+            if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name):
+                continue
+            if node.func.id in RAISED and node.args:
                 found.add(sample(node.args[0]))
     return {text for text in found if text}
 

@@ -70,6 +70,8 @@ STAND_IN = """
     stream.send(message);
   }
   function picture() { pictures.send("state_ack"); }
+  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+  async function looked() { await wait(40); picture(); picture(); }
 </script>
 """
 
@@ -97,7 +99,7 @@ def browser() -> Iterator[Any]:
 def page(browser) -> Iterator["Page"]:
     opened = browser.new_page(viewport={"width": 600, "height": 400})
     opened.set_content(STAND_IN % SCRIPT)
-    opened.evaluate("frame(); picture(); picture()")
+    opened.evaluate("frame()")
     yield opened
     opened.close()
 
@@ -140,7 +142,7 @@ def test_the_pages_own_messages_do_not_press_twice(page):
     page.mouse.down()
     page.evaluate("frame()")  # It has not heard of the press yet,
     page.evaluate("frame({ buttons: 1 })")  # now it has,
-    page.evaluate("picture(); picture()")
+    page.evaluate("looked()")
     page.mouse.up()
     until(lambda: told(page)[-1]["buttons"] == 0)
     page.evaluate("frame({ buttons: 1 })")  # and has not heard of the release,
@@ -155,10 +157,11 @@ def test_a_press_and_its_release_wait_for_the_server_to_look(page):
     page.mouse.down()
     page.mouse.up()
     assert states(page) == [(0, []), (LEFT, [])]
-    page.evaluate("picture()")
+    page.evaluate("picture(); picture(); picture()")  # They had been waiting for the page.
+    page.evaluate("wait(40).then(picture)")
     assert states(page)[-1] == (LEFT, [])
     for wanted in (0, LEFT, 0):
-        page.evaluate("picture(); picture()")
+        page.evaluate("looked()")
         until(lambda wanted=wanted: states(page)[-1] == (wanted, []))
     assert states(page) == [(0, []), (LEFT, []), (0, []), (LEFT, []), (0, [])]
     moments = [each["time"] for each in told(page)]
@@ -171,7 +174,7 @@ def test_a_server_that_makes_no_picture_is_told_all_the_same(page):
     page.mouse.up()
     until(lambda: states(page)[-1] == (0, []))
     pressed, released = told(page)[1:]
-    assert released["time"] - pressed["time"] >= 399
+    assert released["time"] - pressed["time"] >= 1999
 
 
 def test_the_panels_keys_are_told_and_others_are_left_to_the_page(page):
@@ -180,7 +183,7 @@ def test_the_panels_keys_are_told_and_others_are_left_to_the_page(page):
     page.keyboard.down("Backspace")
     page.evaluate("frame({ keys: [11] })")
     assert states(page)[-1] == (0, [BACKSPACE, KEY_H])
-    page.evaluate("picture(); picture()")
+    page.evaluate("looked()")
     page.keyboard.up("h")
     until(lambda: KEY_H not in states(page)[-1][1])
 
@@ -214,7 +217,7 @@ def test_the_strip_of_studio_is_the_pages_own(page):
     assert states(page) == [(0, [])]
     page.evaluate("frame({ x: 100, y: 50, buttons: 1 })")
     assert states(page) == [(0, []), (LEFT, [])]
-    page.evaluate("picture(); picture()")
+    page.evaluate("looked()")
     page.mouse.up()
     until(lambda: states(page)[-1] == (0, []))
 
@@ -240,7 +243,7 @@ def test_what_is_held_is_let_go_when_the_page_is_left(page):
     page.mouse.move(100, 50)
     page.mouse.down(button="right")
     assert states(page)[-1] == (RIGHT, [])
-    page.evaluate("picture(); picture(); dispatchEvent(new Event('blur'))")
+    page.evaluate("looked().then(() => dispatchEvent(new Event('blur')))")
     until(lambda: states(page)[-1] == (0, []))
 
 
@@ -258,7 +261,7 @@ def test_a_spectators_press_and_one_after_the_stream_was_lost_are_told_to_nobody
     # A new stream begins with the page's own word, and goes on from there.
     page.evaluate("stream = new Stream('/ui?sid=2'); frame({ x: 100, y: 50, buttons: 1 })")
     assert states(page) == [(0, []), (LEFT, [])]
-    page.evaluate("picture(); picture()")
+    page.evaluate("looked()")
     page.mouse.up()
     until(lambda: states(page)[-1] == (0, []))
     assert told(page)[-1]["stream"].endswith("sid=2")

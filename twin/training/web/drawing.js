@@ -2,13 +2,15 @@
 //
 // Without a graphics card the browser waits in the page's own thread until the processor has drawn
 // a frame, half a second and more, and hears no press in that time. Here the page draws onto a sheet
-// that is not shown, does not begin another frame before that one is ready, and shows it then. With
-// a graphics card nothing is changed.
+// that is not shown, shows it when it is ready, and rests before it begins another. With a graphics
+// card nothing is changed.
 (() => {
   "use strict";
 
   const PROCESSOR = /swiftshader|llvmpipe|softpipe|software|basic render/i;
   const LOOK_MS = 4;
+  // Of the time that a frame took: then the processor is the machine's, and the press's.
+  const REST = 1.0;
   const ALREADY = new Set([WebGL2RenderingContext.ALREADY_SIGNALED, WebGL2RenderingContext.CONDITION_SATISFIED]);
 
   const plain = HTMLCanvasElement.prototype.getContext;
@@ -35,6 +37,7 @@
   let busy = false;
   function frame(draw, time, shown) {
     if (busy) return next((later) => frame(draw, later, shown));
+    const began = performance.now();
     draw(time);
     const drawn = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     if (drawn === null) return; // The context is lost: nothing will be drawn any more.
@@ -44,7 +47,7 @@
       if (!gl.isContextLost() && !ALREADY.has(gl.clientWaitSync(drawn, 0, 0))) return setTimeout(look, LOOK_MS);
       gl.deleteSync(drawn);
       shown.transferFromImageBitmap(sheet.transferToImageBitmap());
-      busy = false;
+      setTimeout(() => { busy = false; }, REST * (performance.now() - began));
     };
     setTimeout(look, LOOK_MS);
   }

@@ -29,10 +29,11 @@
   const MOVES_IN_TEXT = (number) => number >= 33 && number <= 40;
 
   // A change waits until the server has looked at the one before: then a press and its release
-  // between two looks are two states, not none.
+  // between two looks are two states, not none. Of the pictures that come the first can be older
+  // than the change, and so can all that had been waiting for this page.
   const PICTURES_APART = 2;
   const SHORTEST_MS = 30;
-  const LONGEST_MS = 400;
+  const LONGEST_MS = 2000;
 
   const plain = WebSocket.prototype.send;
   let stream = null; // The panel's stream.
@@ -44,8 +45,8 @@
   let theirs = true; // Whether the page's own strip or menu has the mouse and the keys.
   let strip = false; // Whether the last press was on the strip.
   let typed = false; // Whether something was typed that the page has not told yet.
-  let pictures = 0;
-  let before = { pictures: -Infinity, time: -Infinity };
+  let told_ms = -Infinity; // When the last change was told,
+  let pictures = 0; // and how many pictures have come since.
 
   const copied = (state) => ({ buttons: state.buttons, keys: new Set(state.keys) });
   const area = (message) => new DataView(message.buffer, message.byteOffset, message.byteLength);
@@ -72,15 +73,12 @@
     const now = performance.now();
     if (!changes.length || theirs || stream === null || stream.readyState !== WebSocket.OPEN) return;
     if (typed && changes[0].afterText) return; // The page's next message brings what was typed.
-    const since = now - before.time;
-    const looked = pictures - before.pictures >= PICTURES_APART || since >= LONGEST_MS;
-    if (!looked || since < SHORTEST_MS) {
-      setTimeout(tell, since < SHORTEST_MS ? SHORTEST_MS - since : LONGEST_MS - since);
-      return;
-    }
+    const since = now - told_ms;
+    if (pictures < PICTURES_APART && since < LONGEST_MS) return void setTimeout(tell, LONGEST_MS - since);
     const change = changes.shift();
     told = change.state;
-    before = { pictures, time: now };
+    told_ms = now;
+    pictures = 0;
     const message = last.slice();
     const view = area(message);
     write(view, told);
@@ -89,7 +87,6 @@
     view.setUint16(AT.characters, 0, true);
     view.setUint8(AT.keyframe, 0);
     plain.call(stream, message);
-    if (changes.length) setTimeout(tell, SHORTEST_MS);
   }
 
   function note(afterText = false) {
@@ -103,9 +100,9 @@
     const view = area(message);
     const parked = view.getInt16(AT.x, true) === PARKED && view.getInt16(AT.y, true) === PARKED;
     last = message;
-    const before = theirs;
+    const wereTheirs = theirs;
     theirs = strip || (parked && inPanel());
-    if (theirs || before) {
+    if (theirs || wereTheirs) {
       told = read(view);
       changes = [];
       const same = told.buttons === held.buttons && [...KEYS.values()].every((bit) => told.keys.has(bit) === held.keys.has(bit));
@@ -118,7 +115,7 @@
   }
 
   WebSocket.prototype.send = function (message) {
-    if (message === SHOWN) pictures += 1;
+    if (message === SHOWN && performance.now() - told_ms >= SHORTEST_MS) pictures += 1;
     const own = isInput(message) && new URL(this.url).pathname === STREAM;
     if (own) {
       if (stream !== this) theirs = true; // A new stream knows nothing of what was told.
