@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 PATIENCE_S = 60.0
 WIDTH, HEIGHT = 1280, 760
-STEAL = (1185.0, 744.0)
+STEAL = (1068.0, 744.0)
 """Where Studio's strip has its key ``Steal control`` on a page of that size [px]."""
 
 pytestmark = [
@@ -54,10 +54,11 @@ class Operator:
         """Go to the page; the panel stands where the page's width puts it once it is there."""
         self.gate = _gate(self.room, as_trainer=as_trainer)
         panel = self.room.shown.panel
-        panel.width = 0.0
         self.page = self._browser.new_page()
         self.page.goto(self.gate.address, timeout=1e3 * PATIENCE_S)
-        self.until(lambda: panel.width == WIDTH, "the page")
+        self.until(lambda: self.gate.has_panel, "the panel")
+        self.idle()
+        assert panel.width == WIDTH
 
     def watch(self, *, as_trainer: bool) -> "Page":
         """Open a second page beside the first; it may only look on."""

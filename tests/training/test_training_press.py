@@ -71,7 +71,7 @@ STAND_IN = """
   }
   function picture() { pictures.send("state_ack"); }
   const wait = (ms) => new Promise((done) => setTimeout(done, ms));
-  async function looked() { await wait(40); picture(); picture(); }
+  async function looked() { await wait(50); picture(); picture(); picture(); }
 </script>
 """
 
@@ -158,14 +158,14 @@ def test_a_press_and_its_release_wait_for_the_server_to_look(page):
     page.mouse.up()
     assert states(page) == [(0, []), (LEFT, [])]
     page.evaluate("picture(); picture(); picture()")  # They had been waiting for the page.
-    page.evaluate("wait(40).then(picture)")
+    page.evaluate("wait(50).then(picture)")
     assert states(page)[-1] == (LEFT, [])
     for wanted in (0, LEFT, 0):
         page.evaluate("looked()")
         until(lambda wanted=wanted: states(page)[-1] == (wanted, []))
     assert states(page) == [(0, []), (LEFT, []), (0, []), (LEFT, []), (0, [])]
     moments = [each["time"] for each in told(page)]
-    assert min(late - early for early, late in itertools.pairwise(moments[1:])) >= 29
+    assert min(late - early for early, late in itertools.pairwise(moments[1:])) >= 39
 
 
 def test_a_server_that_makes_no_picture_is_told_all_the_same(page):

@@ -22,7 +22,7 @@ from mujoco.studio import (
 
 _LONGEST_WAIT_S = 0.25
 """How long a frame of the panel waits for a page that says nothing [s]."""
-_LOOKS = 4
+_LOOKS = 6
 """Frames of the panel after each word of the page. What the gate has passed on takes its time through
 Studio's server: a frame that begins at once may come before it."""
 _POLL_S = 0.001

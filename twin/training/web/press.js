@@ -31,8 +31,8 @@
   // A change waits until the server has looked at the one before: then a press and its release
   // between two looks are two states, not none. Of the pictures that come the first can be older
   // than the change, and so can all that had been waiting for this page.
-  const PICTURES_APART = 2;
-  const SHORTEST_MS = 30;
+  const PICTURES_APART = 3;
+  const SHORTEST_MS = 40;
   const LONGEST_MS = 2000;
 
   const plain = WebSocket.prototype.send;
