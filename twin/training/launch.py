@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import mujoco
 from mujoco.studio import messages, viewer_handle
 
 from twin.errors import UsageError
@@ -24,6 +25,9 @@ from twin.training.vocabulary import Words
 
 _WINDOW_PYTHON = (3, 12)
 """What Studio's window needs: its Filament helper imports ``collections.abc.Buffer``."""
+_WITHOUT_WINDOW = "4.0.0"
+"""MuJoCo whose window ends on its first frame: it draws to a target that its renderer does not have
+(``Target not found``). Drawn off screen instead, it shows neither the panel nor what moves."""
 _TOKEN_BYTES = 12
 """Length of the trainer's token, made anew for every session."""
 
@@ -160,6 +164,11 @@ def _open_window(title: str, plugins: list[RoomPlugin | PanelPlugin]) -> viewer_
         raise UsageError(
             f"--window needs Python {needed} or newer (MuJoCo Studio's window does); "
             "without it the room opens in a browser"
+        )
+    if mujoco.__version__ == _WITHOUT_WINDOW:
+        raise UsageError(
+            f"--window: the window of MuJoCo {mujoco.__version__} ends with an error of its own on "
+            "the first frame; without it the room opens in a browser"
         )
     from mujoco.studio import launch_native, viewer_protocol
 
