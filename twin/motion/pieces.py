@@ -11,6 +11,7 @@ A piece is short enough for bounds of abs(q'), abs(q''), abs(q''') to say nearly
 """
 
 import dataclasses
+import math
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -25,6 +26,8 @@ from twin.toolpath.geometry import Geometry
 
 BATCH = 1024
 """Blocks that are cut into pieces at a time."""
+MOST_ANGLE = BATCH * math.pi
+"""What their arcs turn together, but for the last [rad]: of helices with many turns each, a few."""
 
 CENTRIPETAL_SHARE = 0.95
 """Of an axis's acceleration that following a curve may use; the rest is left to change speed."""
@@ -88,7 +91,7 @@ def pieces_of_chunks(
         ValueError: A move does not begin where the one before it ended.
     """
     blocks = blocks_of_chunks(chunks, start)
-    for surroundings in with_neighbours(blocks, BATCH, CONTEXT):
+    for surroundings in with_neighbours(blocks, BATCH, CONTEXT, MOST_ANGLE):
         yield _cut(surroundings, limits, largest_override)
 
 
