@@ -20,6 +20,7 @@ from twin.training.gate import Gate
 from twin.training.launch import OpenRoom, open_room
 from twin.training.panel.request import do
 from twin.training.scene import read_scene, scene_path
+from twin.training.snapshot import Snapshot
 from twin.training.studio import RequestEvent
 
 if TYPE_CHECKING:
@@ -111,6 +112,11 @@ class Operator:
         """Ask for something as the panel does, without a click."""
         self.room.shown.viewer.send_to_sim(RequestEvent(do(name, **arguments)))
 
+    def shows(self, what: Callable[[Snapshot], bool]) -> bool:
+        """Whether the panel shows something of the machine already."""
+        now = self.room.shown.now
+        return now is not None and what(now)
+
     def done(self, name: str) -> int:
         """How often a command has been given."""
         log = self.room.session.log
@@ -196,7 +202,8 @@ def test_a_scene_is_played_in_the_browser_survives_its_loss_and_goes_to_the_trai
     operator.until(lambda: room.judge.verdicts[1].state == "done", "N50 in single block")
 
     operator.click("emergency")
-    operator.until(lambda: room.alarm is not None, "the alarm")
+    # Until the panel shows it, a second press would press the button again, not turn it free.
+    operator.until(lambda: operator.shows(lambda now: now.pressed), "the alarm")
     assert room.alarm is not None
     assert room.alarm.code == "emergency-stop"
     operator.click("emergency")
