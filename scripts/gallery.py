@@ -9,6 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from panel_picture import take_panel
 from PIL import Image
 
 from twin.chain import Run
@@ -24,6 +25,10 @@ from twin.resources import resource_root
 RENDERS = Path(__file__).resolve().parent.parent / "renders"
 LARGEST_BYTES = 300_000
 COLOURS = (256, 192, 128, 96, 64)
+
+
+PANEL = "training"
+"""The picture of the operator's panel in a browser."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -95,14 +100,19 @@ def shrink(path: Path) -> None:
 
 def main() -> None:
     """Draw the pictures named on the command line, or all."""
-    names = sys.argv[1:] or list(PICTURES)
-    unknown = [name for name in names if name not in PICTURES]
+    known = [*PICTURES, PANEL]
+    names = sys.argv[1:] or known
+    unknown = [name for name in names if name not in known]
     if unknown:
-        raise SystemExit(f"no picture {', '.join(unknown)}: there are {', '.join(PICTURES)}")
+        raise SystemExit(f"no picture {', '.join(unknown)}: there are {', '.join(known)}")
     RENDERS.mkdir(exist_ok=True)
     for name in names:
         out = RENDERS / f"{name}.{'webp' if name in FILMS else 'png'}"
-        draw(PICTURES[name], out)
+        if name == PANEL:
+            take_panel(out)
+            shrink(out)
+        else:
+            draw(PICTURES[name], out)
         print(f"{out}: {out.stat().st_size / 1000:.0f} kB")
 
 

@@ -40,6 +40,7 @@ def test_the_list_names_every_scene_in_the_language_asked_for() -> None:
         (["--certificate", "nowhere.pem"], "no certificate with its key"),
         (["--key", "nowhere.pem"], "belongs to a --certificate"),
         (["--port", "99999"], ""),
+        (["--window"], "without it the room opens in a browser"),
     ],
 )
 def test_what_cannot_be_opened_is_refused(arguments: list[str], message: str) -> None:

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from twin.errors import UsageError
+from twin.nc.spindle import SpindleState
 from twin.training.commands import command_from
 from twin.training.log import relive
 from twin.training.scene import read_scene, scene_path
@@ -84,7 +85,7 @@ def test_distance_to_go_and_the_screen_agree(session):
     assert now.modal is not None
     assert {"G1", "G17", "G90"} <= set(now.modal.codes)
     assert now.modal.feed == 1200.0
-    assert now.spindle == 3000.0
+    assert now.spindle == SpindleState(started=True, speed=3000.0)
 
 
 def test_emergency_stop_latches_until_it_is_turned_free_and_reset(session):
@@ -94,7 +95,7 @@ def test_emergency_stop_latches_until_it_is_turned_free_and_reset(session):
     rest(session)
     assert session.room.alarm is not None
     assert session.room.alarm.code == "emergency-stop"
-    assert session.room.spindle == 0.0
+    assert not session.room.spindle.turns
     assert not session.submit({"do": "reset"})
     assert "turn it free" in session.refusal
     assert not session.submit({"do": "cycle_start"})
@@ -264,3 +265,18 @@ def test_a_malformed_command_changes_nothing(session):
     assert not session.submit("reset")
     assert not session.log
     assert session.snapshot().position == before.position
+
+
+def test_a_spindle_start_without_a_speed_turns_at_the_last_one_or_at_one_nobody_has_said(session):
+    room = session.room
+    do(session, "mode", mode="mdi")
+    for text, speed in (("M3", None), ("S1500 M4", 1500.0), ("M5", None), ("M3", 1500.0)):
+        do(session, "mdi", text=text)
+        do(session, "cycle_start")
+        rest(session)
+        assert room.spindle.turns == (text != "M5")
+        assert room.spindle.speed == (speed if room.spindle.turns else 1500.0)
+    do(session, "spindle", on=False)
+    assert not room.spindle.turns
+    do(session, "spindle", on=True)
+    assert room.spindle == SpindleState(started=True, speed=1500.0)

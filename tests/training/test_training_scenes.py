@@ -1,11 +1,14 @@
 """Every shipped scene, played headless: its solution reaches full points, its mistake fails."""
 
+import re
+
 import pytest
 
 from twin.errors import ConfigError
 from twin.training.scene import Scene, read_scene, scene_names, scene_path
 from twin.training.script import ScriptError, play, rehearse
 from twin.training.session import Session
+from twin.training.texts import LANGUAGES
 
 CONTROLS = ("gost", "codesys", "fagor8070", "mefi")
 
@@ -18,6 +21,22 @@ def test_there_are_at_least_eight_two_per_control():
     dialects = [scene(name).preparation.dialect.name for name in scene_names()]
     assert len(dialects) >= 8
     assert all(dialects.count(control) >= 2 for control in CONTROLS)
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_every_text_is_told_in_every_language(name):
+    file = scene(name).file
+    texts = [file.title, file.story, *(task.text for task in file.tasks), *file.hints]
+    for text in texts:
+        assert set(text) == set(LANGUAGES)
+        figures = {language: re.findall(r"[A-Z]?-?\d+", told) for language, told in text.items()}
+        for language, told in text.items():
+            assert told.strip() == told
+            # Blocks and places are the same in every language; nothing was left untranslated.
+            named = {word for word in figures["en"] if word[0].isalpha()}
+            assert named <= set(figures[language]), (language, told)
+            assert language == "en" or told != text["en"]
+        assert re.search("[А-Яа-я]", text["ru"])
 
 
 @pytest.mark.parametrize("name", scene_names())

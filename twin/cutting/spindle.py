@@ -6,6 +6,7 @@ import numpy.typing as npt
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Function
 from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, SPINDLE_STOPS
+from twin.nc.spindle import SpindleState
 
 _BEFORE_THE_NEXT = 1.0 - 1e-12
 """The end of a move's path still belongs to it: a function between two moves is not yet heard."""
@@ -34,8 +35,7 @@ class Spindle:
             held_to_program: Whether the program speaks of the spindle at all.
         """
         self._held = held_to_program
-        self._started = False
-        self._speed: float | None = None
+        self._state = SpindleState()
         self._moves = 0
         self._places: list[float] = [-np.inf]
         self._turns = [not held_to_program]
@@ -55,11 +55,8 @@ class Spindle:
         return ~np.array(self._turns)[state]
 
     def _hear(self, event: Function) -> None:
-        if event.word in SPINDLE_STARTS | {SPINDLE_SPEED}:
-            self._speed = event.arguments.get("S", self._speed)
-        if event.word in SPINDLE_STARTS | SPINDLE_STOPS:
-            self._started = event.word in SPINDLE_STARTS
-        turns = self._started and self._speed != 0.0
+        self._state = self._state.after(event)
+        turns = self._state.turns
         if turns != self._turns[-1]:
             self._places.append(self._moves + event.before + event.at)
             self._turns.append(turns)

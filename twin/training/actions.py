@@ -7,6 +7,7 @@ import numpy as np
 
 from twin.errors import UsageError
 from twin.nc.source import source_from_text
+from twin.nc.spindle import SpindleState
 from twin.training import commands as c
 from twin.training.faults import inject
 from twin.training.room import Room
@@ -62,7 +63,7 @@ def _reset(room: Room, _command: c.Reset) -> None:
         room.drop_run()
     if room.alarm is not None:
         room.clear()
-    room.spindle = 0.0
+    room.spindle = room.spindle.stopped()
 
 
 def _emergency_stop(room: Room, command: c.EmergencyStop) -> None:
@@ -137,7 +138,8 @@ def _edit(room: Room, command: c.Edit) -> None:
 def _spindle(room: Room, command: c.Spindle) -> None:
     if command.on:
         _require_no_alarm(room)
-    room.spindle = command.speed if command.on else 0.0
+    speed = room.spindle.speed if command.speed is None else command.speed
+    room.spindle = SpindleState(started=command.on, speed=speed)
 
 
 def _coolant(room: Room, command: c.Coolant) -> None:

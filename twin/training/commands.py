@@ -113,7 +113,8 @@ class Spindle(Table):
 
     do: Literal["spindle"] = "spindle"
     on: bool
-    speed: Annotated[float, Field(ge=SPINDLE_SPEEDS[0], le=SPINDLE_SPEEDS[1])] = 3000.0
+    speed: Annotated[float, Field(ge=SPINDLE_SPEEDS[0], le=SPINDLE_SPEEDS[1])] | None = None
+    """[1/min]; none: as it last turned."""
 
 
 class Coolant(Table):

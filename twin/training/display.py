@@ -144,7 +144,7 @@ class _Columns:
 
 
 def _make_plain(spec: mujoco.MjSpec) -> None:
-    """Leave the collision bodies and the tool; drop meshes, textures and shadows."""
+    """Leave the collision bodies and the tool; drop meshes and every kind of shadow."""
     for geom in list(spec.geoms):
         if geom.type == mujoco.mjtGeom.mjGEOM_MESH:
             spec.delete(geom)
@@ -154,5 +154,7 @@ def _make_plain(spec: mujoco.MjSpec) -> None:
         spec.delete(unseen)
     for light in spec.lights:
         light.castshadow = False
+    # Studio's renderer reads this; it saves a second pass over everything that is drawn.
+    spec.add_numeric(name="filament.ao.enabled", data=[0.0], size=1)
     spec.visual.quality.shadowsize = 0
     spec.visual.quality.offsamples = 0

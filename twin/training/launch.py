@@ -8,21 +8,26 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import mujoco
 from mujoco.studio import messages, viewer_handle
 
 from twin.errors import UsageError
 from twin.training.gate import LOOPBACK, Gate
-from twin.training.page import open_page, readable_fonts
+from twin.training.page import open_page
 from twin.training.panel.panel import Panel
 from twin.training.scene import Scene
 from twin.training.score import SheetWriter
 from twin.training.session import Session
 from twin.training.studio import PanelPlugin, RoomPlugin
+from twin.training.studio_files import own_files
 from twin.training.texts import Language, in_language
 from twin.training.vocabulary import Words
 
 _WINDOW_PYTHON = (3, 12)
 """What Studio's window needs: its Filament helper imports ``collections.abc.Buffer``."""
+_WITHOUT_WINDOW = "4.0.0"
+"""MuJoCo whose window ends on its first frame: it draws to a target that its renderer does not have
+(``Target not found``). Drawn off screen instead, it shows neither the panel nor what moves."""
 _TOKEN_BYTES = 12
 """Length of the trainer's token, made anew for every session."""
 
@@ -103,8 +108,7 @@ def open_room(
     title = f"{in_language(scene.file.title, words.language)} - {words['title']}"
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="twin-train-")))
-        (folder / "assets").mkdir()
-        stack.enter_context(readable_fonts(folder / "assets"))
+        stack.enter_context(own_files(folder))
         inside = folder / "studio.sock"
         gate = trainer_gate = None
         if not window:
@@ -161,7 +165,14 @@ def _open_window(title: str, plugins: list[RoomPlugin | PanelPlugin]) -> viewer_
             f"--window needs Python {needed} or newer (MuJoCo Studio's window does); "
             "without it the room opens in a browser"
         )
+    if mujoco.__version__ == _WITHOUT_WINDOW:
+        raise UsageError(
+            f"--window: the window of MuJoCo {mujoco.__version__} ends with an error of its own on "
+            "the first frame; without it the room opens in a browser"
+        )
     from mujoco.studio import launch_native, viewer_protocol
 
-    config = viewer_protocol.ViewerConfig(title=title, width=1600, height=960)
+    config = viewer_protocol.ViewerConfig(
+        title=title, width=1600, height=960, gfx="opengl_headless"
+    )
     return launch_native.launch(config, plugins=plugins)

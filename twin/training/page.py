@@ -3,15 +3,13 @@
 import contextlib
 import io
 import logging
-import os
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 from mujoco.studio import (
     endpoints,
     launch_thread,
@@ -22,15 +20,12 @@ from mujoco.studio import (
     web_viewer,
 )
 
-_FONTS = {
-    "AtkinsonHyperlegibleMono-Regular.ttf": "DejaVuSansMono.ttf",
-    "AtkinsonHyperlegibleNext[wght].ttf": "DejaVuSans.ttf",
-}
-"""Studio's fonts, which have no Cyrillic, and what stands in for them."""
-
-
 _LONGEST_WAIT_S = 0.25
 """How long a frame of the panel waits for a page that says nothing [s]."""
+_LOOKS = 6
+"""Frames of the panel after each word of the page. What the gate has passed on takes its time through
+Studio's server: a frame that begins at once may come before it."""
+_POLL_S = 0.001
 
 
 def open_page(
@@ -77,6 +72,7 @@ class RoomViewer(web_viewer.WebViewer):
         self._inside = inside
         self._heard = heard
         self._answered = 0
+        self._looks = 0
         super().__init__(config, endpoint, plugins=plugins)
 
     def _start_server(self) -> None:
@@ -97,39 +93,20 @@ class RoomViewer(web_viewer.WebViewer):
         self._update_model()
 
     def prepare_next_frame(self) -> bool:
-        """Begin a frame when the page has shown the last one.
+        """Begin a frame when the page has spoken: when it has shown the last one, or at a press.
 
-        Every frame of the panel reaches the page, in order. Were they made faster than a slow page
-        shows them, it would fall behind by minutes.
+        Every frame of the panel reaches the page, in order. Were they made as fast as they can be,
+        a slow page would fall behind by minutes.
         """
         end = time.perf_counter() + _LONGEST_WAIT_S
-        while self._heard() == self._answered and time.perf_counter() < end:
-            time.sleep(0.002)
-        self._answered = self._heard()
+        while not self._looks and self._heard() == self._answered and time.perf_counter() < end:
+            time.sleep(_POLL_S)
+        heard = self._heard()
+        if heard != self._answered:
+            self._answered, self._looks = heard, _LOOKS
+        self._looks = max(0, self._looks - 1)
         return super().prepare_next_frame()
 
     def get_drop_file(self) -> str:
         """There is no upload."""
         return ""
-
-
-@contextlib.contextmanager
-def readable_fonts(folder: Path) -> Iterator[None]:
-    """Give Studio fonts that know Cyrillic and Czech, through its own setting.
-
-    Args:
-        folder: An empty folder of our own.
-    """
-    own = Path(web_viewer.__file__).parent / "assets"
-    fonts = Path(mpl.get_data_path()) / "fonts" / "ttf"
-    for file in own.iterdir():
-        (folder / file.name).symlink_to(fonts / _FONTS[file.name] if file.name in _FONTS else file)
-    before = os.environ.get("MUJOCO_STUDIO_ASSETS_DIR")
-    os.environ["MUJOCO_STUDIO_ASSETS_DIR"] = str(folder)
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ["MUJOCO_STUDIO_ASSETS_DIR"]
-        else:
-            os.environ["MUJOCO_STUDIO_ASSETS_DIR"] = before

@@ -15,9 +15,10 @@ from twin.machine.live import LiveMachine
 from twin.machine.model import spindle_over_table_mm
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
-from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS, SPINDLE_STARTS, SPINDLE_STOPS
+from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS
 from twin.nc.settings import ToolData
 from twin.nc.source import Source
+from twin.nc.spindle import SpindleState
 from twin.placement import part_zero, start_position
 from twin.recording import Samples
 from twin.training.commands import Mode
@@ -51,7 +52,7 @@ class Room:
         rapid_override: Rapid override dial [%].
         alarm: The alarm that stands.
         pressed: Whether the emergency stop button is pressed.
-        spindle: Speed of the spindle [1/min]; 0 when it stands.
+        spindle: Whether the spindle turns, and how fast.
         coolant: Whether coolant flows.
         program: The program as the operator has edited it.
         lines: Its lines.
@@ -90,7 +91,7 @@ class Room:
         self.mode: Mode = file.start.mode
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
-        self.spindle = 3000.0 if file.start.spindle else 0.0
+        self.spindle = SpindleState(started=file.start.spindle)
         self.coolant = False
         self.alarm: Notice | None = None
         self.pressed = False
@@ -132,7 +133,7 @@ class Room:
     @property
     def touches(self) -> bool:
         """Whether the feeler lamp is lit: the tool stands still and touches the blank."""
-        if self.work is None or self.spindle:
+        if self.work is None or self.spindle.turns:
             return False
         return self.work.touches(self.machine.position - self.tables.longer)
 
@@ -190,7 +191,7 @@ class Room:
         moves = part.setpoint.move
         run = self.run
         rapid = np.array([run is not None and run.rapid(int(move)) for move in moves], np.bool_)
-        standing = np.full(len(part), self.spindle == 0.0)
+        standing = np.full(len(part), not self.spindle.turns)
         alarm = self.work.cut(tips, rapid, standing)
         if alarm is not None:
             self.machine.raise_alarm(alarm.code, alarm.message)
@@ -210,10 +211,9 @@ class Room:
             self.label = display - end
 
     def _function(self, function: Function) -> None:
-        if function.word in SPINDLE_STARTS:
-            self.spindle = float(function.arguments.get("S", self.spindle or 3000.0))
-        elif function.word in SPINDLE_STOPS | PROGRAM_ENDS:
-            self.spindle = 0.0
+        self.spindle = self.spindle.after(function)
+        if function.word in PROGRAM_ENDS:
+            self.spindle = self.spindle.stopped()
         if function.word in COOLANT_ON:
             self.coolant = True
         elif function.word in COOLANT_OFF | PROGRAM_ENDS:
@@ -229,7 +229,7 @@ class Room:
             self.alarm = Notice(code, message, axis, line, self.time_s)
             self.judge.note_alarm(code)
         self.drop_run()
-        self.spindle = 0.0
+        self.spindle = self.spindle.stopped()
 
     def _end_of_part(self) -> None:
         """What comes when the present part of a program has come to its end."""

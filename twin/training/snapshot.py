@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 
 from twin.nc.canonical import FloatArray
+from twin.nc.spindle import SpindleState
 from twin.training.commands import Mode
 from twin.training.judge import Verdict
 from twin.training.notice import Notice
@@ -54,7 +55,7 @@ class Snapshot:
     modal: ModalState | None
     feed_override: int
     rapid_override: int
-    spindle: float
+    spindle: SpindleState
     coolant: bool
     program: tuple[str, ...]
     line: int

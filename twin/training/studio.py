@@ -189,7 +189,7 @@ class PanelPlugin(plugin.ViewerPlugin):
         self.now: Snapshot | None = None
         self._frame = display.frame
         self._camera = camera
-        self._trail = Trail()
+        self._trail = Trail(plain=plain)
 
     @messages.handler
     def on_model(self, _event: messages.PostModelEvent) -> None:

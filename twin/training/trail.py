@@ -11,6 +11,8 @@ from twin.render.placement import Frame
 
 MOST = 240
 """Points that are kept: the page draws no more than a thousand extra bodies."""
+PLAIN_MOST = 60
+"""The same where a processor draws: each stretch costs it as much as the whole table."""
 APART_MM = 0.5
 """Shortest way between two points [mm]."""
 _RADIUS_M = 0.0004
@@ -20,8 +22,13 @@ _COLOUR = np.array([1.0, 0.45, 0.05, 1.0], np.float32)
 class Trail:
     """The last points that the tip has passed, in the part's frame."""
 
-    def __init__(self) -> None:
-        self._points: deque[tuple[float, ...]] = deque(maxlen=MOST)
+    def __init__(self, *, plain: bool) -> None:
+        """Begin without a point.
+
+        Args:
+            plain: Keep few points, for computers without a graphics card.
+        """
+        self._points: deque[tuple[float, ...]] = deque(maxlen=PLAIN_MOST if plain else MOST)
 
     def add(self, tip: tuple[float, ...]) -> None:
         """The tip is there now [mm]."""

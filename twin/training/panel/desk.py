@@ -15,13 +15,13 @@ JOG_STEPS = (0.01, 0.1, 1.0, 10.0, None)
 """Steps of the jog keys [mm or deg]; None: as long as the key is held."""
 JOG_FEED = {"mm": 2000.0, "deg": 1800.0}
 """Feed of the jog keys at 100 % [mm/min or deg/min]."""
-SPINDLE_SPEED = 3000.0
-"""What the spindle key starts [1/min]."""
 
 _KEY, _WIDE, _NARROW = 56.0, 116.0, 100.0
 """Height of a key, and its widths [px]."""
 _JOG, _JOG_HEIGHT, _STEP = 46.0, 42.0, 24.0
 _DIAL = 96.0
+_UNHEARD_S = 0.5
+"""How long the machine takes at most to hear of a turned dial [s]."""
 _MUSHROOM = 128.0
 
 
@@ -36,6 +36,21 @@ class DeskState:
     edited: str = ""
     jogging: str = ""
     """Key that is being held down."""
+    turned: dict[str, tuple[int, float]] = dataclasses.field(default_factory=dict)
+    """Where a dial has been turned to [%], and until when the machine may still not show it [s]."""
+
+    def standing(self, name: str, shown: int) -> int:
+        """Where a dial stands: what the machine shows may be older than the last turn."""
+        percent, end = self.turned.get(name, (shown, 0.0))
+        if percent == shown or imgui.GetTime() > end:
+            self.turned.pop(name, None)
+            return shown
+        return percent
+
+    def turn(self, name: str, percent: int) -> Request:
+        """Turn a dial."""
+        self.turned[name] = (percent, imgui.GetTime() + _UNHEARD_S)
+        return do("override", dial=name, percent=percent)
 
 
 def build_modes(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
@@ -80,17 +95,18 @@ def build_emergency(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
     return []
 
 
-def build_dials(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
+def build_dials(kit: Kit, words: Words, now: Snapshot, state: DeskState) -> list[Request]:
     """Feed and rapid override."""
     asked: list[Request] = []
-    for name, percent, highest in (
+    for name, shown, highest in (
         ("feed", now.feed_override, FEED_OVERRIDES[1]),
         ("rapid", now.rapid_override, RAPID_OVERRIDES[1]),
     ):
         label = words[f"{name}_override"]
+        percent = state.standing(name, shown)
         turned = dial(kit, f"{name} override", label, percent, highest, _DIAL)
         if turned != percent:
-            asked.append(do("override", dial=name, percent=turned))
+            asked.append(state.turn(name, turned))
         imgui.SameLine()
     imgui.NewLine()
     return asked
@@ -140,9 +156,9 @@ def build_supplies(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
     """Spindle and coolant."""
     asked: list[Request] = []
     if kit.hard_key(
-        "spindle", words["spindle"], _NARROW, _KEY, lamp=BRIGHT_GREEN, lit=bool(now.spindle)
+        "spindle", words["spindle"], _NARROW, _KEY, lamp=BRIGHT_GREEN, lit=now.spindle.turns
     ):
-        asked.append(do("spindle", on=not now.spindle, speed=SPINDLE_SPEED))
+        asked.append(do("spindle", on=not now.spindle.turns))
     if kit.hard_key("coolant", words["coolant"], _NARROW, _KEY, lamp=CYAN, lit=now.coolant):
         asked.append(do("coolant", on=not now.coolant))
     return asked

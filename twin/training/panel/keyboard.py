@@ -29,11 +29,12 @@ def read_keyboard(now: Snapshot, state: DeskState) -> list[Request]:
     for key, mode in zip(_MODES, MODES, strict=True):
         if _pressed(key):
             asked.append(do("mode", mode=mode))
-    turned = now.feed_override + 10 * (
+    stands = state.standing("feed", now.feed_override)
+    turned = stands + 10 * (
         (_pressed("Equal") or _pressed("KeypadAdd")) - (_pressed("Minus") or _pressed("KeypadSubtract"))
     )  # fmt: skip
-    if turned != now.feed_override and FEED_OVERRIDES[0] <= turned <= FEED_OVERRIDES[1]:
-        asked.append(do("override", dial="feed", percent=turned))
+    if turned != stands and FEED_OVERRIDES[0] <= turned <= FEED_OVERRIDES[1]:
+        asked.append(state.turn("feed", turned))
     return asked + (_jog(now, state) if now.mode == "jog" else [])
 
 

@@ -104,7 +104,7 @@ class Panel:
         with kit.group(words["jog"], tall):
             asked += build_jog(kit, words, now, self.desk)
         with kit.group(words["override"], tall):
-            asked += build_dials(kit, words, now)
+            asked += build_dials(kit, words, now, self.desk)
         with kit.group("", tall):
             asked += build_supplies(kit, words, now)
         return asked + build_emergency(kit, words, now)

@@ -15,6 +15,7 @@ from twin.training.panel.kit import (
     YELLOW,
     Kit,
 )
+from twin.training.phrases import translated
 from twin.training.snapshot import Snapshot
 from twin.training.vocabulary import Words
 
@@ -43,10 +44,11 @@ def build_head(kit: Kit, words: Words, now: Snapshot) -> None:
         where = f"  N {now.alarm.line}" if now.alarm.line else ""
         kit.chip(f"{alarm.name}{where}", RED)
         imgui.SameLine()
-        kit.fitting(f" {now.alarm.message}", TEXT)
+        kit.fitting(f" {translated(now.alarm.message, words.language)}", TEXT)
         kit.text(alarm.advice, YELLOW)
     elif now.refusal:
-        kit.fitting(f"{words['refused']}: {now.refusal}", YELLOW)
+        refusal = translated(now.refusal, words.language)
+        kit.fitting(f"{words['refused']}: {refusal}", YELLOW)
     else:
         kit.fitting(words["keys"], QUIET)
 
@@ -99,6 +101,13 @@ def build_axes(kit: Kit, words: Words, now: Snapshot) -> None:
     imgui.EndTable()
 
 
+def _speed(now: Snapshot) -> str:
+    """What the spindle turns; a dash where it turns and nobody has said how fast."""
+    if not now.spindle.turns:
+        return "0"
+    return "-" if now.spindle.speed is None else f"{now.spindle.speed:.0f}"
+
+
 def _figure(value: float) -> str:
     """A position with three decimals, without a sign before nothing."""
     return f"{round(value, 3) + 0.0:.3f}"
@@ -116,7 +125,7 @@ def build_speeds(kit: Kit, words: Words, now: Snapshot) -> None:
     imgui.SameLine()
     kit.text(f"({programmed})", QUIET, 1.3)
     imgui.SameLine()
-    kit.text(f"  S {now.spindle:.0f}", BRIGHT_GREEN if now.spindle else QUIET, 1.3)
+    kit.text(f"  S {_speed(now)}", BRIGHT_GREEN if now.spindle.turns else QUIET, 1.3)
     imgui.SameLine()
     kit.text(f"  T {now.tool}", TEXT, 1.3)
     if now.coolant:
