@@ -5,7 +5,8 @@ import math
 import numba
 
 from twin.motion.brake_kernels import brake_distance, brake_need, brake_time
-from twin.motion.reach_kernels import BISECTIONS, ROUNDING, find_brake
+from twin.motion.reach_kernels import ROUNDING, find_brake
+from twin.motion.last_chance_kernels import last_chance
 from twin.nc.canonical import FloatArray
 
 
@@ -29,17 +30,9 @@ def better_to_brake(
     rest = limits[0, i] - x
     if i + 2 > count or w <= 0.0 or v <= 0.0 or brake_need(v, a, w, deceleration, jerk) > rest:
         return latest
-    low, high = 0.0, latest
-    for step in range(BISECTIONS):
-        t = latest if step == 0 else 0.5 * (low + high)
-        gone = ((j / 6.0 * t + 0.5 * a) * t + v) * t
-        new_v, new_a = v + (0.5 * j * t + a) * t, a + j * t
-        if gone + brake_need(new_v, new_a, w, deceleration, jerk) <= rest:
-            low = t
-            if step == 0:
-                return latest
-        else:
-            high = t
+    low = last_chance(limits, entry, reach, i, x, v, a, j, i + 1, 0.0, latest)
+    if low >= latest:
+        return latest
     t = latest
     x_then = x + ((j / 6.0 * t + 0.5 * a) * t + v) * t
     v_then, a_then = v + (0.5 * j * t + a) * t, a + j * t

@@ -5,13 +5,20 @@ zero; when neither is safe any more, the brake that made the state safe is carri
 this gives the well-known seven phases of minimum time.
 """
 
+import math
+
 import numba
 import numpy as np
 
-from twin.motion.brake_kernels import brake_distance, brake_need, time_to
+from twin.motion.brake_kernels import brake_distance, time_to
 from twin.motion.early_brake_kernels import better_to_brake
+from twin.motion.last_chance_kernels import (
+    last_chance,
+    time_between,
+    time_to_border,
+)
 from twin.motion.phase_kernels import put_brake, put_phase
-from twin.motion.reach_kernels import BISECTIONS, ROUNDING, SLOWEST, find_brake
+from twin.motion.reach_kernels import ROUNDING, SLOWEST, find_brake
 from twin.nc.canonical import FloatArray, IntArray
 
 STATE_AT_REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, -1.0, 0.0])
@@ -26,8 +33,18 @@ SAME = 1e-12
 """Relative difference of velocities that rounding makes: the brake between them would be longer
 than what is left of the way."""
 
-TIME_PRECISION = 1e-14
-"""Of the end of a phase, relative to the time looked at."""
+MOST_BRAKES = 64
+"""That are looked at in turn for one phase."""
+
+BRIEF = 1e-11
+"""How far beyond the last chance of a brake another is looked for, relative to the time looked at."""
+
+LATER = 1.02
+"""Of two brakes the one to the farther border is preferred if it takes no longer, by this factor, than
+the nearer one and the way on from there at ``reach``."""
+
+STRIDE = 8.0
+"""By which the search goes on where a brake is possible for longer, but for its rounding."""
 
 MOST_PHASES = 256
 """Of one stretch; where rounding asks for more, the brake that is known is carried out."""
@@ -59,36 +76,12 @@ def _brake_after(
     new_v = v + (0.5 * j * t + a) * t
     new_a = a + j * t
     if not to_border:
-        return find_brake(limits, entry, reach, i, new_x, new_v, new_a, 0.0, 0)
-    if new_v > min(limits[1, i], entry[i + 1]) or i + 1 >= limits.shape[1]:
+        return find_brake(limits, entry, reach, i, new_x, new_v, new_a, SAME, 0)
+    if new_v > min(limits[1, i], entry[i + 1]) * (1.0 + SAME) or i + 1 >= limits.shape[1]:
         return -1
     if limits[0, i + 1] == 0.0:
         return -1
-    return find_brake(limits, entry, reach, i + 1, 0.0, new_v, new_a, 0.0, 0)
-
-
-@numba.njit(cache=True)
-def _last_chance(
-    limits: FloatArray, i: int, x: float, v: float, a: float, j: float, k: int, w: float,
-    low: float, high: float,
-) -> float:  # fmt: skip
-    """How long jerk j may last if only the way to brake to w at border k counts, within bounds."""
-    deceleration, jerk, distance = limits[3, i], limits[4, i], limits[0, i] - x
-    for last in range(i + 1, k):
-        deceleration = min(deceleration, limits[3, last])
-        jerk = min(jerk, limits[4, last])
-        distance += limits[0, last]
-    for _ in range(BISECTIONS):
-        t = 0.5 * (low + high)
-        gone = ((j / 6.0 * t + 0.5 * a) * t + v) * t
-        need = brake_need(v + (0.5 * j * t + a) * t, a + j * t, w, deceleration, jerk)
-        if gone + need <= distance:
-            low = t
-        else:
-            high = t
-        if high - low <= TIME_PRECISION * high:
-            break
-    return low
+    return find_brake(limits, entry, reach, i + 1, 0.0, new_v, new_a, SAME, 0)
 
 
 @numba.njit(cache=True)
@@ -120,33 +113,26 @@ def _longest(
     found = _brake_after(limits, entry, reach, i, x, v, a, j, latest, at_border)
     if found >= 0:
         return latest, at_border, found
-    low, high = 0.0, latest
-    precision = TIME_PRECISION * latest
-    guess = True
-    for _ in range(BISECTIONS):
-        t = 0.5 * (low + high)
-        if guess:
-            # What bounds the time is most often the brake that is known.
-            t = _last_chance(limits, i, x, v, a, j, brake, reach[brake], low, high)
-            t = min(max(t, low + 0.25 * precision), high - 0.25 * precision)
-        found = _brake_after(limits, entry, reach, i, x, v, a, j, t, False)
-        if found >= 0:
-            low = t
-            guess = found != brake
-            brake = found
-            if not guess and high - low > precision:
-                # Then it is at its end here.
-                t = low + precision
-                found = _brake_after(limits, entry, reach, i, x, v, a, j, t, False)
-                if found < 0:
-                    break
-                low, brake = t, found
-        else:
-            high = t
-            guess = False
-        if high - low <= precision:
+    low, brief = 0.0, BRIEF * latest
+    step = brief
+    best, to, least = 0.0, brake, math.inf
+    for _ in range(MOST_BRAKES):
+        if step == brief:
+            low = last_chance(limits, entry, reach, i, x, v, a, j, brake, low, latest)
+            cost = time_to_border(limits, reach, i, x, v, a, j, low, brake)
+            between = time_between(limits, reach, to, brake)
+            if cost == math.inf or cost <= least + LATER * between:
+                best, to, least = low, brake, cost
+        # Another brake may be possible for longer.
+        t = low + step
+        if t >= latest:
             break
-    return low, False, brake
+        found = _brake_after(limits, entry, reach, i, x, v, a, j, t, False)
+        if found < 0:
+            break
+        step = STRIDE * step if found == brake else brief
+        low, brake = t, found
+    return best, False, to
 
 
 @numba.njit(cache=True)
