@@ -171,8 +171,9 @@ def find_widths(
 
 @numba.njit(cache=True)
 def add_rounding(
-    coefficients: FloatArray, away: float, width: float, knee: FloatArray, bend: FloatArray
-) -> None:
+    coefficients: FloatArray, away: float, width: float, knee: FloatArray, bend: FloatArray,
+    share: float = 1.0,
+) -> None:  # fmt: skip
     """Add a border's rounding to the polynomials of a piece.
 
     Args:
@@ -182,6 +183,7 @@ def add_rounding(
         width: Of the rounding [mm or deg].
         knee: Step of dq/dx, shape (k,).
         bend: Step of d²q/dx², shape (k,).
+        share: -1 to take the rounding away.
     """
     t = away / width
     squared = t * t
@@ -203,7 +205,7 @@ def add_rounding(
         -5.0 * t / 32.0,
         -1.0 / 32.0,
     )
-    scale = width
+    scale = share * width
     for power in range(6):
         for axis in range(len(knee)):
             coefficients[axis, power] += scale * (

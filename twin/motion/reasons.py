@@ -6,8 +6,9 @@ import numpy as np
 
 from twin.motion.corners import KNEE_NOISE
 from twin.motion.limits import MotionLimits
-from twin.motion.piece_kernels import bound_derivatives
-from twin.motion.pieces import CENTRIPETAL_SHARE, CURVE_JERK_SHARE, Pieces
+from twin.motion.bound_kernels import bound_derivatives
+from twin.motion.limit_kernels import CENTRIPETAL_SHARE, CURVE_JERK_SHARE
+from twin.motion.pieces import Pieces
 from twin.motion.reach_kernels import SLOWEST
 from twin.nc.canonical import FloatArray, IntArray
 
