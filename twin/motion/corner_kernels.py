@@ -13,6 +13,8 @@ derivatives; it is odd::
     smooth_square(t) = (3 t + 8 t² + 6 t³ - t⁵) / 32
 """
 
+import math
+
 import numba
 import numpy as np
 
@@ -20,6 +22,12 @@ from twin.nc.canonical import FloatArray
 
 MOST_NEIGHBOURS = 32
 """Borders to either side that a rounding may reach over."""
+
+MOST_STEPS = 50
+"""Of the search for a width; some four are usual."""
+
+NEARLY = 1e-6
+"""Relative step of Newton's from which on the next would be rounding."""
 
 NARROWEST = 1e-4
 """A rounding narrower than this is none [mm or deg]."""
@@ -86,6 +94,50 @@ def _between(
 
 
 @numba.njit(cache=True)
+def _even_width(
+    place: FloatArray, per_width: FloatArray, per_square: FloatArray,
+    i: int, before: int, after: int, high: float, guess: float,
+) -> float:  # fmt: skip
+    """The width that uses the tolerance at a border if its neighbours took the same.
+
+    Args:
+        place: As in ``find_widths``.
+        per_width: As in ``find_widths``.
+        per_square: As in ``find_widths``.
+        i: The border.
+        before: Border before the first that counts.
+        after: Border after the last.
+        high: The widest that has room.
+        guess: Where to begin the search.
+    """
+    width = min(guess, high)
+    for _ in range(MOST_STEPS):
+        # What is used grows with the width, and ever faster: Newton comes down to the root.
+        used, slope = 0.0, 0.0
+        other, step = i, -1
+        while True:
+            away = abs(place[other] - place[i])
+            if before < other < after and away < width:
+                t = away / width
+                flat = 1.0 - t * t
+                knee, bend = per_width[other], per_square[other] * BEND_PEAK
+                used += width * (knee * (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 16.0 + bend * width)
+                slope += knee * 3.0 / 16.0 * flat * flat + 2.0 * bend * width
+                other += step
+            elif step < 0:
+                other, step = i + 1, 1
+            else:
+                break
+        if used <= 1.0 and width == high:
+            return high
+        new = min(high, width - (used - 1.0) / slope)
+        if abs(new - width) <= NEARLY * width and used >= 1.0:
+            return new
+        width = new
+    return width
+
+
+@numba.njit(cache=True)
 def find_widths(
     place: FloatArray, rounded: FloatArray, per_width: FloatArray, per_square: FloatArray
 ) -> FloatArray:
@@ -119,36 +171,32 @@ def find_widths(
         if not rounded[i]:
             wall = i
         after[i] = min(wall, i + MOST_NEIGHBOURS)
+    guess = math.inf
     for i in range(count):
         if not rounded[i] or (per_width[i] == 0.0 and per_square[i] == 0.0):
             continue
-        low = 0.0
         high = min(place[i] - place[before[i]], place[after[i]] - place[i])
-        for step in range(40):
-            middle = high if step == 0 else 0.5 * (low + high)
-            if middle <= 0.0:
-                break
-            used = 0.0
-            for other in range(before[i] + 1, after[i]):
-                used += _share(place[other] - place[i], middle, per_width[other], per_square[other])
-            if used <= 1.0:
-                low = middle
-            else:
-                high = middle
-            if high - low < 1e-6 * high:
-                break
-        first[i] = low
+        guess = _even_width(place, per_width, per_square, i, before[i], after[i], high, guess)
+        first[i] = guess
     excess = np.ones(count)
     for i in range(count):
-        if not rounded[i]:
+        # What each rounding takes at the borders that it reaches.
+        if first[i] == 0.0:
             continue
-        used = 0.0
-        for other in range(before[i] + 1, after[i]):
-            if first[other] > 0.0:
-                used += _share(
-                    place[other] - place[i], first[other], per_width[other], per_square[other]
-                )
-        excess[i] = max(1.0, used)
+        other = i
+        while other > before[i] and place[i] - place[other] < first[i]:
+            excess[other] += _share(
+                place[i] - place[other], first[i], per_width[i], per_square[i]
+            )
+            other -= 1
+        other = i + 1
+        while other < after[i] and place[other] - place[i] < first[i]:
+            excess[other] += _share(
+                place[other] - place[i], first[i], per_width[i], per_square[i]
+            )
+            other += 1
+    for i in range(count):
+        excess[i] = max(1.0, excess[i] - 1.0)
     within = np.ones(count)
     if np.any(per_square > 0.0):
         for i in range(count):
@@ -161,9 +209,14 @@ def find_widths(
         if first[i] == 0.0:
             continue
         most = max(1.0, within[i - 1], within[i])
-        for other in range(before[i] + 1, after[i]):
-            if abs(place[other] - place[i]) < first[i]:
-                most = max(most, excess[other], within[other - 1], within[other])
+        other = i
+        while other > before[i] and place[i] - place[other] < first[i]:
+            most = max(most, excess[other], within[other - 1], within[other])
+            other -= 1
+        other = i + 1
+        while other < after[i] and place[other] - place[i] < first[i]:
+            most = max(most, excess[other], within[other - 1], within[other])
+            other += 1
         if first[i] / most >= NARROWEST:
             width[i] = first[i] / most
     return width

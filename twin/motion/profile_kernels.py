@@ -11,7 +11,6 @@ import numba
 import numpy as np
 
 from twin.motion.brake_kernels import brake_distance, time_to
-from twin.motion.early_brake_kernels import better_to_brake
 from twin.motion.last_chance_kernels import (
     last_chance,
     time_between,
@@ -21,10 +20,9 @@ from twin.motion.phase_kernels import put_brake, put_phase
 from twin.motion.reach_kernels import ROUNDING, SLOWEST, find_brake
 from twin.nc.canonical import FloatArray, IntArray
 
-STATE_AT_REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, -1.0, 0.0])
-"""Stretch, x within it, v, a, time; the stretch in which an early brake was chosen, and that in
-which one was weighed, -1: none; the border to which the state can brake, -1: to be found, and the
-velocity there."""
+STATE_AT_REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0])
+"""Stretch, x within it, v, a, time; the border to which the state can brake, -1: to be found, and
+the velocity there."""
 
 SHORTEST_PHASE = 1e-10
 """Phases below this are rounding [s]."""
@@ -164,7 +162,7 @@ def find_phases(
         pause: How long each stretch waits, shape (n,) [s].
         stop: Stretch at which to end.
         until: Time at which to end [s].
-        state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (9,).
+        state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (7,).
 
     Returns:
         Rows begin [s], duration [s], x, v, a, j, and the first and last stretch of each phase.
@@ -175,7 +173,7 @@ def find_phases(
     stretches = np.zeros((256, 2), np.int64)
     used = 0
     i, x, v, a, now = int(state[0]), state[1], state[2], state[3], state[4]
-    brake_in, compared_in, k, w = int(state[5]), int(state[6]), int(state[7]), state[8]
+    k, w = int(state[5]), state[6]
     phases_here, last_i = 0, i
     while i < stop and i < count and now < until:
         phases_here = phases_here + 1 if i == last_i else 0
@@ -200,7 +198,7 @@ def find_phases(
         highest_v, highest_a, jerk = limits[1, i], limits[2, i], limits[4, i]
         j, duration, latest, at_border, then = 0.0, 0.0, 0.0, False, k
         gap = highest_v - (v + a * a / (2.0 * jerk))
-        extend = v <= 0.0 or (brake_in != i and phases_here < MOST_PHASES)
+        extend = v <= 0.0 or phases_here < MOST_PHASES
         if extend and a < highest_a * (1.0 - ROUNDING) and gap > ROUNDING * highest_v:
             j = jerk
             latest = (highest_a - a) / jerk
@@ -214,12 +212,6 @@ def find_phases(
             duration, at_border, then = _longest(limits, entry, reach, i, x, v, a, j, latest, k)
             if a > 0.0 and duration < SHORTEST_HOLD and not at_border:
                 duration = 0.0
-        if SHORTEST_PHASE <= duration < latest and not at_border and compared_in != i:
-            sooner = better_to_brake(limits, entry, reach, i, x, v, a, j, duration)
-            if sooner < duration:
-                duration, brake_in, then = sooner, i, i + 1
-                # Once per stretch: what rounding leaves over must not be weighed again.
-                compared_in = i
         whole = at_border or duration >= latest or v <= 0.0
         if duration > 0.0 and (duration >= SHORTEST_PHASE or whole):
             put_phase(phases, stretches, used, i, i, now, duration, x, v, a, j)
@@ -262,9 +254,6 @@ def find_phases(
                     # Above the limit by rounding alone, it would never be held.
                     v = min(v, highest_v)
             continue
-        if v <= w and brake_in == i:
-            brake_in = -1
-            continue
         if v <= w * (1.0 + SAME):
             # Only rounding has kept the state from going on as it is.
             duration = rest / v
@@ -288,9 +277,8 @@ def find_phases(
             phases, stretches, used, limits[0], i, k - 1, now, x, v, 0.0, w, deceleration, jerk
         )
         v, a = w, 0.0
-        brake_in = -1
         if to_border:
             i, x, k = k, 0.0, -1
     state[0], state[1], state[2], state[3], state[4] = i, x, v, a, now
-    state[5], state[6], state[7], state[8] = brake_in, compared_in, k, w
+    state[5], state[6] = k, w
     return phases[:used], stretches[:used]
