@@ -56,10 +56,20 @@ def bound_derivatives(
             )
             if turn != 0.0 and axis < 3:
                 p, q = cosine[i, axis], sine[i, axis]
-                across = _wave_range(p * c + q * s, p * c_end + q * s_end,
-                                     q * c - p * s, q * c_end - p * s_end, math.hypot(p, q))
-                along = _wave_range(q * c - p * s, q * c_end - p * s_end,
-                                    -(p * c + q * s), -(p * c_end + q * s_end), math.hypot(p, q))
+                across = _wave_range(
+                    p * c + q * s,
+                    p * c_end + q * s_end,
+                    q * c - p * s,
+                    q * c_end - p * s_end,
+                    math.hypot(p, q),
+                )
+                along = _wave_range(
+                    q * c - p * s,
+                    q * c_end - p * s_end,
+                    -(p * c + q * s),
+                    -(p * c_end + q * s_end),
+                    math.hypot(p, q),
+                )
                 radius += p * p
                 square = turn * turn
                 low1 += min(turn * along[0], turn * along[1])
@@ -69,10 +79,10 @@ def bound_derivatives(
                 cube = turn * square
                 low3 -= max(cube * along[0], cube * along[1])
                 high3 -= min(cube * along[0], cube * along[1])
-            second = max(-low2, high2)
-            bounds[i, 0, axis] = max(-low1, high1)
+            second = max(abs(low2), abs(high2))
+            bounds[i, 0, axis] = max(abs(low1), abs(high1))
             bounds[i, 1, axis] = second
-            bounds[i, 2, axis] = max(-low3, high3)
+            bounds[i, 2, axis] = max(abs(low3), abs(high3))
             if axis < 3:
                 squares += second * second
             flat = FLAT * second

@@ -110,7 +110,7 @@ def _even_width(
         high: The widest that has room.
         guess: Where to begin the search.
     """
-    width = min(guess, high)
+    width, below, above = min(guess, high), 0.0, math.inf
     for _ in range(MOST_STEPS):
         # What is used grows with the width, and ever faster: Newton comes down to the root.
         used, slope = 0.0, 0.0
@@ -121,20 +121,27 @@ def _even_width(
                 t = away / width
                 flat = 1.0 - t * t
                 knee, bend = per_width[other], per_square[other] * BEND_PEAK
-                used += width * (knee * (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 16.0 + bend * width)
+                used += width * (
+                    knee * (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 16.0 + bend * width
+                )
                 slope += knee * 3.0 / 16.0 * flat * flat + 2.0 * bend * width
                 other += step
             elif step < 0:
                 other, step = i + 1, 1
             else:
                 break
-        if used <= 1.0 and width == high:
+        if used > 1.0:
+            above = width
+        elif width == high:
             return high
+        else:
+            below = width
         new = min(high, width - (used - 1.0) / slope)
-        if abs(new - width) <= NEARLY * width and used >= 1.0:
-            return new
-        width = new
-    return width
+        if abs(new - width) <= NEARLY * width or below >= (1.0 - NEARLY) * above:
+            return max(below, new) if new < above else below
+        # Where a bend comes within reach its share is there at once: Newton cannot see that.
+        width = new if below < new < above else 0.5 * (below + above)
+    return below
 
 
 @numba.njit(cache=True)
@@ -185,15 +192,11 @@ def find_widths(
             continue
         other = i
         while other > before[i] and place[i] - place[other] < first[i]:
-            excess[other] += _share(
-                place[i] - place[other], first[i], per_width[i], per_square[i]
-            )
+            excess[other] += _share(place[i] - place[other], first[i], per_width[i], per_square[i])
             other -= 1
         other = i + 1
         while other < after[i] and place[other] - place[i] < first[i]:
-            excess[other] += _share(
-                place[other] - place[i], first[i], per_width[i], per_square[i]
-            )
+            excess[other] += _share(place[other] - place[i], first[i], per_width[i], per_square[i])
             other += 1
     for i in range(count):
         excess[i] = max(1.0, excess[i] - 1.0)

@@ -16,9 +16,9 @@ from twin.nc.canonical import FloatArray, IntArray
 PIECE_ANGLE = math.radians(5.0)
 """Longest piece of an arc: the limits of X and Y change little over it [rad]."""
 
-SHORTEST_PIECE = 1e-6
+SHORTEST_PIECE = 1e-8
 """Cuts closer than this to another are left out [mm or deg]; a rounding that begins there has
-grown by less than 1e-12 mm."""
+grown by less than 1e-16 mm."""
 
 CARRIED = 4.0
 """How far a sum of polynomials is carried, in widths of the narrowest rounding in it."""
@@ -160,7 +160,7 @@ def _add_roundings(
                 total[:, 1] -= knee[i]
                 total[:, 2] -= 0.5 * bend[i]
         while passed < len(ends) and ends[passed] <= middle:
-            other = sources[passed]
+            other = int(sources[passed])
             passed += 1
             narrowest = min(narrowest, width[other])
             away = place[i] - place[other] + offset[piece]
@@ -179,7 +179,7 @@ def _add_roundings(
             total[:] = 0.0
             since, narrowest = here, math.inf
             for row in range(used):
-                other = active[row]
+                other = int(active[row])
                 away = place[i] - place[other] + offset[piece]
                 if other <= i:
                     away = max(0.0, away)

@@ -59,7 +59,7 @@ def plan_phases(
 
 def phases_of(window: Window, rows: FloatArray, stretches: IntArray) -> Phases:
     """Phases by pieces; ``rows`` are overwritten."""
-    pieces = window.pieces_until(int(stretches[:, 1].max()))
+    pieces = window.pieces_until(int(stretches[:, 1].max(initial=0)))
     return Phases(pieces, rows, place_phases(rows, stretches, window.begins, pieces.length))
 
 
