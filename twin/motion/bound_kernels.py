@@ -56,20 +56,11 @@ def bound_derivatives(
             )
             if turn != 0.0 and axis < 3:
                 p, q = cosine[i, axis], sine[i, axis]
-                across = _wave_range(
-                    p * c + q * s,
-                    p * c_end + q * s_end,
-                    q * c - p * s,
-                    q * c_end - p * s_end,
-                    math.hypot(p, q),
-                )
-                along = _wave_range(
-                    q * c - p * s,
-                    q * c_end - p * s_end,
-                    -(p * c + q * s),
-                    -(p * c_end + q * s_end),
-                    math.hypot(p, q),
-                )
+                amplitude, way = math.hypot(p, q), math.copysign(1.0, turn)
+                x, x_end = p * c + q * s, p * c_end + q * s_end
+                y, y_end = q * c - p * s, q * c_end - p * s_end
+                across = _wave_range(x, x_end, way * y, way * y_end, amplitude)
+                along = _wave_range(y, y_end, -way * x, -way * x_end, amplitude)
                 radius += p * p
                 square = turn * turn
                 low1 += min(turn * along[0], turn * along[1])
