@@ -20,7 +20,7 @@ SHORTEST_PIECE = 1e-8
 """Cuts closer than this to another are left out [mm or deg]; a rounding that begins there has
 grown by less than 1e-16 mm."""
 
-CARRIED = 4.0
+CARRIED = 2.0
 """How far a sum of polynomials is carried, in widths of the narrowest rounding in it."""
 
 
@@ -175,7 +175,7 @@ def _add_roundings(
                 used -= 1
                 active[row] = active[used]
                 add_rounding(total, max(0.0, away), width[other], knee[other], bend[other], -1.0)
-        if used == 0 or here - since > CARRIED * narrowest:
+        if used == 0 or here + extent[piece] - since > CARRIED * narrowest:
             total[:] = 0.0
             since, narrowest = here, math.inf
             for row in range(used):
