@@ -78,13 +78,14 @@ def faults(folder: Path, code: int, said: str) -> Iterator[str]:
 
     A signal that comes while Python itself is being loaded ends it without a word of ours.
     """
-    if code in (-signal.SIGINT, -signal.SIGTERM) and not said and not folder.exists():
+    ours = "twin/__main__.py" in said or (said and "KeyboardInterrupt" not in said)
+    if code in (-signal.SIGINT, -signal.SIGTERM) and not ours and not folder.exists():
         return
     yield from complaints(folder)
     if code not in CODES:
-        yield f"exit code {code}"
+        yield f"exit code {code}, said {said[:150]!r} ... {said[-300:]!r}"
     if "Traceback" in said or (code != 0 and not said.strip()):
-        yield f"said {said[-300:]!r}"
+        yield f"said {said[:150]!r} ... {said[-300:]!r}"
     if list(folder.glob(".*")):
         yield f"left {[path.name for path in folder.glob('.*')]}"
 
@@ -102,8 +103,8 @@ def kill(bench: Bench) -> Iterator[str]:
 
 
 def _stop(bench: Bench, how: signal.Signals) -> Iterator[str]:
-    folder = bench.place / how.name
     for number in range(bench.times):
+        folder = bench.place / f"{how.name}{number}"
         process = start(folder)
         moment = bench.moment_s()
         time.sleep(moment)

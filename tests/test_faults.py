@@ -1,5 +1,6 @@
 """Bad days: kills, full disks, locked folders, no memory. ``scripts/faults`` kills a hundred times."""
 
+import os
 import resource
 import signal
 import subprocess
@@ -45,6 +46,31 @@ def test_a_run_that_is_stopped_leaves_nothing_torn(tmp_path: Path, stop: signal.
         assert run.returncode == 130
         assert "interrupted" in said
         assert list(tmp_path.glob(".*")) == []
+
+
+THROUGH_AN_EXEC = """
+import os, signal, sys
+import twin.__main__, twin.cli
+
+def interrupted():
+    try:
+        exec("os.kill(os.getpid(), signal.SIGINT)")
+    except KeyboardInterrupt:
+        raise SystemExit(130)
+
+twin.cli.main = interrupted
+twin.__main__.main()
+"""
+
+
+def test_an_interruption_within_an_exec_ends_with_the_code_too(tmp_path: Path) -> None:
+    (tmp_path / "through_an_exec.py").write_text(THROUGH_AN_EXEC)
+    root = Path(__file__).parents[1]
+    surroundings = {**os.environ, "PYTHONPATH": f"{root}{os.pathsep}{tmp_path}"}
+    done = subprocess.run(
+        [sys.executable, "-m", "through_an_exec"], env=surroundings, check=False, timeout=60
+    )
+    assert done.returncode == 130
 
 
 def test_a_full_disk_ends_the_run_with_a_sentence(tmp_path: Path) -> None:

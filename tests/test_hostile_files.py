@@ -8,12 +8,13 @@ from pathlib import Path
 import h5py
 import pytest
 
-from tests import file_fuzz
+from tests import file_fuzz, fuzz_kinds
 from twin.errors import ConfigError, RecordingError
 from twin.machine.config import read_machine
 from twin.machine.model import build_spec
 from twin.recording import open_recording
 from twin.resources import machine_file
+from twin.seal import LENGTH as SEAL_LENGTH
 from twin.stl_file import read_stl
 
 
@@ -30,7 +31,7 @@ def test_damage_is_taken_or_refused(kind: str, tries: int) -> None:
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.35, 0.6, 0.8, 0.95])
 def test_a_changed_byte_of_a_recording_is_seen(tmp_path: Path, share: float) -> None:
     path = tmp_path / "recording.h5"
-    data = bytearray(file_fuzz.whole_recording())
+    data = bytearray(fuzz_kinds.whole_recording())
     data[int(share * len(data))] ^= 0x55
     path.write_bytes(data)
     refused = pytest.raises(RecordingError, match=r"damaged|not a (readable )?recording")
@@ -41,7 +42,7 @@ def test_a_changed_byte_of_a_recording_is_seen(tmp_path: Path, share: float) -> 
 @pytest.mark.parametrize("column", ["time", "drive/force"])
 def test_columns_of_other_lengths_or_shapes_are_refused(tmp_path: Path, column: str) -> None:
     path = tmp_path / "recording.h5"
-    path.write_bytes(file_fuzz.whole_recording())
+    path.write_bytes(fuzz_kinds.whole_recording())
     with h5py.File(path, "r+") as file:
         del file[column]
         file[column] = [1.0, 2.0]
@@ -49,13 +50,26 @@ def test_columns_of_other_lengths_or_shapes_are_refused(tmp_path: Path, column: 
         pass
 
 
+def test_a_recording_on_which_hdf5_searches_without_end_is_refused(tmp_path: Path) -> None:
+    data = bytearray(fuzz_kinds.whole_recording()[:-SEAL_LENGTH])
+    alarm = b'"an alarm"]]'
+    behind = data.index(alarm) + len(alarm)
+    data[behind : behind + 32] = bytes(
+        32
+    )  # what is free in its heap is 0 bytes long, again and again
+    path = tmp_path / "recording.h5"
+    path.write_bytes(data)
+    with pytest.raises(RecordingError, match="come to an end"), open_recording(path):
+        pass
+
+
 def test_a_recording_that_another_program_added_to_is_read(tmp_path: Path) -> None:
     path = tmp_path / "recording.h5"
-    path.write_bytes(file_fuzz.whole_recording())
+    path.write_bytes(fuzz_kinds.whole_recording())
     with h5py.File(path, "r+") as file:
         file.attrs["remark"] = "night shift"
     with open_recording(path) as recording:
-        assert len(recording) == file_fuzz.SAMPLES
+        assert len(recording) == fuzz_kinds.SAMPLES
 
 
 @pytest.mark.parametrize("number", ["nan", "inf", "1e300"])

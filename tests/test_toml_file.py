@@ -28,6 +28,11 @@ def job_text(tmp_path: Path, text: str) -> Path:
             "needs diameter and height",
         ),
         ("program = [", "is not TOML"),
+        ("program = " + "9" * 5000, "is not TOML"),
+        ('program = "a\\u0000.nc"', "NUL"),
+        ('program = ["a", {b = "a\\u0000.nc"}]', "NUL"),
+        ("program = " + "[" * 5000 + "]" * 5000, "deep"),
+        (".".join(["program"] * 5000) + " = 1", "deep"),
     ],
 )
 def test_wrong_files_say_which_key_and_what_would_fit(tmp_path: Path, text: str, said: str):

@@ -3,6 +3,9 @@
 A signal may come while the libraries are still being loaded: even then a sentence is said.
 """
 
+import atexit
+import gc
+import os
 import resource
 import signal
 import sys
@@ -10,10 +13,33 @@ import sys
 LEAST_ADDRESS_SPACE = 512_000_000
 """In less the libraries cannot be loaded, and some of them die of it without a word [bytes]."""
 
+COLLECT_AFTER = 100_000
+"""New objects between two searches for garbage: what libraries make while they load all stays."""
+
 
 def main() -> None:
     """Run the command line and exit with the code that the contract promises."""
     stopped: list[int] = []
+    codes: list[int] = []
+
+    def leave() -> None:
+        # Python ends itself by the signal where an interruption went through an exec of text, as
+        # libraries do, although it was dealt with.
+        if stopped and codes:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(codes[0])
+
+    atexit.register(leave)  # the first to be registered is the last to be called
+    try:
+        _run(stopped)
+    except SystemExit as leaving:
+        codes.append(leaving.code if isinstance(leaving.code, int) else 0)
+        raise
+
+
+def _run(stopped: list[int]) -> None:
+    """Run the command line; the signals that came are put into the list."""
 
     def stop(number: int, _: object) -> None:
         stopped.append(number)
@@ -22,6 +48,7 @@ def main() -> None:
     # Asked to end, by a batch system say, is the same as Ctrl-C: files are left whole or absent.
     signal.signal(signal.SIGTERM, stop)
     signal.signal(signal.SIGINT, stop)
+    gc.set_threshold(COLLECT_AFTER)
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
     if 0 <= limit < LEAST_ADDRESS_SPACE:
         print(

@@ -264,7 +264,7 @@ class Run:
 
 
 def _text_to_keep(source: Source) -> str:
-    return source.text if source.lines.data.nbytes <= LONGEST_TEXT else ""
+    return source.text if source.lines.size <= LONGEST_TEXT else ""
 
 
 def _keep_clear(guard: FixtureGuard | None, samples: Samples) -> tuple[Samples, Alarm | None]:

@@ -1,6 +1,7 @@
 """Tells the user when kernels are compiled, which keeps the first run of an installation waiting."""
 
 import sys
+from collections.abc import Callable
 from typing import Any
 
 from numba.core import event
@@ -12,12 +13,13 @@ class _Announcer(event.Listener):
     """Numba tells it of every function that its cache did not hold."""
 
     def __init__(self) -> None:
-        self._told = False
+        self.listens = False
+        self.is_first: Callable[[], bool] | None = None
 
     def on_start(self, event: Any) -> None:  # noqa: ARG002 (Numba passes it)
         """A compilation begins."""
-        if not self._told:
-            self._told = True
+        is_first, self.is_first = self.is_first, None
+        if is_first is not None and is_first():
             sys.stderr.write(MESSAGE)
             sys.stderr.flush()
 
@@ -25,6 +27,15 @@ class _Announcer(event.Listener):
         """It has ended."""
 
 
-def announce_compilation() -> None:
-    """From now on, say so on stderr at the first compilation of this process."""
-    event.register("numba:compile", _Announcer())
+_announcer = _Announcer()
+
+
+def announce_compilation(is_first: Callable[[], bool] = lambda: True) -> None:
+    """From now on, say so on stderr at the first compilation of this process.
+
+    Args:
+        is_first: Whether no process beside this one has said so; asked once.
+    """
+    if not _announcer.listens:
+        _announcer.listens, _announcer.is_first = True, is_first
+        event.register("numba:compile", _announcer)

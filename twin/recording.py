@@ -28,8 +28,9 @@ from twin.recording_form import (
     RecordingHeader,
     Samples,
 )
+from twin.recording_trial import reading_ends
 from twin.recording_writer import PROGRAM_TEXT, RecordingWriter, record
-from twin.seal import seal_is_broken
+from twin.seal import is_sealed, seal_is_broken
 from twin.toolpath.part_frame import PartFrame
 
 __all__ = [
@@ -176,6 +177,8 @@ def open_recording(path: Path) -> Iterator[Recording]:
             raise RecordingError(f"{path}: is damaged: it is not what was written")
     with _opened(path) as file:
         with _damage_told(path):
+            if not is_sealed(path) and not reading_ends(path):
+                raise RecordingError(f"{path}: is damaged: reading it does not come to an end")
             if not file.attrs.get("complete", False):
                 raise RecordingError(f"{path}: the recording is not complete")
             recording = Recording(path, file)

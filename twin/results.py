@@ -52,6 +52,7 @@ def report_of(
     """
     return Report(
         header=run.header(),
+        source=run.preparation.source.lines,
         figures=outcome.figures,
         verdict=outcome.verdict,
         tolerance=run.preparation.job.file.tolerance,

@@ -1,14 +1,16 @@
 """A seal at the end of a file: a check sum of all that lies before it.
 
 HDF5 sums up only parts of its files, and may search a damaged one for ever. A file without a seal
-was changed by another program, or comes from an earlier version: nothing is said against it.
+was cut short or changed by another program, or comes from an earlier version: ``recording_trial``
+finds out whether it can be read.
 """
 
 import zlib
 from pathlib import Path
 
 _MARK = b"\nseal "
-_LENGTH = len(_MARK) + 8
+LENGTH = len(_MARK) + 8
+"""Of a seal [bytes]."""
 _PIECE = 1 << 22
 
 
@@ -19,15 +21,21 @@ def seal(path: Path) -> None:
         file.write(_seal_of(path, file.tell()))
 
 
+def is_sealed(path: Path) -> bool:
+    """Whether there is a seal at the end of a file, be it whole or broken."""
+    return _end_of(path).startswith(_MARK)
+
+
 def seal_is_broken(path: Path) -> bool:
     """Whether a sealed file is not what it was when the seal was put on it."""
+    found = _end_of(path)
+    return found.startswith(_MARK) and found != _seal_of(path, path.stat().st_size - LENGTH)
+
+
+def _end_of(path: Path) -> bytes:
     with path.open("rb") as file:
-        size = file.seek(0, 2) - _LENGTH
-        if size < 0:
-            return False
-        file.seek(size)
-        found = file.read(_LENGTH)
-    return found.startswith(_MARK) and found != _seal_of(path, size)
+        file.seek(max(0, file.seek(0, 2) - LENGTH))
+        return file.read(LENGTH)
 
 
 def _seal_of(path: Path, size: int) -> bytes:

@@ -26,6 +26,9 @@ TableT = TypeVar("TableT", bound=Table)
 Data = dict[str, Any]
 """A TOML file as it was read."""
 
+DEEPEST = 20
+"""Tables and lists within each other; our own files have half a dozen."""
+
 
 def read_toml(
     path: Path, table: type[TableT], *, prepare: Callable[[Data], Data] | None = None
@@ -68,16 +71,40 @@ def load_toml(path: Path) -> Data:
     """Read a TOML file without checking its keys.
 
     Raises:
-        ConfigError: The file is missing or is not TOML.
+        ConfigError: The file is missing, is not TOML, or holds what no file here has a use for.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise ConfigError(f"{path}: is not UTF-8 text") from error
-    except tomllib.TOMLDecodeError as error:
+    except RecursionError as error:
+        raise ConfigError(f"{path}: {_TOO_DEEP}") from error
+    except ValueError as error:  # more than TOMLDecodeError: a number of thousands of digits
         raise ConfigError(f"{path}: is not TOML: {error}") from error
+    _refuse_oddities(data, path)
+    return data
+
+
+def _refuse_oddities(data: Data, path: Path) -> None:
+    """Refuse texts that the system ends early (they may name files), and tables without end."""
+    values, depth = list(data.values()), 1
+    while values:
+        if depth > DEEPEST:
+            raise ConfigError(f"{path}: {_TOO_DEEP}")
+        if any(isinstance(value, str) and "\0" in value for value in values):
+            raise ConfigError(f"{path}: a text holds the character NUL")
+        inner: list[Any] = []
+        for value in values:
+            if isinstance(value, dict):
+                inner += value.values()
+            elif isinstance(value, list):
+                inner += value
+        values, depth = inner, depth + 1
+
+
+_TOO_DEEP = f"has tables or lists within each other, more than {DEEPEST} deep"
 
 
 def _explain(detail: ErrorDetails, table: type[pydantic.BaseModel]) -> str:

@@ -65,6 +65,7 @@ def _circle(name: str) -> Setpoints:
 
 def _roll(model: mujoco.MjModel, name: str, chunks: list[Setpoints]) -> None:
     """The same steps without anything that belongs to this project but the controls."""
+    mujoco.set_mjcb_time(None)  # With its timers, as MuJoCo comes.
     machine = read_machine(machine_file(name))
     data = mujoco.MjData(model)
     scale, period = machine.joint_scale, machine.file.servo_period_s

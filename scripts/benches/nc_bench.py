@@ -16,6 +16,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+from benches.nc_programs import LINES, ROUNDS, programs
 from benches.row import REPEATS, Row, median_cpu_seconds
 
 from twin.nc.canonical import Axes
@@ -26,36 +27,41 @@ from twin.nc.source import read_source
 
 PEERS = Path(__file__).resolve().parents[2] / ".peers"
 """Where ``scripts/bench --peers`` puts them."""
-BLOCKS = 200_000
-ROUNDS = 20_000
+BLOCKS = LINES
 _AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 _SETTINGS = ControlSettings(axes=_AXES, step_limit=10 * ROUNDS)
 
 
 def rows() -> Iterator[Row]:
-    """Lines, arcs with helices, and a program that computes, beside each peer."""
+    """Lines and arcs with helices beside each peer; programs that compute beside ``rs274``."""
     with tempfile.TemporaryDirectory() as folder:
-        for task, dialect, ours, theirs, blocks in _programs(Path(folder)):
-            rate = blocks / median_cpu_seconds(lambda o=ours, d=dialect: _interpret(o, d))
+        for task, path in _programs(Path(folder)):
+            rate = BLOCKS / median_cpu_seconds(lambda p=path: _interpret(p, "gost"))
             for measure in (_nc_gcode_interpreter, _rs274):
-                peer, seconds = measure(theirs)
-                figure = None if seconds is None else blocks / seconds
-                yield Row("nc", task, rate, "blocks/s", peer, figure)
+                yield _row(task, rate, BLOCKS, *measure(path))
+        for each in programs():
+            ours, theirs = Path(folder, "ours.nc"), Path(folder, "theirs.ngc")
+            ours.write_text(each.ours)
+            theirs.write_text(each.theirs)
+            seconds = median_cpu_seconds(lambda o=ours, e=each: _interpret(o, e.dialect))
+            task = f"{each.dialect}: {each.task}"
+            yield _row(task, each.blocks / seconds, each.blocks, *_rs274(theirs))
 
 
-def _programs(folder: Path) -> Iterator[tuple[str, str, Path, Path, int]]:
-    """Task, our dialect, our program, the peers' program, and how many blocks it runs."""
+def _row(task: str, rate: float, blocks: int, peer: str, seconds: float | None) -> Row:
+    figure = None if seconds is None else blocks / seconds
+    return Row("nc", task, rate, "blocks/s", peer, figure)
+
+
+def _programs(folder: Path) -> Iterator[tuple[str, Path]]:
+    """Programs of plain blocks, the same for all."""
     for task, lines in (
         (f"{BLOCKS:,} lines G1 X Y Z", _lines()),
         (f"{BLOCKS * 9 // 10:,} arcs, {BLOCKS // 10:,} helices", _arcs()),
     ):
         path = folder / f"{len(task)}.ngc"
         path.write_text("\n".join(["G90 G17", "G1 X0 Y0 Z0 F1000", *lines, "M2", ""]))
-        yield task, "gost", path, path, BLOCKS
-    ours, theirs = folder / "loop.nc", folder / "loop.ngc"
-    ours.write_text(_OUR_LOOP.format(rounds=ROUNDS))
-    theirs.write_text(_THEIR_LOOP.format(rounds=ROUNDS))
-    yield "variables, loop, subprogram", "fagor8070", ours, theirs, 6 * ROUNDS
+        yield task, path
 
 
 def _lines() -> Iterator[str]:
@@ -83,34 +89,6 @@ def _arcs() -> Iterator[str]:
         yield f"G{2 if clockwise else 3} X{x}.000 Y{y}.000{height} I{i}.000 J{j}.000"
 
 
-_OUR_LOOP = """%L STEP
-G1 X[P1*0.01] Y[10*SIN[P1]]
-M17
-%MAIN
-P1=0
-G90 G1 F1000
-$WHILE P1<{rounds}
-P1=P1+1
-LL STEP
-G1 Z[P1/1000]
-$ENDWHILE
-M30
-"""
-_THEIR_LOOP = """o100 sub
-G1 X[#101*0.01] Y[10*sin[#101]]
-o100 endsub
-#101=0
-G90 G1 F1000
-o110 while [#101 lt {rounds}]
-#101=[#101+1]
-o100 call
-G1 Z[#101/1000]
-o110 endwhile
-M2
-"""
-"""The same program for both; six blocks a round, the subroutine's end and the loop's among them."""
-
-
 def _interpret(path: Path, dialect: str) -> int:
     interpretation = Interpretation(read_source(path), dialect_named(dialect), _SETTINGS)
     return sum(len(chunk.moves) for chunk in interpretation.chunks())
@@ -122,8 +100,6 @@ def _nc_gcode_interpreter(path: Path) -> tuple[str, float | None]:
     python = PEERS / "venv" / "bin" / "python"
     if not python.exists():
         return name, None
-    if "o100" in path.read_text():
-        return f"{name}: knows no subprograms", None
     code = (
         "import json, statistics, sys, time\n"
         "from importlib.metadata import version\n"

@@ -13,7 +13,7 @@ RADIUS = 25.0
 def path_of(deviation: FloatArray, angle: FloatArray, center: tuple[float, float]) -> CirclePath:
     path = CirclePath(RADIUS)
     distance = RADIUS + deviation
-    path.add(center[0] + distance * np.cos(angle), center[1] + distance * np.sin(angle))
+    path.add(center + distance[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
     return path
 
 
@@ -37,8 +37,8 @@ def test_an_ellipse_has_the_difference_of_its_half_axes():
 def test_a_narrow_peak_is_not_lost_however_long_the_path():
     path = CirclePath(RADIUS)
     for _ in range(10):
-        path.add(RADIUS * np.cos(TURN), RADIUS * np.sin(TURN))
-    path.add(np.array([0.0]), np.array([RADIUS + 0.007]))
+        path.add(RADIUS * np.column_stack([np.cos(TURN), np.sin(TURN)]))
+    path.add(np.array([[0.0, RADIUS + 0.007]]))
     assert circle_figures(path).circular_deviation_um == pytest.approx(7.0, abs=0.02)
 
 
@@ -52,6 +52,20 @@ def test_part_of_a_turn_is_seen_from_the_commanded_centre():
     quarter = TURN[: len(TURN) // 4 + 1]
     found = circle_figures(path_of(np.zeros(len(quarter)), quarter, (0.010, 0.0)))
     assert found.circular_deviation_um == pytest.approx(10.0, abs=0.01)
+    assert np.isnan(found.mean_radius_error_um)
+
+
+@pytest.mark.parametrize("count", [70, 80, 7199, 7200, 7201, 20_000])
+def test_a_path_is_evaluated_alike_point_by_point_and_by_angle(count: int):
+    angle = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    short = path_of(0.012 * np.cos(2.0 * angle), angle, (0.003, 0.0))
+    assert short.covers_full_turn() == (count >= 80)
+    long = path_of(0.012 * np.cos(2.0 * angle), angle, (0.003, 0.0))
+    long.mean()
+    assert long.covers_full_turn() == short.covers_full_turn()
+    assert circle_figures(long).circular_deviation_um == pytest.approx(
+        circle_figures(short).circular_deviation_um
+    )
 
 
 def test_both_directions_together():

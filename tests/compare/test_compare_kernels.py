@@ -103,8 +103,8 @@ def test_points_around_a_circle_are_sorted_by_angle(count: int, seed: int):
     bins = 12
     filled, sums = np.zeros(bins, np.int64), np.zeros((2, bins))
     least, greatest = np.full((bins, 2), np.inf), np.full((bins, 2), -np.inf)
-    x, y = (25.0 + deviation) * np.cos(angle), (25.0 + deviation) * np.sin(angle)
-    collect_by_angle(x, y, 25.0, filled, sums[0], sums[1], least, greatest)
+    points = (25.0 + deviation)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    collect_by_angle(points, 25.0, filled, sums[0], sums[1], least, greatest)
     for index in range(bins):
         own = (angle * bins / (2.0 * np.pi)).astype(int) == index
         assert filled[index] == own.sum()

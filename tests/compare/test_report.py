@@ -16,6 +16,7 @@ from twin.compare.trace import Trace
 from twin.compare.verdict import judge
 from twin.job import ToleranceTable
 from twin.nc.canonical import Moves
+from twin.nc.lines import Lines
 from twin.recording import RecordingHeader
 
 CORNER = np.array([50.0, 0, 0, 0])
@@ -53,7 +54,7 @@ def report_of(
     )  # fmt: skip
     content = result(summary, figures, table, verdict)
     return Report(
-        header=header, figures=figures, verdict=verdict, tolerance=table, trace=trace,
+        header=header, source=Lines([text.encode()]), figures=figures, verdict=verdict, tolerance=table, trace=trace,
         result=content,
     )  # fmt: skip
 

@@ -176,6 +176,17 @@ def test_both_ways_agree_on_random_programs(dialect: str) -> None:
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
+def test_pages_may_end_at_any_line(dialect: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    random_ = random.Random(7)  # noqa: S311 (the same)
+    for _ in range(40):
+        text = program(random_, dialect)
+        with monkeypatch.context() as patch:
+            patch.setattr("twin.nc.lines.PAGE", random_.randrange(20, 200))
+            in_pages = source_from_text(text)
+        assert_same(in_pages, dialect)
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
 def test_both_ways_agree_on_mutated_programs(dialect: str) -> None:
     random_ = random.Random(9)  # noqa: S311 (the same)
     settings = dataclasses.replace(SETTINGS, step_limit=300)

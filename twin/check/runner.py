@@ -6,9 +6,11 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.context import SpawnContext
+from multiprocessing.synchronize import Lock
 from typing import TypeVar
 
 from twin.check.outcome import CheckOutcome, died
+from twin.first_compilation import announce_compilation
 
 TaskT = TypeVar("TaskT")
 """A program or a variant of one."""
@@ -29,6 +31,7 @@ def check_all(
     """
     workers = min(jobs or available_cores(), len(programs))
     if workers <= 1:
+        announce_compilation()
         yield from map(check, programs)
         return
     # Fresh processes: a fork of one that has run threads or OpenGL may hang.
@@ -67,13 +70,14 @@ def run_tasks(
 
 def _pool(workers: int, context: SpawnContext) -> concurrent.futures.ProcessPoolExecutor:
     return concurrent.futures.ProcessPoolExecutor(
-        workers, mp_context=context, initializer=_end_when_interrupted
+        workers, mp_context=context, initializer=_begin, initargs=(context.Lock(),)
     )
 
 
-def _end_when_interrupted() -> None:
-    """An interrupt from the keyboard ends a process at once; the first one tells the user."""
+def _begin(telling: Lock) -> None:
+    """An interrupt from the keyboard ends a process at once; one process tells of compilation."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    announce_compilation(lambda: telling.acquire(block=False))
 
 
 def available_cores() -> int:

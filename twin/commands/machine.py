@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from twin.errors import ExitCode, UsageError
+from twin.first_compilation import announce_compilation
 from twin.machine.check import check_machine
 from twin.machine.circle_plot import write_circle_plot
 from twin.machine.circular_test import CircularTest, circular_test
@@ -87,6 +88,7 @@ def print_circle(
     _require_format(form)
     if plot.suffix not in PLOTS:
         raise UsageError(f"no plot of kind '{plot.suffix}': known are {', '.join(PLOTS)}")
+    announce_compilation()
     result = circular_test(_machine(name), radius, feed, plane.upper())
     write_circle_plot(result, plot)
     if form == "json":

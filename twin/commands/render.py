@@ -17,6 +17,7 @@ from twin.cutting.part import write_glb
 from twin.cutting.recut import COMMANDED, inspect_recorded, recut
 from twin.errors import ExitCode, UsageError
 from twin.files import write_text
+from twin.first_compilation import announce_compilation
 from twin.job import VideoTable
 from twin.progress import shown_progress
 from twin.render.encoder import FORMATS
@@ -85,6 +86,7 @@ def render_and_print(
         raise UsageError(f"--format '{wanted.form}': films are written as {known}")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
+    announce_compilation()
     code = ExitCode.OK
     recording = path
     if path.suffix != RECORDING_SUFFIX:

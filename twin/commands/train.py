@@ -26,8 +26,10 @@ def rehearse_and_print(name: str) -> ExitCode:
     Raises:
         TwinError: The scene is wrong, or a step of a script cannot be done.
     """
+    from twin.first_compilation import announce_compilation
     from twin.training.script import rehearse
 
+    announce_compilation()
     scene = read_scene(scene_path(name))
     rehearsals = rehearse(scene)
     for played in rehearsals:
@@ -75,9 +77,11 @@ def train(
     Raises:
         TwinError: The scene, or how it shall be opened, is wrong.
     """
+    from twin.first_compilation import announce_compilation
     from twin.training.gate import LOOPBACK
     from twin.training.launch import open_room
 
+    announce_compilation()
     scene = read_scene(scene_path(name))
     with open_room(
         scene,

@@ -20,6 +20,7 @@ POLAR_ARCS = 12
 ARCS_KEPT = 10_000
 """Of a program with more arcs, those with the greatest circular deviation are kept."""
 _POLAR_POINTS = 720
+_NO_POLAR = np.zeros((0, 2))
 
 
 def plane_axes(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -46,22 +47,16 @@ class _OpenArc:
     """An arc that the tool may still be on.
 
     Attributes:
+        number: Of its move in the program.
         time_s: When the tool reached it [s].
         sweep_deg: Commanded opening angle [deg].
         directed: Where the tool was.
-        center: Its centre in the part's frame, shape (3,) [mm].
-        across: Directions of 0 and 90 degrees in the part's frame, shape (3, 2).
     """
 
+    number: int
     time_s: float
     sweep_deg: float
     directed: DirectedCircle
-    center: FloatArray
-    across: FloatArray
-
-    @property
-    def line(self) -> int:
-        return self.directed.line
 
     @property
     def path(self) -> CirclePath:
@@ -73,7 +68,8 @@ class ArcCollector:
 
     def __init__(self) -> None:
         self._open: dict[int, _OpenArc] = {}
-        self._done: list[tuple[int, ArcFigures]] = []
+        self._done: dict[int, ArcFigures] = {}
+        self._worst: list[tuple[float, int, CirclePath]] = []
         self._pairs = PairCollector()
 
     def add(
@@ -93,24 +89,35 @@ class ArcCollector:
         """
         # Beyond an arc's ends the distance from its centre says nothing about the arc.
         inside = np.flatnonzero(_wanted(moves, path)[place] & (fraction > 0.0) & (fraction < 1.0))
+        if not len(inside):
+            return
         starts = np.flatnonzero(np.diff(place[inside], prepend=-1))
-        for rows in np.split(inside, starts[1:]) if len(inside) else ():
-            move = int(place[rows[0]])
-            arc = self._open.get(first + move)
+        runs = place[inside[starts]]
+        length = np.diff(starts, append=len(inside))
+        seen = _in_their_planes(moves, path, runs, length, point[inside])
+        for move, row, points in zip(runs, inside[starts], np.split(seen, starts[1:]), strict=True):
+            number = first + int(move)
+            arc = self._open.get(number)
             if arc is None:
-                arc = _open_arc(moves, path, move, float(time[rows[0]]))
-                self._open[first + move] = arc
-            offset = (point[rows] - arc.center) @ arc.across
-            arc.path.add(offset[:, 0], offset[:, 1])
+                arc = _OpenArc(
+                    number=number,
+                    time_s=float(time[row]),
+                    sweep_deg=float(moves.sweep[move]),
+                    directed=directed_circle(moves, int(move)),
+                )
+                self._open[number] = arc
+            arc.path.add(points)
 
     def finish(self, before: int) -> None:
         """Evaluate the arcs whose number in the program is below ``before``."""
         for number in sorted(number for number in self._open if number < before):
             arc = self._open.pop(number)
-            self._done.append((number, _evaluate(arc)))
+            self._done[number] = figures = _evaluate(arc)
+            self._worst.append((-figures.circular_deviation_um, number, arc.path))
             self._pairs.add(arc.directed)
-        if len(self._done) > 2 * POLAR_ARCS:
-            self._done = _trimmed(self._done)
+        self._worst = sorted(self._worst, key=lambda worst: worst[:2])[:POLAR_ARCS]
+        if len(self._done) > 2 * ARCS_KEPT:
+            self._done = _greatest(self._done)
 
     def bidirectional(self) -> tuple[BidirectionalFigures, ...]:
         """Circles that were run both ways, by line; open arcs as far as they got."""
@@ -121,9 +128,13 @@ class ArcCollector:
 
     def figures(self) -> tuple[ArcFigures, ...]:
         """All arcs so far, in program order; those still open are evaluated as far as they got."""
-        still_open = [(number, _evaluate(arc)) for number, arc in self._open.items()]
-        every = _trimmed([*self._done, *still_open])
-        return tuple(arc for _, arc in sorted(every, key=lambda item: item[0]))
+        still_open = {number: _evaluate(arc) for number, arc in self._open.items()}
+        every = _greatest({**self._done, **still_open})
+        paths = {number: path for _, number, path in self._worst}
+        paths.update({number: arc.path for number, arc in self._open.items()})
+        for number in list(every)[:POLAR_ARCS]:
+            every[number] = dataclasses.replace(every[number], polar=_polar(paths[number]))
+        return tuple(every[number] for number in sorted(every))
 
 
 def _wanted(moves: Moves, path: PathColumns) -> BoolArray:
@@ -132,40 +143,53 @@ def _wanted(moves: Moves, path: PathColumns) -> BoolArray:
     return wide & (moves.radius > 0.0) & (path.turn_rate == 0.0)
 
 
-def _open_arc(moves: Moves, path: PathColumns, move: int, time_s: float) -> _OpenArc:
-    first, second = plane_axes(moves.normal[move : move + 1])
-    cosine, sine = np.cos(path.turn[move]), np.sin(path.turn[move])
-    turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-    return _OpenArc(
-        time_s=time_s,
-        sweep_deg=float(moves.sweep[move]),
-        directed=directed_circle(moves, move),
-        center=turned @ path.origin[move],
-        across=turned @ np.column_stack([first[0], second[0]]),
-    )
+def _in_their_planes(
+    moves: Moves, path: PathColumns, runs: IntArray, length: IntArray, point: FloatArray
+) -> FloatArray:
+    """Where tool points lie in the planes of arcs, about their centres.
+
+    Args:
+        moves: The moves at hand.
+        path: The same in the part's frame.
+        runs: Which arcs the tool runs through in turn, shape (m,).
+        length: In how many points each, shape (m,).
+        point: In the part's frame, shape (n, 3) [mm].
+
+    Returns:
+        Along 0 and 90 degrees, shape (n, 2) [mm].
+    """
+    cosine, sine = np.cos(path.turn[runs]), np.sin(path.turn[runs])
+    turned = np.zeros((len(runs), 3, 3))
+    turned[:, 0, 0] = turned[:, 1, 1] = cosine
+    turned[:, 1, 0], turned[:, 0, 1] = sine, -sine
+    turned[:, 2, 2] = 1.0
+    across = turned @ np.stack(plane_axes(moves.normal[runs]), axis=2)
+    center = (turned @ path.origin[runs][:, :, None])[:, :, 0]
+    offset = point - np.repeat(center, length, axis=0)
+    return np.einsum("ni,nij->nj", offset, np.repeat(across, length, axis=0))
 
 
-def _trimmed(done: list[tuple[int, ArcFigures]]) -> list[tuple[int, ArcFigures]]:
-    """The worst arcs, greatest circular deviation first; polar plots for the worst of them."""
-    ranked = sorted(done, key=lambda item: (-item[1].circular_deviation_um, item[0]))[:ARCS_KEPT]
-    for index in range(POLAR_ARCS, len(ranked)):
-        number, arc = ranked[index]
-        if len(arc.polar):
-            ranked[index] = number, dataclasses.replace(arc, polar=np.zeros((0, 2)))
-    return ranked
+def _greatest(arcs: dict[int, ArcFigures]) -> dict[int, ArcFigures]:
+    """The arcs that are kept, greatest circular deviation first, by their numbers."""
+    ranked = sorted(arcs.items(), key=lambda item: (-item[1].circular_deviation_um, item[0]))
+    return dict(ranked[:ARCS_KEPT])
 
 
 def _evaluate(arc: _OpenArc) -> ArcFigures:
     found = circle_figures(arc.path)
-    polar = arc.path.mean()
-    thin = polar[:: max(1, len(polar) // _POLAR_POINTS)]
     return ArcFigures(
-        line=arc.line,
+        line=arc.directed.line,
         time_s=arc.time_s,
         radius_mm=arc.path.radius,
         sweep_deg=arc.sweep_deg,
         circular_deviation_um=found.circular_deviation_um,
         radial_max_um=found.radial_max_um,
         radial_min_um=found.radial_min_um,
-        polar=np.column_stack([np.rad2deg(thin[:, 0]), thin[:, 1] * 1e3]),
+        polar=_NO_POLAR,
     )
+
+
+def _polar(path: CirclePath) -> FloatArray:
+    mean = path.mean()
+    thin = mean[:: max(1, len(mean) // _POLAR_POINTS)]
+    return np.column_stack([np.rad2deg(thin[:, 0]), thin[:, 1] * 1e3])

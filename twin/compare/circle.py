@@ -21,7 +21,7 @@ import dataclasses
 import numpy as np
 
 from twin.compare.circle_kernels import collect_by_angle
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import FloatArray, IntArray
 
 BINS_PER_TURN = 7200
 """Angular resolution of the collected path: 0.05 degrees."""
@@ -30,52 +30,94 @@ FULL_TURN_GAP = 5.0
 
 
 class CirclePath:
-    """An actual path around a nominal circle, collected by angle in bounded memory.
+    """An actual path around a nominal circle, in bounded memory.
 
-    Of every bin the points with the least and the greatest radial deviation are kept, so that
-    however long the path is, no peak is lost; the mean of every bin weighs all angles alike in
-    the least-squares circle, wherever the tool moved slowly.
+    A short path is kept point by point, a longer one by angle: of every bin the points with the
+    least and the greatest radial deviation, so that however long the path is, no peak is lost.
 
     Args:
         radius: Nominal [mm].
+
+    Attributes:
+        radius: Nominal [mm].
+        radial_min: Least radial deviation so far [mm]; infinite without points.
+        radial_max: Greatest radial deviation so far [mm]; minus infinite without points.
     """
 
     def __init__(self, radius: float) -> None:
         self.radius = radius
+        self.radial_min, self.radial_max = np.inf, -np.inf
+        self._points: list[FloatArray] = []
+        self._count = 0
+        self._bins: _Bins | None = None
+
+    def add(self, points: FloatArray) -> None:
+        """Take in points relative to the nominal centre, shape (n, 2) [mm]."""
+        deviation = np.sqrt((points * points).sum(axis=1)) - self.radius
+        self.radial_min = min(self.radial_min, float(deviation.min(initial=np.inf)))
+        self.radial_max = max(self.radial_max, float(deviation.max(initial=-np.inf)))
+        self._points.append(points)
+        self._count += len(points)
+        if self._count > BINS_PER_TURN:
+            self._binned()
+
+    def _binned(self) -> "_Bins":
+        """All points so far by angle."""
+        if self._bins is None:
+            self._bins = _Bins()
+        for points in self._points:
+            self._bins.add(points, self.radius)
+        self._points, self._count = [], 0
+        return self._bins
+
+    def mean(self) -> FloatArray:
+        """Mean angle [rad] and radial deviation [mm] of the filled bins, shape (m, 2).
+
+        They weigh all angles alike in the least-squares circle, wherever the tool moved slowly.
+        """
+        return self._binned().mean()
+
+    def extremes(self) -> FloatArray:
+        """Angle [rad] and radial deviation [mm] of the kept points, shape (2 m, 2)."""
+        return self._binned().extremes()
+
+    def covers_full_turn(self) -> bool:
+        """Whether no gap in the angles is wider than ``FULL_TURN_GAP``."""
+        if self._bins is None:
+            points = np.concatenate([np.zeros((0, 2)), *self._points])
+            angle = np.sort(np.arctan2(points[:, 1], points[:, 0]))
+        else:
+            angle = self._binned().filled() * (2.0 * np.pi / BINS_PER_TURN)
+        gaps = np.diff(np.append(angle, angle[:1] + 2.0 * np.pi))
+        return bool(len(angle) >= 3 and np.degrees(gaps.max()) <= FULL_TURN_GAP)
+
+
+class _Bins:
+    """Points by angle: of each bin how many, their mean, the innermost and the outermost."""
+
+    def __init__(self) -> None:
         self._count = np.zeros(BINS_PER_TURN, np.int64)
         self._angle = np.zeros(BINS_PER_TURN)
         self._deviation = np.zeros(BINS_PER_TURN)
         self._least = np.full((BINS_PER_TURN, 2), np.inf)
         self._greatest = np.full((BINS_PER_TURN, 2), -np.inf)
 
-    def add(self, x: FloatArray, y: FloatArray) -> None:
-        """Take in points relative to the nominal centre, shape (n,) [mm]."""
+    def add(self, points: FloatArray, radius: float) -> None:
         collect_by_angle(
-            x, y, self.radius, self._count, self._angle, self._deviation, self._least,
-            self._greatest,
-        )  # fmt: skip
+            points, radius, self._count, self._angle, self._deviation, self._least, self._greatest
+        )
 
-    @property
-    def filled(self) -> int:
-        """How many bins hold a point."""
-        return int(np.count_nonzero(self._count))
+    def filled(self) -> IntArray:
+        return np.flatnonzero(self._count)
 
     def mean(self) -> FloatArray:
-        """Mean angle [rad] and radial deviation [mm] of the filled bins, shape (m, 2)."""
         filled = self._count > 0
         count = self._count[filled]
         return np.column_stack([self._angle[filled] / count, self._deviation[filled] / count])
 
     def extremes(self) -> FloatArray:
-        """Angle [rad] and radial deviation [mm] of the kept points, shape (2 m, 2)."""
         filled = self._count > 0
         return np.concatenate([self._least[filled], self._greatest[filled]])[:, ::-1]
-
-    def covers_full_turn(self) -> bool:
-        """Whether no gap in the angles is wider than ``FULL_TURN_GAP``."""
-        filled = np.flatnonzero(self._count)
-        gaps = np.diff(np.append(filled, filled[:1] + BINS_PER_TURN))
-        return bool(len(filled) >= 3 and gaps.max() * 360.0 / BINS_PER_TURN <= FULL_TURN_GAP)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -86,7 +128,8 @@ class CircleFigures:
         circular_deviation_um: G, or G(b) of two paths [µm].
         radial_max_um: F_max [µm].
         radial_min_um: F_min [µm].
-        mean_radius_error_um: Least-squares radius minus nominal; D of two paths [µm].
+        mean_radius_error_um: Least-squares radius minus nominal; D of two paths; NaN where they do
+            not cover the full turn, which would determine it [µm].
     """
 
     circular_deviation_um: float
@@ -101,20 +144,23 @@ def circle_figures(*paths: CirclePath) -> CircleFigures:
     Raises:
         ValueError: There is no path, or a path without points.
     """
-    if not paths or any(path.filled == 0 for path in paths):
+    if not paths or any(path.radial_max < path.radial_min for path in paths):
         raise ValueError("circular figures need paths with points")
     radius = paths[0].radius
-    extremes = np.concatenate([path.extremes() for path in paths])
-    means = np.concatenate([path.mean() for path in paths])
-    center, mean_radius = np.zeros(2), radius + float(means[:, 1].mean())
+    least = min(path.radial_min for path in paths)
+    greatest = max(path.radial_max for path in paths)
+    width, mean_error = greatest - least, np.nan
     if all(path.covers_full_turn() for path in paths):
+        means = np.concatenate([path.mean() for path in paths])
+        extremes = np.concatenate([path.extremes() for path in paths])
         center, mean_radius = _least_squares_circle(_points(means, radius))
-    around = np.linalg.norm(_points(extremes, radius) - center, axis=1)
+        width = np.ptp(np.linalg.norm(_points(extremes, radius) - center, axis=1))
+        mean_error = mean_radius - radius
     return CircleFigures(
-        circular_deviation_um=float(np.ptp(around)) * 1e3,
-        radial_max_um=float(extremes[:, 1].max()) * 1e3,
-        radial_min_um=float(extremes[:, 1].min()) * 1e3,
-        mean_radius_error_um=(mean_radius - radius) * 1e3,
+        circular_deviation_um=float(width) * 1e3,
+        radial_max_um=greatest * 1e3,
+        radial_min_um=least * 1e3,
+        mean_radius_error_um=mean_error * 1e3,
     )
 
 

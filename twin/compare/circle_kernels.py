@@ -6,12 +6,11 @@ import numba
 
 
 @numba.njit(cache=True)
-def collect_by_angle(x, y, radius, count, angle_sum, deviation_sum, least, greatest):
+def collect_by_angle(points, radius, count, angle_sum, deviation_sum, least, greatest):
     """Sort points into bins of angle.
 
     Args:
-        x: Relative to the centre, shape (n,) [mm].
-        y: The same.
+        points: Relative to the centre, shape (n, 2) [mm].
         radius: Of the circle [mm].
         count: By bin: how many points, added to, shape (m,).
         angle_sum: By bin: sum of their angles, added to, shape (m,) [rad].
@@ -21,11 +20,12 @@ def collect_by_angle(x, y, radius, count, angle_sum, deviation_sum, least, great
     """
     turn = 2.0 * math.pi
     bins = len(count)
-    for i in range(len(x)):
-        angle = math.atan2(y[i], x[i])
+    for i in range(len(points)):
+        x, y = points[i]
+        angle = math.atan2(y, x)
         if angle < 0.0:
             angle += turn
-        deviation = math.sqrt(x[i] * x[i] + y[i] * y[i]) - radius
+        deviation = math.sqrt(x * x + y * y) - radius
         here = min(int(angle * (bins / turn)), bins - 1)
         count[here] += 1
         angle_sum[here] += angle

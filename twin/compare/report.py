@@ -3,7 +3,6 @@
 import base64
 import dataclasses
 import json
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -29,8 +28,6 @@ _HEADINGS = {
     "fail": ("✖", "Fail", "a tolerance does not hold"),
     "alarm": ("▲", "Alarm", "the machine stopped"),
 }
-_LINE_END = re.compile(r"\r\n|\r|\n")
-"""What ends a program line for the interpreter too; form feeds and the like do not."""
 _HOVER_POINTS = 2000
 _HOVER_TEXT = 80
 """Characters of a program line that hovering shows."""
@@ -49,7 +46,8 @@ class Report:
     """What a report is made of.
 
     Attributes:
-        header: Header of the recording: program text, machine, versions.
+        header: Header of the recording: machine, versions.
+        source: Lines of the program, of which the page shows a few.
         figures: What the comparison found.
         verdict: How the run came out.
         tolerance: What it was held to.
@@ -59,6 +57,7 @@ class Report:
     """
 
     header: RecordingHeader
+    source: Sequence[str]
     figures: Figures
     verdict: Verdict
     tolerance: ToleranceTable
@@ -86,7 +85,7 @@ def render_report(report: Report) -> str:
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["fixed"] = _fixed
-    source = _LINE_END.split(report.header.program_text)
+    source = report.source
     symbol, heading, meaning = _HEADINGS[report.verdict.outcome]
     cut = report.result["cut"] or {}
     return environment.get_template("report.html.j2").render(
@@ -151,7 +150,7 @@ def _hover_rows(trace: Trace) -> IntArray:
     return np.array(worst, np.int64)
 
 
-def _hover_data(trace: Trace, source: list[str]) -> str:
+def _hover_data(trace: Trace, source: Sequence[str]) -> str:
     """What hovering tells: columns by point, units of the axes, and the program lines met."""
     rows = _hover_rows(trace)
     line = trace.line[rows]
@@ -188,7 +187,7 @@ def _safe(text: str) -> markupsafe.Markup:
     return markupsafe.Markup(text)  # noqa: S704 (numbers; JSON without '<'; SVG by matplotlib)
 
 
-def _line_text(source: list[str], line: int) -> str:
+def _line_text(source: Sequence[str], line: int) -> str:
     return _shown(source[line - 1].strip()) if 0 < line <= len(source) else ""
 
 
@@ -197,7 +196,7 @@ def _shown(text: str) -> str:
     return text if len(text) <= _LINE_SHOWN else text[: _LINE_SHOWN - 1] + "…"
 
 
-def _excerpt(source: list[str], line: int) -> list[tuple[int, str]]:
+def _excerpt(source: Sequence[str], line: int) -> list[tuple[int, str]]:
     """The source line with its neighbours."""
     first = max(1, line - _CONTEXT_LINES)
     last = min(len(source), line + _CONTEXT_LINES)

@@ -46,13 +46,15 @@ class CutResult:
     air_share: float
     """Share of the cutting feed's path that met no material."""
     gouges: tuple[CutEvent, ...]
-    """Flutes too short, shank or holder in the material; one each per program line."""
+    """Flutes too short, shank or holder in the material; one each per line, of many the deepest."""
     rapid_into_stock: tuple[CutEvent, ...]
     """Rapids that met material, one per move."""
     spindle_off: tuple[CutEvent, ...]
     """Feeds that met material with the spindle off, one per move."""
     blocks: Mapping[int, BlockCut]
-    """What each program line took off."""
+    """What each line took off; of many those that took off the most or met the greatest force."""
+    blocks_forgotten: int
+    """How often a line was let go of because enough others took off more."""
     bin_s: float
     """Length of a bin of ``removed_over_time`` [s]."""
     removed_over_time: tuple[float, ...]
@@ -186,6 +188,7 @@ class Cutter:
             rapid_into_stock=self._rapids.events(),
             spindle_off=self._standing.events(),
             blocks=self._ledger.blocks,
+            blocks_forgotten=self._ledger.forgotten,
             bin_s=bin_s,
             removed_over_time=tuple(over_time.tolist()),
             force_n=self._force,

@@ -71,10 +71,20 @@ class Stretches:
         return np.linalg.norm(np.diff(self.points, axis=0), axis=1)
 
 
-class EventLog:
-    """Keeps the first and the worst of each occurrence."""
+EVENTS_TOLD = 1000
+"""Occurrences that are told of at most: the deepest."""
 
-    def __init__(self) -> None:
+
+class EventLog:
+    """Keeps the first and the worst of each occurrence.
+
+    Attributes:
+        forgotten: How often one was let go of because enough others were deeper.
+    """
+
+    def __init__(self, told: int = EVENTS_TOLD) -> None:
+        self.forgotten = 0
+        self._told = told
         self._events: dict[Hashable, CutEvent] = {}
 
     def note(
@@ -86,12 +96,25 @@ class EventLog:
             x, y, z = (float(value) for value in stretches.points[index])
             line, time = int(stretches.line[index]), float(stretches.time[index])
             self._events[key] = CutEvent(line, time, depth, (x, y, z), what)
+            if len(self._events) > 2 * self._told:
+                self._forget(key)
         elif depth > known.depth_mm:
             self._events[key] = dataclasses.replace(known, depth_mm=depth)
 
+    def _forget(self, latest: Hashable) -> None:
+        """Let go of all but the deepest, and the latest, which may go deeper yet."""
+        deepest = sorted(self._events, key=lambda key: -self._events[key].depth_mm)
+        kept = {*deepest[: self._told], latest}
+        self.forgotten += len(self._events) - len(kept)
+        self._events = {key: event for key, event in self._events.items() if key in kept}
+
     def events(self) -> tuple[CutEvent, ...]:
-        """All occurrences, in the order in which they began."""
-        return tuple(self._events.values())
+        """The occurrences, in the order in which they began; of very many the deepest."""
+        found = list(self._events.values())
+        if len(found) <= self._told:
+            return tuple(found)
+        least = sorted(event.depth_mm for event in found)[-self._told]
+        return tuple(event for event in found if event.depth_mm >= least)[: self._told]
 
 
 class StockWatch:
@@ -140,6 +163,8 @@ class StockWatch:
         """Note those of a chunk's suspects that met material."""
         for i in np.flatnonzero(hits & (suspects > 0)):
             key = (int(suspects[i]), int(stretches.line[i]))
+            if self._surface and key[0] != next(iter(self._surface))[0]:
+                self._surface.clear()  # a move that has ended
             tip = float(min(stretches.points[i : i + 2, 2]))
             surface = max(self._surface.get(key, tip), tip + float(stretches.depth[i]))
             self._surface[key] = surface

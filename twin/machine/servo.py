@@ -12,6 +12,7 @@ from twin.machine.config import Machine
 from twin.machine.drives import feedforward_name, integral_name
 from twin.machine.model import drives
 from twin.machine.sampling import held_commands, polyline_nodes
+from twin.machine.timers import switch_off_timers
 from twin.machine.transmission import give_name, has_give
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
@@ -47,6 +48,7 @@ class Servo:
     """
 
     def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+        switch_off_timers()
         self._period = machine.file.servo_period_s
         self.model = model
         self._data = mujoco.MjData(model)

@@ -1,6 +1,7 @@
 """Blocks: the moves that take time, and the dwells, with what happens where one meets the next."""
 
 import dataclasses
+import itertools
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -203,23 +204,39 @@ class Surroundings:
     to_the_end: bool
 
 
-def with_neighbours(parts: Iterable[Blocks], batch: int, context: int) -> Iterator[Surroundings]:
+def with_neighbours(
+    parts: Iterable[Blocks], batch: int, context: int, most_angle: float = np.inf
+) -> Iterator[Surroundings]:
     """Regroup blocks: ``batch`` at a time, with up to ``context`` known on either side.
 
-    Groups are counted from the start of the program, whatever parts the blocks come in.
+    Groups are counted from the start of the program, whatever parts the blocks come in. They are
+    smaller, and less is known beside them, where arcs turn by more than ``most_angle`` together
+    [rad], that of the last one left out.
     """
     waiting: list[Blocks] = []
     count, first = 0, 0
-    for part in parts:
-        if len(part) == 0:
-            continue
-        waiting.append(part)
-        count += len(part)
-        while count - first >= batch + context:
+    for part in itertools.chain(parts, [None]):
+        if part is not None and len(part):
+            waiting.append(part)
+            count += len(part)
+        while count - first >= (1 if part is None else batch + context):
             window = join(waiting)
-            last = first + batch
-            yield Surroundings(window[: last + context], first, last, to_the_end=False)
+            angle = np.abs(window.geometry.angle)
+            last = first + _within(
+                angle[first : None if part is None else first + batch], most_angle
+            )
+            before = _within(angle[max(0, first - context) : first][::-1], most_angle)
+            behind = _within(angle[last : last + context], most_angle)
+            yield Surroundings(
+                window[first - before : last + behind],
+                before,
+                before + last - first,
+                to_the_end=part is None and last + behind == count,
+            )
             kept = max(0, last - context)
             waiting, count, first = [window[kept:]], count - kept, last - kept
-    if count > first:
-        yield Surroundings(join(waiting), first, count, to_the_end=True)
+
+
+def _within(angle: FloatArray, most: float) -> int:
+    """How many arcs, lines among them, turn by no more than that, but for the last."""
+    return min(len(angle), int(np.searchsorted(np.cumsum(angle), most)) + 1)

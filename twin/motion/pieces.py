@@ -11,6 +11,7 @@ A piece is short enough for bounds of abs(q'), abs(q''), abs(q''') to say nearly
 """
 
 import dataclasses
+import math
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -28,6 +29,8 @@ from twin.toolpath.geometry import Geometry
 
 BATCH = 2000
 """Blocks that are cut into pieces at a time: as many as are planned at a time."""
+MOST_ANGLE = 1024.0 * math.pi
+"""What their arcs turn together, but for the last [rad]: of helices with many turns each, a few."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -85,7 +88,7 @@ def pieces_of_chunks(
         ValueError: A move does not begin where the one before it ended.
     """
     blocks = blocks_of_chunks(chunks, start)
-    for surroundings in with_neighbours(blocks, BATCH, CONTEXT):
+    for surroundings in with_neighbours(blocks, BATCH, CONTEXT, MOST_ANGLE):
         yield _cut(surroundings, limits, largest_override)
 
 

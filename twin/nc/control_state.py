@@ -6,7 +6,7 @@ from typing import NoReturn
 
 from twin.nc.blocks import Block, Word
 from twin.nc.dialect import Dialect, GCode, Modal
-from twin.nc.flow import Flow
+from twin.nc.flow import Flow, Return
 from twin.nc.frame import Frame
 from twin.nc.lexer import Lexer
 from twin.nc.move_columns import NAN, Segment
@@ -15,6 +15,7 @@ from twin.nc.reporter import Reporter
 from twin.nc.settings import ControlSettings
 from twin.nc.source import Source
 from twin.nc.tools import Tools
+from twin.nc.variables import Variables
 
 
 class ControlState:
@@ -35,6 +36,7 @@ class ControlState:
         tools: The tools in use.
         path: Where moves and events go.
         flow: Which block comes next.
+        variables: What the program computes with.
         cycle_values: What the words of a canned cycle were last, by address.
         block: The block that is being run.
         words: Its words that nothing has taken yet.
@@ -71,7 +73,11 @@ class ControlState:
         self.rapid_deceleration = NAN
         self.tools = Tools(settings.tools, any_tool=settings.any_tool)
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
-        self.flow = Flow(source, Lexer(dialect, self.report), settings.step_limit, self.report)
+        lexer = Lexer(dialect, self.report)
+        self.flow = Flow(source, lexer, settings.step_limit, self.report, self._leave)
+        self.variables = Variables(
+            dialect.is_local, lambda name: dialect.given_variable(settings.variables, name)
+        )
         self.cycle_values: dict[str, float] = {}
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
@@ -101,6 +107,13 @@ class ControlState:
     def restore_modal(self, saved: tuple[Modal, dict[str, int]]) -> None:
         """Put back what ``saved_modal`` gave."""
         self.modal, self.active = saved
+
+    def _leave(self, part: Return) -> None:
+        """A called part of the program has ended."""
+        if part.own_variables:
+            self.variables.leave()
+        if part.restores is not None:
+            self.restore_modal(part.restores)
 
     def code_word(self, number: int) -> Word | None:
         """Where the block writes a G code, for diagnostics."""

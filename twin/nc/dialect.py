@@ -12,7 +12,8 @@ from twin.nc.expressions import ExpressionSyntax
 from twin.nc.planes import XY, Plane
 
 if TYPE_CHECKING:
-    from twin.nc.blocks import Statement, Word
+    from twin.nc.block_writer import BlockWriter
+    from twin.nc.blocks import Block, Statement, Word
     from twin.nc.control import Control
     from twin.nc.source import Source
 
@@ -35,7 +36,14 @@ class FeedMode(enum.Enum):
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class PlainLine:
-    """A block of plain axis words goes straight to their target."""
+    """A block of plain axis words goes straight to their target.
+
+    Attributes:
+        rapid_feed: Of a rapid at a pace that the program sets: its own feed per second, 0 where it
+            follows F; None: the machine's pace.
+    """
+
+    rapid_feed: Callable[["Control"], float] | None = None
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -268,11 +276,16 @@ class Dialect:
         memory: Makes the object that holds what only this dialect remembers.
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
+        is_local: Whether calls with variables of their own have a variable of this name anew.
+        given_variable: The value of a variable among those of the job, or None.
+        live_variables: Variables that no memory holds: the dialect knows their value itself.
         place_switches: Reports the block's switch points, told the length of its move.
         library: Adds files that the program calls, looked for in the folder of the program.
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
+        translate: Writes as instructions what one of its blocks does that is not plain words alone;
+            raises ``NotTranslatableError`` for what is left to the general way; None: all is.
         disturbed: Something that only this dialect remembers acts on plain blocks now, so that they
             must go the general way; None: nothing can.
     """
@@ -305,9 +318,15 @@ class Dialect:
     memory: Callable[[], object] = object
     before_motion: Callable[["Control", bool], None] | None = None
     read_variable: Callable[["Control", str, float | None], float] | None = None
+    is_local: Callable[[str], bool] = lambda _name: False
+    given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
+        given.get(name)
+    )
+    live_variables: frozenset[str] = frozenset()
     place_switches: Callable[["Control", float], None] | None = None
     library: Callable[["Source", Path], "Source"] | None = None
     prepare: Action | None = None
     after_motion: Action | None = None
     finish: Action | None = None
+    translate: Callable[["Control", "Block", "BlockWriter"], None] | None = None
     disturbed: Callable[["Control"], bool] | None = None

@@ -1,16 +1,23 @@
-"""Reading expressions: precedence climbing, from text to closures over a ``Scope``."""
+"""Reading expressions: precedence climbing, from text to trees."""
 
 import re
-from collections.abc import Callable
 from typing import NoReturn
 
+from twin.nc.expression_tree import (
+    Computed,
+    Exists,
+    Negative,
+    Number,
+    NumberedVariable,
+    Prefixed,
+    Tree,
+    Variable,
+)
 from twin.nc.expressions import (
     NUMBER,
-    Evaluate,
     Expression,
     ExpressionError,
     ExpressionSyntax,
-    Scope,
     checked,
 )
 
@@ -47,11 +54,17 @@ class ExpressionReader:
         read = self._kept.get((text, start))
         if read is None:
             reading = _Reading(self._syntax, self, text, start)
-            evaluate = reading.operation(0, 0)
-            read = Expression(text[start : reading.at].strip(), evaluate), reading.at
+            tree = reading.operation(0, 0)
+            read = Expression(text[start : reading.at].strip(), tree), reading.at
             if len(self._kept) < _MOST_KEPT:
                 self._kept[text, start] = read
         return read
+
+    def read_operand(self, text: str, start: int) -> tuple[Expression, int]:
+        """As ``read``, but up to the first operator only, such as the index of ``P[5] += 1``."""
+        reading = _Reading(self._syntax, self, text, start)
+        tree = reading.operand(0)
+        return Expression(text[start : reading.at].strip(), tree), reading.at
 
     def read_list(self, text: str, start: int) -> tuple[list[Expression], int]:
         """Read expressions separated by commas; return them with the end of the last."""
@@ -100,11 +113,11 @@ class _Reading:
         self._operations = 0
         self.at = at
 
-    def operation(self, lowest: int, depth: int) -> Evaluate:
+    def operation(self, lowest: int, depth: int) -> Tree:
         """Operands joined by operators that bind at least as tightly as ``lowest``."""
         if depth > _DEEPEST:
             self._fail("expression-depth", f"more than {_DEEPEST} brackets within brackets")
-        left = self._operand(depth)
+        left = self.operand(depth)
         while (match := self._reader.operator_at(self._text, self.at)) is not None:
             operator = self._syntax.operators[match[1].upper()]
             if operator.precedence < lowest:
@@ -112,10 +125,11 @@ class _Reading:
             self._count()
             self.at = match.end()
             right = self.operation(operator.precedence + 1, depth + 1)
-            left = _joined(match[1].upper(), operator.compute, left, right)
+            left = Computed(match[1].upper(), operator.compute, (left, right))
         return left
 
-    def _operand(self, depth: int) -> Evaluate:
+    def operand(self, depth: int) -> Tree:
+        """A value without operators behind it."""
         self._skip_blanks()
         opening, closing = self._syntax.brackets
         character = self._text[self.at : self.at + 1]
@@ -124,8 +138,8 @@ class _Reading:
             self.at += 1
             if depth > _DEEPEST:
                 self._fail("expression-depth", f"more than {_DEEPEST} signs in a row")
-            inner = self._operand(depth + 1)
-            return inner if character == "+" else lambda scope: -inner(scope)
+            inner = self.operand(depth + 1)
+            return inner if character == "+" else Negative(inner)
         if character == opening:
             self.at += 1
             inner = self.operation(0, depth + 1)
@@ -133,16 +147,14 @@ class _Reading:
             return inner
         if (match := self._reader.number_at(self._text, self.at)) is not None:
             self.at = match.end()
-            number = self._number(match[0])
-            return lambda _scope: number
+            return Number(self._number(match[0]))
         return self._named(depth)
 
-    def _named(self, depth: int) -> Evaluate:
+    def _named(self, depth: int) -> Tree:
         opening = self._syntax.brackets[0]
         if (match := self._reader.variable_at(self._text, self.at)) is not None:
             self.at = match.end()
-            variable = match[0].upper()
-            return lambda scope: scope.read_variable(variable, None)
+            return Variable(match[0].upper())
         match = self._reader.name_at(self._text, self.at)
         if match is None:
             foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
@@ -151,27 +163,25 @@ class _Reading:
         name, after = match[0].upper(), match.end()
         if name in self._syntax.indexed and self._text[after : after + 1] == opening:
             (index,) = self._arguments(name, after, 1, depth)
-            return lambda scope: scope.read_variable(name, index(scope))
+            return NumberedVariable(name, index)
         if name in self._syntax.existence:
             (value,) = self._arguments(name, after, 1, depth)
-            return lambda scope: _exists(value, scope)
+            return Exists(value)
         if name in self._syntax.prefixes:
             self._count()
             self.at = after
-            prefix, inner = self._syntax.prefixes[name], self._operand(depth + 1)
-            return lambda scope: prefix(inner(scope))
+            return Prefixed(self._syntax.prefixes[name], self.operand(depth + 1))
         if name in self._syntax.constants:
             self.at = after
-            constant = self._syntax.constants[name]
-            return lambda _scope: constant
+            return Number(self._syntax.constants[name])
         if name not in self._syntax.functions:
             known = ", ".join(sorted(self._syntax.functions))
             self._fail("unknown-function", f"'{name}' is no function here", f"functions: {known}")
         function = self._syntax.functions[name]
         arguments = self._arguments(name, after, function.arguments, depth)
-        return lambda scope: computed(name, function.compute, *(each(scope) for each in arguments))
+        return Computed(name, function.compute, tuple(arguments))
 
-    def _arguments(self, name: str, at: int, count: int, depth: int) -> list[Evaluate]:
+    def _arguments(self, name: str, at: int, count: int, depth: int) -> list[Tree]:
         self._count()
         self.at = at
         opening, closing = self._syntax.brackets
@@ -211,30 +221,3 @@ class _Reading:
 
     def _fail(self, code: str, message: str, hint: str | None = None) -> NoReturn:
         raise ExpressionError(code, message, self.at, hint)
-
-
-def _joined(
-    symbol: str, compute: Callable[[float, float], float], left: Evaluate, right: Evaluate
-) -> Evaluate:
-    return lambda scope: computed(symbol, compute, left(scope), right(scope))
-
-
-def _exists(value: Evaluate, scope: Scope) -> float:
-    try:
-        value(scope)
-    except ExpressionError:
-        return 0.0
-    return 1.0
-
-
-def computed(what: str, compute: Callable[..., float], *values: float) -> float:
-    """The value of an operator or a function, called ``what`` in errors.
-
-    Raises:
-        ExpressionError: It is undefined, or too large.
-    """
-    try:
-        result = compute(*values)
-    except (ArithmeticError, ValueError) as error:
-        raise ExpressionError.undefined(what, values) from error
-    return checked(result)

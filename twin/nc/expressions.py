@@ -1,13 +1,18 @@
 """Values that a program computes: numbers, variables, operators, functions.
 
 A dialect declares its operators, its functions and how its variables look; reading and computing
-are the same for all. Truth is 1, falsehood 0.
+are the same for all.
 """
 
 import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
+
+from twin.nc import arithmetic
+
+if TYPE_CHECKING:
+    from twin.nc.expression_tree import Tree
 
 NUMBER = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 """An unsigned number, for regular expressions."""
@@ -52,9 +57,6 @@ class Scope(Protocol):
         ...
 
 
-Evaluate = Callable[[Scope], float]
-
-
 @dataclasses.dataclass(frozen=True, slots=True)
 class Expression:
     """A computed value.
@@ -65,7 +67,7 @@ class Expression:
     """
 
     text: str
-    evaluate: Evaluate
+    evaluate: "Tree"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -130,24 +132,19 @@ def checked(value: float) -> float:
     return value
 
 
-def less(left: float, right: float) -> float:
-    """1 where ``left`` is below ``right``."""
-    return float(left < right)
-
-
 ARITHMETIC: Mapping[str, Operator] = {
-    "+": Operator(5, lambda a, b: a + b),
-    "-": Operator(5, lambda a, b: a - b),
-    "*": Operator(6, lambda a, b: a * b),
-    "/": Operator(6, lambda a, b: a / b),
+    "+": Operator(5, arithmetic.add),
+    "-": Operator(5, arithmetic.subtract),
+    "*": Operator(6, arithmetic.multiply),
+    "/": Operator(6, arithmetic.divide),
     "MOD": Operator(6, math.fmod),
 }
 """Operators that every dialect with expressions has."""
 
 COMPARISON: Mapping[str, Operator] = {
-    "<": Operator(4, less),
-    ">": Operator(4, lambda a, b: less(b, a)),
-    "<=": Operator(4, lambda a, b: float(a <= b)),
-    ">=": Operator(4, lambda a, b: float(a >= b)),
+    "<": Operator(4, arithmetic.less),
+    ">": Operator(4, arithmetic.greater),
+    "<=": Operator(4, arithmetic.at_most),
+    ">=": Operator(4, arithmetic.at_least),
 }
 """Comparisons that every dialect with expressions has."""

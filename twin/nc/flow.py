@@ -3,14 +3,18 @@
 import dataclasses
 import re
 from collections.abc import Callable, Container, Iterator
-from typing import NamedTuple, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from twin.nc.blocks import Block
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.diagnostics import ProgramError
 from twin.nc.lexer import Lexer
+from twin.nc.lines import Lines
 from twin.nc.reporter import Reporter
-from twin.nc.source import Lines, Source
+from twin.nc.source import Source
+
+if TYPE_CHECKING:
+    from twin.nc.dialect import Modal
 
 _LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
 _CACHED_LINES = 10_000
@@ -30,17 +34,33 @@ class Return:
 
     Attributes:
         back: Where to go on.
-        leave: Done on the way back, such as forgetting local variables.
-        again: How often the part still runs anew before that.
         first: Where it begins.
+        again: How often the part still runs anew before that.
         last: Its last block where it ends by place; None where it ends by a word.
+        own_variables: It has local variables of its own, which its end forgets.
+        restores: What is put back into force at its end; None: nothing.
     """
 
     back: "Place"
     first: "Place"
-    leave: Callable[[], None] | None = None
     again: int = 0
     last: "Place | None" = None
+    own_variables: bool = False
+    restores: "tuple[Modal, dict[str, int]] | None" = None
+
+
+class Progress(NamedTuple):
+    """How far a program has come.
+
+    Attributes:
+        place: What comes next.
+        furthest: The furthest place that was run.
+        steps_left: Blocks that may still be run again.
+    """
+
+    place: Place
+    furthest: Place
+    steps_left: int
 
 
 class Flow:
@@ -51,16 +71,34 @@ class Flow:
         calls: The parts of the program that are being run for a caller, the innermost last.
     """
 
-    def __init__(self, source: Source, lexer: Lexer, step_limit: int, report: Reporter) -> None:
+    def __init__(
+        self,
+        source: Source,
+        lexer: Lexer,
+        step_limit: int,
+        report: Reporter,
+        leave: Callable[[Return], None],
+    ) -> None:
+        """Stand before the program.
+
+        Args:
+            source: The program.
+            lexer: Reads its lines.
+            step_limit: Blocks that may be run again.
+            report: Where diagnostics go.
+            leave: Done when a called part ends.
+        """
         self._lines = source.lines
         self._lexer = lexer
         self._report = report
+        self._leave = leave
         self._step_limit = step_limit
         self._steps_left = step_limit
         self._furthest = Place(-1, 0)
         self._labels: dict[int | str, list[Place]] | None = None
         self._cache: dict[int, tuple[Block, ...]] = {}
         self._jumped = False
+        self._told_to_end = False
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
         self.place = Place(0, 0)
@@ -98,30 +136,44 @@ class Flow:
                 return blocks[part]
             line, part = line + 1, 0
         self.place = Place(line, 0)
+        if not self._told_to_end:
+            self._run_out()
         return None
 
-    def straight_on(self) -> range:
-        """The lines, from 0, that run one after another from here whatever they hold but jumps."""
-        line, part = self.place
-        if part > 0:
-            if line != self._here_line or part < len(self._here):
-                return range(0)
-            line += 1
-        last = len(self._lines)
-        call = self.calls[-1] if self.calls else None
-        if call is not None and call.last is not None:
-            last = min(last, call.last.line)
-        if line <= self._furthest.line:
-            last = min(last, self._furthest.line, line + self._steps_left)
-        return range(line, last)
+    def _run_out(self) -> None:
+        """The last line has been passed; what is to be said of that stands at the last text."""
+        written = (line for line in range(len(self._lines), 0, -1) if self._lines[line - 1].strip())
+        self._report.line = next(written, 0)
 
-    def passed(self, line: int, blocks: int) -> None:
-        """Lines of ``straight_on`` up to ``line`` have been run, with so many blocks."""
-        if line <= self._furthest.line:
-            self._steps_left -= blocks
-        elif blocks:
-            self._furthest = Place(line - 1, 0)
-        self.place = Place(line, 0)
+    def progress(self) -> Progress:
+        """How far the program has come."""
+        line, part = self.place
+        if part > 0 and line == self._here_line and part >= len(self._here):
+            line, part = line + 1, 0
+        return Progress(Place(line, part), self._furthest, self._steps_left)
+
+    def resume(self, progress: Progress, calls: list[Return]) -> None:
+        """The program has gone on past here, into these calls."""
+        self.place, self._furthest, self._steps_left = progress
+        self.calls = calls
+        self._jumped = self._jumped or self.place <= self._furthest
+
+    def quiet_blocks(self, line: int) -> tuple[Block, ...] | None:
+        """A line's blocks, read before it is run; None where there is something to say of it."""
+        before = self._report.line, len(self._report.warnings)
+        try:
+            blocks = self._lexer.blocks(self._lines[line], line + 1)
+        except ProgramError:
+            return None
+        finally:
+            said = len(self._report.warnings) - before[1]
+            self._report.line = before[0]
+            del self._report.warnings[before[1] :]
+        if said:
+            return None
+        if blocks:
+            self._here, self._here_line = blocks, line
+        return blocks
 
     def _past_end(self, call: Return) -> bool:
         return call.last is not None and self.place > call.last
@@ -148,8 +200,7 @@ class Flow:
             return
         self.calls.pop()
         self.place = call.back
-        if call.leave is not None:
-            call.leave()
+        self._leave(call)
 
     def go(self, place: Place) -> None:
         """Go on at a place."""
@@ -157,7 +208,8 @@ class Flow:
         self.place = place
 
     def end(self) -> None:
-        """Go on behind the last line."""
+        """Go on behind the last line, which ends the program here."""
+        self._told_to_end = True
         self.place = Place(len(self._lines), 0)
 
     def seek(self, wanted: Callable[[Block], bool]) -> bool:

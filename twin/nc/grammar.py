@@ -4,7 +4,7 @@ import re
 
 from twin.nc.dialect import Dialect
 from twin.nc.expression_reader import ExpressionReader, operator_pattern
-from twin.nc.expressions import NUMBER
+from twin.nc.expressions import NUMBER, ExpressionSyntax
 
 
 class Grammar:
@@ -18,6 +18,7 @@ class Grammar:
         suffix: The incremental suffix alone.
         statement: The keyword of a statement, or None where the dialect has none.
         reader: Reads computed values, or None.
+        unfinished: The end of a text that a bracket must follow as a value, or None.
     """
 
     def __init__(self, dialect: Dialect) -> None:
@@ -29,6 +30,7 @@ class Grammar:
         if syntax.expressions is not None:
             operators = sorted(syntax.expressions.operators, key=len, reverse=True)
             continues += rf"|[ \t]*(?:=|{'|'.join(map(operator_pattern, operators))})"
+        self.unfinished = _unfinished(syntax.expressions) if syntax.expressions else None
         suffix = r"(I(?![ \t]*[-+.0-9=\[P])|)" if syntax.incremental_suffix else "()"
         self.word = _compiled(
             rf"[ \t]*({syntax.address})[ \t]*([+-]?{NUMBER})(?!{continues}){suffix}"
@@ -46,6 +48,13 @@ class Grammar:
             name = name.rstrip("= \t")
             name = self.syntax.aliases.get(name, name)
         return name
+
+
+def _unfinished(expressions: ExpressionSyntax) -> re.Pattern[str]:
+    """Operators, names of functions and prefixes, and what stands before a value."""
+    names = "|".join([*expressions.functions, *expressions.prefixes])
+    operators = "|".join(map(operator_pattern, expressions.operators))
+    return _compiled(rf"(?:[=,]|{operators}|\b(?:{names}))[ \t]*\Z")
 
 
 def _compiled(pattern: str) -> re.Pattern[str]:

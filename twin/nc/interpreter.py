@@ -1,5 +1,6 @@
 """Runs a program: text in, chunks of canonical moves out."""
 
+import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,10 @@ if TYPE_CHECKING:
 
 PLAIN_FROM = 500
 """Blocks after which a program of more lines takes the fast way, which costs time to load."""
+SHORT_PROGRAM = 20
+"""A program of fewer lines, which can only loop, takes it after so many times as many blocks where
+it is not loaded yet."""
+_FAST_WAY = "twin.nc.plain"
 
 
 class Interpretation:
@@ -75,18 +80,20 @@ class Interpretation:
         control = self._control
         try:
             control.prepare()
-            general = 0
-            plain = self._plain_runner() if self._plain_from == 0 else None
+            done, fast_from = 0, self._fast_from()
+            plain = self._plain_runner() if fast_from == 0 else None
             while not control.ended:
                 if plain is None or not plain.run():
                     block = control.flow.next()
                     if block is None:
                         break
+                    before = len(control.path)
                     control.run(block)
-                    general += 1
-                    if general == self._plain_from:
-                        plain = self._plain_runner()
-                if len(control.path) >= CHUNK:
+                    if plain is None:
+                        done += 1 + len(control.path) - before
+                        if done >= fast_from:
+                            plain = self._plain_runner()
+                if len(control.path) >= CHUNK or (plain is not None and plain.full):
                     yield control.path.take()
             control.finish()
         except ProgramError:
@@ -94,9 +101,12 @@ class Interpretation:
             raise
         yield control.path.take()
 
-    def _plain_runner(self) -> "PlainRunner | None":
-        if len(self.source.lines) < self._plain_from:
-            return None
+    def _plain_runner(self) -> "PlainRunner":
         from twin.nc.plain import PlainRunner
 
         return PlainRunner(self._control)
+
+    def _fast_from(self) -> int:
+        """Blocks and moves after which the fast way begins."""
+        long = len(self.source.lines) >= self._plain_from
+        return self._plain_from * (1 if long or _FAST_WAY in sys.modules else SHORT_PROGRAM)

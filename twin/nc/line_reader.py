@@ -161,9 +161,20 @@ class LineReader:
         for comment in self._syntax.comments:
             if comment.closing and text.rstrip().endswith(comment.closing):
                 opening = text.rfind(comment.opening)
-                if opening > 0 and text[opening - 1] in " \t":
+                if (
+                    opening > 0
+                    and text[opening - 1] in " \t"
+                    and not self._wants_value(text[:opening], comment.opening)
+                ):
                     return text[:opening] + " " * (len(text) - opening)
         return text
+
+    def _wants_value(self, text: str, opening: str) -> bool:
+        """Whether a bracket behind a text is a value, not a comment, where both look alike."""
+        expressions, unfinished = self._syntax.expressions, self._grammar.unfinished
+        if expressions is None or unfinished is None or expressions.brackets[0] != opening:
+            return False
+        return unfinished.search(text) is not None
 
     def _computed_word(self) -> bool:
         reader = self._grammar.reader

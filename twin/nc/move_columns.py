@@ -138,9 +138,11 @@ class MoveColumns:
         """Append a dwell after the moves so far."""
         self._events.append(Dwell(self._count, line, seconds))
 
-    def function(self, line: int, word: str, arguments: dict[str, float], at: float) -> None:
-        """Append a function after the moves so far."""
-        self._events.append(Function(self._count, line, word, arguments, at))
+    def function(
+        self, line: int, word: str, arguments: dict[str, float], at: float, behind: int = 0
+    ) -> None:
+        """Append a function after the moves so far, and behind some that follow at once."""
+        self._events.append(Function(self._count + behind, line, word, arguments, at))
 
     def take(self) -> Chunk:
         """All that was appended, as columns; nothing is left here."""

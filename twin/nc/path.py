@@ -79,7 +79,12 @@ class Path:
         )
 
     def add_rows(
-        self, codes: IntArray, values: FloatArray, positions: FloatArray, last: Segment
+        self,
+        codes: IntArray,
+        values: FloatArray,
+        positions: FloatArray,
+        last: Segment | None,
+        functions: list[list[int]],
     ) -> None:
         """Moves as columns while the path is open.
 
@@ -87,12 +92,19 @@ class Path:
             codes: Shape (n, 5), as in ``MoveColumns.add_rows``.
             values: Shape (n, 11).
             positions: Shape (n, 3, k).
-            last: The last of them.
+            last: The last of them, or None.
+            functions: How many of them lie before each M function between them, its line and its
+                number.
         """
         assert self.open
-        self._columns.add_rows(codes, values, positions)
-        self._before = last
-        self.position = last.end
+        for before, line, number in functions:
+            self._columns.function(line, f"M{number}", {}, 0.0, behind=before)
+        if last is not None:
+            self._columns.add_rows(codes, values, positions)
+            self._before = last
+            self.position = last.end
+        if functions and functions[-1][0] == len(codes):
+            self._before = None
 
     def add_point(self, move: Segment, *, flat: bool) -> None:
         """The straight way to the next point of a spline; ``flat``: its height goes linearly."""

@@ -1,4 +1,4 @@
-"""The fast way: runs of plain blocks go past the control's words, in one compiled loop.
+"""The fast way: plain and translated blocks go past the control's words, in one compiled loop.
 
 The control stays the one place that knows what a program means. It hands its state to the loop,
 the loop runs blocks as far as they are plain, and the control takes the state back; where a
@@ -11,68 +11,98 @@ import numpy as np
 
 from twin.nc.canonical import Corner, Motion
 from twin.nc.control import Control
+from twin.nc.hand_over import HandOver, put_into_force
+from twin.nc.lines import Page
 from twin.nc.move_columns import CHUNK, Segment
-from twin.nc.plain_kernels import run_blocks
 from twin.nc.plain_state import Constants, Rows, State
 from twin.nc.plain_tables import FEED_FACTORS, PlainTables
 from twin.nc.plain_words_kernels import NOT_PLAIN
 from twin.nc.planes import XY, YZ, ZX
+from twin.nc.routine_kernels import run_program
+from twin.nc.routine_state import FULL, LEFT, OFF_PAGE, PAUSED, UNREAD
+from twin.nc.translator import Translator
 
 _WORTHWHILE = 4
 """Blocks that a run must have to pay for handing the state over and back."""
 _LONGEST_PAUSE = 256
 """Blocks after which a new run is tried, where plain blocks are rare."""
+_MOST = 200_000
+"""Blocks after which a run without moves lets an interruption through."""
 
 
 class PlainRunner:
-    """Runs plain blocks for a control."""
+    """Runs plain blocks, and those that were translated, for a control.
+
+    Attributes:
+        full: The path has no room for the next block's moves.
+    """
 
     def __init__(self, control: Control) -> None:
         axes = len(control.settings.axes)
         self._control = control
         self._lines = control.flow.lines
+        self._page = Page(0, b"")
         self._tables = PlainTables(control.dialect, control.settings)
+        self._translator = Translator(control, self._tables)
         self._rows = Rows(
-            np.zeros((CHUNK, 5), np.int64), np.zeros((CHUNK, 11)), np.zeros((CHUNK, 3, axes))
+            np.zeros((CHUNK, 5), np.int64),
+            np.zeros((CHUNK, 11)),
+            np.zeros((CHUNK, 3, axes)),
+            np.zeros((CHUNK, 3), np.int64),
         )
         self._pause = 1
         self._wait = 0
+        self.full = False
 
     def run(self) -> bool:
-        """Run the plain blocks that come next; False when there are none."""
+        """Run the blocks that come next as far as possible; False when one is for the control."""
+        self.full = False
         if self._wait > 0:
             self._wait -= 1
             return False
         control = self._control
-        lines = control.flow.straight_on()
         room = CHUNK - len(control.path)
-        if not lines or not self._may_run():
+        if room <= 0 or not self._may_run():
             return False
-        state = self._state()
-        rows = self._rows.first(room)
-        reached, made, blocks, inked = run_blocks(
-            self._lines.data,
-            self._lines.starts,
-            lines.start,
-            lines.stop,
-            self._tables.lines,
-            self._tables.blocks,
-            self._constants(),
-            state,
-            rows,
-        )
-        if blocks >= _WORTHWHILE or made == room or reached == lines.stop:
-            self._pause = 1
-        else:
-            self._wait = self._pause
-            self._pause = min(2 * self._pause, _LONGEST_PAUSE)
-        if reached == lines.start:
-            return False
-        control.flow.passed(reached, blocks)
-        if inked != NOT_PLAIN:
-            control.report.line = inked + 1
-        self._give_back(state, rows.first(made))
+        state, rows = self._state(), self._rows.first(room)
+        handed = HandOver(control, state)
+        why = self._run(state, rows, handed)
+        self.full = why == FULL and room - handed.made < CHUNK
+        worthwhile = handed.blocks >= _WORTHWHILE
+        if why == LEFT:
+            self._wait = 1 if worthwhile else self._pause
+        self._pause = 1 if worthwhile or why != LEFT else min(2 * self._pause, _LONGEST_PAUSE)
+        if not handed.gone_on:
+            return self.full
+        handed.give_back()
+        self._give_back(state, rows.first(handed.made))
         return True
+
+    def _run(self, state: State, rows: Rows, handed: HandOver) -> int:
+        """Run; why the run ended."""
+        translator, constants = self._translator, self._constants()
+        instructions = translator.instructions
+        while True:
+            why = run_program(
+                self._page.data,
+                self._page.starts,
+                self._page.lines.start,
+                self._tables.lines,
+                self._tables.blocks,
+                constants,
+                state,
+                rows,
+                instructions.table,
+                handed.routine,
+                _MOST,
+            )
+            if why == OFF_PAGE:
+                self._page = self._lines.page_of(handed.line)
+            elif why == UNREAD:
+                if not translator.translate(handed.line):
+                    return LEFT
+            elif why != PAUSED:
+                return why
 
     def _may_run(self) -> bool:
         control = self._control
@@ -91,7 +121,7 @@ class PlainRunner:
         )
 
     def _constants(self) -> Constants:
-        control = self._control
+        control, rapid = self._control, self._tables.rapid_feed
         return Constants(
             total=np.array(control.frame.total),
             plane=np.array(control.modal.plane.axes),
@@ -99,6 +129,7 @@ class PlainRunner:
             default_rotary_feed=control.settings.default_rotary_feed,
             feed_may_lack=control.report.has_said("no-feed"),
             rapid_feed=control.rapid_feed,
+            own_rapid_feed=math.nan if rapid is None else rapid(control),
             last_values=np.array(
                 [control.modal.corner_tolerance, control.acceleration, control.deceleration]
             ),
@@ -112,19 +143,17 @@ class PlainRunner:
             feed=np.array([math.nan if control.feed is None else control.feed]),
             programmed=np.array(control.programmed),
             part=np.array(control.part),
+            happened=np.zeros(1, np.int64),
         )
 
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control
-        for number in state.in_force.tolist():
-            if number != NOT_PLAIN:
-                control.put_into_force(number, control.dialect.g[number])
+        put_into_force(control, state.in_force)
         feed = float(state.feed[0])
         control.feed = None if math.isnan(feed) else feed
-        last = None
-        if len(rows.codes):
-            last = _segment(rows)
-            control.path.add_rows(rows.codes, rows.values, rows.positions, last)
+        last = _segment(rows) if len(rows.codes) else None
+        functions = rows.functions[: state.happened[0]].tolist()
+        control.path.add_rows(rows.codes, rows.values, rows.positions, last, functions)
         control.came_to(state.programmed.tolist(), state.part.tolist(), last)
 
 

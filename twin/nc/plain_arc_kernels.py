@@ -41,7 +41,7 @@ def value_of(role: int, roles: IntArray, values: FloatArray) -> float:
     return 0.0
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, forceinline=True)
 def write_arc(
     roles: IntArray,
     values: FloatArray,

@@ -1,8 +1,8 @@
-"""Runs of plain blocks: words, modal codes, lines and rows of moves in one compiled loop.
+"""One plain block: its words, modal codes, and the row of its move, compiled.
 
 Each step is the control's own (``control``, ``control_motion``) for a block in which nothing is
-doubtful, and computes the same bits. The first block in which something is, be it wrong or only
-rare, ends the run untouched; the control runs it and makes its diagnostics.
+doubtful, and computes the same bits. A block in which something is, be it wrong or only rare, is
+left untouched; the control runs it and makes its diagnostics.
 """
 
 import numba
@@ -10,13 +10,13 @@ import numpy as np
 
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.control_motion import LARGEST_COORDINATE
-from twin.nc.lexer import LONGEST_LINE
 from twin.nc.line_reader import LARGEST_LABEL
 from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
 from twin.nc.plain_state import (
     ARC,
     CODES,
     CORNER,
+    EARLY,
     FEED_FACTOR,
     INCREMENTAL,
     INTERPOLATION,
@@ -32,15 +32,10 @@ from twin.nc.plain_words_kernels import (
     AXIS,
     CODE,
     FEED,
-    MOST_WORDS,
+    FUNCTION,
     NOT_PLAIN,
     NUMBER,
     RADIUS,
-    ByteArray,
-    LineTables,
-    line_end,
-    read_words,
-    skip_blanks,
 )
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
@@ -48,64 +43,8 @@ _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
 _STOP = int(Corner.EXACT_STOP)
 
 
-@numba.njit(cache=True)
-def run_blocks(
-    data: ByteArray,
-    starts: IntArray,
-    first: int,
-    last: int,
-    line_tables: LineTables,
-    tables: BlockTables,
-    constants: Constants,
-    state: State,
-    rows: Rows,
-) -> tuple[int, int, int, int]:
-    """Run plain blocks until one is not plain, a line is reached, or the rows are full.
-
-    Args:
-        data: The program as UTF-8.
-        starts: Where each line begins, and where the last one ends, shape (lines + 1,).
-        first: Line to begin with, from 0.
-        last: Line to end before.
-        line_tables: How lines are read.
-        tables: What blocks mean.
-        constants: What stays.
-        state: What changes.
-        rows: Room for the moves.
-
-    Returns:
-        The line reached, moves made, blocks run, and the last line that was not blank or
-        ``NOT_PLAIN``.
-    """
-    roles = np.zeros(MOST_WORDS, np.int64)
-    values = np.zeros(MOST_WORDS)
-    modal = state.modal.copy()
-    line, blocks, inked = first, 0, NOT_PLAIN
-    made = int(np.int64(0))  # a literal would have every function below compiled twice
-    while line < last and made < len(rows.codes):
-        begin = starts[line]
-        end = line_end(data, begin, starts[line + 1])
-        if end - begin > LONGEST_LINE:
-            break
-        count = read_words(data, begin, end, line_tables, roles, values)
-        if count == NOT_PLAIN:
-            break
-        if count > 0:
-            row = _run_block(
-                line + 1, roles[:count], values[:count], tables, constants, state, modal, rows, made
-            )
-            if row == NOT_PLAIN:
-                break
-            made = row
-            blocks += 1
-        if skip_blanks(data, begin, end) < end:
-            inked = line
-        line += 1
-    return line, made, blocks, inked
-
-
-@numba.njit(cache=True)
-def _run_block(
+@numba.njit(cache=True, forceinline=True)
+def run_words(
     line: int,
     roles: IntArray,
     values: FloatArray,
@@ -116,9 +55,25 @@ def _run_block(
     rows: Rows,
     row: int,
 ) -> int:
-    """Run one block; the number of rows after it, or ``NOT_PLAIN`` with the state untouched."""
-    _copy(state.modal, modal)
+    """Run one block of words.
+
+    Args:
+        line: Its line, from 1.
+        roles: What each word's letter is, shape (w,).
+        values: The words' values, shape (w,).
+        tables: What blocks mean.
+        constants: What stays.
+        state: What changes.
+        modal: Room for the modal state, shape (7,).
+        rows: Room for the move.
+        row: Its row.
+
+    Returns:
+        The number of rows after it, or ``NOT_PLAIN`` with the state untouched.
+    """
+    copy(state.modal, modal)
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
+    function = NOT_PLAIN
     feed = state.feed[0]
     for word in range(len(roles)):
         role, value = roles[word], values[word]
@@ -143,6 +98,12 @@ def _run_block(
                 if not value > 0.0:
                     return NOT_PLAIN
                 feed = value
+            elif role == FUNCTION:
+                if not 0.0 <= value < CODES or value != np.floor(value):
+                    return NOT_PLAIN
+                function = int(value)
+                if tables.function[function] == NOT_PLAIN:
+                    return NOT_PLAIN
     after = row
     if seen >> RADIUS:
         after = _move(
@@ -150,25 +111,31 @@ def _run_block(
         )
         if after == NOT_PLAIN:
             return NOT_PLAIN
+    if function != NOT_PLAIN:
+        happened = rows.functions[state.happened[0]]
+        happened[0] = row if tables.function[function] == EARLY else after
+        happened[1], happened[2] = line, function
+        state.happened[0] += 1
     for word in range(len(roles)):
         if roles[word] == CODE:
             code = int(values[word])
             state.in_force[tables.group[code]] = code
-    _copy(modal, state.modal)
+    copy(modal, state.modal)
     state.feed[0] = feed
     if seen >> RADIUS:
-        _copy(rows.positions[row, 1], state.part)
-        _copy(rows.positions[row, 2], state.programmed)
+        copy(rows.positions[row, 1], state.part)
+        copy(rows.positions[row, 2], state.programmed)
     return after
 
 
 @numba.njit(cache=True)
-def _copy(source: FloatArray, target: FloatArray) -> None:
+def copy(source: FloatArray, target: FloatArray) -> None:
+    """Copy a column."""
     for index in range(len(target)):
         target[index] = source[index]
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, forceinline=True)
 def _move(
     line: int,
     number: int,
@@ -224,7 +191,10 @@ def _move(
         rows.values[row, :6] = np.nan
         rows.values[row, 6] = 0.0
     pace = constants.rapid_feed
-    if kind != RAPID_LINE:
+    own = constants.own_rapid_feed
+    if kind == RAPID_LINE and not np.isnan(own):
+        pace = (own if own != 0.0 else feed) * 60.0
+    elif kind != RAPID_LINE:
         if np.isnan(feed):
             if not constants.feed_may_lack:
                 return NOT_PLAIN
@@ -232,7 +202,7 @@ def _move(
         else:
             pace = (feed if turning else feed * modal[UNIT]) * modal[FEED_FACTOR]
     rows.values[row, 7] = pace
-    _copy(constants.last_values, rows.values[row, 8:])
+    copy(constants.last_values, rows.values[row, 8:])
     rows.codes[row, 0] = _RAPID if kind == RAPID_LINE else _FEED
     rows.codes[row, 1] = _ARC if is_arc else _LINE
     rows.codes[row, 2] = line

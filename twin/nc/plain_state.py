@@ -13,8 +13,12 @@ INTERPOLATION, INCREMENTAL, CENTER_ABSOLUTE, UNIT, CORNER, FEED_FACTOR, NOTHING 
 NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
 """Kinds of interpolation."""
 
+MOST_WORDS = 32
+"""Words of a plain block; longer ones are read by the general way."""
 CODES = 1000
-"""G codes are below this number."""
+"""G and M codes are below this number."""
+EARLY, LATE = range(2)
+"""When functions are reported: before the move of their block, or behind it."""
 
 
 class BlockTables(NamedTuple):
@@ -25,6 +29,8 @@ class BlockTables(NamedTuple):
             for codes that do more.
         value: To what it sets it, shape (``CODES``,).
         group: Its modal group, shape (``CODES``,).
+        function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
+            shape (``CODES``,); ``NOT_PLAIN`` for codes that do more than that.
         kind: Kind of each interpolation, shape (i,).
         clockwise: Of arcs, shape (i,).
         mismatch: How far start and end radius of an arc may differ, shape (i,) [mm].
@@ -38,6 +44,7 @@ class BlockTables(NamedTuple):
     field: IntArray
     value: FloatArray
     group: IntArray
+    function: IntArray
     kind: IntArray
     clockwise: npt.NDArray[np.bool_]
     mismatch: FloatArray
@@ -58,6 +65,8 @@ class Constants(NamedTuple):
         default_rotary_feed: The same for rotary axes alone [deg/min].
         feed_may_lack: A feed move without a programmed feed was warned of already.
         rapid_feed: [mm/min]; NaN: the machine's.
+        own_rapid_feed: Feed per second of rapids that the program paces, 0 where they follow F;
+            NaN: ``rapid_feed`` counts.
         last_values: Corner tolerance, acceleration and deceleration of every move, shape (3,).
     """
 
@@ -67,6 +76,7 @@ class Constants(NamedTuple):
     default_rotary_feed: float
     feed_may_lack: bool
     rapid_feed: float
+    own_rapid_feed: float
     last_values: FloatArray
 
 
@@ -79,6 +89,7 @@ class State(NamedTuple):
         feed: F as programmed, NaN for none, shape (1,).
         programmed: Programmed position, shape (k,) [mm or deg].
         part: Part position, shape (k,) [mm or deg].
+        happened: Functions that were reported, shape (1,).
     """
 
     modal: FloatArray
@@ -86,6 +97,7 @@ class State(NamedTuple):
     feed: FloatArray
     programmed: FloatArray
     part: FloatArray
+    happened: IntArray
 
 
 class Rows(NamedTuple):
@@ -95,12 +107,18 @@ class Rows(NamedTuple):
         codes: Shape (n, 5).
         values: Shape (n, 11).
         positions: Start, end and display, shape (n, 3, k).
+        functions: Moves before each function, its line and its number, shape (m, 3).
     """
 
     codes: IntArray
     values: FloatArray
     positions: FloatArray
+    functions: IntArray
 
     def first(self, count: int) -> "Rows":
-        """The first rows, as columns again."""
-        return Rows(self.codes[:count], self.values[:count], self.positions[:count])
+        """The first moves, as columns again."""
+        return self._replace(
+            codes=self.codes[:count],
+            values=self.values[:count],
+            positions=self.positions[:count],
+        )

@@ -4,22 +4,35 @@ Nothing is said here of any dialect: a code, a letter or an interpolation that t
 not describe completely is not plain.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from twin.nc import iso
-from twin.nc.canonical import FloatArray
-from twin.nc.dialect import Comment, Dialect, FeedMode, GCode, Interpolation, Modal, PlainArc
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.control import Control
+from twin.nc.dialect import (
+    Comment,
+    Dialect,
+    FeedMode,
+    GCode,
+    Interpolation,
+    Modal,
+    PlainArc,
+    PlainLine,
+)
+from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.plain_state import (
     ARC,
     CENTER_ABSOLUTE,
     CODES,
     CORNER,
+    EARLY,
     FEED_FACTOR,
     FEED_LINE,
     INCREMENTAL,
     INTERPOLATION,
+    LATE,
     NO_MOTION,
     NOTHING,
     RAPID_LINE,
@@ -31,6 +44,7 @@ from twin.nc.plain_words_kernels import (
     CENTER,
     CODE,
     FEED,
+    FUNCTION,
     NOT_PLAIN,
     NUMBER,
     OTHER,
@@ -60,12 +74,17 @@ class PlainTables:
         lines: How lines are read.
         blocks: What blocks mean.
         groups: The modal groups in the order of their numbers in ``blocks``.
+        roles: What the letters of plain words are.
+        rapid_feed: What ``PlainLine`` says of rapids.
     """
 
     def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
         self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
         self._interpolations = _interpolations(dialect)
-        self.lines = _line_tables(dialect, settings)
+        self._places = {id(each): float(at) for at, each in enumerate(self._interpolations)}
+        self.rapid_feed = _rapid_feed(self._interpolations)
+        self.roles = _roles(dialect, settings)
+        self.lines = _line_tables(dialect, self.roles)
         self.blocks = self._block_tables(dialect, settings)
 
     def modal(self, modal: Modal) -> FloatArray:
@@ -81,8 +100,7 @@ class PlainTables:
         if isinstance(value, FeedMode):
             return FEED_FACTORS.get(value)
         if name == "interpolation":
-            places = (i for i, each in enumerate(self._interpolations) if each == value)
-            return next(map(float, places), None)
+            return self._places.get(id(value))
         assert isinstance(value, (bool, int, float))
         return float(value)
 
@@ -101,6 +119,7 @@ class PlainTables:
             field=field,
             value=value,
             group=group,
+            function=_functions(dialect),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
             mismatch=np.array([arc.mismatch for arc in arcs]),
@@ -130,9 +149,31 @@ def _interpolations(dialect: Dialect) -> list[Interpolation | None]:
     found: list[Interpolation | None] = [None]
     for code in dialect.g.values():
         value = code.sets.get("interpolation")
-        if isinstance(value, Interpolation) and value.plain is not None and value not in found:
+        if (
+            isinstance(value, Interpolation)
+            and value.plain is not None
+            and all(value is not each for each in found)
+        ):
             found.append(value)
     return found
+
+
+def _rapid_feed(
+    interpolations: list[Interpolation | None],
+) -> Callable[[Control], float] | None:
+    plain = [each.plain for each in interpolations if each is not None and each.rapid]
+    return next((each.rapid_feed for each in plain if isinstance(each, PlainLine)), None)
+
+
+def _functions(dialect: Dialect) -> IntArray:
+    """M codes that are only reported; a spindle's start carries its speed, and is not plain."""
+    function = np.full(CODES, EARLY if dialect.any_m else NOT_PLAIN, np.int64)
+    for number, code in dialect.m.items():
+        only_told = code.action is None and not code.silent and not code.ends
+        function[number] = (LATE if code.late else EARLY) if only_told else NOT_PLAIN
+    for start in SPINDLE_STARTS:
+        function[int(start[1:])] = NOT_PLAIN
+    return function
 
 
 def _kind(interpolation: Interpolation | None) -> int:
@@ -143,13 +184,13 @@ def _kind(interpolation: Interpolation | None) -> int:
     return RAPID_LINE if interpolation.rapid else FEED_LINE
 
 
-def _line_tables(dialect: Dialect, settings: ControlSettings) -> LineTables:
-    roles = np.full(26, OTHER, np.int64)
-    for letter, role in _roles(dialect, settings).items():
-        roles[ord(letter) - ord("A")] = role
+def _line_tables(dialect: Dialect, roles: Mapping[str, int]) -> LineTables:
+    by_letter = np.full(26, OTHER, np.int64)
+    for letter, role in roles.items():
+        by_letter[ord(letter) - ord("A")] = role
     comments = dialect.syntax.comments
     return LineTables(
-        roles,
+        by_letter,
         _marks([comment.opening for comment in comments]),
         _marks([comment.closing for comment in comments]),
         _whole_line(comments),
@@ -169,7 +210,7 @@ def _roles(dialect: Dialect, settings: ControlSettings) -> dict[str, int]:
     roles = {letter: role for letter, role in roles.items() if letter not in taken}
     if dialect.words.get("F") is iso.set_feed:
         roles["F"] = FEED
-    return {**roles, "N": NUMBER, "G": CODE}
+    return {**roles, "N": NUMBER, "G": CODE, "M": FUNCTION}
 
 
 def _marks(texts: list[str]) -> np.ndarray[tuple[int, int], np.dtype[np.uint8]]:

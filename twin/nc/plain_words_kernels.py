@@ -12,15 +12,14 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.plain_state import MOST_WORDS
 
 ByteArray = npt.NDArray[np.uint8]
 
 NOT_PLAIN = -1
-MOST_WORDS = 32
-"""Words of a plain line; longer ones are read by the general way."""
 
-OTHER, NUMBER, CODE, FEED, RADIUS, CENTER, AXIS = 0, 1, 2, 3, 4, 5, 8
-"""What a letter is: N, G, F, R; I, J, K from ``CENTER`` on; axes by their column from ``AXIS``."""
+OTHER, NUMBER, CODE, FEED, FUNCTION, RADIUS, CENTER, AXIS = 0, 1, 2, 3, 4, 5, 6, 9
+"""What a letter is: N, G, F, M, R; I, J, K from ``CENTER`` on; axes by their column from ``AXIS``."""
 
 _BLANK, _TAB, _PLUS, _MINUS, _POINT = 32, 9, 43, 45, 46
 _DIGIT_0, _DIGIT_9, _LETTER_A, _LETTER_Z, _TO_UPPER = 48, 57, 65, 90, 0xDF
@@ -92,7 +91,7 @@ def read_words(
                 return NOT_PLAIN
             continue
         role = tables.roles[letter - _LETTER_A]
-        if role == OTHER or count == MOST_WORDS:
+        if role == OTHER or count == MOST_WORDS or (role == NUMBER and count > 0):
             return NOT_PLAIN
         value, at = _read_number(data, skip_blanks(data, at + 1, end), end)
         if at == NOT_PLAIN:

@@ -7,6 +7,8 @@ import dataclasses
 
 from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
+from twin.nc.blocks import Block
 from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
 from twin.nc.dialect import (
@@ -24,17 +26,15 @@ from twin.nc.dialect import (
 
 @dataclasses.dataclass(slots=True)
 class Dragging:
-    """What G10, G09 and G73 leave behind.
+    """What G10 and G09 leave behind.
 
     Attributes:
         leads: Lead of each dragged axis per full circle, by column [mm or deg].
         on: G09 is in force.
-        repeats: Jumps left of each G73 block that is being repeated, by line and part.
     """
 
     leads: dict[int, float] = dataclasses.field(default_factory=dict)
     on: bool = False
-    repeats: dict[tuple[int, int], int] = dataclasses.field(default_factory=dict)
 
 
 def _dragging(control: Control) -> Dragging:
@@ -72,6 +72,11 @@ def switch_off(control: Control) -> None:
     _dragging(control).on = False
 
 
+def repeat_counter(block: Block) -> str:
+    """The variable that holds how many jumps of a G73 block are left."""
+    return f"G73 {block.line}.{block.part}"
+
+
 def jump_with_repeat(control: Control) -> None:
     """G73: after the block's own motion go on at block L, Q times.
 
@@ -88,17 +93,40 @@ def jump_with_repeat(control: Control) -> None:
     wanted = 1.0 if count is None else control.number(count)
     if not (wanted >= 0.0 and wanted == int(wanted)):
         control.fail("repeat-count", "Q must count jumps", count)
-    repeats = _dragging(control).repeats
-    place = (control.block.line, control.block.part)
-    left = repeats.get(place, int(wanted))
-    if left == 0:
-        repeats.pop(place, None)
+    counter = repeat_counter(control.block)
+    left = control.variables.read(counter)
+    if left is None:
+        left = wanted
+    if left == 0.0:
+        control.variables.forget(counter)
         return
-    repeats[place] = left - 1
+    control.variables.write(counter, left - 1.0)
     number = control.number(target)
     if number != int(number):
         control.fail("jump-target", f"{target.text} is no block number", target)
     control.flow.jump(int(number), (target.column, target.width), "L")
+
+
+def translate(control: Control, block: Block, writer: BlockWriter) -> None:
+    """Write a block as instructions for the fast way, with its jump as ``jump_with_repeat`` does.
+
+    Raises:
+        NotTranslatableError: It is left to the general way.
+    """
+    jumps = [word for word in block.words if word.address == "G" and word.value == 73.0]
+    targets = [word for word in block.words if jumps and word.address == "L"]
+    counts = [word for word in block.words if jumps and word.address == "Q"]
+    taken = (*jumps[:1], *targets[:1], *counts[:1])
+    writer.words([word for word in block.words if word not in taken])
+    if jumps:
+        times = control.number(counts[0]) if counts else 1.0
+        if not targets or times < 0.0 or times != int(times):
+            raise NotTranslatableError
+        number, span = control.number(targets[0]), (targets[0].column, targets[0].width)
+        if number != int(number):
+            raise NotTranslatableError
+        place = control.flow.find_label(int(number), span, "L")
+        writer.jump_counted(place, repeat_counter(block), times)
 
 
 def _arc(control: Control, *, clockwise: bool) -> None:
@@ -252,5 +280,6 @@ MEFI = Dialect(
         Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
     ),
     memory=Dragging,
+    translate=translate,
     disturbed=lambda control: _dragging(control).on,
 )

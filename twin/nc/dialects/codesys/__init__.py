@@ -3,7 +3,7 @@
 from twin.nc import iso
 from twin.nc.canonical import Corner
 from twin.nc.dialect import HEADING, Comment, Dialect, FeedMode, Mark, MCode, Syntax
-from twin.nc.dialects.codesys import actions, program, subprograms, words
+from twin.nc.dialects.codesys import actions, program, subprograms, translation, words
 from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
@@ -123,7 +123,10 @@ CODESYS = Dialect(
     memory=program.Variables,
     before_motion=words.before_motion,
     read_variable=program.read_variable,
+    is_local=program.is_local,
+    given_variable=program.given_variable,
     place_switches=words.place_switches,
     library=subprograms.with_files,
+    translate=translation.translate,
     disturbed=lambda control: bool(program.variables(control).periods),
 )

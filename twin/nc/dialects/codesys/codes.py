@@ -2,8 +2,8 @@
 
 from twin.nc import iso, offsets
 from twin.nc.blends import BlendKind
-from twin.nc.dialect import GCode, Interpolation
-from twin.nc.dialects.codesys import actions, jumps, program
+from twin.nc.dialect import GCode, Interpolation, PlainLine
+from twin.nc.dialects.codesys import actions, jumps, program, words
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
@@ -35,8 +35,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
     )
 
 
-RAPID = Interpolation(rapid_line, rapid=True)
-"""Its pace may follow F (``words.before_motion``): no plain block."""
+RAPID = Interpolation(rapid_line, rapid=True, plain=PlainLine(words.own_rapid_feed))
 
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 

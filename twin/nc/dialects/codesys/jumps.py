@@ -1,8 +1,20 @@
 """Jumps of CODESYS SoftMotion."""
 
+from twin.nc.blocks import Word
 from twin.nc.control import Control
-from twin.nc.dialects.codesys.program import variables
+from twin.nc.dialects.codesys.program import COUNTER, read_variable
 from twin.nc.dialects.codesys.subprograms import own_lines
+from twin.nc.flow import Place
+
+
+def destination(control: Control, target: Word) -> Place:
+    """The block with the number of a word L, among those that may be jumped to.
+
+    Raises:
+        ProgramError: There is none.
+    """
+    span = (target.column, target.width)
+    return control.flow.find_label(int(control.number(target)), span, "L", own_lines(control))
 
 
 def conditional_jump(control: Control) -> None:
@@ -12,7 +24,7 @@ def conditional_jump(control: Control) -> None:
     not run (manual).
     """
     number, label = control.take("L"), control.take("L?")
-    condition = control.take_number("K", variables(control).counter)
+    condition = control.take_number("K", read_variable(control, COUNTER, None))
     target = number or label
     if target is None:
         control.fail("jump-target", "G20 needs L: the block to jump to", hint="write G20 L10 K1")
@@ -22,8 +34,7 @@ def conditional_jump(control: Control) -> None:
     if condition == 0.0:
         return
     if number is not None:
-        span = (target.column, target.width)
-        control.flow.go(control.flow.find_label(int(value), span, "L", own_lines(control)))
+        control.flow.go(destination(control, target))
         return
     here = own_lines(control)
     if not control.flow.seek(

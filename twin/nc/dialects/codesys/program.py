@@ -3,7 +3,9 @@
 import dataclasses
 import math
 import re
+from collections.abc import Mapping
 
+from twin.nc import arithmetic
 from twin.nc.blends import BlendKind
 from twin.nc.blocks import Statement, Word
 from twin.nc.control import Control
@@ -17,18 +19,20 @@ from twin.nc.expressions import (
     Operator,
 )
 
+COUNTER = "$"
+"""The decoder's internal variable among the others, as no program writes it."""
 COUNTER_AT_START = -1.0
-"""The decoder's internal variable before G36 sets it (manual): a bare G20 L jumps."""
+"""Its value before G36 sets it (manual): a bare G20 L jumps."""
 
 EXPRESSIONS = ExpressionSyntax(
     operators={
         **ARITHMETIC,
         **COMPARISON,
-        "=": Operator(3, lambda a, b: float(a == b)),
-        "<>": Operator(3, lambda a, b: float(a != b)),
-        "AND": Operator(2, lambda a, b: float(bool(a) and bool(b))),
-        "XOR": Operator(1, lambda a, b: float(bool(a) != bool(b))),
-        "OR": Operator(0, lambda a, b: float(bool(a) or bool(b))),
+        "=": Operator(3, arithmetic.equal),
+        "<>": Operator(3, arithmetic.unequal),
+        "AND": Operator(2, arithmetic.both),
+        "XOR": Operator(1, arithmetic.one_alone),
+        "OR": Operator(0, arithmetic.either),
     },
     functions={
         "SIN": FunctionOf(math.sin),
@@ -42,17 +46,17 @@ EXPRESSIONS = ExpressionSyntax(
         "EXP": FunctionOf(math.exp),
         "LN": FunctionOf(math.log),
         "LOG": FunctionOf(math.log10),
-        "TRUNC": FunctionOf(lambda value: float(math.trunc(value))),
+        "TRUNC": FunctionOf(arithmetic.whole_part),
         "EXPT": FunctionOf(math.pow, 2),
-        "MIN": FunctionOf(min, 2),
-        "MAX": FunctionOf(max, 2),
-        "LIMIT": FunctionOf(lambda low, value, high: min(max(low, value), high), 3),
-        "SEL": FunctionOf(lambda choice, no, yes: yes if choice else no, 3),
+        "MIN": FunctionOf(arithmetic.smaller, 2),
+        "MAX": FunctionOf(arithmetic.larger, 2),
+        "LIMIT": FunctionOf(arithmetic.limited, 3),
+        "SEL": FunctionOf(arithmetic.chosen, 3),
     },
     constants={"PI": math.pi, "TRUE": 1.0, "FALSE": 0.0},
     variable=r"\$[A-Z_][\w.]*\$|#[A-Z_]\w*",
     brackets="()",
-    prefixes={"NOT": lambda value: float(not value)},
+    prefixes={"NOT": arithmetic.opposite},
 )
 """Angles of functions are radians, as IEC 61131-3 has them."""
 
@@ -86,9 +90,6 @@ class Variables:
     """What a program knows by name.
 
     Attributes:
-        plc: Variables of the application, ``$name$``.
-        local: ``#name`` of the main program and of each call, the innermost last.
-        counter: The decoder's internal variable.
         tool_radius: The last D of G41 or G42 [mm].
         smoothing: Distance from a corner at which its moves are cut [mm].
         smoothed_by: What takes the corners' place; None: nothing.
@@ -97,9 +98,6 @@ class Variables:
         subprograms: By name; None before the program was searched for them.
     """
 
-    plc: dict[str, float] = dataclasses.field(default_factory=dict)
-    local: list[dict[str, float]] = dataclasses.field(default_factory=lambda: [{}])
-    counter: float = COUNTER_AT_START
     tool_radius: float = 0.0
     smoothing: float = 0.0
     smoothed_by: BlendKind | None = None
@@ -116,18 +114,13 @@ def variables(control: Control) -> Variables:
 
 def read_variable(control: Control, name: str, _index: float | None) -> float:
     """Value of ``$name$`` or ``#name``; application variables may come from the job."""
-    known = variables(control)
+    value = control.variables.read(name)
+    if value is not None:
+        return value
     if name.startswith("#"):
-        if name not in known.local[-1]:
-            raise ExpressionError(
-                "unknown-variable", f"{name} is not declared", None, f"write LET {name} : LREAL"
-            )
-        return known.local[-1][name]
-    if name in known.plc:
-        return known.plc[name]
-    for given, value in control.settings.variables.items():
-        if given.strip("$").upper() == name.strip("$"):
-            return value
+        raise ExpressionError(
+            "unknown-variable", f"{name} is not declared", None, f"write LET {name} : LREAL"
+        )
     raise ExpressionError(
         "unknown-variable",
         f"the application's variable {name} has no value",
@@ -136,57 +129,83 @@ def read_variable(control: Control, name: str, _index: float | None) -> float:
     )
 
 
-def let(control: Control, statement: Statement) -> None:
-    """LET: declare a local variable, 0 unless it is given a value."""
+def is_local(name: str) -> bool:
+    """Whether a variable belongs to the call; those of the application belong to none."""
+    return not name.startswith("$")
+
+
+def given_variable(given: Mapping[str, float], name: str) -> float | None:
+    """The job's value of a variable: of the application's and of the internal one."""
+    if name == COUNTER:
+        return COUNTER_AT_START
+    if name.startswith("$"):
+        for each, value in given.items():
+            if each.strip("$").upper() == name.strip("$"):
+                return value
+    return None
+
+
+def declaration(control: Control, statement: Statement) -> tuple[str, Expression | None, int]:
+    """What LET declares: name, value or None, and where that stands.
+
+    Raises:
+        ProgramError: It cannot be read.
+    """
     match = _LET.match(statement.text)
     if match is None:
         control.report.fail(
             "declaration", "LET needs a variable", statement.column, 3, "LET #x : LREAL := 1"
         )
     rest, column = statement.text[match.end() :], statement.text_column + match.end()
-    value = 0.0
+    value = None
     if match[2]:
-        value = control.compute(control.expression(rest, column), column)
+        value = control.expression(rest, column)
     elif rest.strip():
         control.report.fail("declaration", "this cannot follow a declaration", column)
-    variables(control).local[-1][match[1].upper()] = value
+    return match[1].upper(), value, column
+
+
+def let(control: Control, statement: Statement) -> None:
+    """LET: declare a local variable, 0 unless it is given a value."""
+    name, value, column = declaration(control, statement)
+    control.variables.write(name, 0.0 if value is None else control.compute(value, column))
+
+
+def assigned(control: Control, statement: Statement) -> tuple[str, Expression, int]:
+    """What ``#x := value`` assigns: name, value, and where that stands."""
+    text, column = statement.text.lstrip()[2:], statement.text_column + 2
+    return statement.keyword.strip(), control.expression(text, column), column
 
 
 def assign(control: Control, statement: Statement) -> None:
     """``#x := value``."""
     name = statement.keyword.strip()
-    local = variables(control).local[-1]
-    if name not in local:
+    if control.variables.read(name) is None:
         hint = f"write LET {name} : LREAL"
         control.report.fail(
             "unknown-variable", f"{name} is not declared", statement.column, len(name), hint
         )
-    text, column = statement.text.lstrip()[2:], statement.text_column + 2
-    local[name] = control.compute(control.expression(text, column), column)
+    _, value, column = assigned(control, statement)
+    control.variables.write(name, control.compute(value, column))
 
 
-def _reference(control: Control, word: Word | None) -> str | None:
-    """The variable that O names; None for the internal one."""
+def reference(control: Control, word: Word | None) -> str:
+    """The variable that O names; without O the internal one."""
     if word is None:
-        return None
+        return COUNTER
     name = word.value.text.upper() if isinstance(word.value, Expression) else ""
     if not re.fullmatch(EXPRESSIONS.variable, name, re.IGNORECASE):
         control.fail("variable-name", "O must name a variable", word, "write O$name$ or O#name")
     return name
 
 
-def _store(control: Control, name: str | None, change: float, *, add: bool) -> None:
-    known = variables(control)
-    if name is None:
-        known.counter = known.counter + change if add else change
-        return
+def _store(control: Control, name: str, change: float, *, add: bool) -> None:
     must_exist = add or name.startswith("#")
     try:
         before = read_variable(control, name, None) if must_exist else 0.0
     except ExpressionError as error:
         control.fail(error.code, str(error), None, error.hint)
-    table = known.local[-1] if name.startswith("#") else known.plc
-    table[name] = before + change if add else change
+    control.variables.write(name, before + change if add else change)
 
 
 def write_variable(control: Control) -> None:
@@ -200,7 +219,7 @@ def add_to_variable(control: Control) -> None:
 
 
 def _change(control: Control, *, add: bool) -> None:
-    name, word = _reference(control, control.take("O")), control.take("D")
+    name, word = reference(control, control.take("O")), control.take("D")
     if word is None:
         control.fail("variable-value", "the code needs its value D")
     _store(control, name, control.number(word), add=add)

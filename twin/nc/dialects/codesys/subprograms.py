@@ -7,6 +7,7 @@ from pathlib import Path
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
 from twin.nc.dialects.codesys.program import Subprogram, assign, variables
+from twin.nc.expressions import Expression
 from twin.nc.flow import Place, Return
 from twin.nc.library import named_files, with_called_files
 from twin.nc.source import Source
@@ -98,8 +99,12 @@ def define(control: Control, statement: Statement) -> None:
     control.flow.next()
 
 
-def call(control: Control, statement: Statement) -> None:
-    """``Name{values}``: run a subprogram with its own variables."""
+def called(control: Control, statement: Statement) -> tuple[Subprogram, list[Expression], int]:
+    """The subprogram that ``Name{values}`` calls, its values, and where these begin.
+
+    Raises:
+        ProgramError: There is none, or it takes others.
+    """
     name = statement.keyword.strip()
     subprogram = _subprograms(control).get(name)
     if subprogram is None:
@@ -115,7 +120,7 @@ def call(control: Control, statement: Statement) -> None:
     if text[-1:] not in ("}", ")"):
         control.report.fail("expression", "the bracket is not closed", statement.text_column)
     column = statement.text_column + statement.text.index(text[0]) + 1
-    values = [control.compute(each, column) for each in control.expressions(text[1:-1], column)]
+    values = control.expressions(text[1:-1], column)
     if len(values) != len(subprogram.formals):
         control.report.fail(
             "call-values",
@@ -123,17 +128,21 @@ def call(control: Control, statement: Statement) -> None:
             statement.column,
             len(name),
         )
-    known = variables(control)
-    before = control.saved_modal() if subprogram.restores else None
+    return subprogram, values, column
 
-    def leave() -> None:
-        known.local.pop()
-        if before is not None:
-            control.restore_modal(before)
 
-    back = Return(control.flow.place, Place(subprogram.lines.start, 0), leave)
-    control.flow.call(back, DEEPEST_CALL, statement.column, len(name))
-    known.local.append(dict(zip(subprogram.formals, values, strict=True)))
+def call(control: Control, statement: Statement) -> None:
+    """``Name{values}``: run a subprogram with its own variables."""
+    subprogram, expressions, column = called(control, statement)
+    values = [control.compute(each, column) for each in expressions]
+    part = Return(
+        control.flow.place,
+        Place(subprogram.lines.start, 0),
+        own_variables=True,
+        restores=control.saved_modal() if subprogram.restores else None,
+    )
+    control.flow.call(part, DEEPEST_CALL, statement.column, len(statement.keyword.strip()))
+    control.variables.enter(dict(zip(subprogram.formals, values, strict=True)))
 
 
 def assign_or_call(control: Control, statement: Statement) -> None:

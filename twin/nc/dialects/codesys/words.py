@@ -41,10 +41,15 @@ def set_rapid_acceleration(control: Control, word: Word) -> None:
         control.rapid_deceleration = -value or math.nan
 
 
+def own_rapid_feed(control: Control) -> float:
+    """FF [units/s]; 0 where G0 follows F."""
+    return variables(control).rapid_feed
+
+
 def before_motion(control: Control, rapid: bool) -> None:
     """What holds for every motion block: the pace of G0, and the shortest way of modulo axes."""
     if rapid:
-        feed = variables(control).rapid_feed or control.feed
+        feed = own_rapid_feed(control) or control.feed
         control.rapid_feed = math.nan if feed is None else feed * 60.0
     _refuse_slopes(control)
     take_shortest_way(control)

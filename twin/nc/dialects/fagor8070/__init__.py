@@ -3,7 +3,15 @@
 from twin.nc import iso
 from twin.nc.control import Control
 from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
-from twin.nc.dialects.fagor8070 import arcs, corners, frames, statements, subroutines, variables
+from twin.nc.dialects.fagor8070 import (
+    arcs,
+    corners,
+    frames,
+    statements,
+    subroutines,
+    translation,
+    variables,
+)
 from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import with_globals
@@ -134,9 +142,12 @@ FAGOR8070 = Dialect(
     memory=FagorMemory,
     before_motion=frames.turn_in_commanded_direction,
     read_variable=variables.read_variable,
+    is_local=variables.is_local,
+    live_variables=variables.LIVE,
     library=with_globals,
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,
+    translate=translation.translate,
     disturbed=acts_on_plain_blocks,
 )

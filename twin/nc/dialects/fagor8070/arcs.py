@@ -35,6 +35,9 @@ from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 HELIX_ANGLE = 0.1
 """A helix whose pitch misses its end point by more than this earns a warning [deg]."""
 
+MOST_TURNS = 1000
+"""Turns of one helix: a thread has a hundred, and a pitch that asks for more is a slip of the pen."""
+
 
 def rapid_line(control: Control) -> None:
     """G00."""
@@ -199,6 +202,9 @@ def _helix_sweep(control: Control, height: float, pitch: Word, *, clockwise: boo
     if size == 0.0:
         control.fail("helix-pitch-zero", "the pitch of a helix must not be 0", pitch)
     sweep = TURN * abs(height) / size
+    if sweep > MOST_TURNS * TURN:
+        message = f"the pitch asks for {sweep / TURN:.0f} turns; {MOST_TURNS} are possible"
+        control.fail("helix-turns", message, pitch, "write the height in several blocks")
     return -sweep if clockwise else sweep
 
 

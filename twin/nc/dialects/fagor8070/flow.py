@@ -7,7 +7,8 @@ from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.structure import Construct, Structure, structure_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
-from twin.nc.dialects.fagor8070.variables import read_variable, refuse, variable_table
+from twin.nc.dialects.fagor8070.variables import read_variable, refuse
+from twin.nc.expressions import Expression
 from twin.nc.flow import Place
 
 _PLACE = re.compile(r"[ \t]*(?:N[ \t]*([0-9]+)|\[[ \t]*([A-Z_]\w*)[ \t]*\])[ \t]*", re.IGNORECASE)
@@ -20,7 +21,12 @@ def _structure(control: Control) -> Structure:
     return memory.structure
 
 
-def _construct(control: Control, statement: Statement) -> Construct:
+def construct_of(control: Control, statement: Statement) -> Construct:
+    """The construct that a statement of the block belongs to.
+
+    Raises:
+        ProgramError: It has no counterpart.
+    """
     construct = _structure(control).by_line.get(control.block.line - 1)
     if construct is None or construct.end is None:
         refuse(
@@ -33,13 +39,21 @@ def _construct(control: Control, statement: Statement) -> Construct:
     return construct
 
 
-def _condition(control: Control, line: int) -> float:
-    """The value behind the keyword of another line of a construct."""
+def statement_at(control: Control, line: int) -> Statement:
+    """The statement of another line of a construct, from 0; errors are that line's from now on."""
     control.report.line = line + 1
     (block,) = control.flow.lexer.blocks(control.flow.lines[line], line + 1)
     assert block.statement is not None
-    text, column = block.statement.text, block.statement.text_column
-    return control.compute(control.expression(text, column), column)
+    return block.statement
+
+
+def value_of(control: Control, statement: Statement) -> Expression:
+    """The value behind a keyword."""
+    return control.expression(statement.text, statement.text_column)
+
+
+def _compute(control: Control, statement: Statement) -> float:
+    return control.compute(value_of(control, statement), statement.text_column)
 
 
 def if_(control: Control, statement: Statement) -> None:
@@ -47,105 +61,114 @@ def if_(control: Control, statement: Statement) -> None:
     head, goto, target = statement.text.partition("$")
     value = control.compute(control.expression(head, statement.text_column), statement.text_column)
     if goto:
-        word = target[:4].upper()
-        if word != "GOTO":
-            refuse(control, statement, "structure", "only $GOTO can follow a condition")
+        jump = jump_behind_condition(control, statement, head, target)
         if value:
-            column = statement.text_column + len(head) + 5
-            _go_to(control, target[4:], column, statement)
+            control.flow.go(destination(control, jump))
         return
-    construct = _construct(control, statement)
+    construct = construct_of(control, statement)
     if value:
         return
     for branch in construct.branches:
-        if branch.keyword == "$ELSE" or _condition(control, branch.line):
+        if branch.keyword == "$ELSE" or _compute(control, statement_at(control, branch.line)):
             control.flow.go(Place(branch.line + 1, 0))
             return
-    control.flow.go(_behind(construct))
+    control.flow.go(behind(construct))
 
 
-def _behind(construct: Construct) -> Place:
+def jump_behind_condition(
+    control: Control, statement: Statement, head: str, target: str
+) -> Statement:
+    """The jump of ``$IF condition $GOTO``, given the texts before and behind its dollar."""
+    if target[:4].upper() != "GOTO":
+        refuse(control, statement, "structure", "only $GOTO can follow a condition")
+    column = statement.text_column + len(head) + 5
+    return Statement(statement.keyword, target[4:], statement.column, column)
+
+
+def behind(construct: Construct) -> Place:
+    """The place behind a construct that has an end."""
     assert construct.end is not None
     return Place(construct.end + 1, 0)
 
 
 def else_(control: Control, statement: Statement) -> None:
     """$ELSEIF, $ELSE reached from the branch before: go on behind $ENDIF."""
-    control.flow.go(_behind(_construct(control, statement)))
+    control.flow.go(behind(construct_of(control, statement)))
 
 
 def while_(control: Control, statement: Statement) -> None:
     """$WHILE: run the body as long as the condition holds."""
-    construct = _construct(control, statement)
-    column = statement.text_column
-    if not control.compute(control.expression(statement.text, column), column):
-        control.flow.go(_behind(construct))
+    construct = construct_of(control, statement)
+    if not _compute(control, statement):
+        control.flow.go(behind(construct))
 
 
 def again(control: Control, statement: Statement) -> None:
     """$ENDWHILE: look at the condition again."""
-    control.flow.go(Place(_construct(control, statement).begin, 0))
+    control.flow.go(Place(construct_of(control, statement).begin, 0))
 
 
 def nothing(control: Control, statement: Statement) -> None:
     """$DO, $ENDIF, $ENDSWITCH: only mark a place, which must have its counterpart."""
-    _construct(control, statement)
+    construct_of(control, statement)
 
 
 def end_do(control: Control, statement: Statement) -> None:
     """$ENDDO condition: run the body again as long as it holds."""
-    construct, column = _construct(control, statement), statement.text_column
-    if control.compute(control.expression(statement.text, column), column):
+    construct = construct_of(control, statement)
+    if _compute(control, statement):
         control.flow.go(Place(construct.begin + 1, 0))
 
 
 def for_(control: Control, statement: Statement) -> None:
     """$FOR P1 = first, last, step."""
-    construct = _construct(control, statement)
+    construct = construct_of(control, statement)
     name, first, last, step = _for_values(control, statement)
-    variable_table(control, name)[name] = first
+    control.variables.write(name, first)
     if (first - last) * step > 0.0:
-        control.flow.go(_behind(construct))
+        control.flow.go(behind(construct))
 
 
 def end_for(control: Control, statement: Statement) -> None:
     """$ENDFOR: step on, and run the body again until the last value is passed."""
-    construct = _construct(control, statement)
+    construct = construct_of(control, statement)
     line = control.block.line
-    control.report.line = construct.begin + 1
-    (block,) = control.flow.lexer.blocks(control.flow.lines[construct.begin], construct.begin + 1)
-    assert block.statement is not None
-    name, _, last, step = _for_values(control, block.statement)
+    name, _, last, step = _for_values(control, statement_at(control, construct.begin))
     value = read_variable(control, name, None) + step
-    variable_table(control, name)[name] = value
+    control.variables.write(name, value)
     control.report.line = line
     if (value - last) * step <= 0.0:
         control.flow.go(Place(construct.begin + 1, 0))
 
 
-def _for_values(control: Control, statement: Statement) -> tuple[str, float, float, float]:
+def for_values(control: Control, statement: Statement) -> tuple[str, list[Expression], int]:
+    """Parameter of a $FOR, its three values, and where these begin."""
     variable = control.flow.lexer.expressions.variable_at(statement.text.lstrip(), 0)
     name, equals, values = statement.text.partition("=")
     if variable is None or not equals:
         refuse(control, statement, "structure", "$FOR needs its parameter", "$FOR P1=0,10,1")
     column = statement.text_column + len(name) + 1
-    first, last, step = (
-        control.compute(each, column) for each in control.expressions(values, column, 3)
-    )
+    return variable[0].upper(), control.expressions(values, column, 3), column
+
+
+def _for_values(control: Control, statement: Statement) -> tuple[str, float, float, float]:
+    name, values, column = for_values(control, statement)
+    first, last, step = (control.compute(each, column) for each in values)
     if step == 0.0:
         refuse(control, statement, "structure", "a step of 0 never ends")
-    return variable[0].upper(), first, last, step
+    return name, first, last, step
 
 
 def switch(control: Control, statement: Statement) -> None:
     """$SWITCH: go to the $CASE with the same value, else to $DEFAULT."""
-    construct, column = _construct(control, statement), statement.text_column
-    value = control.compute(control.expression(statement.text, column), column)
+    construct, value = construct_of(control, statement), _compute(control, statement)
     for branch in construct.branches:
-        if branch.keyword == "$DEFAULT" or _condition(control, branch.line) == value:
+        if branch.keyword == "$DEFAULT" or value == _compute(
+            control, statement_at(control, branch.line)
+        ):
             control.flow.go(Place(branch.line + 1, 0))
             return
-    control.flow.go(_behind(construct))
+    control.flow.go(behind(construct))
 
 
 def case(control: Control, statement: Statement) -> None:
@@ -159,17 +182,18 @@ def case(control: Control, statement: Statement) -> None:
 
 def leave_construct(control: Control, statement: Statement) -> None:
     """$BREAK: go on behind the innermost loop or $SWITCH."""
-    control.flow.go(_behind(_enclosing(control, statement, ("$IF",))))
+    control.flow.go(behind(enclosing(control, statement, ("$IF",))))
 
 
 def next_round(control: Control, statement: Statement) -> None:
     """$CONTINUE: go to the end of the innermost loop."""
-    construct = _enclosing(control, statement, ("$IF", "$SWITCH"))
+    construct = enclosing(control, statement, ("$IF", "$SWITCH"))
     assert construct.end is not None
     control.flow.go(Place(construct.end, 0))
 
 
-def _enclosing(control: Control, statement: Statement, without: tuple[str, ...]) -> Construct:
+def enclosing(control: Control, statement: Statement, without: tuple[str, ...]) -> Construct:
+    """The innermost construct around the block that is of no kind left out."""
     around = [
         construct
         for construct in _structure(control).around(control.block.line - 1)
@@ -182,21 +206,29 @@ def _enclosing(control: Control, statement: Statement, without: tuple[str, ...])
 
 def go_to(control: Control, statement: Statement) -> None:
     """$GOTO N10 or $GOTO [NAME]."""
-    _go_to(control, statement.text, statement.text_column, statement)
+    control.flow.go(destination(control, statement))
 
 
-def _go_to(control: Control, text: str, column: int, statement: Statement) -> None:
-    match = _PLACE.fullmatch(text)
+def destination(control: Control, statement: Statement) -> Place:
+    """Where a jump leads.
+
+    Raises:
+        ProgramError: Nowhere, or into a construct.
+    """
+    match = _PLACE.fullmatch(statement.text)
     if match is None:
         refuse(control, statement, "jump-target", "$GOTO needs N10 or [NAME]")
     place = control.flow.find_label(
-        label_of(match), (column, len(text)), "$GOTO", lines_around(control)
+        label_of(match),
+        (statement.text_column, len(statement.text)),
+        "$GOTO",
+        lines_around(control),
     )
     structure = _structure(control)
     here = structure.around(control.block.line - 1)
     if any(construct not in here for construct in structure.around(place.line)):
         refuse(control, statement, "jump-into-structure", "a jump must not lead into a structure")
-    control.flow.go(place)
+    return place
 
 
 def label_of(match: re.Match[str]) -> int | str:

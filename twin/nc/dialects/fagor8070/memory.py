@@ -12,7 +12,7 @@ ModalCall = tuple[str, dict[str, float], Statement]
 
 @dataclasses.dataclass(slots=True)
 class FagorMemory:
-    """Polar coordinates, parameters, subroutines, mirror, scale and rotation.
+    """Polar coordinates, subroutines, mirror, scale and rotation.
 
     Attributes:
         origin: Polar origin in the working plane, from part zero [mm].
@@ -21,8 +21,6 @@ class FagorMemory:
         temporary: G31: this block's polar origin is the arc's centre.
         circle_radius: G263 or R1 in force, or None [mm].
         blend: I of the last G36 or G39 [mm]; 0: none yet.
-        local: P0 to P25 of the main program and of each call, the innermost last.
-        common: All other parameters and variables.
         subroutines: First line of each local subroutine by name, from 0.
         library: First line of each global subroutine, from 0.
         headings: Lines of all headings, from 0, in order.
@@ -41,8 +39,6 @@ class FagorMemory:
     temporary: bool = False
     circle_radius: float | None = None
     blend: float = 0.0
-    local: list[dict[str, float]] = dataclasses.field(default_factory=lambda: [{}])
-    common: dict[str, float] = dataclasses.field(default_factory=dict)
     subroutines: dict[str, int] = dataclasses.field(default_factory=dict)
     library: dict[str, int] = dataclasses.field(default_factory=dict)
     headings: list[int] = dataclasses.field(default_factory=list)
@@ -53,10 +49,6 @@ class FagorMemory:
     scale: float = 1.0
     offset_on: bool = True
     rotation: tuple[float, Point] | None = None
-
-    def forget_local(self) -> None:
-        """A call with parameters of its own has ended."""
-        self.local.pop()
 
 
 def memory_of(control: Control) -> FagorMemory:

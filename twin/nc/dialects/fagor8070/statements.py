@@ -41,7 +41,7 @@ def stray_comment_end(control: Control, statement: Statement) -> None:
 def warn_of_missing_end(control: Control) -> None:
     """The program's last line is reached without M30 or M02 (decision: a warning)."""
     if control.flow.calls:
-        control.fail("return-outside", "the subroutine has no M17, M29 or #RET")
+        control.report.fail("return-outside", "the subroutine has no M17, M29 or #RET")
     control.report.warn("no-end", "the program ends without M30", hint="write M30 at its end")
 
 

@@ -1,16 +1,16 @@
 """Subroutines and repeated ranges of the Fagor CNC 8070."""
 
+import dataclasses
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.variables import refuse
-from twin.nc.expressions import (
-    ExpressionError,
-)
+from twin.nc.expression_tree import Number
+from twin.nc.expressions import Expression, ExpressionError
 from twin.nc.flow import Place, Return
 
 DEEPEST_CALL = 20
@@ -25,11 +25,26 @@ _RANGE = re.compile(
     re.IGNORECASE,
 )
 _ARGUMENT = re.compile(r"[ \t]*([A-Z])[ \t]*=?", re.IGNORECASE)
+_NO_RANGE = "the range or the number of runs is none"
 _SUBROUTINE = re.compile(r"[ \t]*%[ \t]*L[ \t]+([A-Z_0-9]\w*)", re.IGNORECASE)
 
 
-def repeat_range(control: Control, statement: Statement) -> None:
-    """#RPT[N10,N20,3]: run the blocks from one label to another, 3 times."""
+@dataclasses.dataclass(frozen=True, slots=True)
+class Range:
+    """What #RPT repeats: from the first place to the last, so often; the count's column."""
+
+    first: Place
+    last: Place
+    count: Expression
+    column: int
+
+
+def range_of(control: Control, statement: Statement) -> Range:
+    """Read #RPT.
+
+    Raises:
+        ProgramError: It cannot be read, or names no range.
+    """
     match = _RANGE.fullmatch(statement.text)
     if match is None:
         refuse(control, statement, "repeat-range", "the labels are missing", "#RPT[N10,N20,3]")
@@ -43,19 +58,23 @@ def repeat_range(control: Control, statement: Statement) -> None:
     if len(blocks) != 1 or blocks[0].words or blocks[0].statement is not None:
         message = "the last label must stand alone in its block"
         refuse(control, statement, "repeat-range", message, "give it a block of its own behind")
-    column = statement.text_column
-    count = (
-        1.0
-        if match[3] is None
-        else control.compute(
-            control.expression(match[3], column + match.start(3)), column + match.start(3)
-        )
-    )
-    if last < first or count < 1.0 or count != int(count):
-        refuse(control, statement, "repeat-range", "the range or the number of runs is none")
+    if last < first:
+        refuse(control, statement, "repeat-range", _NO_RANGE)
     if first <= Place(control.block.line - 1, 0) <= last:
         refuse(control, statement, "repeat-range", "the range must not hold its own #RPT")
-    part = Return(control.flow.place, first, None, int(count) - 1, last)
+    if match[3] is None:
+        return Range(first, last, Expression("1", Number(1.0)), statement.text_column)
+    column = statement.text_column + match.start(3)
+    return Range(first, last, control.expression(match[3], column), column)
+
+
+def repeat_range(control: Control, statement: Statement) -> None:
+    """#RPT[N10,N20,3]: run the blocks from one label to another, 3 times."""
+    asked = range_of(control, statement)
+    count = control.compute(asked.count, asked.column)
+    if count < 1.0 or count != int(count):
+        refuse(control, statement, "repeat-range", _NO_RANGE)
+    part = Return(control.flow.place, asked.first, int(count) - 1, asked.last)
     control.flow.call(part, DEEPEST_CALL, *_span(statement))
 
 
@@ -119,17 +138,24 @@ def heading(control: Control, statement: Statement) -> None:
 
 def call_local(control: Control, statement: Statement) -> None:
     """LL: run a local subroutine with the caller's parameters."""
-    _call(control, statement, _only_name(control, statement), None, memory_of(control).subroutines)
+    _call(control, statement, called_line(control, statement))
 
 
 def call_global(control: Control, statement: Statement) -> None:
     """L: run a global subroutine, a file of its own, with the caller's parameters."""
-    _call(control, statement, _only_name(control, statement), None, memory_of(control).library)
+    _call(control, statement, called_line(control, statement))
 
 
 def call_any(control: Control, statement: Statement) -> None:
     """#CALL: run a local or global subroutine with the caller's parameters."""
-    _call(control, statement, _only_name(control, statement), None)
+    _call(control, statement, called_line(control, statement))
+
+
+def called_line(control: Control, statement: Statement) -> int:
+    """First line, from 0, of the subroutine that LL, L or #CALL names."""
+    name, memory = _only_name(control, statement), memory_of(control)
+    tables = {"LL": memory.subroutines, "L": memory.library}
+    return _line_of(control, statement, name, tables.get(statement.keyword))
 
 
 def _only_name(control: Control, statement: Statement) -> str:
@@ -141,14 +167,14 @@ def _only_name(control: Control, statement: Statement) -> str:
 
 def call_with_parameters(control: Control, statement: Statement) -> None:
     """#PCALL NAME A1 B2: run a local subroutine with parameters of its own."""
-    name, values = _arguments(control, statement)
-    _call(control, statement, name, values)
+    name, values = _computed_arguments(control, statement)
+    _call(control, statement, _line_of(control, statement, name), values)
 
 
 def call_modally(control: Control, statement: Statement) -> None:
     """#MCALL NAME A1: run the subroutine after every block that moves, until #MDOFF."""
     memory = memory_of(control)
-    memory.modal_call = (*_arguments(control, statement), statement)
+    memory.modal_call = (*_computed_arguments(control, statement), statement)
 
 
 def end_modal_call(control: Control, _statement: Statement) -> None:
@@ -161,15 +187,34 @@ def call_after_motion(control: Control) -> None:
     memory = memory_of(control)
     if memory.modal_call is not None and not control.flow.calls:
         name, values, statement = memory.modal_call
-        _call(control, statement, name, dict(values))
+        _call(control, statement, _line_of(control, statement, name), values)
 
 
-def _arguments(control: Control, statement: Statement) -> tuple[str, dict[str, float]]:
+def _computed_arguments(control: Control, statement: Statement) -> tuple[str, dict[str, float]]:
+    values: dict[str, float] = {}
+    name = name_of(control, statement)
+    for parameter, expression, column in arguments(control, statement):
+        values[parameter] = control.compute(expression, column)
+    return name, values
+
+
+def pcalled_line(control: Control, statement: Statement) -> int:
+    """First line, from 0, of the subroutine that #PCALL names."""
+    return _line_of(control, statement, name_of(control, statement))
+
+
+def name_of(control: Control, statement: Statement) -> str:
+    """The name behind #PCALL or #MCALL."""
     match = _NAME.match(statement.text)
     if match is None:
         refuse(control, statement, "call-values", "the call needs a name")
-    values: dict[str, float] = {}
-    at = match.end()
+    return match[1].upper()
+
+
+def arguments(control: Control, statement: Statement) -> Iterator[tuple[str, Expression, int]]:
+    """Parameters that #PCALL or #MCALL sets, their values, and where these stand."""
+    match = _NAME.match(statement.text)
+    at = 0 if match is None else match.end()
     while at < len(statement.text.rstrip()):
         letter = _ARGUMENT.match(statement.text, at)
         column = statement.text_column + at
@@ -179,17 +224,12 @@ def _arguments(control: Control, statement: Statement) -> tuple[str, dict[str, f
             expression, at = control.flow.lexer.expressions.read(statement.text, letter.end())
         except ExpressionError as error:
             control.report.fail(error.code, str(error), column, 1, error.hint)
-        values[f"P{ord(letter[1].upper()) - ord('A')}"] = control.compute(expression, column)
-    return match[1].upper(), values
+        yield f"P{ord(letter[1].upper()) - ord('A')}", expression, column
 
 
-def _call(
-    control: Control,
-    statement: Statement,
-    name: str,
-    values: dict[str, float] | None,
-    table: Mapping[str, int] | None = None,
-) -> None:
+def _line_of(
+    control: Control, statement: Statement, name: str, table: Mapping[str, int] | None = None
+) -> int:
     memory = memory_of(control)
     if table is None:
         table = {**memory.library, **memory.subroutines}
@@ -202,13 +242,19 @@ def _call(
         message = f"there is no subroutine {name}"
         hint = f"a global one is a file {name} or {name}.nc beside the program; {known}"
         refuse(control, statement, "unknown-subprogram", message, hint)
-    leave = None
+    return line
+
+
+def _call(
+    control: Control,
+    statement: Statement,
+    line: int,
+    values: Mapping[str, float] | None = None,
+) -> None:
+    part = Return(control.flow.place, Place(line, 0), own_variables=values is not None)
+    control.flow.call(part, DEEPEST_CALL, *_span(statement))
     if values is not None:
-        leave = memory.forget_local
-    back = Return(control.flow.place, Place(line, 0), leave)
-    control.flow.call(back, DEEPEST_CALL, *_span(statement))
-    if values is not None:
-        memory.local.append(values)
+        control.variables.enter(values)
 
 
 def return_(control: Control) -> None:

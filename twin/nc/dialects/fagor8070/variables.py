@@ -1,14 +1,16 @@
 """Parameters, variables and expressions of the Fagor CNC 8070."""
 
+import dataclasses
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Iterator
 from typing import NoReturn
 
+from twin.nc import arithmetic
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.expression_reader import computed
+from twin.nc.expression_tree import Computed, Number
 from twin.nc.expressions import (
     ARITHMETIC,
     COMPARISON,
@@ -24,41 +26,37 @@ LOCAL_PARAMETERS = 26
 _LOCAL = frozenset(f"P{number}" for number in range(LOCAL_PARAMETERS))
 
 
-def _integers(compute: Callable[[int, int], int]) -> Callable[[float, float], float]:
-    return lambda a, b: float(compute(int(a), int(b)))
-
-
 EXPRESSIONS = ExpressionSyntax(
     operators={
         **ARITHMETIC,
         **COMPARISON,
         "**": Operator(7, math.pow),
-        "==": Operator(3, lambda a, b: float(a == b)),
-        "!=": Operator(3, lambda a, b: float(a != b)),
-        "&": Operator(2, _integers(lambda a, b: a & b)),
-        "^": Operator(1, _integers(lambda a, b: a ^ b)),
-        "|": Operator(0, _integers(lambda a, b: a | b)),
+        "==": Operator(3, arithmetic.equal),
+        "!=": Operator(3, arithmetic.unequal),
+        "&": Operator(2, arithmetic.bits_of_both),
+        "^": Operator(1, arithmetic.bits_of_one_alone),
+        "|": Operator(0, arithmetic.bits_of_either),
     },
     functions={
-        "SIN": FunctionOf(lambda a: math.sin(math.radians(a))),
-        "COS": FunctionOf(lambda a: math.cos(math.radians(a))),
-        "TAN": FunctionOf(lambda a: math.tan(math.radians(a))),
-        "ASIN": FunctionOf(lambda a: math.degrees(math.asin(a))),
-        "ACOS": FunctionOf(lambda a: math.degrees(math.acos(a))),
-        "ATAN": FunctionOf(lambda a: math.degrees(math.atan(a))),
-        "ARG": FunctionOf(lambda x, y: math.degrees(math.atan2(y, x)), 2),
+        "SIN": FunctionOf(arithmetic.sine_of_degrees),
+        "COS": FunctionOf(arithmetic.cosine_of_degrees),
+        "TAN": FunctionOf(arithmetic.tangent_of_degrees),
+        "ASIN": FunctionOf(arithmetic.arc_sine_in_degrees),
+        "ACOS": FunctionOf(arithmetic.arc_cosine_in_degrees),
+        "ATAN": FunctionOf(arithmetic.arc_tangent_in_degrees),
+        "ARG": FunctionOf(arithmetic.direction_in_degrees, 2),
         "ABS": FunctionOf(math.fabs),
-        "SQR": FunctionOf(lambda a: a * a),
+        "SQR": FunctionOf(arithmetic.square),
         "SQRT": FunctionOf(math.sqrt),
         "LOG": FunctionOf(math.log10),
         "LN": FunctionOf(math.log),
         "EXP": FunctionOf(math.exp),
-        "DEXP": FunctionOf(lambda a: math.pow(10.0, a)),
-        "INT": FunctionOf(lambda a: float(math.trunc(a))),
-        "FRACT": FunctionOf(lambda a: a - math.trunc(a)),
-        "ROUND": FunctionOf(lambda a: float(math.floor(a + 0.5))),
-        "FUP": FunctionOf(lambda a: float(math.ceil(a))),
-        "INV": FunctionOf(lambda a: float(~int(a))),
+        "DEXP": FunctionOf(arithmetic.power_of_ten),
+        "INT": FunctionOf(arithmetic.whole_part),
+        "FRACT": FunctionOf(arithmetic.fraction),
+        "ROUND": FunctionOf(arithmetic.nearest_whole),
+        "FUP": FunctionOf(arithmetic.next_whole),
+        "INV": FunctionOf(arithmetic.inverted_bits),
     },
     constants={},
     variable=r"P[0-9]+|V\.[A-Z]\.[A-Z_][\w.]*",
@@ -67,6 +65,10 @@ EXPRESSIONS = ExpressionSyntax(
     brackets="[]",
 )
 """Angles are degrees."""
+
+POLAR_ABSCISSA, POLAR_ORDINATE = "V.G.PORGF", "V.G.PORGS"
+LIVE = frozenset({POLAR_ABSCISSA, POLAR_ORDINATE})
+"""The polar origin."""
 
 STATEMENT = (
     r"%|\$(?:GOTO|IF|ELSEIF|ELSE|ENDIF|SWITCH|CASE|DEFAULT|ENDSWITCH|FOR|ENDFOR|WHILE|ENDWHILE"
@@ -92,15 +94,13 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
     memory = memory_of(control)
     if name == "P" and index is not None:
         name = f"P{index:g}"
-    if name == "V.G.PORGF":
+    if name == POLAR_ABSCISSA:
         return memory.origin[0]
-    if name == "V.G.PORGS":
+    if name == POLAR_ORDINATE:
         return memory.origin[1]
-    table = variable_table(control, name)
-    if name in table:
-        return table[name]
-    if name in control.settings.variables:
-        return control.settings.variables[name]
+    value = control.variables.read(name)
+    if value is not None:
+        return value
     raise ExpressionError(
         "unknown-variable",
         f"{name} has no value",
@@ -109,35 +109,45 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
     )
 
 
-def variable_table(control: Control, name: str) -> dict[str, float]:
-    """Where a variable is kept: with the call, or for the whole program."""
-    memory = memory_of(control)
-    local = name in _LOCAL or (name.startswith("P0") and int(name[1:]) < LOCAL_PARAMETERS)
-    return memory.local[-1] if local else memory.common
+def is_local(name: str) -> bool:
+    """Whether a variable belongs to the call, not to the whole program."""
+    return name in _LOCAL or (name.startswith("P0") and int(name[1:]) < LOCAL_PARAMETERS)
 
 
-def assign(control: Control, statement: Statement) -> None:
-    """``P1 = 5``, ``P[P2] += 1``, ``V.P.depth = 3``; several on a line."""
+@dataclasses.dataclass(frozen=True, slots=True)
+class Assignment:
+    """One assignment of a statement.
+
+    Attributes:
+        name: The variable, or ``P`` where its number is computed.
+        index: That number, or None.
+        index_column: Where it stands.
+        operator: What joins old and new value; empty: the new one alone counts.
+        value: The new value.
+        column: Where it stands.
+    """
+
+    name: str
+    index: Expression | None
+    index_column: int
+    operator: str
+    value: Expression
+    column: int
+
+
+def assignments(control: Control, statement: Statement) -> Iterator[Assignment]:
+    """Read ``P1 = 5``, ``P[P2] += 1``, ``V.P.depth = 3``; several on a line."""
     name, text, at = statement.keyword.strip(), statement.text, 0
+    begin = statement.text_column
     while True:
+        index, index_at = None, at
         if name == "P":
-            index, at = _index(control, statement, at)
-            name = f"P{index}"
+            index, at = _read(control, statement, at, whole=False)
         match = _SET.match(text, at)
         if match is None:
             refuse(control, statement, "assignment", "'=' is missing behind the name")
-        try:
-            expression, end = control.flow.lexer.expressions.read(text, match.end())
-        except ExpressionError as error:
-            column = statement.text_column + (error.column or 0)
-            control.report.fail(error.code, str(error), column, 1, error.hint)
-        value = control.compute(expression, statement.text_column + match.end())
-        if match[1]:
-            old = _old_value(control, statement, name)
-            value = control.compute(
-                _combined(old, match[1], value), statement.text_column + match.end()
-            )
-        variable_table(control, name)[name] = value
+        value, end = _read(control, statement, match.end())
+        yield Assignment(name, index, begin + index_at, match[1], value, begin + match.end())
         separator = _SEPARATOR.match(text, end)
         assert separator is not None
         at = separator.end()
@@ -154,12 +164,38 @@ def assign(control: Control, statement: Statement) -> None:
         name, at = following[0].upper(), following.end()
 
 
+def _read(
+    control: Control, statement: Statement, at: int, *, whole: bool = True
+) -> tuple[Expression, int]:
+    reader = control.flow.lexer.expressions
+    try:
+        return (reader.read if whole else reader.read_operand)(statement.text, at)
+    except ExpressionError as error:
+        column = statement.text_column + (error.column or 0)
+        control.report.fail(error.code, str(error), column, 1, error.hint)
+
+
+def assign(control: Control, statement: Statement) -> None:
+    """Give variables their values, one after the other."""
+    for each in assignments(control, statement):
+        name = each.name
+        if each.index is not None:
+            index = control.compute(each.index, each.index_column)
+            if index < 0.0 or index != int(index):
+                message = f"there is no parameter P[{index:g}]"
+                refuse(control, statement, "parameter-number", message)
+            name = f"P{int(index)}"
+        value = control.compute(each.value, each.column)
+        if each.operator:
+            old = _old_value(control, statement, name)
+            value = control.compute(_combined(old, each.operator, value), each.column)
+        control.variables.write(name, value)
+
+
 def _combined(old: float, operator: str, value: float) -> Expression:
     compute = EXPRESSIONS.operators[operator].compute
-
-    return Expression(
-        f"{old:g}{operator}{value:g}", lambda _scope: computed(operator, compute, old, value)
-    )
+    tree = Computed(operator, compute, (Number(old), Number(value)))
+    return Expression(f"{old:g}{operator}{value:g}", tree)
 
 
 def _old_value(control: Control, statement: Statement, name: str) -> float:
@@ -167,15 +203,3 @@ def _old_value(control: Control, statement: Statement, name: str) -> float:
         return read_variable(control, name, None)
     except ExpressionError as error:
         refuse(control, statement, error.code, str(error), error.hint)
-
-
-def _index(control: Control, statement: Statement, at: int) -> tuple[int, int]:
-    try:
-        expression, end = control.flow.lexer.expressions.read(statement.text, at)
-    except ExpressionError as error:
-        column = statement.text_column + (error.column or 0)
-        control.report.fail(error.code, str(error), column, 1, error.hint)
-    value = control.compute(expression, statement.text_column + at)
-    if value < 0.0 or value != int(value):
-        refuse(control, statement, "parameter-number", f"there is no parameter P[{value:g}]")
-    return int(value), end

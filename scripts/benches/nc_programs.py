@@ -1,0 +1,170 @@
+"""Programs that compute, loop and call, in our dialects and as LinuxCNC writes the same."""
+
+import random
+from collections.abc import Iterator
+from typing import NamedTuple
+
+ROUNDS = 20_000
+LINES = 200_000
+
+
+class Computing(NamedTuple):
+    """One form.
+
+    Attributes:
+        task: What it shows.
+        dialect: Ours.
+        ours: Our program.
+        theirs: The same moves for ``rs274``.
+        blocks: How many blocks ours runs, those of its loops among them.
+    """
+
+    task: str
+    dialect: str
+    ours: str
+    theirs: str
+    blocks: int
+
+
+def programs() -> Iterator[Computing]:
+    """Every form that a dialect has, and long programs that compute now and then."""
+    for task, dialect, ours, theirs, blocks in _FORMS:
+        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
+        yield Computing(task, dialect, *filled, blocks * ROUNDS)
+    for task, dialect, start, ours, theirs in _NOW_AND_THEN:
+        every = f"{LINES:,} lines, every tenth {task}"
+        texts = (_long(start, ours), _long("#101=1\n", theirs).replace("M30", "M2"))
+        yield Computing(every, dialect, *texts, LINES)
+
+
+def _long(start: str, tenth: str) -> str:
+    chance = random.Random(3)  # noqa: S311 (programs need no cryptography)
+    lines = [f"{start}G90 G1 X0 Y0 F1000"]
+    for index in range(LINES):
+        x, y, z = (chance.uniform(-100.0, 100.0) for _ in range(3))
+        plain = f"G1 X{x:.3f} Y{y:.3f} Z{z:.3f}"
+        lines.append(plain if index % 10 else tenth.format(x=f"{x + 200.0:.3f}", y=f"{y:.3f}"))
+    return "\n".join([*lines, "M30", ""])
+
+
+_FORMS = (
+    (
+        "loop around a subprogram",
+        "fagor8070",
+        (
+            "%L STEP\nG1 X[P1*0.01] Y[10*SIN[P1]]\nM17\n%MAIN\nP1=0\nG90 G1 F1000\n$WHILE P1<ROUNDS\n"
+            "P1=P1+1\nLL STEP\nG1 Z[P1/1000]\n$ENDWHILE\nM30\n"
+        ),
+        (
+            "o100 sub\nG1 X[#101*0.01] Y[10*sin[#101]]\no100 endsub\n#101=0\nG90 G1 F1000\n"
+            "o110 while [#101 lt ROUNDS]\n#101=[#101+1]\no100 call\nG1 Z[#101/1000]\no110 endwhile\nM2\n"
+        ),
+        6,
+    ),
+    (
+        "$WHILE, points of a circle",
+        "fagor8070",
+        (
+            "P1=0\nG90 G1 F1000\n$WHILE P1<ROUNDS\nG1 X[50*COS[P1]] Y[50*SIN[P1]]\nP1=P1+1\n"
+            "$ENDWHILE\nM30\n"
+        ),
+        (
+            "#101=0\nG90 G1 F1000\no110 while [#101 lt ROUNDS]\nG1 X[50*cos[#101]] Y[50*sin[#101]]\n"
+            "#101=[#101+1]\no110 endwhile\nM2\n"
+        ),
+        4,
+    ),
+    (
+        "$FOR, #PCALL with parameters",
+        "fagor8070",
+        (
+            "%L STEP\nG1 X[P0+P1]\nM17\n%MAIN\nG90 G1 F1000\n$FOR P30=1,ROUNDS,1\n"
+            "#PCALL STEP A[P30*0.1] B3\n$ENDFOR\nM30\n"
+        ),
+        (
+            "o100 sub\nG1 X[#1+#2]\no100 endsub\n#101=0\nG90 G1 F1000\no110 while [#101 lt ROUNDS]\n"
+            "#101=[#101+1]\no100 call [#101*0.1] [3]\no110 endwhile\nM2\n"
+        ),
+        4,
+    ),
+    (
+        "#RPT, a range again and again",
+        "fagor8070",
+        "G91 G1 F1000\nN1 X1\nY1\nX-1\nN2\n#RPT[N1,N2,ROUNDS]\nM30\n",
+        "G91 G1 F1000\no110 repeat [ROUNDS]\nX1\nY1\nX-1\no110 endrepeat\nM2\n",
+        4,
+    ),
+    (
+        "NR, a block again and again",
+        "fagor8070",
+        "G91 G1 F1000\nP1=0\n$WHILE P1<100\nX1 NR[ROUNDS/100]\nP1=P1+1\n$ENDWHILE\nM30\n",
+        "G91 G1 F1000\no110 repeat [ROUNDS]\nX1\no110 endrepeat\nM2\n",
+        1,
+    ),
+    (
+        "$IF, $GOTO, a table of parameters",
+        "fagor8070",
+        (
+            "P1=0\nG90 G1 F1000\nN1 P1=P1+1\nP[100+P1 MOD 50]=P1/3\nX[P[100+P1 MOD 50]]\n"
+            "$IF P1<ROUNDS $GOTO N1\nM30\n"
+        ),
+        (
+            "#101=0\nG90 G1 F1000\no110 do\n#101=[#101+1]\n#[200+[#101 mod 50]]=[#101/3]\n"
+            "X[#[200+[#101 mod 50]]]\no110 while [#101 lt ROUNDS]\nM2\n"
+        ),
+        4,
+    ),
+    (
+        "G20, $variable$, G0 and G1",
+        "codesys",
+        (
+            "N1 G36 O$i$ D0\nN5 G90 G1 F100\nN10 G0 X($i$*0.01)\nN15 G1 Y(10*SIN($i$))\nN20 G37 O$i$ D1\n"
+            "N30 G20 L10 K($i$ < ROUNDS)\nN40 M30\n"
+        ),
+        (
+            "#101=0\nG90 G1 F1000\no110 do\nG0 X[#101*0.01]\nG1 Y[10*sin[#101]]\n#101=[#101+1]\n"
+            "o110 while [#101 lt ROUNDS]\nM2\n"
+        ),
+        4,
+    ),
+    (
+        "SUBPROGRAM with values, LET",
+        "codesys",
+        (
+            "N1 LET #i : LREAL := 0\nN5 G90 G1 F100\nN10 STEP{#i, 0.5}\nN20 #i := #i + 1\n"
+            "N30 G20 L10 K(#i < ROUNDS)\nN40 M30\nSUBPROGRAM STEP{#a : LREAL, #b : LREAL}\n"
+            "N1 LET #c : LREAL := #a * #b\nN2 G1 X(#c) Y3\nN3 G1 Y0\nEND_SUBPROGRAM\n"
+        ),
+        (
+            "o100 sub\n#3=[#1*#2]\nG1 X#3 Y3\nG1 Y0\no100 endsub\n#101=0\nG90 G1 F1000\no110 do\n"
+            "o100 call [#101] [0.5]\n#101=[#101+1]\no110 while [#101 lt ROUNDS]\nM2\n"
+        ),
+        7,
+    ),
+    (
+        "G73, a jump with repeat",
+        "mefi",
+        "N5 G91 G1 F1000\nN10 G1 X1 Y2\nN20 G2 X10 Y0 I5\nN30 G1 X-11 Y-2 G73 L10 QROUNDS\nN40 M30\n",
+        "G91 G1 F1000\no110 repeat [ROUNDS]\nG1 X1 Y2\nG2 X10 Y0 I5\nG1 X-11 Y-2\no110 endrepeat\nM2\n",
+        3,
+    ),
+)
+
+_NOW_AND_THEN = (
+    ("counts", "fagor8070", "P1=1\n", "P1=P1+1", "#101=[#101+1]"),
+    (
+        "computes words",
+        "fagor8070",
+        "P1=1\n",
+        "X[P1+{x}] Y[P1*{y}]",
+        "X[#101+{x}] Y[#101*{y}]",
+    ),
+    ("counts", "codesys", "LET #i := 1\n", "#i := #i + 1", "#101=[#101+1]"),
+    (
+        "computes words",
+        "codesys",
+        "LET #i := 1\n",
+        "X(#i+{x}) Y(#i*{y})",
+        "X[#101+{x}] Y[#101*{y}]",
+    ),
+)

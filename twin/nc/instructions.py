@@ -1,0 +1,212 @@
+"""The instruction table: what blocks that compute, jump or call do, one small step a row.
+
+Values wait on a stack. A block begins with ``BLOCK`` and ends with ``NEXT``; before its first step
+that cannot be undone it has met all that could stop it.
+"""
+
+import enum
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.flow import Place
+
+MOST_INSTRUCTIONS = 1 << 19
+"""Rows that are kept; a program that needs more is translated anew from there on."""
+MOST_STORES = 64
+"""Variables that a block may set."""
+MOST_ROWS = 200
+"""Rows of a block."""
+MOST_VALUES = MOST_ROWS
+"""Values that wait on the stack: no row adds more than one."""
+PART_BITS = 20
+"""A place as one number: the line, and in these bits the part."""
+LARGEST_PART = (1 << PART_BITS) - 1
+UNKNOWN, GENERAL = 0, -1
+"""Instead of a line's first row: not translated yet; always run by the general way."""
+
+
+class Step(enum.IntEnum):
+    """What a row does; ``argument`` and ``number`` are its columns."""
+
+    BLOCK = 0
+    """A block begins; ``argument``: row of the line's next block, 0 for none."""
+    NEXT = 1
+    """It ends."""
+    LEAVE = 2
+    """The general way must run this block."""
+    NUMBER = 3
+    """Put ``number`` on the stack."""
+    LOAD = 4
+    """Put the variable with the slot ``argument`` on the stack."""
+    LOAD_NUMBERED = 5
+    """Put the variable with the number on the stack in its place."""
+    LOAD_BELOW = 6
+    """As ``LOAD``, below the topmost value."""
+    LOAD_NUMBERED_BELOW = 7
+    """As ``LOAD_BELOW``, of the variable whose number lies below the topmost value."""
+    DEFINED = 8
+    """Put on the stack whether the variable with the slot ``argument`` has a value."""
+    NEGATE = 9
+    """Change the sign."""
+    ONE = 10
+    """Replace the topmost value by the function ``argument`` of it."""
+    TWO = 11
+    """Replace the two topmost values by the operator ``argument`` between them."""
+    THREE = 12
+    """Replace the three topmost values by the function ``argument`` of them."""
+    DROP = 13
+    """Forget the topmost value."""
+    STORE = 14
+    """Give the variable with the slot ``argument`` the topmost value."""
+    STORE_DECLARED = 15
+    """The same where it has a value of its own already."""
+    STORE_NUMBERED = 16
+    """The same for the variable whose number lies below."""
+    WORD = 17
+    """The topmost value is that of a word with the role ``argument``."""
+    WORD_NUMBER = 18
+    """``number`` is."""
+    RUN = 19
+    """Run the words."""
+    RUN_OFTEN = 20
+    """Run them as often as the topmost value says, at most ``number`` times."""
+    JUMP = 21
+    """Go on at the place ``argument``."""
+    JUMP_IF = 22
+    """The same where the topmost value is not 0."""
+    JUMP_UNLESS = 23
+    """The same where it is 0."""
+    JUMP_CASE = 24
+    """The same where it equals the value below, which stays."""
+    BEGIN_FOR = 25
+    """First, last and step become whether first lies beyond last, and first."""
+    STEP_FOR = 26
+    """First, last, step and value become whether the next value is in reach, and that value."""
+    COUNT_DOWN = 27
+    """Put on the stack whether the counter with the slot ``argument``, which begins at ``number``,
+    is not 0 yet, and take 1 from it; at 0 it is forgotten."""
+    MAY_CALL = 28
+    """At most ``argument`` parts may call each other."""
+    OWN_VARIABLES = 29
+    """The part that is called next has local variables of its own."""
+    RESTORING = 30
+    """Its end puts back into force what is in force now."""
+    CALL = 31
+    """Run the part that begins at the place ``argument``."""
+    RANGE = 32
+    """The range that is repeated next ends at the place ``argument``."""
+    REPEAT = 33
+    """Run the range that begins at the place ``argument`` as often as the topmost value says."""
+    MAY_RETURN = 34
+    """There must be a part that can be returned from."""
+    RETURN = 35
+    """Go back behind the call."""
+
+
+class Table(NamedTuple):
+    """The rows, as the kernel reads them.
+
+    Attributes:
+        first: First row of each line, ``UNKNOWN`` or ``GENERAL``, shape (lines + 1,).
+        step: Shape (n,).
+        argument: Shape (n,).
+        number: Shape (n,).
+        numbered: Slots of the variables that have a number, shape (m,).
+    """
+
+    first: npt.NDArray[np.int32]
+    step: IntArray
+    argument: IntArray
+    number: FloatArray
+    numbered: IntArray
+
+
+class Instructions:
+    """A table that grows."""
+
+    def __init__(self, lines: int) -> None:
+        self._first = np.zeros(lines + 1, np.int32)
+        self._translated: list[int] = []
+        self._step = np.zeros(256, np.int64)
+        self._argument = np.zeros(256, np.int64)
+        self._number = np.zeros(256)
+        self._step[0] = Step.NEXT
+        self._rows = 1
+        self.numbered = np.zeros(0, np.int64)
+
+    @property
+    def rows(self) -> int:
+        """Where the next row goes."""
+        return self._rows
+
+    @property
+    def table(self) -> Table:
+        """The rows as columns."""
+        return Table(self._first, self._step, self._argument, self._number, self.numbered)
+
+    def add(self, step: Step, argument: int = 0, number: float = 0.0) -> None:
+        """Append a row."""
+        row = self._rows
+        self._grow(1)
+        self._step[row], self._argument[row], self._number[row] = step, argument, number
+        self._rows = row + 1
+
+    def add_rows(
+        self,
+        steps: IntArray,
+        arguments: IntArray,
+        numbers: FloatArray,
+        own: FloatArray,
+        at: IntArray,
+    ) -> int:
+        """Append rows, with other numbers at some of them; the first of them."""
+        first, count = self._rows, len(steps)
+        self._grow(count)
+        rows = slice(first, first + count)
+        self._step[rows], self._argument[rows], self._number[rows] = steps, arguments, numbers
+        self._number[at + first] = own
+        self._rows = first + count
+        return first
+
+    def _grow(self, rows: int) -> None:
+        while self._rows + rows > len(self._step):
+            self._step = np.concatenate([self._step, np.zeros_like(self._step)])
+            self._argument = np.concatenate([self._argument, np.zeros_like(self._argument)])
+            self._number = np.concatenate([self._number, np.zeros_like(self._number)])
+
+    def lead_here(self, row: int) -> None:
+        """The next row is the argument of an earlier one."""
+        self._argument[row] = self._rows
+
+    def take_back(self, row: int) -> None:
+        """Forget this row and those behind it."""
+        self._rows = row
+
+    def number_variables(self, slots: list[int]) -> None:
+        """From now on these are the slots of the variables 0, 1, 2, ..."""
+        self.numbered = np.array(slots, np.int64)
+
+    def begins(self, line: int, row: int) -> None:
+        """The rows of a line, counted from 0, begin here; or ``GENERAL``."""
+        self._first[line] = row
+        self._translated.append(line)
+
+    def make_room(self) -> None:
+        """Forget everything where the table has become too long."""
+        if self._rows > MOST_INSTRUCTIONS or len(self._translated) > MOST_INSTRUCTIONS:
+            self._first[self._translated] = UNKNOWN
+            self._translated = []
+            self._rows = 1
+
+
+def number_of_place(place: Place) -> int:
+    """A place as one number, in the order of the program."""
+    return place.line << PART_BITS | place.part
+
+
+def place_of_number(number: int) -> Place:
+    """The inverse of ``number_of_place``."""
+    return Place(number >> PART_BITS, number & LARGEST_PART)

@@ -1,0 +1,191 @@
+"""The lines of a program, kept as bytes in pages; those behind the first megabytes are packed.
+
+So a program of many millions of lines takes a fraction of its length, and the others lie as they
+were read. A page is unpacked, turned into UTF-8 and divided into lines when one of them is wanted.
+"""
+
+import bisect
+import re
+import zlib
+from collections.abc import Iterable, Iterator, Sequence
+from typing import overload
+
+import numpy as np
+import numpy.typing as npt
+
+PAGE = 1 << 18
+"""Bytes of a page, about; none ends within a line."""
+UNPACKED_PAGES = 64
+"""Pages of a program that are kept as they are: up to 16 MB cost no time to unpack."""
+_OPEN_PAGES = 8
+"""Pages whose lines are known at a time."""
+_FASTEST = 1
+"""Level of zlib that packs numbers to a sixth at 230 MB/s; the slower ones gain little."""
+_LINE_FEED, _RETURN = 10, 13
+_MARK = b"\xef\xbb\xbf"
+"""What some editors put before UTF-8."""
+_UTF_8 = "utf-8"
+_SURROGATES = "surrogatepass"
+"""Text that is made on the fly may hold what no file can."""
+_ANY_BYTE = "latin-1"
+"""Decodes any byte; used where a file is neither UTF-8 nor in the dialect's own code page."""
+
+
+class Page:
+    """Some of a program's lines.
+
+    Attributes:
+        lines: Their numbers, from 0.
+        text: They as UTF-8, with their ends.
+        data: The same, shape (bytes,).
+        starts: Where each line begins in it, and where the last one ends, shape (n + 1,).
+    """
+
+    def __init__(self, first: int, text: bytes) -> None:
+        self.text = text
+        self.data = np.frombuffer(text, np.uint8)
+        self.starts = _line_starts(self.data)
+        self.lines = range(first, first + len(self.starts) - 1)
+
+    def line(self, number: int) -> str:
+        """One of its lines without its end."""
+        at = number - self.lines.start
+        line = self.text[self.starts[at] : self.starts[at + 1]]
+        return line.removesuffix(b"\n").removesuffix(b"\r").decode(_UTF_8, _SURROGATES)
+
+
+class Lines(Sequence[str]):
+    """The lines of a program without their ends.
+
+    Attributes:
+        size: Bytes that were read.
+    """
+
+    def __init__(self, pieces: Iterable[bytes], encodings: Sequence[str] = ()) -> None:
+        """Take the text in.
+
+        Args:
+            pieces: Its bytes, in pieces of any length.
+            encodings: What they may be in besides bytes without a meaning; the first that fits
+                all of them counts. None: they are UTF-8.
+        """
+        self.size = 0
+        self._pages: list[bytes] = []
+        self._firsts: list[int] = []
+        self._count = 0
+        self._open: dict[int, Page] = {}
+        fitting = list(encodings) or [_UTF_8]
+        for page in _whole_lines(pieces):
+            if encodings and not page.isascii():
+                fitting = [encoding for encoding in fitting if _fits(page, encoding)]
+                if not self._pages and _UTF_8 in fitting:
+                    page = page.removeprefix(_MARK)
+            if page:
+                self._keep(page)
+        self._encoding = fitting[0] if fitting else _ANY_BYTE
+
+    def _keep(self, page: bytes) -> None:
+        packed = len(self._pages) >= UNPACKED_PAGES
+        self._pages.append(zlib.compress(page, _FASTEST) if packed else page)
+        self._firsts.append(self._count)
+        self._count += _line_count(page)
+        self.size += len(page)
+
+    def __len__(self) -> int:
+        return self._count
+
+    @overload
+    def __getitem__(self, index: int) -> str: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[str]: ...
+    def __getitem__(self, index: int | slice) -> str | list[str]:
+        if isinstance(index, slice):
+            return [self[each] for each in range(*index.indices(len(self)))]
+        if not -len(self) <= index < len(self):
+            raise IndexError(index)
+        line = index % len(self)
+        return self.page_of(line).line(line)
+
+    def __iter__(self) -> Iterator[str]:
+        return (page.line(line) for page in self.pages() for line in page.lines)
+
+    def page_of(self, line: int) -> Page:
+        """The page that a line, from 0, stands on."""
+        number = bisect.bisect_right(self._firsts, line) - 1
+        page = self._open.get(number)
+        if page is None:
+            page = Page(self._firsts[number], self._utf_8(number))
+            if len(self._open) == _OPEN_PAGES:
+                del self._open[next(iter(self._open))]
+            self._open[number] = page
+        return page
+
+    def pages(self) -> Iterator[Page]:
+        """All pages, in order."""
+        return (self.page_of(first) for first in self._firsts)
+
+    def _utf_8(self, number: int) -> bytes:
+        kept = self._pages[number]
+        page = zlib.decompress(kept) if number >= UNPACKED_PAGES else kept
+        if self._encoding == _UTF_8 or page.isascii():
+            return page
+        return page.decode(self._encoding).encode(_UTF_8)
+
+    def any_holds(self, pattern: re.Pattern[bytes]) -> bool:
+        """Whether a pattern, which must not match line ends, stands in any line."""
+        pages = range(len(self._pages))
+        return any(pattern.search(self._utf_8(number)) is not None for number in pages)
+
+    def holding(self, mark: str) -> Iterator[tuple[int, str]]:
+        """The lines in which a text stands, with their numbers from 0."""
+        wanted = mark.encode(_UTF_8, _SURROGATES)
+        for number, first in enumerate(self._firsts):
+            if wanted in self._utf_8(number):
+                page, at = self.page_of(first), 0
+                while (at := page.text.find(wanted, at)) >= 0:
+                    index = int(np.searchsorted(page.starts, at, side="right")) - 1
+                    yield first + index, page.line(first + index)
+                    at = int(page.starts[index + 1])
+
+    @property
+    def text(self) -> bytes:
+        """All lines with their ends, as UTF-8."""
+        return b"".join(self._utf_8(number) for number in range(len(self._pages)))
+
+
+def _whole_lines(pieces: Iterable[bytes]) -> Iterator[bytes]:
+    """Bytes in pages that end where lines do; never between CR and LF."""
+    waiting: list[bytes] = []
+    for piece in pieces:
+        for begin in range(0, len(piece), PAGE):
+            part = piece[begin : begin + PAGE]
+            end = max(part.rfind(b"\n"), part.rfind(b"\r", 0, len(part) - 1)) + 1
+            if end:
+                yield b"".join([*waiting, part[:end]])
+                waiting = []
+            waiting.append(part[end:])
+    if rest := b"".join(waiting):
+        yield rest
+
+
+def _fits(page: bytes, encoding: str) -> bool:
+    try:
+        page.decode(encoding)
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
+def _line_count(page: bytes) -> int:
+    """Lines that end with LF, CR or CR LF, and one behind the last end, if there is any text."""
+    ends = page.count(b"\n") + page.count(b"\r") - page.count(b"\r\n")
+    return ends + (not page.endswith((b"\n", b"\r")))
+
+
+def _line_starts(data: npt.NDArray[np.uint8]) -> npt.NDArray[np.signedinteger]:
+    """Where lines begin that end as ``_line_count`` has it, and where the last one ends."""
+    feed = data == _LINE_FEED
+    ends = feed | (data == _RETURN)
+    ends[:-1] &= ~((data[:-1] == _RETURN) & feed[1:])
+    starts = np.append(0, np.flatnonzero(ends) + 1)
+    return starts if starts[-1] == len(data) else np.append(starts, len(data))

@@ -1,0 +1,310 @@
+"""One translated block: its steps on a stack, all of them or none.
+
+Each step is what ``instructions.Step`` says of it.
+"""
+
+import numba
+import numpy as np
+
+from twin.nc.bench_kernels import Bench, copy_force, copy_state
+from twin.nc.canonical import IntArray
+from twin.nc.expression_kernels import of_one, of_three, of_two
+from twin.nc.expressions import LARGEST_NUMBER
+from twin.nc.instructions import PART_BITS, Step, Table
+from twin.nc.memory_kernels import NO_SLOT, load, own_value, slot_of_number, store
+from twin.nc.plain_kernels import run_words
+from twin.nc.plain_state import BlockTables, Constants, Rows, State
+from twin.nc.plain_words_kernels import NOT_PLAIN
+from twin.nc.routine_state import (
+    AGAIN,
+    BACK,
+    BLOCKS,
+    CALLS,
+    DEPTH,
+    FIRST,
+    FULL,
+    FURTHEST,
+    LAST,
+    LEFT,
+    LINE,
+    MADE,
+    NO_PLACE,
+    NOTHING_RESTORED,
+    OWN,
+    PART,
+    RESTORED_BY_CONTROL,
+    RESTORED_HERE,
+    RESTORES,
+    STEPS_LEFT,
+    Routine,
+)
+
+DONE = -1
+"""The block was run."""
+
+(
+    _BLOCK,
+    _NEXT,
+    _LEAVE,
+    _NUMBER,
+    _LOAD,
+    _LOAD_NUMBERED,
+    _LOAD_BELOW,
+    _LOAD_NUMBERED_BELOW,
+    _DEFINED,
+    _NEGATE,
+    _ONE,
+    _TWO,
+    _THREE,
+    _DROP,
+    _STORE,
+    _STORE_DECLARED,
+    _STORE_NUMBERED,
+    _WORD,
+    _WORD_NUMBER,
+    _RUN,
+    _RUN_OFTEN,
+    _JUMP,
+    _JUMP_IF,
+    _JUMP_UNLESS,
+    _JUMP_CASE,
+    _BEGIN_FOR,
+    _STEP_FOR,
+    _COUNT_DOWN,
+    _MAY_CALL,
+    _OWN_VARIABLES,
+    _RESTORING,
+    _CALL,
+    _RANGE,
+    _REPEAT,
+    _MAY_RETURN,
+    _RETURN,
+) = range(len(Step))  # plain integers compile faster than members
+_PART_MASK = (1 << PART_BITS) - 1
+
+
+@numba.njit(cache=True)
+def run_steps(
+    row: int,
+    table: Table,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    rows: Rows,
+    routine: Routine,
+    bench: Bench,
+) -> int:
+    """Run the block that begins at a row; ``DONE``, or why it was left as if not begun.
+
+    Args:
+        row: Row of its ``BLOCK``.
+        table: The instructions.
+        tables: What words mean.
+        constants: What stays.
+        state: What changes with moves.
+        rows: Room for the moves, one at least.
+        routine: How far the program has come.
+        bench: Room to work in.
+    """
+    progress, calls, memory = routine.progress, routine.calls, routine.memory
+    saved, stack = routine.saved, bench.stack
+    line, made, depth, called = progress[LINE], progress[MADE], progress[DEPTH], progress[CALLS]
+    place = line << PART_BITS | progress[PART]
+    steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
+    behind = (line + 1) << PART_BITS if table.argument[row] == 0 else place + 1
+    going, range_end, restores = behind, NO_PLACE, NOTHING_RESTORED
+    top, words, stores, own, why = 0, 0, 0, 0, LEFT
+    while steps_left >= 0:
+        row += 1
+        step, argument = table.step[row], table.argument[row]
+        if step == _NUMBER:
+            stack[top] = table.number[row]
+            top += 1
+        elif step == _LOAD:
+            value = load(memory, depth, argument)
+            if np.isnan(value):
+                break
+            stack[top] = value
+            top += 1
+        elif step == _TWO:
+            top -= 1
+            value = of_two(argument, stack[top - 1], stack[top])
+            if not abs(value) <= LARGEST_NUMBER:
+                break
+            stack[top - 1] = value
+        elif step == _ONE:
+            value = of_one(argument, stack[top - 1])
+            if not abs(value) <= LARGEST_NUMBER:
+                break
+            stack[top - 1] = value
+        elif step == _THREE:
+            top -= 2
+            value = of_three(argument, stack[top - 1], stack[top], stack[top + 1])
+            if not abs(value) <= LARGEST_NUMBER:
+                break
+            stack[top - 1] = value
+        elif step == _NEGATE:
+            stack[top - 1] = -stack[top - 1]
+        elif step == _LOAD_NUMBERED:
+            slot = slot_of_number(table.numbered, stack[top - 1])
+            value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
+            if np.isnan(value):
+                break
+            stack[top - 1] = value
+        elif step in (_LOAD_BELOW, _LOAD_NUMBERED_BELOW):
+            slot = argument
+            if step == _LOAD_NUMBERED_BELOW:
+                slot = slot_of_number(table.numbered, stack[top - 2])
+            value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
+            if np.isnan(value):
+                break
+            stack[top] = stack[top - 1]
+            stack[top - 1] = value
+            top += 1
+        elif step == _DEFINED:
+            stack[top] = 0.0 if np.isnan(load(memory, depth, argument)) else 1.0
+            top += 1
+        elif step == _DROP:
+            top -= 1
+        elif step in (_STORE, _STORE_DECLARED, _STORE_NUMBERED):
+            top -= 1
+            slot = argument
+            if step == _STORE_NUMBERED:
+                slot = slot_of_number(table.numbered, stack[top - 1])
+                if slot == NO_SLOT:
+                    break
+            before = own_value(memory, depth, slot)
+            if step == _STORE_DECLARED and np.isnan(before):
+                break
+            bench.slots[stores], bench.before[stores] = slot, before
+            stores += 1
+            store(memory, depth, slot, stack[top])
+        elif step in (_WORD, _WORD_NUMBER):
+            bench.roles[words] = argument
+            if step == _WORD:
+                top -= 1
+                bench.values[words] = stack[top]
+            else:
+                bench.values[words] = table.number[row]
+            words += 1
+        elif step in (_RUN, _RUN_OFTEN):
+            count = 1.0
+            if step == _RUN_OFTEN:
+                top -= 1
+                count = stack[top]
+                if not 1.0 <= count <= table.number[row] or count != np.floor(count):
+                    break
+                if made + count > len(rows.codes):
+                    why = FULL
+                    break
+                copy_state(state, bench.kept)
+            after = made
+            for _ in range(int(count)):
+                after = run_words(
+                    line + 1,
+                    bench.roles[:words],
+                    bench.values[:words],
+                    tables,
+                    constants,
+                    state,
+                    bench.modal,
+                    rows,
+                    after,
+                )
+                if after == NOT_PLAIN:
+                    break
+            if after == NOT_PLAIN:
+                if step == _RUN_OFTEN:
+                    copy_state(bench.kept, state)
+                break
+            made = after
+        elif step == _JUMP:
+            going = argument
+        elif step in (_JUMP_IF, _JUMP_UNLESS):
+            top -= 1
+            if (stack[top] != 0.0) == (step == _JUMP_IF):
+                going = argument
+                step = _NEXT
+        elif step == _JUMP_CASE:
+            top -= 1
+            if stack[top] == stack[top - 1]:
+                going = argument
+                step = _NEXT
+        elif step == _BEGIN_FOR:
+            first, last, width = stack[top - 3], stack[top - 2], stack[top - 1]
+            if width == 0.0:
+                break
+            stack[top - 3] = 1.0 if (first - last) * width > 0.0 else 0.0
+            stack[top - 2] = first
+            top -= 1
+        elif step == _STEP_FOR:
+            last, width = stack[top - 3], stack[top - 2]
+            if width == 0.0:
+                break
+            value = stack[top - 1] + width
+            stack[top - 4] = 1.0 if (value - last) * width <= 0.0 else 0.0
+            stack[top - 3] = value
+            top -= 2
+        elif step == _COUNT_DOWN:
+            left = own_value(memory, depth, argument)
+            if np.isnan(left):
+                left = table.number[row]
+            store(memory, depth, argument, np.nan if left == 0.0 else left - 1.0)
+            stack[top] = 0.0 if left == 0.0 else 1.0
+            top += 1
+        elif step == _MAY_CALL:
+            if called >= argument or called >= len(calls) or depth + 1 >= len(memory.local):
+                break
+        elif step == _OWN_VARIABLES:
+            depth += 1
+            own = 1
+            memory.local[depth, :] = np.nan
+        elif step == _RESTORING:
+            restores = RESTORED_HERE
+        elif step in (_CALL, _REPEAT):
+            again = 0.0
+            if step == _REPEAT:
+                top -= 1
+                again = stack[top] - 1.0
+                if not again >= 0.0 or again != np.floor(again):
+                    break
+            call = calls[called]
+            call[BACK], call[FIRST], call[AGAIN] = behind, argument, int(again)
+            call[LAST], call[OWN], call[RESTORES] = range_end, own, restores
+            if restores == RESTORED_HERE:
+                copy_force(state.modal, state.in_force, saved.modal[called], saved.in_force[called])
+            called += 1
+            going = argument
+        elif step == _RANGE:
+            range_end = argument
+        elif step == _MAY_RETURN:
+            from_part = _innermost(calls, called)
+            if from_part == 0 or calls[from_part - 1, RESTORES] == RESTORED_BY_CONTROL:
+                break
+        elif step == _RETURN:
+            called = _innermost(calls, called) - 1
+            depth -= calls[called, OWN]
+            going = calls[called, BACK]
+            if calls[called, RESTORES] == RESTORED_HERE:
+                copy_force(saved.modal[called], saved.in_force[called], state.modal, state.in_force)
+        elif step == _LEAVE:
+            break
+        if step == _NEXT:
+            progress[LINE], progress[PART] = going >> PART_BITS, going & _PART_MASK
+            progress[FURTHEST] = max(progress[FURTHEST], place)
+            progress[STEPS_LEFT], progress[DEPTH], progress[CALLS] = steps_left, depth, called
+            progress[MADE] = made
+            progress[BLOCKS] += 1
+            return DONE
+    while stores > 0:
+        stores -= 1
+        store(memory, progress[DEPTH], bench.slots[stores], bench.before[stores])
+    return why
+
+
+@numba.njit(cache=True)
+def _innermost(calls: IntArray, called: int) -> int:
+    """How many parts are being run up to the innermost that a word ends; 0: there is none."""
+    while called > 0 and calls[called - 1, LAST] != NO_PLACE:
+        called -= 1
+    return called
