@@ -32,9 +32,6 @@ REACH_GAIN = 1e-5
 """A brake that does not allow this much more than the best so far is not looked into; where a limit
 on the way bounds the velocity, no more than this share of it is lost."""
 
-SPENT = 0.98
-"""Share of the way to a border, beyond the next, that a brake to it takes at least."""
-
 LONGEST_BRAKE = math.sqrt(32.0 / 27.0)
 """The way from v to w is longest for w = v / 3: that much longer than the one to a stop."""
 
@@ -230,8 +227,9 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
                 if not free:
                     lowest = w
                     failed += 1
-                # A brake that ends early creeps to border k: one to a nearer border does better.
-                creeps = v > w and brake_distance(v, w, deceleration, jerk) < SPENT * distance
+                # Where a brake ends before the last stretch, one to a nearer border does better.
+                before = distance - limits[0, last]
+                creeps = v > w and brake_distance(v, w, deceleration, jerk) < before
                 if v > best and not (creeps and last > i):
                     best, to, at = v, k, min(w, v)
             if entry[k] < SLOWEST or failed >= FAILED_BRAKES:
