@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from benches import linuxcnc_simulator
-from benches.row import Row, median_seconds
+from benches.row import Row, median_cpu_seconds
 
 from twin.columns import join
 from twin.motion.limits import MotionLimits
@@ -37,6 +37,9 @@ SHAPES = {
 """Programs that LinuxCNC reads too, but for their first line."""
 
 TOLERANCE_MM = 0.05
+
+CAMOTICS_LINES, CAMOTICS_ARCS = 78e3, 2.5e3
+"""What its planner was once measured at, on short lines and on arcs [blocks/s]: it is not run here."""
 
 
 def prepared(folder: Path, text: str) -> Preparation:
@@ -69,17 +72,19 @@ def rows() -> Iterator[Row]:
 
 
 def _rates(folder: Path) -> Iterator[Row]:
-    for task, text in (
-        ("short lines, exact path", _surface(40_000, "G50")),
-        ("short lines, continuous", _surface(40_000, "G05")),
-        ("half circles", _half_circles(2_000)),
+    for task, text, peer in (
+        ("short lines, exact path", _surface(40_000, "G50"), CAMOTICS_LINES),
+        ("short lines, continuous", _surface(40_000, "G05"), CAMOTICS_LINES),
+        ("half circles, exact path", _half_circles(2_000, "G50"), CAMOTICS_ARCS),
+        ("half circles, continuous", _half_circles(2_000, "G05"), CAMOTICS_ARCS),
+        ("helices with C, exact path", _helices(2_000), CAMOTICS_ARCS),
     ):
         preparation = prepared(folder, text)
         chunks = list(preparation.interpretation().chunks())
         limits = motion_limits(preparation.machine)
         blocks = sum(len(chunk.moves) for chunk in chunks)
-        seconds = median_seconds(lambda c=chunks, m=limits: cycle_s(c, m), repeats=3)
-        yield Row("motion", task, blocks / seconds, "blocks/s")
+        seconds = median_cpu_seconds(lambda c=chunks, m=limits: cycle_s(c, m), repeats=3)
+        yield Row("motion", task, blocks / seconds, "blocks/s", "CAMotics, stated", peer)
 
 
 def _surface(count: int, mode: str) -> str:
@@ -92,13 +97,19 @@ def _surface(count: int, mode: str) -> str:
     return "\n".join([f"G90 G17 {mode} F3000", *lines]) + "\n"
 
 
-def _half_circles(count: int) -> str:
+def _half_circles(count: int, mode: str) -> str:
     """A wave of half circles of 1 mm, to and fro over 200 mm."""
     lines: list[str] = []
     for number in range(count):
         turn, step = divmod(number, 100)
         x = 2 * (step + 1) if turn % 2 == 0 else 200 - 2 * (step + 1)
         lines.append(f"G0{2 + number % 2} X{x} Y0 I{1 if turn % 2 == 0 else -1} J0")
+    return "\n".join([f"G90 G17 {mode} F3000", *lines]) + "\n"
+
+
+def _helices(count: int) -> str:
+    """Full turns of 10 mm, up and down by 1 mm, with the table going 30 degrees to and fro."""
+    lines = [f"G03 X0 Y0 Z{number % 2} I5 J0 C{30 * (number % 2)}" for number in range(count)]
     return "\n".join(["G90 G17 G50 F3000", *lines]) + "\n"
 
 

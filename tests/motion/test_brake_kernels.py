@@ -13,7 +13,6 @@ from motion_programs import SETTINGS
 from twin.motion.brake_kernels import (
     brake_distance,
     brake_need,
-    brake_state,
     brake_time,
     time_to,
 )
@@ -21,6 +20,7 @@ from twin.motion.phase_kernels import put_brake
 from twin.motion.reach_kernels import find_brake, find_reach
 from twin.motion.stretch_kernels import find_stretches, merge_limits, place_phases
 from twin.motion.transition_kernels import find_transition
+from twin.motion.way_kernels import room_for_brake
 from twin.nc.canonical import FloatArray
 
 FEWER = hypothesis.settings(SETTINGS, max_examples=40)
@@ -58,17 +58,12 @@ def test_brakes_agree_with_the_sum_of_their_acceleration(
     v: float, lower: float, rising: float, deceleration: float, jerk: float
 ) -> None:
     a, w = rising * deceleration, lower * v
-    t, x, velocity, acceleration = plain_brake(v, a, w, deceleration, jerk)
+    t, x, velocity, _ = plain_brake(v, a, w, deceleration, jerk)
     assert brake_need(v, a, w, deceleration, jerk) == pytest.approx(x[-1], rel=1e-6, abs=1e-9)
     assert velocity[-1] == pytest.approx(w, rel=1e-6, abs=1e-6)
     if a == 0.0:
         assert brake_distance(v, w, deceleration, jerk) == pytest.approx(x[-1], rel=1e-6, abs=1e-9)
         assert brake_time(v, w, deceleration, jerk) == pytest.approx(t[-1], rel=1e-6, abs=1e-9)
-    for share in (0.1, 0.5, 0.9):
-        row = int(share * (len(x) - 1))
-        found_v, found_a = brake_state(float(x[row]), v, a, w, deceleration, jerk)
-        assert found_v == pytest.approx(velocity[row], rel=1e-4, abs=1e-4 * v)
-        assert found_a == pytest.approx(acceleration[row], rel=1e-2, abs=0.02 * deceleration)
 
 
 @SETTINGS
@@ -109,6 +104,40 @@ def test_time_is_found_from_all_but_standing() -> None:
     expected = (-v + math.sqrt(v * v + 2.0 * a * distance)) / a
     found = time_to(distance, v, a, 0.0, 2.0 * distance / v)
     assert found == pytest.approx(expected, rel=1e-13)
+
+
+@SETTINGS
+@given(
+    LARGE, st.floats(0.0, 0.95), st.floats(0.0, 1.0), DECELERATION, JERK,
+    st.lists(st.floats(0.01, 1.2), min_size=4, max_size=4),
+    st.lists(st.floats(0.6, 1.4), min_size=4, max_size=4),
+)  # fmt: skip
+def test_a_brake_has_room_where_it_keeps_the_limits_on_its_way(
+    v: float, lower: float, rising: float, deceleration: float, jerk: float,
+    shares: list[float], caps: list[float],
+) -> None:  # fmt: skip
+    a, w = rising * deceleration, lower * v
+    _, x, velocity, acceleration = plain_brake(v, a, w, deceleration, jerk)
+    top = velocity.max()
+    limits = np.array(
+        [[share * x[-1] for share in shares], [1.01 * top, *(cap * v for cap in caps[1:])],
+         [1.01 * deceleration, *(0.9 * deceleration for _ in caps[1:])],
+         [deceleration] * 4, [jerk] * 4]
+    )  # fmt: skip
+    entry = np.array([math.inf, *(cap * v for cap in caps[:3]), 0.0])
+    room = room_for_brake(limits, entry, 0, 0.0, v, a, 4, w, deceleration, jerk, 1.0)
+    borders = np.append(0.0, np.cumsum(limits[0]))
+
+    there = np.minimum(np.searchsorted(borders[1:4], x, "right"), 3)
+    beyond = there > 0
+    holds = bool(
+        np.all(velocity <= limits[1, there])
+        and np.all(acceleration[beyond] <= limits[2, there[beyond]])
+        and np.all(np.interp(borders[1:4], x, velocity) <= entry[1:4])
+        and borders[4] >= x[-1]
+    )
+    if abs(room) > 1e-3 * x[-1]:
+        assert holds == (room > 0.0)
 
 
 @st.composite

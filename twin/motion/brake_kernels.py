@@ -58,34 +58,3 @@ def brake_need(v: float, a: float, w: float, deceleration: float, jerk: float) -
     top = v + 0.5 * a * lift_time
     lift = (v + a * lift_time / 3.0) * lift_time
     return lift + brake_distance(top, w, deceleration, jerk) if top > w else lift
-
-
-@numba.njit(cache=True)
-def brake_state(
-    x: float, v: float, a: float, w: float, deceleration: float, jerk: float
-) -> tuple[float, float]:
-    """Velocity and acceleration after x on the brake from (v, a) to (w, 0)."""
-    top = v + a * a / (2.0 * jerk)
-    drop = top - w
-    hardest = min(deceleration, math.sqrt(drop * jerk)) if drop > 0.0 else 0.0
-    duration = max(0.0, (a + hardest) / jerk)
-    length = ((-jerk / 6.0 * duration + 0.5 * a) * duration + v) * duration
-    if x < length:
-        t = time_to(x, v, a, -jerk, duration)
-        return v + (a - 0.5 * jerk * t) * t, a - jerk * t
-    x -= length
-    v += (a - 0.5 * jerk * duration) * duration
-    ease = hardest / jerk
-    low = w + 0.5 * hardest * ease
-    if hardest > 0.0:
-        duration = max(0.0, (v - low) / hardest)
-        length = (v - 0.5 * hardest * duration) * duration
-        if x < length:
-            v = math.sqrt(max(0.0, v * v - 2.0 * hardest * x))
-            return v, -hardest
-        x -= length
-        length = ((jerk / 6.0 * ease - 0.5 * hardest) * ease + low) * ease
-        if x < length:
-            t = time_to(x, low, -hardest, jerk, ease)
-            return low + (-hardest + 0.5 * jerk * t) * t, -hardest + jerk * t
-    return min(w, top), 0.0

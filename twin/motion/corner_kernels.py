@@ -13,6 +13,8 @@ derivatives; it is odd::
     smooth_square(t) = (3 t + 8 t² + 6 t³ - t⁵) / 32
 """
 
+import math
+
 import numba
 import numpy as np
 
@@ -20,6 +22,12 @@ from twin.nc.canonical import FloatArray
 
 MOST_NEIGHBOURS = 32
 """Borders to either side that a rounding may reach over."""
+
+MOST_STEPS = 50
+"""Of the search for a width; some four are usual."""
+
+NEARLY = 1e-6
+"""Relative step of Newton's from which on the next would be rounding."""
 
 NARROWEST = 1e-4
 """A rounding narrower than this is none [mm or deg]."""
@@ -86,6 +94,57 @@ def _between(
 
 
 @numba.njit(cache=True)
+def _even_width(
+    place: FloatArray, per_width: FloatArray, per_square: FloatArray,
+    i: int, before: int, after: int, high: float, guess: float,
+) -> float:  # fmt: skip
+    """The width that uses the tolerance at a border if its neighbours took the same.
+
+    Args:
+        place: As in ``find_widths``.
+        per_width: As in ``find_widths``.
+        per_square: As in ``find_widths``.
+        i: The border.
+        before: Border before the first that counts.
+        after: Border after the last.
+        high: The widest that has room.
+        guess: Where to begin the search.
+    """
+    width, below, above = min(guess, high), 0.0, math.inf
+    for _ in range(MOST_STEPS):
+        # What is used grows with the width, and ever faster: Newton comes down to the root.
+        used, slope = 0.0, 0.0
+        other, step = i, -1
+        while True:
+            away = abs(place[other] - place[i])
+            if before < other < after and away < width:
+                t = away / width
+                flat = 1.0 - t * t
+                knee, bend = per_width[other], per_square[other] * BEND_PEAK
+                used += width * (
+                    knee * (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 16.0 + bend * width
+                )
+                slope += knee * 3.0 / 16.0 * flat * flat + 2.0 * bend * width
+                other += step
+            elif step < 0:
+                other, step = i + 1, 1
+            else:
+                break
+        if used > 1.0:
+            above = width
+        elif width == high:
+            return high
+        else:
+            below = width
+        new = min(high, width - (used - 1.0) / slope)
+        if abs(new - width) <= NEARLY * width or below >= (1.0 - NEARLY) * above:
+            return max(below, new) if new < above else below
+        # Where a bend comes within reach its share is there at once: Newton cannot see that.
+        width = new if below < new < above else 0.5 * (below + above)
+    return below
+
+
+@numba.njit(cache=True)
 def find_widths(
     place: FloatArray, rounded: FloatArray, per_width: FloatArray, per_square: FloatArray
 ) -> FloatArray:
@@ -119,36 +178,28 @@ def find_widths(
         if not rounded[i]:
             wall = i
         after[i] = min(wall, i + MOST_NEIGHBOURS)
+    guess = math.inf
     for i in range(count):
         if not rounded[i] or (per_width[i] == 0.0 and per_square[i] == 0.0):
             continue
-        low = 0.0
         high = min(place[i] - place[before[i]], place[after[i]] - place[i])
-        for step in range(40):
-            middle = high if step == 0 else 0.5 * (low + high)
-            if middle <= 0.0:
-                break
-            used = 0.0
-            for other in range(before[i] + 1, after[i]):
-                used += _share(place[other] - place[i], middle, per_width[other], per_square[other])
-            if used <= 1.0:
-                low = middle
-            else:
-                high = middle
-            if high - low < 1e-6 * high:
-                break
-        first[i] = low
+        guess = _even_width(place, per_width, per_square, i, before[i], after[i], high, guess)
+        first[i] = guess
     excess = np.ones(count)
     for i in range(count):
-        if not rounded[i]:
+        # What each rounding takes at the borders that it reaches.
+        if first[i] == 0.0:
             continue
-        used = 0.0
-        for other in range(before[i] + 1, after[i]):
-            if first[other] > 0.0:
-                used += _share(
-                    place[other] - place[i], first[other], per_width[other], per_square[other]
-                )
-        excess[i] = max(1.0, used)
+        other = i
+        while other > before[i] and place[i] - place[other] < first[i]:
+            excess[other] += _share(place[i] - place[other], first[i], per_width[i], per_square[i])
+            other -= 1
+        other = i + 1
+        while other < after[i] and place[other] - place[i] < first[i]:
+            excess[other] += _share(place[other] - place[i], first[i], per_width[i], per_square[i])
+            other += 1
+    for i in range(count):
+        excess[i] = max(1.0, excess[i] - 1.0)
     within = np.ones(count)
     if np.any(per_square > 0.0):
         for i in range(count):
@@ -161,9 +212,14 @@ def find_widths(
         if first[i] == 0.0:
             continue
         most = max(1.0, within[i - 1], within[i])
-        for other in range(before[i] + 1, after[i]):
-            if abs(place[other] - place[i]) < first[i]:
-                most = max(most, excess[other], within[other - 1], within[other])
+        other = i
+        while other > before[i] and place[i] - place[other] < first[i]:
+            most = max(most, excess[other], within[other - 1], within[other])
+            other -= 1
+        other = i + 1
+        while other < after[i] and place[other] - place[i] < first[i]:
+            most = max(most, excess[other], within[other - 1], within[other])
+            other += 1
         if first[i] / most >= NARROWEST:
             width[i] = first[i] / most
     return width
@@ -171,8 +227,9 @@ def find_widths(
 
 @numba.njit(cache=True)
 def add_rounding(
-    coefficients: FloatArray, away: float, width: float, knee: FloatArray, bend: FloatArray
-) -> None:
+    coefficients: FloatArray, away: float, width: float, knee: FloatArray, bend: FloatArray,
+    share: float = 1.0,
+) -> None:  # fmt: skip
     """Add a border's rounding to the polynomials of a piece.
 
     Args:
@@ -182,6 +239,7 @@ def add_rounding(
         width: Of the rounding [mm or deg].
         knee: Step of dq/dx, shape (k,).
         bend: Step of d²q/dx², shape (k,).
+        share: -1 to take the rounding away.
     """
     t = away / width
     squared = t * t
@@ -203,7 +261,7 @@ def add_rounding(
         -5.0 * t / 32.0,
         -1.0 / 32.0,
     )
-    scale = width
+    scale = share * width
     for power in range(6):
         for axis in range(len(knee)):
             coefficients[axis, power] += scale * (

@@ -102,9 +102,10 @@ def _strictness(
     own = np.where(np.isnan(blocks.tolerance), limits.corner_tolerance, blocks.tolerance)
     own[~rounded] = np.inf
     spatial = own.copy()
-    for shift in range(1, MOST_NEIGHBOURS + 1):
-        np.minimum(spatial[shift:], own[:-shift], out=spatial[shift:])
-        np.minimum(spatial[:-shift], own[shift:], out=spatial[:-shift])
+    if np.ptp(own[rounded]) > 0.0:
+        for shift in range(1, MOST_NEIGHBOURS + 1):
+            np.minimum(spatial[shift:], own[:-shift], out=spatial[shift:])
+            np.minimum(spatial[:-shift], own[shift:], out=spatial[:-shift])
     knee_share = np.linalg.norm(knee[:, :3], axis=1) / spatial
     bend_share = np.linalg.norm(bend[:, :3], axis=1) / spatial
     others = np.abs(knee[:, 3:]).max(axis=1, initial=0.0) / limits.further_corner_tolerance

@@ -179,11 +179,12 @@ class OverriddenPlan:
         window = next(self._windows, None)
         if window is None:
             return False
+        window = window.joined()
         known = np.zeros((3, 0))
         if self.phases:
             last = self._window
             if len(last.pause) == self._stretches:
-                self._state[[0, 5, 6, 7]] -= last.due
+                self._state[[0, 5]] -= last.due
                 known = ways_on(self._drive.ways, last.due)
             else:
                 # The window has been parted since: stretches have other numbers.

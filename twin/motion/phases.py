@@ -54,13 +54,13 @@ def plan_phases(
         if len(rows) > 0:
             yield phases_of(window, rows, stretches)
         known = ways_on(ways, window.due)
-        state[[0, 5, 6, 7]] -= window.due
+        state[[0, 5]] -= window.due
 
 
 def phases_of(window: Window, rows: FloatArray, stretches: IntArray) -> Phases:
     """Phases by pieces; ``rows`` are overwritten."""
-    lengths = window.pieces.length
-    return Phases(window.pieces, rows, place_phases(rows, stretches, window.begins, lengths))
+    pieces = window.pieces_until(int(stretches[:, 1].max(initial=0)))
+    return Phases(pieces, rows, place_phases(rows, stretches, window.begins, pieces.length))
 
 
 def no_phases(pieces: Pieces) -> Phases:

@@ -18,22 +18,19 @@ import numpy as np
 
 from twin.columns import Columns
 from twin.motion.blocks import Blocks, BoolArray, Surroundings, blocks_of_chunks, with_neighbours
+from twin.motion.bound_kernels import bound_derivatives
 from twin.motion.corners import CONTEXT, find_borders
+from twin.motion.cut_kernels import cut_blocks
+from twin.motion.limit_kernels import curve_limits, straight_limits
 from twin.motion.limits import MotionLimits
-from twin.motion.piece_kernels import bound_derivatives, cut_blocks, reachable_velocities
+from twin.motion.reachable_kernels import reachable_velocities
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 from twin.toolpath.geometry import Geometry
 
-BATCH = 1024
-"""Blocks that are cut into pieces at a time."""
-MOST_ANGLE = BATCH * math.pi
+BATCH = 2000
+"""Blocks that are cut into pieces at a time: as many as are planned at a time."""
+MOST_ANGLE = 1024.0 * math.pi
 """What their arcs turn together, but for the last [rad]: of helices with many turns each, a few."""
-
-CENTRIPETAL_SHARE = 0.95
-"""Of an axis's acceleration that following a curve may use; the rest is left to change speed."""
-
-CURVE_JERK_SHARE = 0.5
-"""Of an axis's jerk that a curve may use at constant speed, and again at constant acceleration."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -96,13 +93,13 @@ def pieces_of_chunks(
 
 
 def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: float) -> Pieces:
-    blocks, first, last = surroundings.blocks, surroundings.first, surroundings.last
+    blocks = surroundings.blocks
     borders = find_borders(blocks, limits)
     # The neighbours are cut as well: they tell how fast a piece can be reached and left.
     owner, offset, length, rounding = cut_blocks(
         blocks.length, blocks.geometry.angle, borders.width, borders.knee, borders.bend
     )
-    own = blocks[owner]
+    own = blocks if len(owner) == len(blocks) else blocks[owner]
     scale = np.divide(1.0, own.length, out=np.zeros(len(owner)), where=own.length > 0.0)
     begin = np.where(own.length > 0.0, offset * scale, np.where(own.move < 0, 0.0, 1.0))
     entry = np.where(offset == 0.0, borders.entry[owner], np.inf)
@@ -128,7 +125,8 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
         rounding=rounding,
         geometry=own.geometry,
     )
-    return pieces[np.flatnonzero((owner >= first) & (owner < last))]
+    first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
+    return pieces[first:last]
 
 
 def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:
@@ -151,55 +149,32 @@ def _constant_limits(
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Velocity, acceleration, deceleration, jerk that any instant of a piece may use, (n,) each."""
     shapes = own.geometry
-    bounds, bend, product = bound_derivatives(
+    bounds, bend, against = bound_derivatives(
         shapes.drift, shapes.cosine, shapes.sine, shapes.angle, begin, scale, length, rounding
     )
-    first, second, third = bounds[:, 0], bounds[:, 1], bounds[:, 2]
-    # Where q' and q'' have opposite signs, following the curve helps to speed up, not to brake.
-    against_speeding = np.where(product[:, 1] <= 0.0, 0.0, second)
-    against_braking = np.where(product[:, 0] >= 0.0, 0.0, second)
     path_acceleration = own.stretch * np.where(
         own.rotary_alone, limits.rotary_path_acceleration, limits.path_acceleration
     )
     path_jerk = own.stretch * np.where(own.rotary_alone, limits.rotary_path_jerk, limits.path_jerk)
-    with np.errstate(divide="ignore", over="ignore"):
-        velocity = np.minimum(wanted, (limits.velocity / first).min(axis=1))
-        centripetal = (CENTRIPETAL_SHARE * limits.acceleration / second).min(axis=1)
-        centripetal = np.minimum(centripetal, path_acceleration / own.stretch / bend)
-        velocity = np.minimum(velocity, np.sqrt(centripetal))
-        turning = (CURVE_JERK_SHARE * limits.jerk / third).min(axis=1)
-        velocity = np.minimum(velocity, np.cbrt(turning))
-
-        straight = np.minimum(path_acceleration, (limits.acceleration / first).min(axis=1))
-        ramp_jerk = np.minimum(path_jerk, (limits.jerk / first).min(axis=1))
+    velocity, straight, jerk = straight_limits(
+        bounds, bend, wanted, path_acceleration, path_jerk, own.stretch,
+        limits.velocity, limits.acceleration, limits.jerk,
+    )  # fmt: skip
+    acceleration = np.minimum(straight, own.stretch * own.acceleration)
+    deceleration = np.minimum(straight, own.stretch * own.deceleration)
+    curved = np.any(bounds[:, 1] > 0.0, axis=1)
+    if np.any(curved):
         # A ramp to v takes v / a without a jerk limit and a / j longer with it; a dwell has none.
-        easing = np.divide(
-            straight**2 / velocity, ramp_jerk, out=np.zeros(len(length)), where=length > 0.0
-        )
-        readiness = 1.0 / (1.0 + easing)
+        ramp = velocity * jerk
+        easing = np.divide(straight**2, ramp, out=np.zeros_like(ramp), where=length > 0.0)
         velocity = reachable_velocities(
-            first, against_speeding, against_braking, bend + second.max(axis=1) > 0.0,
-            length, velocity, ceilings, limits.acceleration,
+            bounds, against, curved, length, velocity, ceilings, limits.acceleration,
             np.minimum(path_acceleration, own.stretch * own.acceleration),
             np.minimum(path_acceleration, own.stretch * own.deceleration),
-            readiness,
+            1.0 / (1.0 + easing),
         )  # fmt: skip
-        speeding, braking = (
-            np.minimum(
-                path_acceleration,
-                ((limits.acceleration - against * velocity[:, None] ** 2) / first).min(axis=1),
-            )
-            for against in (against_speeding, against_braking)
-        )
-        left = limits.jerk - third * velocity[:, None] ** 3
-        mixed = CURVE_JERK_SHARE * left / (3.0 * second * velocity[:, None])
-        acceleration = np.minimum(
-            np.minimum(speeding, mixed.min(axis=1)), own.stretch * own.acceleration
-        )
-        deceleration = np.minimum(
-            np.minimum(braking, mixed.min(axis=1)), own.stretch * own.deceleration
-        )
-        hardest = np.maximum(acceleration, deceleration)
-        left = left - 3.0 * second * (velocity * hardest)[:, None]
-        jerk = np.minimum(path_jerk, (left / first).min(axis=1))
+        curve_limits(
+            bounds, against, velocity, acceleration, deceleration, jerk,
+            limits.acceleration, limits.jerk,
+        )  # fmt: skip
     return velocity, acceleration, deceleration, jerk

@@ -5,19 +5,24 @@ zero; when neither is safe any more, the brake that made the state safe is carri
 this gives the well-known seven phases of minimum time.
 """
 
+import math
+
 import numba
 import numpy as np
 
-from twin.motion.brake_kernels import brake_distance, brake_need, time_to
-from twin.motion.early_brake_kernels import better_to_brake
+from twin.motion.brake_kernels import brake_distance, time_to
+from twin.motion.last_chance_kernels import (
+    last_chance,
+    time_between,
+    time_to_border,
+)
 from twin.motion.phase_kernels import put_brake, put_phase
-from twin.motion.reach_kernels import BISECTIONS, ROUNDING, SLOWEST, find_brake
+from twin.motion.reach_kernels import ROUNDING, SLOWEST, find_brake
 from twin.nc.canonical import FloatArray, IntArray
 
-STATE_AT_REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0, -1.0, 0.0])
-"""Stretch, x within it, v, a, time; the stretch in which an early brake was chosen, and that in
-which one was weighed, -1: none; the border to which the state can brake, -1: to be found, and the
-velocity there."""
+STATE_AT_REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0])
+"""Stretch, x within it, v, a, time; the border to which the state can brake, -1: to be found, and
+the velocity there."""
 
 SHORTEST_PHASE = 1e-10
 """Phases below this are rounding [s]."""
@@ -26,8 +31,18 @@ SAME = 1e-12
 """Relative difference of velocities that rounding makes: the brake between them would be longer
 than what is left of the way."""
 
-TIME_PRECISION = 1e-14
-"""Of the end of a phase, relative to the time looked at."""
+MOST_BRAKES = 64
+"""That are looked at in turn for one phase."""
+
+BRIEF = 1e-11
+"""How far beyond the last chance of a brake another is looked for, relative to the time looked at."""
+
+LATER = 1.02
+"""Of two brakes the one to the farther border is preferred if it takes no longer, by this factor, than
+the nearer one and the way on from there at ``reach``."""
+
+STRIDE = 8.0
+"""By which the search goes on where a brake is possible for longer, but for its rounding."""
 
 MOST_PHASES = 256
 """Of one stretch; where rounding asks for more, the brake that is known is carried out."""
@@ -59,36 +74,12 @@ def _brake_after(
     new_v = v + (0.5 * j * t + a) * t
     new_a = a + j * t
     if not to_border:
-        return find_brake(limits, entry, reach, i, new_x, new_v, new_a, 0.0, 0)
-    if new_v > min(limits[1, i], entry[i + 1]) or i + 1 >= limits.shape[1]:
+        return find_brake(limits, entry, reach, i, new_x, new_v, new_a, SAME, 0)
+    if new_v > min(limits[1, i], entry[i + 1]) * (1.0 + SAME) or i + 1 >= limits.shape[1]:
         return -1
     if limits[0, i + 1] == 0.0:
         return -1
-    return find_brake(limits, entry, reach, i + 1, 0.0, new_v, new_a, 0.0, 0)
-
-
-@numba.njit(cache=True)
-def _last_chance(
-    limits: FloatArray, i: int, x: float, v: float, a: float, j: float, k: int, w: float,
-    low: float, high: float,
-) -> float:  # fmt: skip
-    """How long jerk j may last if only the way to brake to w at border k counts, within bounds."""
-    deceleration, jerk, distance = limits[3, i], limits[4, i], limits[0, i] - x
-    for last in range(i + 1, k):
-        deceleration = min(deceleration, limits[3, last])
-        jerk = min(jerk, limits[4, last])
-        distance += limits[0, last]
-    for _ in range(BISECTIONS):
-        t = 0.5 * (low + high)
-        gone = ((j / 6.0 * t + 0.5 * a) * t + v) * t
-        need = brake_need(v + (0.5 * j * t + a) * t, a + j * t, w, deceleration, jerk)
-        if gone + need <= distance:
-            low = t
-        else:
-            high = t
-        if high - low <= TIME_PRECISION * high:
-            break
-    return low
+    return find_brake(limits, entry, reach, i + 1, 0.0, new_v, new_a, SAME, 0)
 
 
 @numba.njit(cache=True)
@@ -120,33 +111,26 @@ def _longest(
     found = _brake_after(limits, entry, reach, i, x, v, a, j, latest, at_border)
     if found >= 0:
         return latest, at_border, found
-    low, high = 0.0, latest
-    precision = TIME_PRECISION * latest
-    guess = True
-    for _ in range(BISECTIONS):
-        t = 0.5 * (low + high)
-        if guess:
-            # What bounds the time is most often the brake that is known.
-            t = _last_chance(limits, i, x, v, a, j, brake, reach[brake], low, high)
-            t = min(max(t, low + 0.25 * precision), high - 0.25 * precision)
-        found = _brake_after(limits, entry, reach, i, x, v, a, j, t, False)
-        if found >= 0:
-            low = t
-            guess = found != brake
-            brake = found
-            if not guess and high - low > precision:
-                # Then it is at its end here.
-                t = low + precision
-                found = _brake_after(limits, entry, reach, i, x, v, a, j, t, False)
-                if found < 0:
-                    break
-                low, brake = t, found
-        else:
-            high = t
-            guess = False
-        if high - low <= precision:
+    low, brief = 0.0, BRIEF * latest
+    step = brief
+    best, to, least = 0.0, brake, math.inf
+    for _ in range(MOST_BRAKES):
+        if step == brief:
+            low = last_chance(limits, entry, reach, i, x, v, a, j, brake, low, latest)
+            cost = time_to_border(limits, reach, i, x, v, a, j, low, brake)
+            between = time_between(limits, reach, to, brake)
+            if cost == math.inf or cost <= least + LATER * between:
+                best, to, least = low, brake, cost
+        # Another brake may be possible for longer.
+        t = low + step
+        if t >= latest:
             break
-    return low, False, brake
+        found = _brake_after(limits, entry, reach, i, x, v, a, j, t, False)
+        if found < 0:
+            break
+        step = STRIDE * step if found == brake else brief
+        low, brake = t, found
+    return best, False, to
 
 
 @numba.njit(cache=True)
@@ -178,7 +162,7 @@ def find_phases(
         pause: How long each stretch waits, shape (n,) [s].
         stop: Stretch at which to end.
         until: Time at which to end [s].
-        state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (9,).
+        state: As ``STATE_AT_REST``; overwritten by the state at the end, shape (7,).
 
     Returns:
         Rows begin [s], duration [s], x, v, a, j, and the first and last stretch of each phase.
@@ -189,7 +173,7 @@ def find_phases(
     stretches = np.zeros((256, 2), np.int64)
     used = 0
     i, x, v, a, now = int(state[0]), state[1], state[2], state[3], state[4]
-    brake_in, compared_in, k, w = int(state[5]), int(state[6]), int(state[7]), state[8]
+    k, w = int(state[5]), state[6]
     phases_here, last_i = 0, i
     while i < stop and i < count and now < until:
         phases_here = phases_here + 1 if i == last_i else 0
@@ -214,7 +198,7 @@ def find_phases(
         highest_v, highest_a, jerk = limits[1, i], limits[2, i], limits[4, i]
         j, duration, latest, at_border, then = 0.0, 0.0, 0.0, False, k
         gap = highest_v - (v + a * a / (2.0 * jerk))
-        extend = v <= 0.0 or (brake_in != i and phases_here < MOST_PHASES)
+        extend = v <= 0.0 or phases_here < MOST_PHASES
         if extend and a < highest_a * (1.0 - ROUNDING) and gap > ROUNDING * highest_v:
             j = jerk
             latest = (highest_a - a) / jerk
@@ -228,12 +212,6 @@ def find_phases(
             duration, at_border, then = _longest(limits, entry, reach, i, x, v, a, j, latest, k)
             if a > 0.0 and duration < SHORTEST_HOLD and not at_border:
                 duration = 0.0
-        if SHORTEST_PHASE <= duration < latest and not at_border and compared_in != i:
-            sooner = better_to_brake(limits, entry, reach, i, x, v, a, j, duration)
-            if sooner < duration:
-                duration, brake_in, then = sooner, i, i + 1
-                # Once per stretch: what rounding leaves over must not be weighed again.
-                compared_in = i
         whole = at_border or duration >= latest or v <= 0.0
         if duration > 0.0 and (duration >= SHORTEST_PHASE or whole):
             put_phase(phases, stretches, used, i, i, now, duration, x, v, a, j)
@@ -276,9 +254,6 @@ def find_phases(
                     # Above the limit by rounding alone, it would never be held.
                     v = min(v, highest_v)
             continue
-        if v <= w and brake_in == i:
-            brake_in = -1
-            continue
         if v <= w * (1.0 + SAME):
             # Only rounding has kept the state from going on as it is.
             duration = rest / v
@@ -302,9 +277,8 @@ def find_phases(
             phases, stretches, used, limits[0], i, k - 1, now, x, v, 0.0, w, deceleration, jerk
         )
         v, a = w, 0.0
-        brake_in = -1
         if to_border:
             i, x, k = k, 0.0, -1
     state[0], state[1], state[2], state[3], state[4] = i, x, v, a, now
-    state[5], state[6], state[7], state[8] = brake_in, compared_in, k, w
+    state[5], state[6] = k, w
     return phases[:used], stretches[:used]

@@ -12,7 +12,8 @@ import math
 import numba
 import numpy as np
 
-from twin.motion.brake_kernels import brake_distance, brake_need, brake_state
+from twin.motion.brake_kernels import brake_distance, brake_need
+from twin.motion.way_kernels import MOST_CHORDS, MOST_STEPS, crossing, damped, room_for_brake
 from twin.nc.canonical import FloatArray
 
 BISECTIONS = 52
@@ -28,38 +29,17 @@ SLOWEST = 1e-6
 """A border that must be passed more slowly than this is passed from a stop [mm/s or deg/s]."""
 
 REACH_GAIN = 1e-5
-"""A brake that does not allow this much more than the best so far is not looked into."""
+"""A brake that does not allow this much more than the best so far is not looked into; where a limit
+on the way bounds the velocity, no more than this share of it is lost."""
 
-REACH_HALVINGS = 16
-"""Where a limit on the way bounds the velocity: what is lost is a hundred thousandth of it."""
+LONGEST_BRAKE = math.sqrt(32.0 / 27.0)
+"""The way from v to w is longest for w = v / 3: that much longer than the one to a stop."""
+
+NEARLY = 1e-9
+"""Of a root: from here on a step of Newton's leads to the rounding of a double."""
 
 FAILED_BRAKES = 4
 """Brakes that fit their distance but break a limit on the way before the search gives up."""
-
-
-@numba.njit(cache=True)
-def holds_on_the_way(
-    limits: FloatArray, entry: FloatArray, i: int, x: float, v: float, a: float,
-    k: int, w: float, deceleration: float, jerk: float, wide: float,
-) -> bool:  # fmt: skip
-    """Whether the brake to border k keeps the velocities and accelerations of stretches i to k - 1."""
-    top = v + a * a / (2.0 * jerk)
-    distance = limits[0, i] - x
-    now_v, now_a = brake_state(distance, v, a, w, deceleration, jerk)
-    highest = v if a < 0.0 else now_v if now_a > 0.0 else top
-    if highest > limits[1, i] * wide:
-        return False
-    for border in range(i + 1, k):
-        if now_v > min(entry[border], limits[1, border]) * wide:
-            return False
-        if now_a > limits[2, border] * wide:
-            return False
-        was_a = now_a
-        distance += limits[0, border]
-        now_v, now_a = brake_state(distance, v, a, w, deceleration, jerk)
-        if was_a > 0.0 and (now_v if now_a > 0.0 else top) > limits[1, border] * wide:
-            return False
-    return True
 
 
 @numba.njit(cache=True)
@@ -95,8 +75,9 @@ def find_brake(
     for k in range(i + 1, count + 1):
         if k > i + 1:
             last = k - 1
-            if limits[0, last] == 0.0 or brake_need(v, a, 0.0, deceleration, jerk) < distance:
-                # A stop would come earlier: if even that does not do, nothing further on does.
+            longest = LONGEST_BRAKE * brake_need(v, a, 0.0, deceleration, jerk)
+            if limits[0, last] == 0.0 or longest < distance:
+                # Any brake would end earlier: if none has done, nothing further on does.
                 return -1
             distance += limits[0, last]
             deceleration = min(deceleration, limits[3, last])
@@ -114,7 +95,8 @@ def find_brake(
             if need <= distance * wide + slack * 1e-3:
                 if top <= ceiling * wide and (lift <= own_distance or a <= softest):
                     return k
-                if holds_on_the_way(limits, entry, i, x, v, a, k, w, deceleration, jerk, wide):
+                room = room_for_brake(limits, entry, i, x, v, a, k, w, deceleration, jerk, wide)
+                if room >= -slack * (distance + 1e-3):
                     return k
                 lowest = w
                 failed += 1
@@ -130,16 +112,71 @@ def _fastest_start(distance: float, w: float, deceleration: float, jerk: float) 
     """The highest v from which a brake to w takes no more than ``distance``."""
     # Eased all the way the drop is jerk s², over (2 w + jerk s²) s.
     s = min((distance / jerk) ** (1.0 / 3.0), distance / (2.0 * w) if w > 0.0 else math.inf)
-    for _ in range(60):
+    step = math.inf
+    while step > NEARLY * s:
+        # The curve is convex and s beyond the root: each step comes down towards it.
         step = ((jerk * s * s + 2.0 * w) * s - distance) / (3.0 * jerk * s * s + 2.0 * w)
         s -= step
-        if abs(step) <= 1e-15 * s:
-            break
     if jerk * s <= deceleration:
         return w + jerk * s * s
     # (v + w) / 2 ((v - w) / deceleration + deceleration / jerk) = distance
     half = 0.5 * deceleration * deceleration / jerk
     return -half + math.sqrt(max(0.0, (w - half) * (w - half) + 2.0 * deceleration * distance))
+
+
+@numba.njit(cache=True)
+def _faster_start(
+    limits: FloatArray, entry: FloatArray, i: int, k: int, w: float,
+    deceleration: float, jerk: float, distance: float, best: float, highest: float,
+) -> tuple[float, bool]:  # fmt: skip
+    """The highest v up to ``highest`` from which one can brake to border k.
+
+    Args:
+        limits: As in ``find_brake``.
+        entry: As in ``find_brake``.
+        i: Border of the start, where a = 0.
+        k: Border of the end.
+        w: Velocity there.
+        deceleration: Of the brake.
+        jerk: Of the brake.
+        distance: From border i to border k.
+        best: A velocity that is known to be safe.
+        highest: Ceiling of v.
+
+    Returns:
+        The velocity, or ``best`` where it is hardly higher; whether no limit on the way bounds it.
+    """
+    low = max(best * (1.0 + REACH_GAIN), SLOWEST)
+    if low >= highest or (low > w and brake_distance(low, w, deceleration, jerk) > distance):
+        return best, True
+    high = highest
+    if w < high and brake_distance(high, w, deceleration, jerk) > distance:
+        high = min(high, _fastest_start(distance, w, deceleration, jerk))
+    at_high = room_for_brake(
+        limits, entry, i, 0.0, high, 0.0, k, min(w, high), deceleration, jerk, 1.0
+    )
+    if at_high >= -ROUNDING * distance:
+        return max(best, high), True
+    at_low = room_for_brake(
+        limits, entry, i, 0.0, low, 0.0, k, min(w, low), deceleration, jerk, 1.0
+    )
+    if at_low < 0.0:
+        return best, False
+    side = 0
+    for step in range(MOST_STEPS):
+        if high - low <= REACH_GAIN * high:
+            break
+        v = crossing(low, high, at_low, at_high) if step < MOST_CHORDS else 0.5 * (low + high)
+        room = room_for_brake(limits, entry, i, 0.0, v, 0.0, k, min(w, v), deceleration, jerk, 1.0)
+        if room >= 0.0:
+            if side > 0:
+                at_high = damped(at_high, at_low, room)
+            low, at_low, side = v, room, 1
+        else:
+            if side < 0:
+                at_low = damped(at_low, at_high, room)
+            high, at_high, side = v, room, -1
+    return low, False
 
 
 @numba.njit(cache=True)
@@ -170,7 +207,7 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
         if i < known.shape[1]:
             best, to = known[0, i], int(known[1, i])
         at = known[2, i] if best > 0.0 else reach[to]
-        deceleration, jerk, ceiling = math.inf, math.inf, math.inf
+        deceleration, jerk = math.inf, math.inf
         distance, lowest = 0.0, math.inf
         failed = 0
         for k in range(i + 1, count + 1):
@@ -182,37 +219,19 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
             distance += limits[0, last]
             deceleration = min(deceleration, limits[3, last])
             jerk = min(jerk, limits[4, last])
-            ceiling = min(ceiling, limits[1, last])
-            if last > i:
-                ceiling = min(ceiling, entry[last])
             w = reach[k]
             if w < lowest:
-                v = highest
-                if w < v and brake_distance(v, w, deceleration, jerk) > distance:
-                    v = min(v, _fastest_start(distance, w, deceleration, jerk))
-                if v > best:
-                    holds = v <= ceiling or holds_on_the_way(
-                        limits, entry, i, 0.0, v, 0.0, k, w, deceleration, jerk, 1.0
-                    )
-                    if not holds:
-                        lowest = w
-                        failed += 1
-                        low, high = best, v
-                        v = max(best * (1.0 + REACH_GAIN), SLOWEST)
-                        worth = v < high and holds_on_the_way(
-                            limits, entry, i, 0.0, v, 0.0, k, min(w, v), deceleration, jerk, 1.0
-                        )
-                        for _ in range(REACH_HALVINGS if worth else 0):
-                            v = 0.5 * (low + high)
-                            if holds_on_the_way(
-                                limits, entry, i, 0.0, v, 0.0, k, min(w, v), deceleration, jerk, 1.0
-                            ):
-                                low = v
-                            else:
-                                high = v
-                        v = low
-                    if v > best:
-                        best, to, at = v, k, min(w, v)
+                v, free = _faster_start(
+                    limits, entry, i, k, w, deceleration, jerk, distance, best, highest
+                )
+                if not free:
+                    lowest = w
+                    failed += 1
+                # Where a brake ends before the last stretch, one to a nearer border does better.
+                before = distance - limits[0, last]
+                creeps = v > w and brake_distance(v, w, deceleration, jerk) < before
+                if v > best and not (creeps and last > i):
+                    best, to, at = v, k, min(w, v)
             if entry[k] < SLOWEST or failed >= FAILED_BRAKES:
                 break
         if best >= SLOWEST:

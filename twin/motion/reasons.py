@@ -4,10 +4,11 @@ import dataclasses
 
 import numpy as np
 
+from twin.motion.bound_kernels import bound_derivatives
 from twin.motion.corners import KNEE_NOISE
+from twin.motion.limit_kernels import CENTRIPETAL_SHARE, CURVE_JERK_SHARE
 from twin.motion.limits import MotionLimits
-from twin.motion.piece_kernels import bound_derivatives
-from twin.motion.pieces import CENTRIPETAL_SHARE, CURVE_JERK_SHARE, Pieces
+from twin.motion.pieces import Pieces
 from twin.motion.reach_kernels import SLOWEST
 from twin.nc.canonical import FloatArray, IntArray
 

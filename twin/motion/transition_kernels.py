@@ -5,7 +5,8 @@ import math
 import numba
 
 from twin.motion.brake_kernels import brake_need
-from twin.motion.reach_kernels import BISECTIONS, ROUNDING, SLOWEST, find_brake, holds_on_the_way
+from twin.motion.reach_kernels import BISECTIONS, ROUNDING, SLOWEST, find_brake
+from twin.motion.way_kernels import room_for_brake
 from twin.nc.canonical import FloatArray
 
 
@@ -70,14 +71,14 @@ def find_transition(
             low = _slowest_within(v, a, highest, deceleration, jerk, after)
             if brake_need(v, a, highest, deceleration, jerk) < before:
                 highest = _slowest_within(v, a, highest, deceleration, jerk, before)
-            w = highest
+            w, slack = highest, ROUNDING * (after + 1e-3)
             for step in range(BISECTIONS):
                 need = brake_need(v, a, w, deceleration, jerk)
                 end = min(max(0.0, need - before), limits[0, p])
                 # Between a stop and a third of the velocity the way grows with w.
                 fits = need <= after
                 safe = fits and find_brake(wanted, entry, reach, p, end, w, 0.0, 0.0, 0) >= 0
-                if safe and holds_on_the_way(
+                if safe and -slack <= room_for_brake(
                     limits, entry, i, x, v, a, p + 1, w, deceleration, jerk, 1.0 + ROUNDING
                 ):
                     low = w

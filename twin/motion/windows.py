@@ -26,7 +26,7 @@ class Window:
     """A run of n pieces as m stretches.
 
     Attributes:
-        pieces: The pieces.
+        parts: The pieces of one batch, or of two.
         begins: First piece of each stretch and, last, n; shape (m + 1,).
         limits: Rows length, velocity, acceleration, deceleration, jerk, shape (5, m).
         entry: Highest velocity at each border, the last 0, shape (m + 1,).
@@ -34,7 +34,7 @@ class Window:
         due: Stretches to drive now; the rest is looked ahead to.
     """
 
-    pieces: Pieces
+    parts: tuple[Pieces, ...]
     begins: IntArray
     limits: FloatArray
     entry: FloatArray
@@ -45,6 +45,22 @@ class Window:
     def whole(self) -> bool:
         """Whether the program ends with the window."""
         return self.due == len(self.pause)
+
+    @property
+    def pieces(self) -> Pieces:
+        """All pieces."""
+        return self.pieces_until(len(self.pause) - 1)
+
+    def pieces_until(self, stretch: int) -> Pieces:
+        """The pieces up to the end of a stretch at least."""
+        beyond = int(self.begins[stretch + 1]) - len(self.parts[0])
+        if beyond <= 0 or len(self.parts) == 1:
+            return self.parts[0]
+        return join([self.parts[0], self.parts[1][:beyond]])
+
+    def joined(self) -> "Window":
+        """The same with all its pieces as one part."""
+        return dataclasses.replace(self, parts=(self.pieces,))
 
     def piece_at(self, stretch: int, x: float) -> tuple[int, float]:
         """The piece at x within a stretch, and x within the piece; n, 0 after the last."""
@@ -108,18 +124,17 @@ def windows(parts: Iterable[Pieces], look_ahead: int = LOOK_AHEAD) -> Iterator[W
 
 
 def _window(batches: list[_Batch], due: int) -> Window:
-    pieces = join([batch.pieces for batch in batches])
     begins, behind = [], 0
     for batch in batches:
         begins.append(batch.begins[:-1] + behind)
         behind += len(batch.pieces)
-    first = np.concatenate(begins)
+    entries = [batch.pieces.entry[batch.begins[:-1]] for batch in batches]
     return Window(
-        pieces=pieces,
-        begins=np.append(first, behind),
+        parts=tuple(batch.pieces for batch in batches),
+        begins=np.append(np.concatenate(begins), behind),
         limits=np.concatenate([batch.limits for batch in batches], axis=1),
-        entry=np.append(pieces.entry[first], 0.0),
-        pause=pieces.pause[first],
+        entry=np.append(np.concatenate(entries), 0.0),
+        pause=np.concatenate([batch.pieces.pause[batch.begins[:-1]] for batch in batches]),
         due=due,
     )
 
@@ -141,11 +156,11 @@ def _batches(parts: Iterable[Pieces], blocks: int) -> Iterator[Pieces]:
             if end == len(part) and end < room:
                 break
             waiting.append(part[first:end])
-            yield join(waiting)
+            yield waiting[0] if len(waiting) == 1 else join(waiting)
             waiting, count, found, first = [], 0, 0, end
         if first < len(part):
             waiting.append(part[first:])
             count += len(part) - first
             found += int(np.count_nonzero(starts[first:]))
     if count > 0:
-        yield join(waiting)
+        yield waiting[0] if len(waiting) == 1 else join(waiting)

@@ -1,0 +1,146 @@
+"""How far the path's derivatives go along each piece.
+
+Along a piece the path is an arc of a few degrees or a straight line, with a polynomial of the fifth
+degree added by roundings. The ranges of either are known in closed form and are added.
+"""
+
+import math
+
+import numba
+import numpy as np
+
+from twin.nc.canonical import FloatArray
+
+FLAT = 1e-9
+"""Of the largest q'': what is smaller is rounding and has no sign."""
+
+
+@numba.njit(cache=True)
+def bound_derivatives(
+    drift: FloatArray, cosine: FloatArray, sine: FloatArray, angle: FloatArray,
+    begin: FloatArray, fraction_per_length: FloatArray, length: FloatArray, rounding: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    """Bounds of the path's derivatives by x along pieces.
+
+    Args:
+        drift: Columns of the pieces' ``Geometry``, and so on to ``angle``; an arc turns by less than
+            a quarter along a piece.
+        cosine: See above.
+        sine: See above.
+        angle: See above.
+        begin: Path fraction of each piece's begin, shape (n,).
+        fraction_per_length: Shape (n,).
+        length: Shape (n,).
+        rounding: Shape (n, k, 6).
+
+    Returns:
+        Bounds of abs(q'), abs(q''), abs(q''') of each axis, shape (n, 3, k); of the length of q''
+        of X Y Z together, shape (n,); and the bounds of abs(q'') where q' q'' can be positive, and
+        where it can be negative, else 0, shape (n, 2, k).
+    """
+    count, axes = drift.shape
+    bounds = np.zeros((count, 3, axes))
+    bend = np.zeros(count)
+    against = np.zeros((count, 2, axes))
+    for i in range(count):
+        turn = angle[i] * fraction_per_length[i]
+        c, s, c_end, s_end, squares, radius = 1.0, 0.0, 1.0, 0.0, 0.0, 0.0
+        if turn != 0.0:
+            at = angle[i] * begin[i]
+            c, s = math.cos(at), math.sin(at)
+            at += turn * length[i]
+            c_end, s_end = math.cos(at), math.sin(at)
+        for axis in range(axes):
+            low1, high1, low2, high2, low3, high3 = _polynomial_ranges(
+                rounding[i, axis], drift[i, axis] * fraction_per_length[i], length[i]
+            )
+            if turn != 0.0 and axis < 3:
+                p, q = cosine[i, axis], sine[i, axis]
+                amplitude, way = math.hypot(p, q), math.copysign(1.0, turn)
+                x, x_end = p * c + q * s, p * c_end + q * s_end
+                y, y_end = q * c - p * s, q * c_end - p * s_end
+                across = _wave_range(x, x_end, way * y, way * y_end, amplitude)
+                along = _wave_range(y, y_end, -way * x, -way * x_end, amplitude)
+                radius += p * p
+                square = turn * turn
+                low1 += min(turn * along[0], turn * along[1])
+                high1 += max(turn * along[0], turn * along[1])
+                low2 -= square * across[1]
+                high2 -= square * across[0]
+                cube = turn * square
+                low3 -= max(cube * along[0], cube * along[1])
+                high3 -= min(cube * along[0], cube * along[1])
+            second = max(abs(low2), abs(high2))
+            bounds[i, 0, axis] = max(abs(low1), abs(high1))
+            bounds[i, 1, axis] = second
+            bounds[i, 2, axis] = max(abs(low3), abs(high3))
+            if axis < 3:
+                squares += second * second
+            flat = FLAT * second
+            if (high1 > 0.0 and high2 > flat) or (low1 < 0.0 and low2 < -flat):
+                against[i, 0, axis] = second
+            if (high1 > 0.0 and low2 < -flat) or (low1 < 0.0 and high2 > flat):
+                against[i, 1, axis] = second
+        bend[i] = math.sqrt(squares)
+        if turn != 0.0 and not np.any(rounding[i]):
+            bend[i] = turn * turn * math.sqrt(radius)
+    return bounds, bend, against
+
+
+@numba.njit(cache=True)
+def _wave_range(
+    at_begin: float, at_end: float, slope_begin: float, slope_end: float, amplitude: float
+) -> tuple[float, float]:
+    """Range of a sine over less than a quarter of its period."""
+    low, high = min(at_begin, at_end), max(at_begin, at_end)
+    if slope_begin > 0.0 > slope_end:
+        high = amplitude
+    elif slope_begin < 0.0 < slope_end:
+        low = -amplitude
+    return low, high
+
+
+@numba.njit(cache=True)
+def _polynomial_ranges(
+    c: FloatArray, slope: float, length: float
+) -> tuple[float, float, float, float, float, float]:
+    """Ranges of the first three derivatives of ``slope x`` plus a polynomial, from 0 to ``length``.
+
+    Args:
+        c: Coefficients by powers of x, shape (6,).
+        slope: What is added to the first derivative.
+        length: The end of x.
+    """
+    first = slope + c[1]
+    if c[2] == 0.0 and c[3] == 0.0 and c[4] == 0.0 and c[5] == 0.0:
+        return first, first, 0.0, 0.0, 0.0, 0.0
+    x = length
+    # q''' is a parabola, its ends and its vertex tell its range.
+    p0, p1, p2 = 6.0 * c[3], 24.0 * c[4], 60.0 * c[5]
+    third_end = p0 + (p1 + p2 * x) * x
+    low3, high3 = min(p0, third_end), max(p0, third_end)
+    if p2 != 0.0 and 0.0 < -p1 / (2.0 * p2) < x:
+        vertex = p0 - p1 * p1 / (4.0 * p2)
+        low3, high3 = min(low3, vertex), max(high3, vertex)
+    # q'' has its extremes at its ends and where q''' vanishes.
+    s0 = 2.0 * c[2]
+    second_end = s0 + (p0 + (0.5 * p1 + p2 / 3.0 * x) * x) * x
+    low2, high2 = min(s0, second_end), max(s0, second_end)
+    if low3 < 0.0 < high3:
+        square = p1 * p1 - 4.0 * p2 * p0
+        root = -0.5 * (p1 + math.copysign(math.sqrt(max(0.0, square)), p1))
+        for way in range(2):
+            if way == 0:
+                at = p0 / root if root != 0.0 else 0.0
+            else:
+                at = root / p2 if p2 != 0.0 else 0.0
+            if 0.0 < at < x:
+                value = s0 + (p0 + (0.5 * p1 + p2 / 3.0 * at) * at) * at
+                low2, high2 = min(low2, value), max(high2, value)
+    # q' lies within x²/8 max(abs(q''')) of its chord, and between its ends if q'' has one sign.
+    first_end = first + (s0 + (0.5 * p0 + (p1 / 6.0 + p2 / 12.0 * x) * x) * x) * x
+    low1, high1 = min(first, first_end), max(first, first_end)
+    if low2 < 0.0 < high2:
+        sag = x * x / 8.0 * max(-low3, high3)
+        low1, high1 = low1 - sag, high1 + sag
+    return low1, high1, low2, high2, low3, high3

@@ -1,0 +1,203 @@
+"""Where blocks are cut into pieces, and what roundings add to each.
+
+Along the path the polynomials that are added change where a rounding begins, at its border, and
+where it ends. One sum of them is carried along; it is made anew before what rounding errors of a
+narrow rounding have left in its highest powers can grow.
+"""
+
+import math
+
+import numba
+import numpy as np
+
+from twin.motion.corner_kernels import MOST_NEIGHBOURS, add_rounding
+from twin.nc.canonical import FloatArray, IntArray
+
+PIECE_ANGLE = math.radians(5.0)
+"""Longest piece of an arc: the limits of X and Y change little over it [rad]."""
+
+SHORTEST_PIECE = 1e-8
+"""Cuts closer than this to another are left out [mm or deg]; a rounding that begins there has
+grown by less than 1e-16 mm."""
+
+CARRIED = 2.0
+"""How far a sum of polynomials is carried, in widths of the narrowest rounding in it."""
+
+
+@numba.njit(cache=True)
+def cut_blocks(
+    length: FloatArray, angle: FloatArray, width: FloatArray, knee: FloatArray, bend: FloatArray,
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    """Cut blocks where a rounding begins or ends, and arcs into short angles.
+
+    Args:
+        length: Of all blocks, shape (n,).
+        angle: Sweep of all blocks, 0 for lines, shape (n,) [rad].
+        width: Of the rounding of the border before each block, shape (n,).
+        knee: Step of dq/dx there, shape (n, k).
+        bend: Step of d²q/dx² there, shape (n, k).
+
+    Returns:
+        Of each piece: its block, its begin from the block's begin, its length, and what its
+        roundings add, shapes (m,), (m,), (m,), (m, k, 6).
+    """
+    count = len(length)
+    place = np.zeros(count + 1)
+    for i in range(count):
+        place[i + 1] = place[i] + length[i]
+    capacity = 0
+    for i in range(count):
+        capacity += max(1, math.ceil(abs(angle[i]) / PIECE_ANGLE)) + 2 * int(width[i] > 0.0)
+    owner = np.zeros(capacity, np.int64)
+    offset = np.zeros(capacity)
+    extent = np.zeros(capacity)
+    first_end, ends, sources = _ends_by_block(place, width)
+    used = 0
+    for i in range(count):
+        parts = max(1, math.ceil(abs(angle[i]) / PIECE_ANGLE))
+        part, at, begin = 1, first_end[i], 0.0
+        while True:
+            # The next cut of the two kinds.
+            by_angle = length[i] * part / parts
+            if at < first_end[i + 1] and ends[at] - place[i] < by_angle:
+                cut = ends[at] - place[i]
+                at += 1
+            elif part < parts:
+                cut = by_angle
+                part += 1
+            else:
+                break
+            if cut - begin > SHORTEST_PIECE and length[i] - cut > SHORTEST_PIECE:
+                owner[used], offset[used], extent[used] = i, begin, cut - begin
+                used += 1
+                begin = cut
+        owner[used], offset[used], extent[used] = i, begin, length[i] - begin
+        used += 1
+    owner, offset, extent = owner[:used], offset[:used], extent[:used]
+    rounding = np.zeros((used, knee.shape[1], 6))
+    if len(ends) > 0:
+        _add_roundings(place, owner, offset, extent, ends, sources, width, knee, bend, rounding)
+    return owner, offset, extent, rounding
+
+
+@numba.njit(cache=True)
+def _ends_by_block(place: FloatArray, width: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
+    """Where roundings begin and end, in order.
+
+    Args:
+        place: Where each block begins and, last, where the last one ends, shape (n + 1,).
+        width: Shape (n,).
+
+    Returns:
+        Number of the first end within each block and, last, of all, shape (n + 1,); of m ends their
+        places and the borders whose roundings they end, shape (m,) each.
+    """
+    count = len(width)
+    first = np.zeros(count + 1, np.int64)
+    inside = np.full((count, 2), -1)
+    for i in range(count):
+        if width[i] > 0.0:
+            before, after = i - 1, i
+            while before > 0 and place[before] > place[i] - width[i]:
+                before -= 1
+            while after < count - 1 and place[after + 1] <= place[i] + width[i]:
+                after += 1
+            inside[i, 0], inside[i, 1] = before, after
+            first[before + 1] += 1
+            first[after + 1] += 1
+    for i in range(count):
+        first[i + 1] += first[i]
+    filled = first[:-1].copy()
+    ends, sources = np.zeros(first[count]), np.zeros(first[count], np.int64)
+    for i in range(count):
+        for side in range(2):
+            block = inside[i, side]
+            if block < 0:
+                continue
+            end = place[i] - width[i] if side == 0 else place[i] + width[i]
+            row = filled[block]
+            while row > first[block] and ends[row - 1] > end:
+                ends[row], sources[row] = ends[row - 1], sources[row - 1]
+                row -= 1
+            ends[row], sources[row] = end, i
+            filled[block] += 1
+    return first, ends, sources
+
+
+@numba.njit(cache=True)
+def _add_roundings(
+    place: FloatArray, owner: IntArray, offset: FloatArray, extent: FloatArray,
+    ends: FloatArray, sources: IntArray,
+    width: FloatArray, knee: FloatArray, bend: FloatArray, rounding: FloatArray,
+) -> None:  # fmt: skip
+    """Write the sums of the roundings along each piece.
+
+    Args:
+        place: As in ``_ends_by_block``.
+        owner: Block of each piece, shape (m,).
+        offset: Its begin, from the block's, shape (m,).
+        extent: Its length, shape (m,).
+        ends: From ``_ends_by_block``.
+        sources: From ``_ends_by_block``.
+        width: As in ``cut_blocks``, and so on to ``bend``.
+        knee: See above.
+        bend: See above.
+        rounding: Result, zero before, shape (m, k, 6).
+    """
+    axes = knee.shape[1]
+    active = np.zeros(2 * MOST_NEIGHBOURS + 2, np.int64)
+    used, passed = 0, 0
+    total = np.zeros((axes, 6))
+    since, narrowest = 0.0, math.inf
+    for piece in range(len(owner)):
+        i = owner[piece]
+        here = place[i] + offset[piece]
+        middle = here + 0.5 * extent[piece]
+        if used > 0:
+            shift_polynomials(total, extent[piece - 1])
+            if offset[piece] == 0.0 and width[i] > 0.0:
+                # Over the border: what is added beyond it has lost the kink.
+                total[:, 1] -= knee[i]
+                total[:, 2] -= 0.5 * bend[i]
+        while passed < len(ends) and ends[passed] <= middle:
+            other = int(sources[passed])
+            passed += 1
+            narrowest = min(narrowest, width[other])
+            away = place[i] - place[other] + offset[piece]
+            if other > i:
+                active[used] = other
+                used += 1
+                add_rounding(total, away, width[other], knee[other], bend[other])
+            else:
+                row = 0
+                while active[row] != other:
+                    row += 1
+                used -= 1
+                active[row] = active[used]
+                add_rounding(total, max(0.0, away), width[other], knee[other], bend[other], -1.0)
+        if used == 0 or here + extent[piece] - since > CARRIED * narrowest:
+            total[:] = 0.0
+            since, narrowest = here, math.inf
+            for row in range(used):
+                other = int(active[row])
+                away = place[i] - place[other] + offset[piece]
+                if other <= i:
+                    away = max(0.0, away)
+                narrowest = min(narrowest, width[other])
+                add_rounding(total, away, width[other], knee[other], bend[other])
+        if used > 0:
+            rounding[piece] = total
+
+
+@numba.njit(cache=True)
+def shift_polynomials(coefficients: FloatArray, way: float) -> None:
+    """Count the x of polynomials from a place further on, in place (Horner's scheme).
+
+    Args:
+        coefficients: By powers of x, shape (k, 6).
+        way: From the old place to the new one.
+    """
+    for axis in range(len(coefficients)):
+        for last in range(5):
+            for power in range(4, last - 1, -1):
+                coefficients[axis, power] += way * coefficients[axis, power + 1]
