@@ -96,6 +96,15 @@ class Operator:
             time.sleep(0.02)
 
     def click(self, name: str, share: float = 0.5) -> None:
+        """Click a part of the panel, as a hand does: held until the page has shown it."""
+        self.point(name, share)
+        self._frames(1)
+        self.page.mouse.down()
+        self._frames(2)
+        self.page.mouse.up()
+        self._frames(2)
+
+    def tap(self, name: str, share: float = 0.5) -> None:
         """Click a part of the panel, as quickly as a browser can be made to."""
         self.point(name, share)
         self.page.mouse.down()
@@ -124,8 +133,11 @@ class Operator:
 
     def idle(self) -> None:
         """Wait until what was pressed would have been heard a second time."""
+        self._frames(6)
+
+    def _frames(self, count: int) -> None:
         gate = self.gate
-        goal = gate.heard + 6
+        goal = gate.heard + count
         self.until(lambda: gate.heard >= goal, "the page's frames")
 
 
@@ -181,8 +193,8 @@ def test_a_scene_is_played_in_the_browser_survives_its_loss_and_goes_to_the_trai
     operator.until(lambda: room.running == "program", "cycle start")
 
     # Two presses within one frame of the page are two, and neither counts twice.
-    operator.click("feed override", 0.2)
-    operator.click("feed override", 0.2)
+    operator.tap("feed override", 0.2)
+    operator.tap("feed override", 0.2)
     operator.until(lambda: room.feed_override == 80, "the feed override")
     operator.idle()
     assert (room.feed_override, operator.done("override")) == (80, 2)

@@ -33,7 +33,7 @@
   // than the change, and so can all that had been waiting for this page.
   const PICTURES_APART = 3;
   const SHORTEST_MS = 40;
-  const LONGEST_MS = 2000;
+  const LONGEST_MS = 5000;
 
   const plain = WebSocket.prototype.send;
   let stream = null; // The panel's stream.
