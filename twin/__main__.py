@@ -37,7 +37,10 @@ def main() -> None:
         # All is done and said: a signal that comes while Python puts itself away changes nothing.
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        codes.append(leaving.code if isinstance(leaving.code, int) else 0)
+        # As Python does it: nothing means 0, a sentence means 1.
+        codes.append(
+            leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None)
+        )
         raise
 
 

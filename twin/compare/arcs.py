@@ -10,6 +10,7 @@ from twin.compare.circle import CirclePath, circle_figures
 from twin.compare.figures import ArcFigures, BidirectionalFigures
 from twin.nc.canonical import FloatArray, IntArray, Moves, Shape
 from twin.toolpath.nearest import PathColumns
+from twin.units import UM_PER_MM
 
 BoolArray = npt.NDArray[np.bool_]
 
@@ -192,4 +193,4 @@ def _evaluate(arc: _OpenArc) -> ArcFigures:
 def _polar(path: CirclePath) -> FloatArray:
     mean = path.mean()
     thin = mean[:: max(1, len(mean) // _POLAR_POINTS)]
-    return np.column_stack([np.rad2deg(thin[:, 0]), thin[:, 1] * 1e3])
+    return np.column_stack([np.rad2deg(thin[:, 0]), thin[:, 1] * UM_PER_MM])

@@ -22,6 +22,7 @@ import numpy as np
 
 from twin.compare.circle_kernels import collect_by_angle
 from twin.nc.canonical import FloatArray, IntArray
+from twin.units import UM_PER_MM
 
 BINS_PER_TURN = 7200
 """Angular resolution of the collected path: 0.05 degrees."""
@@ -157,10 +158,10 @@ def circle_figures(*paths: CirclePath) -> CircleFigures:
         width = np.ptp(np.linalg.norm(_points(extremes, radius) - center, axis=1))
         mean_error = mean_radius - radius
     return CircleFigures(
-        circular_deviation_um=float(width) * 1e3,
-        radial_max_um=greatest * 1e3,
-        radial_min_um=least * 1e3,
-        mean_radius_error_um=mean_error * 1e3,
+        circular_deviation_um=float(width) * UM_PER_MM,
+        radial_max_um=greatest * UM_PER_MM,
+        radial_min_um=least * UM_PER_MM,
+        mean_radius_error_um=mean_error * UM_PER_MM,
     )
 
 
@@ -174,7 +175,7 @@ def hysteresis_um(one: CirclePath, other: CirclePath, *, step_deg: float = 1.0) 
         np.interp(angles, *path.mean()[np.argsort(path.mean()[:, 0])].T, period=2.0 * np.pi)
         for path in (one, other)
     ]
-    return float(np.abs(read[0] - read[1]).max()) * 1e3
+    return float(np.abs(read[0] - read[1]).max()) * UM_PER_MM
 
 
 def _points(polar: FloatArray, radius: float) -> FloatArray:

@@ -9,6 +9,32 @@ import math
 
 import numba
 
+from twin.nc.canonical import FloatArray
+
+
+@numba.njit(cache=True)
+def after_jerk(x: float, v: float, a: float, j: float, t: float) -> tuple[float, float, float]:
+    """Place, velocity and acceleration after t of jerk j."""
+    return x + ((j / 6.0 * t + 0.5 * a) * t + v) * t, v + (0.5 * j * t + a) * t, a + j * t
+
+
+@numba.njit(cache=True)
+def brake_limits(limits: FloatArray, i: int, k: int) -> tuple[float, float, float]:
+    """Deceleration and jerk of a brake from stretch i to border k, and the way behind stretch i.
+
+    Args:
+        limits: Rows length, velocity, acceleration, deceleration, jerk of n stretches, shape
+            (5, n).
+        i: The stretch.
+        k: The border.
+    """
+    deceleration, jerk, behind = limits[3, i], limits[4, i], 0.0
+    for last in range(i + 1, k):
+        deceleration = min(deceleration, limits[3, last])
+        jerk = min(jerk, limits[4, last])
+        behind += limits[0, last]
+    return deceleration, jerk, behind
+
 
 @numba.njit(cache=True)
 def time_to(distance: float, v: float, a: float, j: float, latest: float) -> float:

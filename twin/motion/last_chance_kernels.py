@@ -4,9 +4,9 @@ import math
 
 import numba
 
-from twin.motion.brake_kernels import brake_need, brake_time
+from twin.motion.brake_kernels import after_jerk, brake_limits, brake_need, brake_time
 from twin.motion.reach_kernels import SLOWEST
-from twin.motion.way_kernels import MOST_CHORDS, MOST_STEPS, crossing, damped, room_for_brake
+from twin.motion.way_kernels import MOST_CHORDS, MOST_STEPS, crossing, narrowed, room_for_brake
 from twin.nc.canonical import FloatArray
 
 TIME_PRECISION = 1e-14
@@ -35,27 +35,16 @@ def last_chance(
         high: The longest time [s].
     """
     precision = TIME_PRECISION * high
-    deceleration, jerk = limits[3, i], limits[4, i]
-    for last in range(i + 1, k):
-        deceleration = min(deceleration, limits[3, last])
-        jerk = min(jerk, limits[4, last])
+    deceleration, jerk, _ = brake_limits(limits, i, k)
     w = reach[k]
     at_low, at_high = math.inf, -math.inf
     side, t = 0, high
     for step in range(MOST_STEPS):
-        then_x = x + ((j / 6.0 * t + 0.5 * a) * t + v) * t
-        then_v, then_a = v + (0.5 * j * t + a) * t, a + j * t
+        then_x, then_v, then_a = after_jerk(x, v, a, j, t)
         room = room_for_brake(
             limits, entry, i, then_x, then_v, then_a, k, w, deceleration, jerk, 1.0
         )
-        if room >= 0.0:
-            if side > 0:
-                at_high = damped(at_high, at_low, room)
-            low, at_low, side = t, room, 1
-        else:
-            if side < 0:
-                at_low = damped(at_low, at_high, room)
-            high, at_high, side = t, room, -1
+        low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, t, room)
         if high - low <= precision:
             break
         if step == 0:
@@ -86,13 +75,9 @@ def time_to_border(
         t: [s]
         k: Border.
     """
-    deceleration, jerk = limits[3, i], limits[4, i]
-    distance = limits[0, i] - x - ((j / 6.0 * t + 0.5 * a) * t + v) * t
-    for last in range(i + 1, k):
-        deceleration = min(deceleration, limits[3, last])
-        jerk = min(jerk, limits[4, last])
-        distance += limits[0, last]
-    v, a = v + (0.5 * j * t + a) * t, a + j * t
+    deceleration, jerk, behind = brake_limits(limits, i, k)
+    x, v, a = after_jerk(x, v, a, j, t)
+    distance = limits[0, i] - x + behind
     top, w = v + 0.5 * a * a / jerk, reach[k]
     if top <= w:
         return math.inf

@@ -10,7 +10,7 @@ import math
 import numba
 import numpy as np
 
-from twin.motion.brake_kernels import brake_distance, time_to
+from twin.motion.brake_kernels import after_jerk, brake_distance, brake_limits, time_to
 from twin.motion.last_chance_kernels import (
     last_chance,
     time_between,
@@ -70,9 +70,7 @@ def _brake_after(
         t: Time [s].
         to_border: Whether t ends at the stretch's end.
     """
-    new_x = x + ((j / 6.0 * t + 0.5 * a) * t + v) * t
-    new_v = v + (0.5 * j * t + a) * t
-    new_a = a + j * t
+    new_x, new_v, new_a = after_jerk(x, v, a, j, t)
     if not to_border:
         return find_brake(limits, entry, reach, i, new_x, new_v, new_a, SAME, 0)
     if new_v > min(limits[1, i], entry[i + 1]) * (1.0 + SAME) or i + 1 >= limits.shape[1]:
@@ -217,9 +215,7 @@ def find_phases(
             put_phase(phases, stretches, used, i, i, now, duration, x, v, a, j)
             used += 1
             now += duration
-            x += ((j / 6.0 * duration + 0.5 * a) * duration + v) * duration
-            v += (0.5 * j * duration + a) * duration
-            a += j * duration
+            x, v, a = after_jerk(x, v, a, j, duration)
             k = then
             if at_border:
                 i, x = i + 1, 0.0
@@ -227,11 +223,8 @@ def find_phases(
                 w = reach[k]
             continue
 
-        deceleration, distance = limits[3, i], rest
-        for last in range(i + 1, k):
-            deceleration = min(deceleration, limits[3, last])
-            jerk = min(jerk, limits[4, last])
-            distance += limits[0, last]
+        deceleration, jerk, behind = brake_limits(limits, i, k)
+        distance = rest + behind
         if a > 0.0:
             # Only down to a = 0, or to the next border: there may be something better to do then.
             duration = a / jerk

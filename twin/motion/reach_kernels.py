@@ -13,7 +13,7 @@ import numba
 import numpy as np
 
 from twin.motion.brake_kernels import brake_distance, brake_need
-from twin.motion.way_kernels import MOST_CHORDS, MOST_STEPS, crossing, damped, room_for_brake
+from twin.motion.way_kernels import MOST_CHORDS, MOST_STEPS, crossing, narrowed, room_for_brake
 from twin.nc.canonical import FloatArray
 
 BISECTIONS = 52
@@ -168,14 +168,7 @@ def _faster_start(
             break
         v = crossing(low, high, at_low, at_high) if step < MOST_CHORDS else 0.5 * (low + high)
         room = room_for_brake(limits, entry, i, 0.0, v, 0.0, k, min(w, v), deceleration, jerk, 1.0)
-        if room >= 0.0:
-            if side > 0:
-                at_high = damped(at_high, at_low, room)
-            low, at_low, side = v, room, 1
-        else:
-            if side < 0:
-                at_low = damped(at_low, at_high, room)
-            high, at_high, side = v, room, -1
+        low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, v, room)
     return low, False
 
 

@@ -110,7 +110,7 @@ def crossing(low: float, high: float, at_low: float, at_high: float) -> float:
 
 
 @numba.njit(cache=True)
-def damped(kept: float, replaced: float, new: float) -> float:
+def _damped(kept: float, replaced: float, new: float) -> float:
     """The value of the end of an interval that was kept twice running (Anderson and Björck 1973).
 
     Args:
@@ -120,3 +120,26 @@ def damped(kept: float, replaced: float, new: float) -> float:
     """
     share = 1.0 - new / replaced if replaced != 0.0 else 0.0
     return kept * (share if share > 0.0 else 0.5)
+
+
+@numba.njit(cache=True)
+def narrowed(
+    low: float, high: float, at_low: float, at_high: float, side: int, new: float, room: float
+) -> tuple[float, float, float, float, int]:
+    """An interval of which the lower end has room, made smaller by one more value.
+
+    Args:
+        low: Its lower end.
+        high: Its upper end.
+        at_low: Room there, as the last step has left it.
+        at_high: The same of the upper end.
+        side: Which end was replaced last: 1 the lower one, -1 the upper one, 0 none.
+        new: A place within it.
+        room: Room there.
+
+    Returns:
+        The first five anew.
+    """
+    if room >= 0.0:
+        return new, high, room, _damped(at_high, at_low, room) if side > 0 else at_high, 1
+    return low, new, _damped(at_low, at_high, room) if side < 0 else at_low, room, -1

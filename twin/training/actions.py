@@ -6,11 +6,13 @@ from typing import Any
 import numpy as np
 
 from twin.errors import UsageError
+from twin.nc.jogging import jog_block
 from twin.nc.source import source_from_text
 from twin.nc.spindle import SpindleState
 from twin.training import commands as c
 from twin.training.faults import inject
 from twin.training.room import Room
+from twin.units import SECONDS_PER_MINUTE
 
 RESOLUTION = 1e-3
 """Way that counts as none when an axis is jogged [mm or deg]."""
@@ -91,12 +93,8 @@ def _jog(room: Room, command: c.Jog) -> None:
     distance = _within_travel(room, column, command)
     if abs(distance) < RESOLUTION:
         raise UsageError(f"{command.axis} stands at the end of its travel")
-    feed = min(command.feed, 60.0 * machine.axis(command.axis).velocity)
-    dialect = room.scene.preparation.dialect.name
-    if dialect == "codesys":
-        # Its F counts units per second.
-        feed /= 60.0
-    block = f"N1 G91 G1 {command.axis}{distance:.6f} F{feed:.6f}"
+    feed = min(command.feed, SECONDS_PER_MINUTE * machine.axis(command.axis).velocity)
+    block = jog_block(room.scene.preparation.dialect, command.axis, distance, feed)
     room.start_run(source_from_text(block, "jog"), "jog")
 
 

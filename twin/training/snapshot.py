@@ -11,6 +11,7 @@ from twin.training.judge import Verdict
 from twin.training.notice import Notice
 from twin.training.program_run import ModalState
 from twin.training.room import Room
+from twin.units import SECONDS_PER_MINUTE
 
 Row = tuple[float, ...]
 
@@ -145,7 +146,7 @@ def _from_run(room: Room, zero: FloatArray) -> tuple[FloatArray, ModalState | No
 def _feed(velocity: FloatArray) -> float:
     linear = float(np.linalg.norm(velocity[:3]))
     turning = float(np.abs(velocity[3:]).max(initial=0.0))
-    return 60.0 * (linear if linear > _STILL or not turning else turning)
+    return SECONDS_PER_MINUTE * (linear if linear > _STILL or not turning else turning)
 
 
 def _row(values: FloatArray) -> Row:

@@ -1,0 +1,18 @@
+"""A jog as the block that an operator would have typed for it."""
+
+from twin.nc.dialect import Dialect, FeedMode
+from twin.nc.plain_tables import FEED_FACTORS
+
+
+def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
+    """One straight move by a distance, in a control's own language.
+
+    Args:
+        dialect: The control's.
+        axis: Name of the axis.
+        distance: How far, and which way [mm or deg].
+        feed: [mm/min or deg/min]
+    """
+    mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
+    assert isinstance(mode, FeedMode)
+    return f"N1 G91 G1 {axis}{distance:.6f} F{feed / FEED_FACTORS[mode]:.6f}"
