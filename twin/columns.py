@@ -18,24 +18,36 @@ class Columns:
         return len(getattr(self, dataclasses.fields(self)[0].name))
 
     def __getitem__(self, rows: Rows) -> Self:
-        """A selection of the rows, as columns again."""
-        return type(self)(*(getattr(self, field.name)[rows] for field in dataclasses.fields(self)))
+        """A selection of the rows, as columns again; of a slice, views."""
+        names = [field.name for field in dataclasses.fields(self)]
+        if not isinstance(rows, slice) and rows.dtype == np.bool_:
+            rows = np.flatnonzero(rows)
+        return type(self)(*(_selected(getattr(self, name), rows) for name in names))
 
 
 ColumnsT = TypeVar("ColumnsT", bound=Columns)
 
 
 def join(parts: Sequence[ColumnsT]) -> ColumnsT:
-    """Consecutive tables as one.
+    """Consecutive tables as one; one alone is returned as it is.
 
     Raises:
         ValueError: There is nothing to join.
     """
     if not parts:
         raise ValueError("nothing to join")
+    if len(parts) == 1:
+        return parts[0]
     names = [field.name for field in dataclasses.fields(parts[0])]
     return type(parts[0])(*(_joined([getattr(part, name) for part in parts]) for name in names))
 
 
 def _joined(values: Sequence[Any]) -> Any:
     return join(values) if isinstance(values[0], Columns) else np.concatenate(values)
+
+
+def _selected(values: Any, rows: slice | npt.NDArray[np.int64]) -> Any:
+    if isinstance(values, Columns) or isinstance(rows, slice):
+        return values[rows]
+    # Of tables with several columns, ``values[rows]`` copies number by number.
+    return values.take(rows, axis=0)

@@ -10,9 +10,9 @@ from motion_checks import assert_consistent, assert_on_path, assert_within_limit
 from motion_programs import PERIOD, SETTINGS, ZERO, Program, duration, limits, mill, programs, run
 
 from twin.columns import join
-from twin.motion.corner_kernels import add_rounding
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces import pieces_of_chunks
+from twin.motion.rounding_kernels import add_rounding
 from twin.motion.setpoints import Setpoints
 from twin.nc.canonical import Corner, FloatArray
 

@@ -12,7 +12,7 @@ import numpy as np
 from twin.nc.canonical import FloatArray
 
 FLAT = 1e-9
-"""Of the largest q'': what is smaller is rounding and has no sign."""
+"""Of the largest q' or q'': what is smaller is rounding and has no sign."""
 
 
 @numba.njit(cache=True)
@@ -70,16 +70,16 @@ def bound_derivatives(
                 cube = turn * square
                 low3 -= max(cube * along[0], cube * along[1])
                 high3 -= min(cube * along[0], cube * along[1])
-            second = max(abs(low2), abs(high2))
-            bounds[i, 0, axis] = max(abs(low1), abs(high1))
+            first, second = max(abs(low1), abs(high1)), max(abs(low2), abs(high2))
+            bounds[i, 0, axis] = first
             bounds[i, 1, axis] = second
             bounds[i, 2, axis] = max(abs(low3), abs(high3))
             if axis < 3:
                 squares += second * second
-            flat = FLAT * second
-            if (high1 > 0.0 and high2 > flat) or (low1 < 0.0 and low2 < -flat):
+            still, flat = FLAT * first, FLAT * second
+            if (high1 > still and high2 > flat) or (low1 < -still and low2 < -flat):
                 against[i, 0, axis] = second
-            if (high1 > 0.0 and low2 < -flat) or (low1 < 0.0 and high2 > flat):
+            if (high1 > still and low2 < -flat) or (low1 < -still and high2 > flat):
                 against[i, 1, axis] = second
         bend[i] = math.sqrt(squares)
         if turn != 0.0 and not np.any(rounding[i]):
@@ -140,7 +140,7 @@ def _polynomial_ranges(
     # q' lies within x²/8 max(abs(q''')) of its chord, and between its ends if q'' has one sign.
     first_end = first + (s0 + (0.5 * p0 + (p1 / 6.0 + p2 / 12.0 * x) * x) * x) * x
     low1, high1 = min(first, first_end), max(first, first_end)
-    if low2 < 0.0 < high2:
+    if min(-low2, high2) > FLAT * max(-low2, high2):
         sag = x * x / 8.0 * max(-low3, high3)
         low1, high1 = low1 - sag, high1 + sag
     return low1, high1, low2, high2, low3, high3

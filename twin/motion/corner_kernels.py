@@ -18,7 +18,8 @@ import math
 import numba
 import numpy as np
 
-from twin.nc.canonical import FloatArray
+from twin.motion.blocks import BoolArray
+from twin.nc.canonical import FloatArray, IntArray
 
 MOST_NEIGHBOURS = 32
 """Borders to either side that a rounding may reach over."""
@@ -36,18 +37,12 @@ KNEE_PEAK = 3.0 / 16.0
 BEND_PEAK = 0.01074
 """Largest value of ``smooth_square(t) - max(t, 0)²/2`` (0.010736)."""
 
+SUMS = {"reassoc", "nsz", "nnan"}
+"""Freedoms that let a sum or a maximum over neighbours be taken several at a time: its terms may be
+added in any order, and none is NaN."""
+
 OVERLAP_POINTS = 16
 """At which roundings from both ends of a block are added up."""
-
-
-@numba.njit(cache=True)
-def _share(away: float, width: float, per_width: float, per_square: float) -> float:
-    """Share of the tolerance that a rounding uses ``away`` from its border."""
-    t = abs(away) / width
-    if t >= 1.0:
-        return 0.0
-    ramp = (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 16.0
-    return width * (per_width * ramp + per_square * width * BEND_PEAK)
 
 
 @numba.njit(cache=True)
@@ -93,11 +88,62 @@ def _between(
     return most
 
 
+@numba.njit(cache=True, fastmath=SUMS, error_model="numpy")
+def _used(
+    place: FloatArray, per_width: FloatArray, per_square: FloatArray, at: float, width: float
+) -> tuple[float, float]:
+    """Share of the tolerance used at a border by roundings of one width, and its slope by width.
+
+    Args:
+        place: Of the borders that reach there, shape (m,).
+        per_width: As in ``find_widths``, of these.
+        per_square: As in ``find_widths``, of these.
+        at: Place of the border.
+        width: Of all roundings.
+    """
+    ramps, slopes, bends = 0.0, 0.0, 0.0
+    per_reach = 1.0 / width
+    for other in range(len(place)):
+        t = abs(place[other] - at) * per_reach
+        squared = t * t
+        flat = 1.0 - squared
+        ramps += per_width[other] * (3.0 + t * (-8.0 + t * (6.0 - squared)))
+        slopes += per_width[other] * (flat * flat)
+        bends += per_square[other]
+    bends *= BEND_PEAK * width
+    return width * (ramps / 16.0 + bends), slopes * 3.0 / 16.0 + 2.0 * bends
+
+
+@numba.njit(cache=True)
+def _reached(
+    place: FloatArray, i: int, walls: tuple[int, int], width: float, near: tuple[int, int]
+) -> tuple[int, int]:
+    """The first border nearer than ``width`` to border i and the one after the last.
+
+    Args:
+        place: As in ``find_widths``.
+        i: The border.
+        walls: Border before the first that counts, and after the last.
+        width: [mm or deg]
+        near: Where to begin the search: a result for another width or border.
+    """
+    first, last = min(max(near[0], walls[0] + 1), i), max(min(near[1], walls[1]), i + 1)
+    while first < i and place[i] - place[first] >= width:
+        first += 1
+    while first > walls[0] + 1 and place[i] - place[first - 1] < width:
+        first -= 1
+    while last > i + 1 and place[last - 1] - place[i] >= width:
+        last -= 1
+    while last < walls[1] and place[last] - place[i] < width:
+        last += 1
+    return first, last
+
+
 @numba.njit(cache=True)
 def _even_width(
     place: FloatArray, per_width: FloatArray, per_square: FloatArray,
-    i: int, before: int, after: int, high: float, guess: float,
-) -> float:  # fmt: skip
+    i: int, walls: tuple[int, int], guess: float, near: tuple[int, int],
+) -> tuple[float, tuple[int, int]]:  # fmt: skip
     """The width that uses the tolerance at a border if its neighbours took the same.
 
     Args:
@@ -105,48 +151,79 @@ def _even_width(
         per_width: As in ``find_widths``.
         per_square: As in ``find_widths``.
         i: The border.
-        before: Border before the first that counts.
-        after: Border after the last.
-        high: The widest that has room.
+        walls: Border before the first that counts, and after the last.
         guess: Where to begin the search.
+        near: The borders reached by that width, or about these.
+
+    Returns:
+        The width; the borders reached by it, or about these.
     """
+    high = min(place[i] - place[walls[0]], place[walls[1]] - place[i])
     width, below, above = min(guess, high), 0.0, math.inf
     for _ in range(MOST_STEPS):
         # What is used grows with the width, and ever faster: Newton comes down to the root.
-        used, slope = 0.0, 0.0
-        other, step = i, -1
-        while True:
-            away = abs(place[other] - place[i])
-            if before < other < after and away < width:
-                t = away / width
-                flat = 1.0 - t * t
-                knee, bend = per_width[other], per_square[other] * BEND_PEAK
-                used += width * (
-                    knee * (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 16.0 + bend * width
-                )
-                slope += knee * 3.0 / 16.0 * flat * flat + 2.0 * bend * width
-                other += step
-            elif step < 0:
-                other, step = i + 1, 1
-            else:
-                break
+        near = _reached(place, i, walls, width, near)
+        first, last = near
+        used, slope = _used(
+            place[first:last], per_width[first:last], per_square[first:last], place[i], width
+        )
         if used > 1.0:
             above = width
         elif width == high:
-            return high
+            return high, near
         else:
             below = width
         new = min(high, width - (used - 1.0) / slope)
         if abs(new - width) <= NEARLY * width or below >= (1.0 - NEARLY) * above:
-            return max(below, new) if new < above else below
+            return max(below, new) if new < above else below, near
         # Where a bend comes within reach its share is there at once: Newton cannot see that.
         width = new if below < new < above else 0.5 * (below + above)
-    return below
+    return below, near
+
+
+@numba.njit(cache=True, fastmath=SUMS, error_model="numpy")
+def _add_shares(
+    excess: FloatArray, place: FloatArray, at: float, width: float,
+    per_width: float, per_square: float,
+) -> None:  # fmt: skip
+    """Add what one rounding uses of the tolerance at the borders that it reaches, in place."""
+    per_reach = 1.0 / width
+    knee, bend = width * per_width / 16.0, width * width * per_square * BEND_PEAK
+    for other in range(len(place)):
+        t = abs(place[other] - at) * per_reach
+        excess[other] += knee * (3.0 + t * (-8.0 + t * (6.0 - t * t))) + bend
+
+
+@numba.njit(cache=True, fastmath=SUMS, error_model="numpy")
+def _largest(values: FloatArray) -> float:
+    """The largest of them, 1 at least."""
+    most = 1.0
+    for value in values:
+        most = max(most, value)
+    return most
+
+
+@numba.njit(cache=True)
+def _find_walls(rounded: BoolArray) -> tuple[IntArray, IntArray]:
+    """The nearest borders on either side that no rounding reaches or crosses, shape (n,) each."""
+    count = len(rounded)
+    before, after = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    wall = 0
+    for i in range(count):
+        if not rounded[i]:
+            wall = i
+        before[i] = max(wall, i - MOST_NEIGHBOURS)
+    wall = count
+    for i in range(count - 1, -1, -1):
+        if not rounded[i]:
+            wall = i
+        after[i] = min(wall, i + MOST_NEIGHBOURS)
+    return before, after
 
 
 @numba.njit(cache=True)
 def find_widths(
-    place: FloatArray, rounded: FloatArray, per_width: FloatArray, per_square: FloatArray
+    place: FloatArray, rounded: BoolArray, per_width: FloatArray, per_square: FloatArray
 ) -> FloatArray:
     """How far the rounding of each border reaches.
 
@@ -165,106 +242,35 @@ def find_widths(
         Shape (n,) [mm or deg]; 0 where there is nothing to round or no room.
     """
     count = len(rounded)
-    first = np.zeros(count)
-    before = np.zeros(count, np.int64)
-    after = np.zeros(count, np.int64)
-    wall = 0
-    for i in range(count):
-        if not rounded[i]:
-            wall = i
-        before[i] = max(wall, i - MOST_NEIGHBOURS)
-    wall = count
-    for i in range(count - 1, -1, -1):
-        if not rounded[i]:
-            wall = i
-        after[i] = min(wall, i + MOST_NEIGHBOURS)
-    guess = math.inf
+    before, after = _find_walls(rounded)
+    width = np.zeros(count)
+    reached = np.zeros((count, 2), np.int64)
+    excess = np.zeros(count)
+    guess, near = math.inf, (0, 0)
     for i in range(count):
         if not rounded[i] or (per_width[i] == 0.0 and per_square[i] == 0.0):
             continue
-        high = min(place[i] - place[before[i]], place[after[i]] - place[i])
-        guess = _even_width(place, per_width, per_square, i, before[i], after[i], high, guess)
-        first[i] = guess
-    excess = np.ones(count)
-    for i in range(count):
-        # What each rounding takes at the borders that it reaches.
-        if first[i] == 0.0:
-            continue
-        other = i
-        while other > before[i] and place[i] - place[other] < first[i]:
-            excess[other] += _share(place[i] - place[other], first[i], per_width[i], per_square[i])
-            other -= 1
-        other = i + 1
-        while other < after[i] and place[other] - place[i] < first[i]:
-            excess[other] += _share(place[other] - place[i], first[i], per_width[i], per_square[i])
-            other += 1
-    for i in range(count):
-        excess[i] = max(1.0, excess[i] - 1.0)
-    within = np.ones(count)
+        walls = before[i], after[i]
+        guess, near = _even_width(place, per_width, per_square, i, walls, guess, near)
+        if guess > 0.0:
+            width[i] = guess
+            first, last = _reached(place, i, walls, guess, near)
+            reached[i, 0], reached[i, 1] = first, last
+            _add_shares(
+                excess[first:last], place[first:last], place[i], guess, per_width[i], per_square[i]
+            )
     if np.any(per_square > 0.0):
-        for i in range(count):
-            if i + 1 < count and (rounded[i] or rounded[i + 1]):
+        within = np.ones(count)
+        for i in range(count - 1):
+            if rounded[i] or rounded[i + 1]:
                 low = before[i] if rounded[i] else i
                 high = after[i + 1] if rounded[i + 1] else i + 1
-                within[i] = max(1.0, _between(place, first, per_width, per_square, i, low, high))
-    width = np.zeros(count)
+                within[i] = _between(place, width, per_width, per_square, i, low, high)
+        for i in range(1, count):
+            excess[i] = max(excess[i], within[i - 1], within[i])
+    out = np.zeros(count)
     for i in range(count):
-        if first[i] == 0.0:
-            continue
-        most = max(1.0, within[i - 1], within[i])
-        other = i
-        while other > before[i] and place[i] - place[other] < first[i]:
-            most = max(most, excess[other], within[other - 1], within[other])
-            other -= 1
-        other = i + 1
-        while other < after[i] and place[other] - place[i] < first[i]:
-            most = max(most, excess[other], within[other - 1], within[other])
-            other += 1
-        if first[i] / most >= NARROWEST:
-            width[i] = first[i] / most
-    return width
-
-
-@numba.njit(cache=True)
-def add_rounding(
-    coefficients: FloatArray, away: float, width: float, knee: FloatArray, bend: FloatArray,
-    share: float = 1.0,
-) -> None:  # fmt: skip
-    """Add a border's rounding to the polynomials of a piece.
-
-    Args:
-        coefficients: Of each axis by powers of x from the piece's begin, shape (k, 6).
-        away: From the border to the piece's begin, negative before the border [mm or deg]; the
-            piece lies on one side of the border.
-        width: Of the rounding [mm or deg].
-        knee: Step of dq/dx, shape (k,).
-        bend: Step of d²q/dx², shape (k,).
-        share: -1 to take the rounding away.
-    """
-    t = away / width
-    squared = t * t
-    beyond = 1.0 if away >= 0.0 else 0.0
-    # Taylor's coefficients about the piece's begin, in t.
-    ramp = (
-        (3.0 + t * (8.0 + t * (6.0 - squared))) / 16.0 - beyond * t,
-        (2.0 + t * (3.0 - squared)) / 4.0 - beyond,
-        3.0 * (1.0 - squared) / 8.0,
-        -t / 4.0,
-        -1.0 / 16.0,
-        0.0,
-    )
-    square = (
-        t * (3.0 + t * (8.0 + t * (6.0 - squared))) / 32.0 - 0.5 * beyond * squared,
-        (3.0 + t * (16.0 + t * (18.0 - 5.0 * squared))) / 32.0 - beyond * t,
-        (4.0 + t * (9.0 - 5.0 * squared)) / 16.0 - 0.5 * beyond,
-        (3.0 - 5.0 * squared) / 16.0,
-        -5.0 * t / 32.0,
-        -1.0 / 32.0,
-    )
-    scale = share * width
-    for power in range(6):
-        for axis in range(len(knee)):
-            coefficients[axis, power] += scale * (
-                knee[axis] * ramp[power] + bend[axis] * width * square[power]
-            )
-        scale /= width
+        if width[i] > 0.0:
+            narrowed = width[i] / _largest(excess[reached[i, 0] : reached[i, 1]])
+            out[i] = narrowed if narrowed >= NARROWEST else 0.0
+    return out

@@ -12,6 +12,7 @@ import dataclasses
 import numpy as np
 
 from twin.motion.blocks import Blocks, BoolArray
+from twin.motion.border_kernels import border_steps, border_velocities, tolerance_shares
 from twin.motion.corner_kernels import MOST_NEIGHBOURS, find_widths
 from twin.motion.limits import MotionLimits
 from twin.nc.canonical import Corner, FloatArray
@@ -19,9 +20,6 @@ from twin.nc.canonical import Corner, FloatArray
 CONTEXT = 5 * MOST_NEIGHBOURS
 """Blocks on either side that the path along a block can depend on: roundings reach that far, their
 widths depend on others' widths thrice as far, and those on the tolerances as far again."""
-
-KNEE_NOISE = 1e-9
-"""Steps of derivatives below this are rounding of the geometry [1, or 1/mm]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -43,70 +41,36 @@ class Borders:
 
 def find_borders(blocks: Blocks, limits: MotionLimits) -> Borders:
     """Decide how each border is passed; the first block's border counts as a stop."""
-    count = len(blocks)
-    rows = np.arange(count)
-    scale = np.divide(1.0, blocks.length, out=np.zeros(count), where=blocks.length > 0.0)[:, None]
-    zeros, ones = np.zeros(count), np.ones(count)
-    shapes = blocks.geometry
-    knee, bend = (
-        _noise_free(_steps(shapes.derivative(rows, zeros, order) * scale**order,
-                           shapes.derivative(rows, ones, order) * scale**order))
-        for order in (1, 2)
-    )  # fmt: skip
+    shapes, axes = blocks.geometry, len(limits)
+    knee, bend = border_steps(shapes.drift, shapes.cosine, shapes.sine, shapes.angle, blocks.length)
     corner = blocks.corner.copy()
     corner[0] = Corner.EXACT_STOP
-
-    width = np.zeros(count)
     rounded = corner == Corner.CONTINUOUS
+    width = np.zeros(len(blocks))
     if np.any(rounded):
-        per_width, per_square = _strictness(blocks, rounded, knee, bend, limits)
+        per_width, per_square = tolerance_shares(
+            knee, bend, _tolerances(blocks, rounded, limits), limits.further_corner_tolerance
+        )
         place = np.append(0.0, np.cumsum(blocks.length))
         width = find_widths(place, rounded, per_width, per_square)
-
-    by_knee = _allowed(limits.junction_velocity_step, knee)
-    by_bend = np.sqrt(_allowed(limits.junction_acceleration_step, bend))
-    entry = np.minimum(by_knee, by_bend)
-    entry[width > 0.0] = np.inf
-    # A continuous path has no steps at all: where there is no room to round them, it stops.
-    stepping = np.any(knee != 0.0, axis=1) | np.any(bend != 0.0, axis=1)
-    entry[rounded & (width == 0.0) & stepping] = 0.0
-    entry[corner == Corner.EXACT_STOP] = 0.0
+    entry = border_velocities(
+        knee, bend, corner == Corner.EXACT_STOP, rounded, width,
+        np.broadcast_to(limits.junction_velocity_step, axes),
+        np.broadcast_to(limits.junction_acceleration_step, axes),
+    )  # fmt: skip
     return Borders(knee, bend, width, entry)
 
 
-def _steps(at_begin: FloatArray, at_end: FloatArray) -> FloatArray:
-    out = np.zeros_like(at_begin)
-    out[1:] = at_begin[1:] - at_end[:-1]
-    return out
-
-
-def _noise_free(steps: FloatArray) -> FloatArray:
-    return np.where(np.abs(steps) < KNEE_NOISE, 0.0, steps)
-
-
-def _allowed(largest: FloatArray | float, step: FloatArray) -> FloatArray:
-    """By how much the steps may be multiplied; infinite where nothing steps, shape (n,)."""
-    size = np.abs(step)
-    factors = np.full_like(size, np.inf)
-    np.divide(np.broadcast_to(largest, size.shape), size, out=factors, where=size > 0.0)
-    return factors.min(axis=1)
-
-
-def _strictness(
-    blocks: Blocks, rounded: BoolArray, knee: FloatArray, bend: FloatArray, limits: MotionLimits
-) -> tuple[FloatArray, FloatArray]:
-    """Shares of the tolerance that a rounding uses per width by its knee, and per width² by bend.
+def _tolerances(blocks: Blocks, rounded: BoolArray, limits: MotionLimits) -> FloatArray:
+    """Of X Y Z at each border, shape (n,) [mm]; infinite where nothing is rounded.
 
     Where tolerances differ, the strictest among the borders that roundings can reach counts.
     """
     own = np.where(np.isnan(blocks.tolerance), limits.corner_tolerance, blocks.tolerance)
     own[~rounded] = np.inf
-    spatial = own.copy()
+    strictest = own.copy()
     if np.ptp(own[rounded]) > 0.0:
         for shift in range(1, MOST_NEIGHBOURS + 1):
-            np.minimum(spatial[shift:], own[:-shift], out=spatial[shift:])
-            np.minimum(spatial[:-shift], own[shift:], out=spatial[:-shift])
-    knee_share = np.linalg.norm(knee[:, :3], axis=1) / spatial
-    bend_share = np.linalg.norm(bend[:, :3], axis=1) / spatial
-    others = np.abs(knee[:, 3:]).max(axis=1, initial=0.0) / limits.further_corner_tolerance
-    return np.maximum(knee_share, others), bend_share
+            np.minimum(strictest[shift:], own[:-shift], out=strictest[shift:])
+            np.minimum(strictest[:-shift], own[shift:], out=strictest[:-shift])
+    return strictest

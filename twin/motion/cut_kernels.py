@@ -10,7 +10,7 @@ import math
 import numba
 import numpy as np
 
-from twin.motion.corner_kernels import MOST_NEIGHBOURS, add_rounding
+from twin.motion.rounding_kernels import add_roundings
 from twin.nc.canonical import FloatArray, IntArray
 
 PIECE_ANGLE = math.radians(5.0)
@@ -19,9 +19,6 @@ PIECE_ANGLE = math.radians(5.0)
 SHORTEST_PIECE = 1e-8
 """Cuts closer than this to another are left out [mm or deg]; a rounding that begins there has
 grown by less than 1e-16 mm."""
-
-CARRIED = 2.0
-"""How far a sum of polynomials is carried, in widths of the narrowest rounding in it."""
 
 
 @numba.njit(cache=True)
@@ -76,7 +73,7 @@ def cut_blocks(
     owner, offset, extent = owner[:used], offset[:used], extent[:used]
     rounding = np.zeros((used, knee.shape[1], 6))
     if len(ends) > 0:
-        _add_roundings(place, owner, offset, extent, ends, sources, width, knee, bend, rounding)
+        add_roundings(place, owner, offset, extent, ends, sources, width, knee, bend, rounding)
     return owner, offset, extent, rounding
 
 
@@ -122,82 +119,3 @@ def _ends_by_block(place: FloatArray, width: FloatArray) -> tuple[IntArray, Floa
             ends[row], sources[row] = end, i
             filled[block] += 1
     return first, ends, sources
-
-
-@numba.njit(cache=True)
-def _add_roundings(
-    place: FloatArray, owner: IntArray, offset: FloatArray, extent: FloatArray,
-    ends: FloatArray, sources: IntArray,
-    width: FloatArray, knee: FloatArray, bend: FloatArray, rounding: FloatArray,
-) -> None:  # fmt: skip
-    """Write the sums of the roundings along each piece.
-
-    Args:
-        place: As in ``_ends_by_block``.
-        owner: Block of each piece, shape (m,).
-        offset: Its begin, from the block's, shape (m,).
-        extent: Its length, shape (m,).
-        ends: From ``_ends_by_block``.
-        sources: From ``_ends_by_block``.
-        width: As in ``cut_blocks``, and so on to ``bend``.
-        knee: See above.
-        bend: See above.
-        rounding: Result, zero before, shape (m, k, 6).
-    """
-    axes = knee.shape[1]
-    active = np.zeros(2 * MOST_NEIGHBOURS + 2, np.int64)
-    used, passed = 0, 0
-    total = np.zeros((axes, 6))
-    since, narrowest = 0.0, math.inf
-    for piece in range(len(owner)):
-        i = owner[piece]
-        here = place[i] + offset[piece]
-        middle = here + 0.5 * extent[piece]
-        if used > 0:
-            shift_polynomials(total, extent[piece - 1])
-            if offset[piece] == 0.0 and width[i] > 0.0:
-                # Over the border: what is added beyond it has lost the kink.
-                total[:, 1] -= knee[i]
-                total[:, 2] -= 0.5 * bend[i]
-        while passed < len(ends) and ends[passed] <= middle:
-            other = int(sources[passed])
-            passed += 1
-            narrowest = min(narrowest, width[other])
-            away = place[i] - place[other] + offset[piece]
-            if other > i:
-                active[used] = other
-                used += 1
-                add_rounding(total, away, width[other], knee[other], bend[other])
-            else:
-                row = 0
-                while active[row] != other:
-                    row += 1
-                used -= 1
-                active[row] = active[used]
-                add_rounding(total, max(0.0, away), width[other], knee[other], bend[other], -1.0)
-        if used == 0 or here + extent[piece] - since > CARRIED * narrowest:
-            total[:] = 0.0
-            since, narrowest = here, math.inf
-            for row in range(used):
-                other = int(active[row])
-                away = place[i] - place[other] + offset[piece]
-                if other <= i:
-                    away = max(0.0, away)
-                narrowest = min(narrowest, width[other])
-                add_rounding(total, away, width[other], knee[other], bend[other])
-        if used > 0:
-            rounding[piece] = total
-
-
-@numba.njit(cache=True)
-def shift_polynomials(coefficients: FloatArray, way: float) -> None:
-    """Count the x of polynomials from a place further on, in place (Horner's scheme).
-
-    Args:
-        coefficients: By powers of x, shape (k, 6).
-        way: From the old place to the new one.
-    """
-    for axis in range(len(coefficients)):
-        for last in range(5):
-            for power in range(4, last - 1, -1):
-                coefficients[axis, power] += way * coefficients[axis, power + 1]

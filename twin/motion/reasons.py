@@ -4,8 +4,8 @@ import dataclasses
 
 import numpy as np
 
+from twin.motion.border_kernels import KNEE_NOISE
 from twin.motion.bound_kernels import bound_derivatives
-from twin.motion.corners import KNEE_NOISE
 from twin.motion.limit_kernels import CENTRIPETAL_SHARE, CURVE_JERK_SHARE
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces import Pieces

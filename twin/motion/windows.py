@@ -155,12 +155,13 @@ def _batches(parts: Iterable[Pieces], blocks: int) -> Iterator[Pieces]:
                 end = int(inside[blocks - found])
             if end == len(part) and end < room:
                 break
-            waiting.append(part[first:end])
-            yield waiting[0] if len(waiting) == 1 else join(waiting)
+            if end > first:
+                waiting.append(part[first:end])
+            yield join(waiting)
             waiting, count, found, first = [], 0, 0, end
         if first < len(part):
             waiting.append(part[first:])
             count += len(part) - first
             found += int(np.count_nonzero(starts[first:]))
     if count > 0:
-        yield waiting[0] if len(waiting) == 1 else join(waiting)
+        yield join(waiting)
