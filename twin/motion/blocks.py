@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from twin.columns import Columns, join
+from twin.motion.block_kernels import largest_travels
 from twin.nc.canonical import (
     Chunk,
     CodeArray,
@@ -110,8 +111,8 @@ def _stops(event: Event) -> bool:
 
 def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[Blocks, int, float]:
     """The blocks of moves, and the corner and tolerance at their end."""
-    travel = np.abs(moves.end - moves.start)
-    length = np.maximum(moves.length, travel.max(axis=1, initial=0.0) / STEEPEST)
+    farthest, linear = largest_travels(moves.start, moves.end, moves.axes.rotary())
+    length = np.maximum(moves.length, farthest / STEEPEST)
     rows = np.flatnonzero(length >= SHORTEST)
     corners = np.append(corner, moves.corner).astype(np.uint8)
     tolerances = np.append(tolerance, moves.corner_tolerance)
@@ -121,14 +122,12 @@ def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[
     stops = np.append(0, np.cumsum(corners == Corner.EXACT_STOP))
     previous = np.append(-1, rows)
     at_border[stops[before + 1] > stops[previous + 1]] = Corner.EXACT_STOP
-    kept = moves[rows]
+    kept = moves if len(rows) == len(moves) else moves[rows]
     rapid = kept.motion == Motion.RAPID
     # Rapids stand still at both ends (twin.nc.canonical).
     at_border[:-1][rapid] = Corner.EXACT_STOP
     at_border[1:][rapid] = Corner.EXACT_STOP
     shapes = geometry(kept)
-    linear = ~kept.axes.rotary()
-    moved = travel[rows][:, linear].max(axis=1, initial=0.0)
     stretch = length / np.maximum(moves.length, 1e-12)
     blocks = Blocks(
         move=first + rows,
@@ -139,7 +138,7 @@ def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[
         feed=np.where(np.isnan(kept.feed), np.inf, kept.feed / SECONDS_PER_MINUTE),
         acceleration=np.where(np.isnan(kept.acceleration), np.inf, kept.acceleration),
         deceleration=np.where(np.isnan(kept.deceleration), np.inf, kept.deceleration),
-        rotary_alone=(moved == 0.0) & (shapes.angle == 0.0),
+        rotary_alone=(linear[rows] == 0.0) & (shapes.angle == 0.0),
         corner=at_border[:-1],
         tolerance=tolerances[rows],
         pause=np.zeros(len(rows)),
@@ -178,9 +177,9 @@ def _of_dwell(dwell: Dwell, move: int, position: FloatArray) -> Blocks:
 
 def _check_joined(position: FloatArray, moves: Moves) -> None:
     before = np.concatenate([position[None], moves.end])[: len(moves)]
-    gaps = np.abs(moves.start - before).max(axis=1, initial=0.0)
-    if np.any(gaps > JOIN_TOLERANCE):
-        row = int(np.argmax(gaps > JOIN_TOLERANCE))
+    gaps = np.abs(moves.start - before)
+    if gaps.max(initial=0.0) > JOIN_TOLERANCE:
+        row = int(np.argmax(np.any(gaps > JOIN_TOLERANCE, axis=1)))
         raise ValueError(
             f"line {moves.line[row]}: the move begins at {moves.start[row]}, "
             f"but the axes stand at {before[row]}"

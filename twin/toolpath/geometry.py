@@ -92,16 +92,18 @@ class Geometry(Columns):
 
 def geometry(moves: Moves) -> Geometry:
     """Bring canonical moves into their common form (formula in ``twin.nc.canonical``)."""
-    arc = moves.shape == Shape.ARC
-    angle = np.where(arc, np.deg2rad(moves.sweep), 0.0)
-    cosine = np.zeros((len(moves), 3))
-    sine = np.zeros((len(moves), 3))
-    normal = moves.normal[arc]
-    spoke = moves.start[arc, :3] - moves.center[arc]
-    cosine[arc] = spoke - normal * np.sum(normal * spoke, axis=1, keepdims=True)
-    sine[arc] = np.cross(normal, cosine[arc])
-    base = moves.start.copy()
-    base[:, :3] -= cosine
-    drift = moves.end - base
-    drift[:, :3] -= cosine * np.cos(angle)[:, None] + sine * np.sin(angle)[:, None]
+    count = len(moves)
+    base, drift = moves.start, moves.end - moves.start
+    angle, cosine, sine = np.zeros(count), np.zeros((count, 3)), np.zeros((count, 3))
+    arc = np.flatnonzero(moves.shape == Shape.ARC)
+    if len(arc) > 0:
+        turn, normal = np.deg2rad(moves.sweep[arc]), moves.normal[arc]
+        spoke = moves.start[arc, :3] - moves.center[arc]
+        along = spoke - normal * np.sum(normal * spoke, axis=1, keepdims=True)
+        across = np.cross(normal, along)
+        angle[arc], cosine[arc], sine[arc] = turn, along, across
+        base = base.copy()
+        base[arc, :3] -= along
+        drift[arc, :3] = moves.end[arc, :3] - base[arc, :3]
+        drift[arc, :3] -= along * np.cos(turn)[:, None] + across * np.sin(turn)[:, None]
     return Geometry(base, drift, cosine, sine, angle, moves.end)
