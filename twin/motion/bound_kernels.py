@@ -15,7 +15,7 @@ FLAT = 1e-9
 """Of the largest q' or q'': what is smaller is rounding and has no sign."""
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def bound_derivatives(
     drift: FloatArray, cosine: FloatArray, sine: FloatArray, angle: FloatArray,
     begin: FloatArray, fraction_per_length: FloatArray, length: FloatArray, rounding: FloatArray,
@@ -51,10 +51,14 @@ def bound_derivatives(
             at += turn * length[i]
             c_end, s_end = math.cos(at), math.sin(at)
         for axis in range(axes):
-            low1, high1, low2, high2, low3, high3 = _polynomial_ranges(
-                rounding[i, axis], drift[i, axis] * fraction_per_length[i], length[i]
-            )
-            if turn != 0.0 and axis < 3:
+            slope = drift[i, axis] * fraction_per_length[i]
+            added = rounding[i, axis]
+            bent = turn != 0.0 and axis < 3
+            if not bent and added[2] == added[3] == added[4] == added[5] == 0.0:
+                bounds[i, 0, axis] = abs(slope + added[1])
+                continue
+            low1, high1, low2, high2, low3, high3 = _polynomial_ranges(added, slope, length[i])
+            if bent:
                 p, q = cosine[i, axis], sine[i, axis]
                 amplitude, way = math.hypot(p, q), math.copysign(1.0, turn)
                 x, x_end = p * c + q * s, p * c_end + q * s_end
@@ -87,7 +91,7 @@ def bound_derivatives(
     return bounds, bend, against
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _wave_range(
     at_begin: float, at_end: float, slope_begin: float, slope_end: float, amplitude: float
 ) -> tuple[float, float]:
@@ -100,7 +104,7 @@ def _wave_range(
     return low, high
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _polynomial_ranges(
     c: FloatArray, slope: float, length: float
 ) -> tuple[float, float, float, float, float, float]:
@@ -112,8 +116,6 @@ def _polynomial_ranges(
         length: The end of x.
     """
     first = slope + c[1]
-    if c[2] == 0.0 and c[3] == 0.0 and c[4] == 0.0 and c[5] == 0.0:
-        return first, first, 0.0, 0.0, 0.0, 0.0
     x = length
     # q''' is a parabola, its ends and its vertex tell its range.
     p0, p1, p2 = 6.0 * c[3], 24.0 * c[4], 60.0 * c[5]

@@ -78,6 +78,37 @@ def cut_blocks(
 
 
 @numba.njit(cache=True)
+def place_pieces(
+    length: FloatArray, move: IntArray, entry: FloatArray, owner: IntArray, offset: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Where pieces lie in their moves, and how fast they may be entered.
+
+    Args:
+        length: Of all blocks, 0 for dwells, shape (n,).
+        move: Of all blocks, -1 for dwells before the first, shape (n,).
+        entry: Highest v at the borders before blocks, shape (n,).
+        owner: From ``cut_blocks``, shape (m,).
+        offset: From ``cut_blocks``, shape (m,).
+
+    Returns:
+        Path fraction per x, path fraction at the begin, highest v there; shape (m,) each. A dwell
+        stands at the end of the move before it.
+    """
+    count = len(owner)
+    scale, begin, highest = np.zeros(count), np.zeros(count), np.full(count, math.inf)
+    for piece in range(count):
+        i = owner[piece]
+        if length[i] > 0.0:
+            scale[piece] = 1.0 / length[i]
+            begin[piece] = offset[piece] * scale[piece]
+        elif move[i] >= 0:
+            begin[piece] = 1.0
+        if offset[piece] == 0.0:
+            highest[piece] = entry[i]
+    return scale, begin, highest
+
+
+@numba.njit(cache=True)
 def _ends_by_block(place: FloatArray, width: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
     """Where roundings begin and end, in order.
 

@@ -5,7 +5,9 @@ import math
 import numba
 import numpy as np
 
-from twin.nc.canonical import FloatArray
+from twin.motion.blocks import BoolArray
+from twin.motion.reachable_kernels import reach_velocities
+from twin.nc.canonical import FloatArray, IntArray
 
 CENTRIPETAL_SHARE = 0.95
 """Of an axis's acceleration that following a curve may use; the rest is left to change speed."""
@@ -15,86 +17,139 @@ CURVE_JERK_SHARE = 0.5
 
 
 @numba.njit(cache=True)
-def straight_limits(
-    bounds: FloatArray, bend: FloatArray, wanted: FloatArray,
-    path_acceleration: FloatArray, path_jerk: FloatArray, stretch: FloatArray,
+def piece_limits(
+    block: tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray],
+    owner: IntArray, length: FloatArray, ceilings: FloatArray,
+    bounds: FloatArray, bend: FloatArray, against: FloatArray,
+    path: tuple[float, float, float, float],
     axis_velocity: FloatArray, axis_acceleration: FloatArray, axis_jerk: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
-    """What velocity, acceleration and jerk bound each by itself.
+) -> FloatArray:  # fmt: skip
+    """What any instant of a piece may use.
 
     Args:
-        bounds: Of abs(q'), abs(q''), abs(q''') along n pieces, shape (n, 3, k).
-        bend: Of the length of q'' of X Y Z together, shape (n,).
-        wanted: Highest v that is asked for, shape (n,).
-        path_acceleration: Of the path parameter, shape (n,).
-        path_jerk: Of the path parameter, shape (n,).
-        stretch: Path parameter per what the feed counts, shape (n,).
+        block: Of the m blocks: highest v that is asked for, highest a and -a, path parameter per
+            what the feed counts, whether only rotary axes move; shape (m,) each.
+        owner: Block of each of n pieces, shape (n,).
+        length: Of the pieces, 0 for dwells, shape (n,).
+        ceilings: Highest v at the borders of the pieces, shape (n + 1,).
+        bounds: From ``bound_derivatives``, shape (n, 3, k).
+        bend: From ``bound_derivatives``, shape (n,).
+        against: From ``bound_derivatives``, shape (n, 2, k).
+        path: Acceleration and jerk of the path, and of one of rotary axes alone.
         axis_velocity: Shape (k,).
         axis_acceleration: Shape (k,).
         axis_jerk: Shape (k,).
 
     Returns:
-        Highest v, as if a were 0; highest a and j, as if v were 0; shape (n,) each.
+        Rows velocity, acceleration, deceleration, jerk, shape (4, n).
     """
-    count, axes = len(wanted), len(axis_velocity)
-    velocity, acceleration, jerk = wanted.copy(), path_acceleration.copy(), path_jerk.copy()
+    wanted, highest_a, highest_d, stretch, rotary_alone = block
+    count, axes = len(owner), len(axis_jerk)
+    out = np.zeros((4, count))
+    speeding, braking, readiness = np.zeros(count), np.zeros(count), np.ones(count)
+    curved = np.zeros(count, np.bool_)
     for i in range(count):
-        square, cube = math.inf, math.inf
-        if bend[i] > 0.0:
-            square = path_acceleration[i] / (stretch[i] * bend[i])
+        row = owner[i]
+        path_a = stretch[row] * (path[2] if rotary_alone[row] else path[0])
+        path_j = stretch[row] * (path[3] if rotary_alone[row] else path[1])
+        v, a, j = _straight_limits(
+            bounds[i], bend[i], wanted[row], path_a, path_j, stretch[row],
+            axis_velocity, axis_acceleration, axis_jerk,
+        )  # fmt: skip
+        out[0, i], out[3, i] = v, j
+        out[1, i] = min(a, stretch[row] * highest_a[row])
+        out[2, i] = min(a, stretch[row] * highest_d[row])
+        speeding[i] = min(path_a, stretch[row] * highest_a[row])
+        braking[i] = min(path_a, stretch[row] * highest_d[row])
         for axis in range(axes):
-            first, second, third = bounds[i, 0, axis], bounds[i, 1, axis], bounds[i, 2, axis]
-            if first > 0.0:
-                velocity[i] = min(velocity[i], axis_velocity[axis] / first)
-                acceleration[i] = min(acceleration[i], axis_acceleration[axis] / first)
-                jerk[i] = min(jerk[i], axis_jerk[axis] / first)
-            if second > 0.0:
-                square = min(square, CENTRIPETAL_SHARE * axis_acceleration[axis] / second)
-            if third > 0.0:
-                cube = min(cube, CURVE_JERK_SHARE * axis_jerk[axis] / third)
-        if velocity[i] * velocity[i] > square:
-            velocity[i] = math.sqrt(square)
-        if velocity[i] ** 3 > cube:
-            velocity[i] = np.cbrt(cube)
+            curved[i] |= bounds[i, 1, axis] > 0.0
+        if curved[i]:
+            # A ramp to v takes v / a without a jerk limit and a / j longer with it.
+            readiness[i] = 1.0 / (1.0 + a * a / (v * j))
+    if np.any(curved):
+        reach_velocities(
+            bounds, against, curved, length, out[0], ceilings, axis_acceleration,
+            speeding, braking, readiness,
+        )  # fmt: skip
+        _leave_room_for_curves(bounds, against, curved, out, axis_acceleration, axis_jerk)
+    return out
+
+
+@numba.njit(cache=True)
+def _straight_limits(
+    bounds: FloatArray, bend: float, wanted: float,
+    path_acceleration: float, path_jerk: float, stretch: float,
+    axis_velocity: FloatArray, axis_acceleration: FloatArray, axis_jerk: FloatArray,
+) -> tuple[float, float, float]:  # fmt: skip
+    """What velocity, acceleration and jerk bound each by itself along a piece.
+
+    Args:
+        bounds: Of abs(q'), abs(q''), abs(q'''), shape (3, k).
+        bend: Of the length of q'' of X Y Z together.
+        wanted: Highest v that is asked for.
+        path_acceleration: Of the path parameter.
+        path_jerk: Of the path parameter.
+        stretch: Path parameter per what the feed counts.
+        axis_velocity: Shape (k,).
+        axis_acceleration: Shape (k,).
+        axis_jerk: Shape (k,).
+
+    Returns:
+        Highest v, as if a were 0; highest a and j, as if v were 0.
+    """
+    velocity, acceleration, jerk = wanted, path_acceleration, path_jerk
+    square, cube = math.inf, math.inf
+    if bend > 0.0:
+        square = path_acceleration / (stretch * bend)
+    for axis in range(len(axis_velocity)):
+        first, second, third = bounds[0, axis], bounds[1, axis], bounds[2, axis]
+        if first > 0.0:
+            velocity = min(velocity, axis_velocity[axis] / first)
+            acceleration = min(acceleration, axis_acceleration[axis] / first)
+            jerk = min(jerk, axis_jerk[axis] / first)
+        if second > 0.0:
+            square = min(square, CENTRIPETAL_SHARE * axis_acceleration[axis] / second)
+        if third > 0.0:
+            cube = min(cube, CURVE_JERK_SHARE * axis_jerk[axis] / third)
+    if velocity * velocity > square:
+        velocity = math.sqrt(square)
+    if velocity**3 > cube:
+        velocity = np.cbrt(cube)
     return velocity, acceleration, jerk
 
 
 @numba.njit(cache=True)
-def curve_limits(
-    bounds: FloatArray, against: FloatArray, velocity: FloatArray,
-    acceleration: FloatArray, deceleration: FloatArray, jerk: FloatArray,
+def _leave_room_for_curves(
+    bounds: FloatArray, against: FloatArray, curved: BoolArray, limits: FloatArray,
     axis_acceleration: FloatArray, axis_jerk: FloatArray,
 ) -> None:  # fmt: skip
     """Leave room in a and j for following the curve at v, in place.
 
     Args:
-        bounds: As in ``straight_limits``.
-        against: Bounds of abs(q'') where it adds to a > 0, and to a < 0, shape (n, 2, k).
-        velocity: Highest v, shape (n,).
-        acceleration: Highest a, shape (n,).
-        deceleration: Highest -a, shape (n,).
-        jerk: Highest abs(j), shape (n,).
+        bounds: As in ``piece_limits``.
+        against: As in ``piece_limits``.
+        curved: Whether any q'' is not 0, shape (n,).
+        limits: Rows velocity, acceleration, deceleration, jerk, shape (4, n).
         axis_acceleration: Shape (k,).
         axis_jerk: Shape (k,).
     """
-    for i in range(len(velocity)):
-        v = velocity[i]
+    for i in range(limits.shape[1]):
+        if not curved[i]:
+            continue
+        v, a, d, j = limits[0, i], limits[1, i], limits[2, i], limits[3, i]
         mixed = math.inf
         for axis in range(len(axis_jerk)):
             first, second, third = bounds[i, 0, axis], bounds[i, 1, axis], bounds[i, 2, axis]
             if first > 0.0:
-                left = axis_acceleration[axis] - against[i, 0, axis] * v * v
-                acceleration[i] = min(acceleration[i], left / first)
-                left = axis_acceleration[axis] - against[i, 1, axis] * v * v
-                deceleration[i] = min(deceleration[i], left / first)
+                a = min(a, (axis_acceleration[axis] - against[i, 0, axis] * v * v) / first)
+                d = min(d, (axis_acceleration[axis] - against[i, 1, axis] * v * v) / first)
             if second * v > 0.0:
                 left = axis_jerk[axis] - third * v**3
                 mixed = min(mixed, CURVE_JERK_SHARE * left / (3.0 * second * v))
-        acceleration[i] = min(acceleration[i], mixed)
-        deceleration[i] = min(deceleration[i], mixed)
-        hardest = max(acceleration[i], deceleration[i])
+        a, d = min(a, mixed), min(d, mixed)
         for axis in range(len(axis_jerk)):
             first, second, third = bounds[i, 0, axis], bounds[i, 1, axis], bounds[i, 2, axis]
             if first > 0.0:
-                left = axis_jerk[axis] - third * v**3 - 3.0 * second * v * hardest
-                jerk[i] = min(jerk[i], left / first)
+                left = axis_jerk[axis] - third * v**3 - 3.0 * second * v * max(a, d)
+                j = min(j, left / first)
+        limits[1, i], limits[2, i], limits[3, i] = a, d, j

@@ -17,13 +17,12 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from twin.columns import Columns
-from twin.motion.blocks import Blocks, BoolArray, Surroundings, blocks_of_chunks, with_neighbours
+from twin.motion.blocks import BoolArray, Surroundings, blocks_of_chunks, with_neighbours
 from twin.motion.bound_kernels import bound_derivatives
 from twin.motion.corners import CONTEXT, find_borders
-from twin.motion.cut_kernels import cut_blocks
-from twin.motion.limit_kernels import curve_limits, straight_limits
+from twin.motion.cut_kernels import cut_blocks, place_pieces
+from twin.motion.limit_kernels import piece_limits
 from twin.motion.limits import MotionLimits
-from twin.motion.reachable_kernels import reachable_velocities
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 from twin.toolpath.geometry import Geometry
 
@@ -99,31 +98,36 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
     owner, offset, length, rounding = cut_blocks(
         blocks.length, blocks.geometry.angle, borders.width, borders.knee, borders.bend
     )
-    own = blocks if len(owner) == len(blocks) else blocks[owner]
-    scale = np.divide(1.0, own.length, out=np.zeros(len(owner)), where=own.length > 0.0)
-    begin = np.where(own.length > 0.0, offset * scale, np.where(own.move < 0, 0.0, 1.0))
-    entry = np.where(offset == 0.0, borders.entry[owner], np.inf)
-    feed = own.feed * own.stretch
-    wanted = feed * np.where(own.rapid, 1.0, largest_override)
-    velocity, acceleration, deceleration, jerk = _constant_limits(
-        own, wanted, begin, scale, length, rounding, _ceilings(surroundings, entry), limits
-    )
+    scale, begin, entry = place_pieces(blocks.length, blocks.move, borders.entry, owner, offset)
+    shapes = blocks.geometry[owner]
+    feed = blocks.feed * blocks.stretch
+    wanted = feed * np.where(blocks.rapid, 1.0, largest_override)
+    velocity, acceleration, deceleration, jerk = piece_limits(
+        (wanted, blocks.acceleration, blocks.deceleration, blocks.stretch, blocks.rotary_alone),
+        owner, length, _ceilings(surroundings, entry),
+        *bound_derivatives(
+            shapes.drift, shapes.cosine, shapes.sine, shapes.angle, begin, scale, length, rounding
+        ),
+        (limits.path_acceleration, limits.path_jerk,
+         limits.rotary_path_acceleration, limits.rotary_path_jerk),
+        limits.velocity, limits.acceleration, limits.jerk,
+    )  # fmt: skip
     pieces = Pieces(
-        move=own.move,
-        line=own.line,
+        move=blocks.move.take(owner),
+        line=blocks.line.take(owner),
         begin=begin,
         fraction_per_length=scale,
         length=length,
-        rapid=own.rapid,
-        feed=feed,
+        rapid=blocks.rapid.take(owner),
+        feed=feed.take(owner),
         velocity=velocity,
         acceleration=acceleration,
         deceleration=deceleration,
         jerk=jerk,
         entry=entry,
-        pause=own.pause,
+        pause=blocks.pause.take(owner),
         rounding=rounding,
-        geometry=own.geometry,
+        geometry=shapes,
     )
     first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
     return pieces[first:last]
@@ -135,46 +139,3 @@ def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:
     if surroundings.first > 0:
         ceilings[0] = np.inf
     return ceilings
-
-
-def _constant_limits(
-    own: Blocks,
-    wanted: FloatArray,
-    begin: FloatArray,
-    scale: FloatArray,
-    length: FloatArray,
-    rounding: FloatArray,
-    ceilings: FloatArray,
-    limits: MotionLimits,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Velocity, acceleration, deceleration, jerk that any instant of a piece may use, (n,) each."""
-    shapes = own.geometry
-    bounds, bend, against = bound_derivatives(
-        shapes.drift, shapes.cosine, shapes.sine, shapes.angle, begin, scale, length, rounding
-    )
-    path_acceleration = own.stretch * np.where(
-        own.rotary_alone, limits.rotary_path_acceleration, limits.path_acceleration
-    )
-    path_jerk = own.stretch * np.where(own.rotary_alone, limits.rotary_path_jerk, limits.path_jerk)
-    velocity, straight, jerk = straight_limits(
-        bounds, bend, wanted, path_acceleration, path_jerk, own.stretch,
-        limits.velocity, limits.acceleration, limits.jerk,
-    )  # fmt: skip
-    acceleration = np.minimum(straight, own.stretch * own.acceleration)
-    deceleration = np.minimum(straight, own.stretch * own.deceleration)
-    curved = np.any(bounds[:, 1] > 0.0, axis=1)
-    if np.any(curved):
-        # A ramp to v takes v / a without a jerk limit and a / j longer with it; a dwell has none.
-        ramp = velocity * jerk
-        easing = np.divide(straight**2, ramp, out=np.zeros_like(ramp), where=length > 0.0)
-        velocity = reachable_velocities(
-            bounds, against, curved, length, velocity, ceilings, limits.acceleration,
-            np.minimum(path_acceleration, own.stretch * own.acceleration),
-            np.minimum(path_acceleration, own.stretch * own.deceleration),
-            1.0 / (1.0 + easing),
-        )  # fmt: skip
-        curve_limits(
-            bounds, against, velocity, acceleration, deceleration, jerk,
-            limits.acceleration, limits.jerk,
-        )  # fmt: skip
-    return velocity, acceleration, deceleration, jerk

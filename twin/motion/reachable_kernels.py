@@ -10,13 +10,13 @@ from twin.nc.canonical import FloatArray
 
 
 @numba.njit(cache=True)
-def reachable_velocities(
+def reach_velocities(
     bounds: FloatArray, against: FloatArray,
     curved: BoolArray, length: FloatArray, velocity: FloatArray,
     ceilings: FloatArray, axis_acceleration: FloatArray, speeding: FloatArray, braking: FloatArray,
     readiness: FloatArray,
-) -> FloatArray:  # fmt: skip
-    """The highest velocity that a curved piece sees when only velocity and acceleration count.
+) -> None:  # fmt: skip
+    """Lower the velocity of curved pieces, in place, to what they see if only v and a count.
 
     With b = v²/2, so that db/dx = a, an axis's acceleration is 2 q'' b + q' a: a pass forwards and
     one backwards over b give the well-known bound. What is left of the acceleration beside this
@@ -28,15 +28,12 @@ def reachable_velocities(
             adds to that of a < 0, else 0, shape (n, 2, k).
         curved: Whether any q'' is not 0, shape (n,).
         length: Shape (n,).
-        velocity: Ceilings, shape (n,).
+        velocity: Ceilings, lowered along curved pieces, shape (n,).
         ceilings: The same at the pieces' borders, shape (n + 1,).
         axis_acceleration: Shape (k,).
         speeding: Highest a of the path, shape (n,).
         braking: Highest -a of the path, shape (n,).
         readiness: Share of the acceleration that the jerk leaves on average, shape (n,).
-
-    Returns:
-        Shape (n,).
     """
     count = len(length)
     border = np.zeros(count + 1)
@@ -64,10 +61,8 @@ def reachable_velocities(
                     )
                     highest = min(highest, top)
             border[wanted] = min(border[wanted], max(highest, border[known]))
-    out = np.zeros(count)
     for i in range(count):
         # Along a straight piece velocity and acceleration do not compete.
-        out[i] = velocity[i]
         if curved[i]:
             top = max(border[i], border[i + 1])
             gain = length[i] * min(speeding[i], braking[i])
@@ -77,5 +72,4 @@ def reachable_velocities(
             if top < 0.5 * gain:
                 # So slow at both ends that the piece's own peak counts.
                 top = 0.5 * (border[i] + border[i + 1] + gain)
-            out[i] = min(out[i], math.sqrt(2.0 * top))
-    return out
+            velocity[i] = min(velocity[i], math.sqrt(2.0 * top))

@@ -76,7 +76,7 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
             hardest[f"acceleration of {name}"] = limits.acceleration[axis] / first[:, axis]
             smoothest[f"jerk of {name}"] = limits.jerk[axis] / first[:, axis]
     names_of_bounds, bound = _least(fastest)
-    # What ``reachable_velocities`` takes away.
+    # What ``reach_velocities`` takes away.
     beside = pieces.velocity < bound * (1.0 - CLEARLY)
     return Reasons(
         velocity=[
