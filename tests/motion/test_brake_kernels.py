@@ -211,7 +211,7 @@ A_STOP_WOULD_BE_SHORTER = (
 @given(stretches())
 def test_reach_is_safe_and_nearly_the_most_that_is(case: tuple[FloatArray, FloatArray]) -> None:
     limits, entry = case
-    reach, to, at = find_reach(limits, entry, np.zeros((3, 0)))
+    reach, to, at, _ = find_reach(limits, entry, np.zeros((4, 0)))
     assert reach[-1] == 0.0
     for i in range(limits.shape[1]):
         if reach[i] == 0.0:
@@ -243,7 +243,7 @@ def test_transition_ends_where_its_brake_does(
     entry[-1] = 0.0
     wanted = limits.copy()
     wanted[1] *= lower[: limits.shape[1]]
-    reach = find_reach(wanted, entry, np.zeros((3, 0)))[0]
+    reach = find_reach(wanted, entry, np.zeros((4, 0)))[0]
     x, v = place * limits[0, 0], share * limits[1, 0]
     a = rising * (limits[2, 0] if rising > 0.0 else limits[3, 0])
     end, x_end, w, deceleration, jerk = find_transition(limits, wanted, entry, reach, 0, x, v, a)
@@ -261,7 +261,7 @@ def test_transition_to_a_third_of_the_velocity(then: float) -> None:
     limits = np.array([[length, 50.0], [v, v], [1e6, 1e6], [1e6, 1e6], [jerk, jerk]])
     wanted, entry = limits.copy(), np.array([math.inf, math.inf, 0.0])
     wanted[1] = 0.6 * v, then * v
-    reach = find_reach(wanted, entry, np.zeros((3, 0)))[0]
+    reach = find_reach(wanted, entry, np.zeros((4, 0)))[0]
     end, x_end, w, deceleration, j = find_transition(limits, wanted, entry, reach, 0, 0.0, v, 0.0)
     way = limits[0, :end].sum() + x_end
     assert way == pytest.approx(brake_need(v, 0.0, w, deceleration, j), rel=1e-9)

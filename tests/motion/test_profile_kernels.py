@@ -14,7 +14,7 @@ def one_piece(length: float, velocity: float, acceleration: float, jerk: float) 
     """The phases from rest to rest along one piece that last longer than rounding."""
     limits = np.array([[length], [velocity], [acceleration], [acceleration], [jerk]])
     entry = np.zeros(2)
-    reach = find_reach(limits, entry, np.zeros((3, 0)))
+    reach = find_reach(limits, entry, np.zeros((4, 0)))
     state = STATE_AT_REST.copy()
     phases, _ = find_phases(limits, entry, reach, np.zeros(1), 1, math.inf, state)
     return phases[phases[:, 1] > 1e-6]

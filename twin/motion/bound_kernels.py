@@ -115,34 +115,39 @@ def _polynomial_ranges(
         slope: What is added to the first derivative.
         length: The end of x.
     """
-    first = slope + c[1]
-    x = length
+    first, c2, c3, c4, c5, x = slope + c[1], c[2], c[3], c[4], c[5], length
     # q''' is a parabola, its ends and its vertex tell its range.
-    p0, p1, p2 = 6.0 * c[3], 24.0 * c[4], 60.0 * c[5]
-    third_end = p0 + (p1 + p2 * x) * x
-    low3, high3 = min(p0, third_end), max(p0, third_end)
-    if p2 != 0.0 and 0.0 < -p1 / (2.0 * p2) < x:
-        vertex = p0 - p1 * p1 / (4.0 * p2)
+    third, third_end = 6.0 * c3, 6.0 * c3 + (24.0 * c4 + 60.0 * c5 * x) * x
+    low3, high3 = min(third, third_end), max(third, third_end)
+    if c5 != 0.0 and 0.0 < -c4 / (5.0 * c5) < x:
+        vertex = 6.0 * c3 - 2.4 * c4 * c4 / c5
         low3, high3 = min(low3, vertex), max(high3, vertex)
     # q'' has its extremes at its ends and where q''' vanishes.
-    s0 = 2.0 * c[2]
-    second_end = s0 + (p0 + (0.5 * p1 + p2 / 3.0 * x) * x) * x
-    low2, high2 = min(s0, second_end), max(s0, second_end)
+    second_end = _second(c2, c3, c4, c5, x)
+    low2, high2 = min(2.0 * c2, second_end), max(2.0 * c2, second_end)
     if low3 < 0.0 < high3:
-        square = p1 * p1 - 4.0 * p2 * p0
-        root = -0.5 * (p1 + math.copysign(math.sqrt(max(0.0, square)), p1))
-        for way in range(2):
-            if way == 0:
-                at = p0 / root if root != 0.0 else 0.0
-            else:
-                at = root / p2 if p2 != 0.0 else 0.0
-            if 0.0 < at < x:
-                value = s0 + (p0 + (0.5 * p1 + p2 / 3.0 * at) * at) * at
-                low2, high2 = min(low2, value), max(high2, value)
+        at, other = -0.25 * c3 / c4 if c4 != 0.0 else 0.0, 0.0
+        if c5 != 0.0:
+            # The roots of c3 + 4 c4 x + 10 c5 x², neither as a small difference of large numbers.
+            square = 4.0 * c4 * c4 - 10.0 * c5 * c3
+            root = -2.0 * c4 - math.copysign(math.sqrt(max(0.0, square)), c4)
+            at, other = c3 / root if root != 0.0 else 0.0, root / (10.0 * c5)
+        if 0.0 < at < x:
+            value = _second(c2, c3, c4, c5, at)
+            low2, high2 = min(low2, value), max(high2, value)
+        if 0.0 < other < x:
+            value = _second(c2, c3, c4, c5, other)
+            low2, high2 = min(low2, value), max(high2, value)
     # q' lies within x²/8 max(abs(q''')) of its chord, and between its ends if q'' has one sign.
-    first_end = first + (s0 + (0.5 * p0 + (p1 / 6.0 + p2 / 12.0 * x) * x) * x) * x
+    first_end = first + (2.0 * c2 + (3.0 * c3 + (4.0 * c4 + 5.0 * c5 * x) * x) * x) * x
     low1, high1 = min(first, first_end), max(first, first_end)
     if min(-low2, high2) > FLAT * max(-low2, high2):
-        sag = x * x / 8.0 * max(-low3, high3)
+        sag = 0.125 * x * x * max(-low3, high3)
         low1, high1 = low1 - sag, high1 + sag
     return low1, high1, low2, high2, low3, high3
+
+
+@numba.njit(cache=True)
+def _second(c2: float, c3: float, c4: float, c5: float, x: float) -> float:
+    """The second derivative of a polynomial at x."""
+    return 2.0 * c2 + (6.0 * c3 + (12.0 * c4 + 20.0 * c5 * x) * x) * x

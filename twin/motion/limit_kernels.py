@@ -16,7 +16,7 @@ CURVE_JERK_SHARE = 0.5
 """Of an axis's jerk that a curve may use at constant speed, and again at constant acceleration."""
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def piece_limits(
     block: tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray],
     owner: IntArray, length: FloatArray, ceilings: FloatArray,
@@ -63,7 +63,7 @@ def piece_limits(
         braking[i] = min(path_a, stretch[row] * highest_d[row])
         for axis in range(axes):
             curved[i] |= bounds[i, 1, axis] > 0.0
-        if curved[i]:
+        if length[i] > 0.0:
             # A ramp to v takes v / a without a jerk limit and a / j longer with it.
             readiness[i] = 1.0 / (1.0 + a * a / (v * j))
     if np.any(curved):
@@ -75,7 +75,7 @@ def piece_limits(
     return out
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _straight_limits(
     bounds: FloatArray, bend: float, wanted: float,
     path_acceleration: float, path_jerk: float, stretch: float,
@@ -103,22 +103,25 @@ def _straight_limits(
         square = path_acceleration / (stretch * bend)
     for axis in range(len(axis_velocity)):
         first, second, third = bounds[0, axis], bounds[1, axis], bounds[2, axis]
-        if first > 0.0:
-            velocity = min(velocity, axis_velocity[axis] / first)
-            acceleration = min(acceleration, axis_acceleration[axis] / first)
-            jerk = min(jerk, axis_jerk[axis] / first)
-        if second > 0.0:
-            square = min(square, CENTRIPETAL_SHARE * axis_acceleration[axis] / second)
-        if third > 0.0:
-            cube = min(cube, CURVE_JERK_SHARE * axis_jerk[axis] / third)
+        # Each division waits for a limit that binds.
+        if velocity * first > axis_velocity[axis]:
+            velocity = axis_velocity[axis] / first
+        if acceleration * first > axis_acceleration[axis]:
+            acceleration = axis_acceleration[axis] / first
+        if jerk * first > axis_jerk[axis]:
+            jerk = axis_jerk[axis] / first
+        if square * second > CENTRIPETAL_SHARE * axis_acceleration[axis]:
+            square = CENTRIPETAL_SHARE * axis_acceleration[axis] / second
+        if cube * third > CURVE_JERK_SHARE * axis_jerk[axis]:
+            cube = CURVE_JERK_SHARE * axis_jerk[axis] / third
     if velocity * velocity > square:
         velocity = math.sqrt(square)
-    if velocity**3 > cube:
+    if velocity * velocity * velocity > cube:
         velocity = np.cbrt(cube)
     return velocity, acceleration, jerk
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _leave_room_for_curves(
     bounds: FloatArray, against: FloatArray, curved: BoolArray, limits: FloatArray,
     axis_acceleration: FloatArray, axis_jerk: FloatArray,
@@ -140,16 +143,19 @@ def _leave_room_for_curves(
         mixed = math.inf
         for axis in range(len(axis_jerk)):
             first, second, third = bounds[i, 0, axis], bounds[i, 1, axis], bounds[i, 2, axis]
-            if first > 0.0:
-                a = min(a, (axis_acceleration[axis] - against[i, 0, axis] * v * v) / first)
-                d = min(d, (axis_acceleration[axis] - against[i, 1, axis] * v * v) / first)
-            if second * v > 0.0:
-                left = axis_jerk[axis] - third * v**3
-                mixed = min(mixed, CURVE_JERK_SHARE * left / (3.0 * second * v))
+            left = axis_acceleration[axis] - against[i, 0, axis] * v * v
+            if a * first > left:
+                a = left / first
+            left = axis_acceleration[axis] - against[i, 1, axis] * v * v
+            if d * first > left:
+                d = left / first
+            left = CURVE_JERK_SHARE * (axis_jerk[axis] - third * v * v * v)
+            if mixed * 3.0 * second * v > left:
+                mixed = left / (3.0 * second * v)
         a, d = min(a, mixed), min(d, mixed)
         for axis in range(len(axis_jerk)):
             first, second, third = bounds[i, 0, axis], bounds[i, 1, axis], bounds[i, 2, axis]
-            if first > 0.0:
-                left = axis_jerk[axis] - third * v**3 - 3.0 * second * v * max(a, d)
-                j = min(j, left / first)
+            left = axis_jerk[axis] - (third * v * v + 3.0 * second * max(a, d)) * v
+            if j * first > left:
+                j = left / first
         limits[1, i], limits[2, i], limits[3, i] = a, d, j

@@ -180,7 +180,7 @@ class OverriddenPlan:
         if window is None:
             return False
         window = window.joined()
-        known = np.zeros((3, 0))
+        known = np.zeros((4, 0))
         if self.phases:
             last = self._window
             if len(last.pause) == self._stretches:
@@ -243,10 +243,9 @@ def _drive(
         entry[block_end] = 0.0
         closed[block_end] = True
         known = None
-    ways = np.zeros((3, len(entry)))
-    ways[:, stretch:] = find_reach(
-        limits[:, stretch:], entry[stretch:],
-        np.zeros((3, 0)) if known is None else known[:, stretch:] - [[0.0], [stretch], [0.0]],
-    )  # fmt: skip
-    ways[1] += stretch
+    ways = np.zeros((4, len(entry)))
+    known = np.zeros((4, 0)) if known is None else known[:, stretch:].copy()
+    known[[1, 3]] -= stretch
+    ways[:, stretch:] = find_reach(limits[:, stretch:], entry[stretch:], known)
+    ways[[1, 3]] += stretch
     return window, _Drive(limits, entry, ways, block_end, closed)

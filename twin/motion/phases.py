@@ -45,7 +45,7 @@ def plan_phases(
         start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
     """
     state = STATE_AT_REST.copy()
-    known = np.zeros((3, 0))
+    known = np.zeros((4, 0))
     for window in windows(pieces_of_chunks(chunks, limits, start)):
         ways = find_reach(window.limits, window.entry, known)
         rows, stretches = find_phases(
@@ -71,6 +71,6 @@ def no_phases(pieces: Pieces) -> Phases:
 def ways_on(ways: FloatArray, due: int) -> FloatArray:
     """What is known of the next window: the result of ``find_reach`` from ``due`` on."""
     known = ways[:, due:].copy()
-    known[1] -= due
+    known[[1, 3]] -= due
     # The window's end was taken to be a stop.
     return known[:, :-1]

@@ -180,18 +180,23 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
         limits: As in ``find_brake``.
         entry: As in ``find_brake``; the last must be 0.
         known: The same result of a window that ended earlier, for the first borders of this one,
-            shape (3, m <= n + 1).
+            shape (4, m <= n + 1).
 
     Returns:
-        Rows reach, border to which to brake, velocity there; shape (3, n + 1).
+        Rows reach, border to which to brake, velocity there, last border looked at; shape
+        (4, n + 1).
     """
     count = limits.shape[1]
-    out = np.zeros((3, count + 1))
+    out = np.zeros((4, count + 1))
     reach = out[0]
     for i in range(count + 1):
-        out[1, i] = min(i + 1, count)
+        out[1, i] = out[3, i] = min(i + 1, count)
+    news = known.shape[1]
     for i in range(count - 1, -1, -1):
         if entry[i] < SLOWEST or limits[0, i] == 0.0:
+            continue
+        if i < known.shape[1] and known[3, i] < news:
+            out[:, i] = known[:, i]
             continue
         highest = min(entry[i], limits[1, i])
         if i > 0:
@@ -204,7 +209,7 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
         distance, lowest = 0.0, math.inf
         failed = 0
         for k in range(i + 1, count + 1):
-            last = k - 1
+            last, out[3, i] = k - 1, k
             if limits[0, last] == 0.0 or best >= highest * (1.0 - REACH_PRECISION):
                 break
             if k > i + 1 and brake_distance(highest, 0.0, deceleration, jerk) < distance:
@@ -229,4 +234,6 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
                 break
         if best >= SLOWEST:
             reach[i], out[1, i], out[2, i] = best, to, at
+        if i < known.shape[1] and reach[i] != known[0, i]:
+            news = i
     return out

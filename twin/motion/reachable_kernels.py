@@ -9,7 +9,7 @@ from twin.motion.blocks import BoolArray
 from twin.nc.canonical import FloatArray
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def reach_velocities(
     bounds: FloatArray, against: FloatArray,
     curved: BoolArray, length: FloatArray, velocity: FloatArray,
