@@ -19,9 +19,7 @@ class Columns:
 
     def __getitem__(self, rows: Rows) -> Self:
         """A selection of the rows, as columns again; of a slice, views."""
-        names = [field.name for field in dataclasses.fields(self)]
-        if not isinstance(rows, slice) and rows.dtype == np.bool_:
-            rows = np.flatnonzero(rows)
+        names = (field.name for field in dataclasses.fields(self))
         return type(self)(*(_selected(getattr(self, name), rows) for name in names))
 
 
@@ -46,8 +44,10 @@ def _joined(values: Sequence[Any]) -> Any:
     return join(values) if isinstance(values[0], Columns) else np.concatenate(values)
 
 
-def _selected(values: Any, rows: slice | npt.NDArray[np.int64]) -> Any:
+def _selected(values: Any, rows: Rows) -> Any:
     if isinstance(values, Columns) or isinstance(rows, slice):
         return values[rows]
-    # Of tables with several columns, ``values[rows]`` copies number by number.
+    # ``values[rows]`` would copy the rows of a table number by number.
+    if rows.dtype == np.bool_:
+        return values.compress(rows, axis=0)
     return values.take(rows, axis=0)

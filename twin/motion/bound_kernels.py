@@ -8,6 +8,7 @@ import math
 
 import numba
 import numpy as np
+import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray
 
@@ -19,7 +20,7 @@ FLAT = 1e-9
 def bound_derivatives(
     drift: FloatArray, cosine: FloatArray, sine: FloatArray, angle: FloatArray,
     begin: FloatArray, fraction_per_length: FloatArray, length: FloatArray, rounding: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:  # fmt: skip
     """Bounds of the path's derivatives by x along pieces.
 
     Args:
@@ -35,13 +36,13 @@ def bound_derivatives(
 
     Returns:
         Bounds of abs(q'), abs(q''), abs(q''') of each axis, shape (n, 3, k); of the length of q''
-        of X Y Z together, shape (n,); and the bounds of abs(q'') where q' q'' can be positive, and
-        where it can be negative, else 0, shape (n, 2, k).
+        of X Y Z together, shape (n,); whether q' q'' can be positive, and whether it can be
+        negative, shape (n, 2, k).
     """
     count, axes = drift.shape
     bounds = np.zeros((count, 3, axes))
     bend = np.zeros(count)
-    against = np.zeros((count, 2, axes))
+    against = np.zeros((count, 2, axes), np.bool_)
     for i in range(count):
         turn = angle[i] * fraction_per_length[i]
         c, s, c_end, s_end, squares, radius = 1.0, 0.0, 1.0, 0.0, 0.0, 0.0
@@ -82,9 +83,9 @@ def bound_derivatives(
                 squares += second * second
             still, flat = FLAT * first, FLAT * second
             if (high1 > still and high2 > flat) or (low1 < -still and low2 < -flat):
-                against[i, 0, axis] = second
+                against[i, 0, axis] = True
             if (high1 > still and low2 < -flat) or (low1 < -still and high2 > flat):
-                against[i, 1, axis] = second
+                against[i, 1, axis] = True
         bend[i] = math.sqrt(squares)
         if turn != 0.0 and not np.any(rounding[i]):
             bend[i] = turn * turn * math.sqrt(radius)

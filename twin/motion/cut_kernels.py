@@ -71,8 +71,10 @@ def cut_blocks(
         owner[used], offset[used], extent[used] = i, begin, length[i] - begin
         used += 1
     owner, offset, extent = owner[:used], offset[:used], extent[:used]
-    rounding = np.zeros((used, knee.shape[1], 6))
-    if len(ends) > 0:
+    rounding = np.empty((used, knee.shape[1], 6))
+    if len(ends) == 0:
+        rounding[:] = 0.0
+    else:
         add_roundings(place, owner, offset, extent, ends, sources, width, knee, bend, rounding)
     return owner, offset, extent, rounding
 

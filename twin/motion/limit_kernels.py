@@ -4,6 +4,7 @@ import math
 
 import numba
 import numpy as np
+import numpy.typing as npt
 
 from twin.motion.blocks import BoolArray
 from twin.motion.reachable_kernels import reach_velocities
@@ -20,7 +21,7 @@ CURVE_JERK_SHARE = 0.5
 def piece_limits(
     block: tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray],
     owner: IntArray, length: FloatArray, ceilings: FloatArray,
-    bounds: FloatArray, bend: FloatArray, against: FloatArray,
+    bounds: FloatArray, bend: FloatArray, against: npt.NDArray[np.bool_],
     path: tuple[float, float, float, float],
     axis_velocity: FloatArray, axis_acceleration: FloatArray, axis_jerk: FloatArray,
 ) -> FloatArray:  # fmt: skip
@@ -49,7 +50,7 @@ def piece_limits(
     speeding, braking, readiness = np.zeros(count), np.zeros(count), np.ones(count)
     curved = np.zeros(count, np.bool_)
     for i in range(count):
-        row = owner[i]
+        row = int(owner[i])
         path_a = stretch[row] * (path[2] if rotary_alone[row] else path[0])
         path_j = stretch[row] * (path[3] if rotary_alone[row] else path[1])
         v, a, j = _straight_limits(
@@ -103,6 +104,8 @@ def _straight_limits(
         square = path_acceleration / (stretch * bend)
     for axis in range(len(axis_velocity)):
         first, second, third = bounds[0, axis], bounds[1, axis], bounds[2, axis]
+        if first == second == 0.0:
+            continue
         # Each division waits for a limit that binds.
         if velocity * first > axis_velocity[axis]:
             velocity = axis_velocity[axis] / first
@@ -123,7 +126,7 @@ def _straight_limits(
 
 @numba.njit(cache=True, error_model="numpy")
 def _leave_room_for_curves(
-    bounds: FloatArray, against: FloatArray, curved: BoolArray, limits: FloatArray,
+    bounds: FloatArray, against: npt.NDArray[np.bool_], curved: BoolArray, limits: FloatArray,
     axis_acceleration: FloatArray, axis_jerk: FloatArray,
 ) -> None:  # fmt: skip
     """Leave room in a and j for following the curve at v, in place.
@@ -143,10 +146,11 @@ def _leave_room_for_curves(
         mixed = math.inf
         for axis in range(len(axis_jerk)):
             first, second, third = bounds[i, 0, axis], bounds[i, 1, axis], bounds[i, 2, axis]
-            left = axis_acceleration[axis] - against[i, 0, axis] * v * v
+            centripetal = second * v * v
+            left = axis_acceleration[axis] - (centripetal if against[i, 0, axis] else 0.0)
             if a * first > left:
                 a = left / first
-            left = axis_acceleration[axis] - against[i, 1, axis] * v * v
+            left = axis_acceleration[axis] - (centripetal if against[i, 1, axis] else 0.0)
             if d * first > left:
                 d = left / first
             left = CURVE_JERK_SHARE * (axis_jerk[axis] - third * v * v * v)

@@ -94,7 +94,7 @@ class OverriddenPlan:
         del self.phases[:-1]
         for phases in self.phases:
             kept = phases.rows[:, 0] + phases.rows[:, 1] >= time
-            self.phases[0] = Phases(phases.pieces, phases.rows[kept], phases.rows_pieces[kept])
+            self.phases[0] = Phases(phases.parts, phases.rows[kept], phases.rows_pieces[kept])
 
     def plan_until(self, time: float) -> None:
         """Plan on to a time [s], or to the program's end."""
@@ -208,13 +208,13 @@ class OverriddenPlan:
             piece -= 1
             x = float(lengths[piece])
         row = np.array([[now, time - now, x, 0.0, 0.0, 0.0]])
-        self._append(Phases(self._window.pieces, row, np.array([[piece, piece]])))
+        self._append(Phases(self._window.parts, row, np.array([[piece, piece]])))
         self._state[4] = time
 
     def _append(self, more: Phases) -> None:
         last = self.phases[-1]
         self.phases[-1] = Phases(
-            more.pieces,
+            more.parts,
             np.concatenate([last.rows, more.rows]),
             np.concatenate([last.rows_pieces, more.rows_pieces]),
         )

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from twin.columns import join
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces import Pieces, pieces_of_chunks
 from twin.motion.profile_kernels import STATE_AT_REST, find_phases
@@ -19,14 +20,36 @@ class Phases:
     """A run of m phases of constant jerk over a window of pieces.
 
     Attributes:
-        pieces: The window.
+        parts: The window, in one or two parts.
         rows: Begin [s], duration [s], x within the piece, v, a, j; shape (m, 6).
         rows_pieces: Rows of ``pieces`` in which each phase begins and ends, shape (m, 2).
     """
 
-    pieces: Pieces
+    parts: tuple[Pieces, ...]
     rows: FloatArray
     rows_pieces: IntArray
+
+    @property
+    def pieces(self) -> Pieces:
+        """The window as a whole."""
+        return join(self.parts)
+
+    def joined(self) -> "Phases":
+        """The same over one part."""
+        return Phases((self.pieces,), self.rows, self.rows_pieces)
+
+    def by_part(self) -> Iterator["Phases"]:
+        """The same in turn over one part each; few pieces lie at the border of two."""
+        beyond = self.rows_pieces[:, 1] >= len(self.parts[0])
+        if len(self.parts) == 1 or not np.any(beyond):
+            yield Phases(self.parts[:1], self.rows, self.rows_pieces)
+            return
+        row = int(np.argmax(beyond))
+        piece = int(self.rows_pieces[row, 0])
+        if row > 0:
+            yield Phases(self.parts[:1], self.rows[:row], self.rows_pieces[:row])
+        rest = join([self.parts[0][piece:], *self.parts[1:]])
+        yield Phases((rest,), self.rows[row:], self.rows_pieces[row:] - piece)
 
     @property
     def end_time(self) -> float:
@@ -59,13 +82,14 @@ def plan_phases(
 
 def phases_of(window: Window, rows: FloatArray, stretches: IntArray) -> Phases:
     """Phases by pieces; ``rows`` are overwritten."""
-    pieces = window.pieces_until(int(stretches[:, 1].max(initial=0)))
-    return Phases(pieces, rows, place_phases(rows, stretches, window.begins, pieces.length))
+    parts = window.parts_until(int(stretches[:, 1].max(initial=0)))
+    length = np.concatenate([part.length for part in parts])
+    return Phases(parts, rows, place_phases(rows, stretches, window.begins, length))
 
 
 def no_phases(pieces: Pieces) -> Phases:
     """The beginning of phases over pieces."""
-    return Phases(pieces, np.zeros((0, 6)), np.zeros((0, 2), np.int64))
+    return Phases((pieces,), np.zeros((0, 6)), np.zeros((0, 2), np.int64))
 
 
 def ways_on(ways: FloatArray, due: int) -> FloatArray:

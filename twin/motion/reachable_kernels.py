@@ -4,6 +4,7 @@ import math
 
 import numba
 import numpy as np
+import numpy.typing as npt
 
 from twin.motion.blocks import BoolArray
 from twin.nc.canonical import FloatArray
@@ -11,7 +12,7 @@ from twin.nc.canonical import FloatArray
 
 @numba.njit(cache=True, error_model="numpy")
 def reach_velocities(
-    bounds: FloatArray, against: FloatArray,
+    bounds: FloatArray, against: npt.NDArray[np.bool_],
     curved: BoolArray, length: FloatArray, velocity: FloatArray,
     ceilings: FloatArray, axis_acceleration: FloatArray, speeding: FloatArray, braking: FloatArray,
     readiness: FloatArray,
@@ -24,8 +25,8 @@ def reach_velocities(
 
     Args:
         bounds: Of abs(q'), abs(q''), abs(q'''), shape (n, 3, k).
-        against: Of abs(q'') where its part of the acceleration adds to that of a > 0, and where it
-            adds to that of a < 0, else 0, shape (n, 2, k).
+        against: Whether the part of q'' in the acceleration can add to that of a > 0, and of a < 0,
+            shape (n, 2, k).
         curved: Whether any q'' is not 0, shape (n,).
         length: Shape (n,).
         velocity: Ceilings, lowered along curved pieces, shape (n,).
@@ -56,8 +57,9 @@ def reach_velocities(
                 slope = bounds[i, 0, axis]
                 if slope > 0.0:
                     usable = axis_acceleration[axis] * readiness[i]
+                    curve = bounds[i, 1, axis] if against[i, direction, axis] else 0.0
                     top = (slope * border[known] + length[i] * usable) / (
-                        slope + 2.0 * length[i] * against[i, direction, axis] * readiness[i]
+                        slope + 2.0 * length[i] * curve * readiness[i]
                     )
                     highest = min(highest, top)
             border[wanted] = min(border[wanted], max(highest, border[known]))

@@ -78,7 +78,7 @@ def add_roundings(
         width: As in ``cut_blocks``, and so on to ``bend``.
         knee: See above.
         bend: See above.
-        rounding: Result, zero before, shape (m, k, 6).
+        rounding: Result, shape (m, k, 6).
     """
     axes = knee.shape[1]
     active = np.zeros(2 * MOST_NEIGHBOURS + 2, np.int64)
@@ -122,10 +122,9 @@ def add_roundings(
                     away = max(0.0, away)
                 narrowest = min(narrowest, width[other])
                 add_rounding(total, away, width[other], knee[other], bend[other])
-        if used > 0:
-            for axis in range(axes):
-                for power in range(6):
-                    rounding[piece, axis, power] = total[axis, power]
+        for axis in range(axes):
+            for power in range(6):
+                rounding[piece, axis, power] = total[axis, power]
 
 
 @numba.njit(cache=True)

@@ -25,7 +25,16 @@ def sample(
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         most: Samples per chunk.
     """
-    pieces = phases.pieces
+    for part in phases.by_part():
+        for samples in _sample_part(part, tick, period_s, part_zero, most):
+            tick += len(samples)
+            yield samples
+
+
+def _sample_part(
+    phases: Phases, tick: int, period_s: float, part_zero: FloatArray, most: int
+) -> Iterator[Setpoints]:
+    pieces = phases.parts[0]
     cursor = np.zeros(1, np.int64)
     while True:
         piece = np.zeros(most, np.int64)
@@ -69,7 +78,7 @@ def standing(position: FloatArray) -> Setpoints:
 
 def at_end(phases: Phases) -> Setpoints:
     """One sample at rest at the end of the last piece of the phases, part coordinates."""
-    pieces = phases.pieces
+    pieces = phases.parts[-1]
     still = np.zeros((1, pieces.geometry.end.shape[1]))
     fraction = np.array([0.0 if pieces.move[-1] < 0 else 1.0])
     return Setpoints(

@@ -105,7 +105,8 @@ def summarize(
     rows: dict[tuple[int, int], _Row] = defaultdict(_Row)
     ramps: dict[str, float] = defaultdict(float)
     for phases in plan_phases(chunks, limits, start=start):
-        _add(rows, ramps, phases, reasons(phases.pieces, limits, axes.names))
+        whole = phases.joined()
+        _add(rows, ramps, whole, reasons(whole.pieces, limits, axes.names))
     keys = np.array(list(rows), np.int64).reshape(-1, 2)
     return Summary(
         move=keys[:, 0],

@@ -49,14 +49,14 @@ class Window:
     @property
     def pieces(self) -> Pieces:
         """All pieces."""
-        return self.pieces_until(len(self.pause) - 1)
+        return join(self.parts)
 
-    def pieces_until(self, stretch: int) -> Pieces:
+    def parts_until(self, stretch: int) -> tuple[Pieces, ...]:
         """The pieces up to the end of a stretch at least."""
         beyond = int(self.begins[stretch + 1]) - len(self.parts[0])
         if beyond <= 0 or len(self.parts) == 1:
-            return self.parts[0]
-        return join([self.parts[0], self.parts[1][:beyond]])
+            return self.parts[:1]
+        return self.parts[0], self.parts[1][:beyond]
 
     def joined(self) -> "Window":
         """The same with all its pieces as one part."""
