@@ -103,7 +103,7 @@ def _open_page() -> Iterator[tuple[OpenRoom, Callable[[], float]]]:
 
             yield room, click
             browser.close()
-        room.handle.close()
+        room.stop()
         thread.join(timeout=10.0)
 
 

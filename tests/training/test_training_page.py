@@ -176,7 +176,7 @@ def operator(tmp_path) -> Iterator[Operator]:
             )
             yield Operator(room, context)
             browser.close()
-        room.handle.close()
+        room.stop()
         thread.join(timeout=PATIENCE_S)
     # What Studio leaves open is collected here, where it is expected, and not in another test: once
     # its threads, which it waits for no longer than 5 s, have ended.

@@ -5,6 +5,7 @@ import secrets
 import ssl
 import sys
 import tempfile
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -62,11 +63,16 @@ class OpenRoom:
         self.gate = gate
         self.trainer_gate = trainer_gate
         self.folder = folder
+        self._over = threading.Event()
 
     def serve(self) -> None:
-        """Let time go on until the window is closed or Ctrl+C is pressed."""
-        while self.handle.is_running():
+        """Let time go on until the window is closed, Ctrl+C is pressed or the room is stopped."""
+        while not self._over.is_set() and self.handle.is_running():
             self.handle.sync()
+
+    def stop(self) -> None:
+        """End ``serve``, which runs on another thread, after the slice of time that it is at."""
+        self._over.set()
 
 
 @contextlib.contextmanager
@@ -129,6 +135,7 @@ def open_room(
             scene.file.picture.camera,
             plain=plain,
             trainer=trainer_has_panel,
+            wake=driver.wake,
         )
         if gate is None:
             handle = _open_window(title, [shown, driver])
