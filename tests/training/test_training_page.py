@@ -244,6 +244,22 @@ def test_a_scene_is_played_in_the_browser_survives_its_loss_and_goes_to_the_trai
     operator.idle()
     assert operator.done("mode") == modes + 1
 
+    operator.page.keyboard.press("Comma")
+    operator.until(lambda: room.rapid_override == 90, "the key of the rapid override")
+    operator.page.keyboard.press("t")
+    operator.until(lambda: operator.room.shown.panel.side.sheet == "offsets", "the next sheet")
+    operator.page.keyboard.press("F4")
+    operator.until(lambda: operator.shows(lambda now: now.mode == "mdi"), "MDI")
+    operator.page.keyboard.press("Enter")
+    operator.idle()
+    operator.page.keyboard.type("G91 G0 Z1")
+    operator.until(lambda: operator.room.shown.panel.desk.entry == "G91 G0 Z1", "the MDI line")
+    operator.page.keyboard.press("Enter")
+    operator.until(lambda: operator.done("mdi") == 1, "the MDI block")
+    operator.until(lambda: not room.running, "its end")
+    operator.ask("mode", mode="jog")
+    operator.until(lambda: room.mode == "jog", "jog again")
+
     # A lost browser does not stop the machine, and another one finds it as it is.
     place = float(room.machine.position[2])
     operator.ask("jog", axis="Z", direction=1, step=30.0, feed=600.0)
