@@ -49,3 +49,15 @@ def test_rows_are_chosen_by_mask_and_by_number() -> None:
 def test_nothing_to_join_is_refused() -> None:
     with pytest.raises(ValueError, match="nothing to join"):
         join(list[Outer]())
+
+
+@settings(derandomize=True)
+@given(st.lists(st.integers(-12, 11), max_size=20))
+def test_rows_are_selected_by_number_and_by_mask(numbers: list[int]) -> None:
+    whole, rows = table(12), np.array(numbers, np.int64)
+    mask = np.isin(np.arange(12), rows)
+    for selection in (rows, mask):
+        found = whole[selection]
+        assert np.array_equal(found.number, whole.number[selection])
+        assert np.array_equal(found.inner.value, whole.inner.value[selection])
+        assert np.array_equal(found.row, whole.row[selection])
