@@ -1,6 +1,7 @@
 """Tables held as columns: the form in which chunks go from room to room."""
 
 import dataclasses
+import functools
 from collections.abc import Sequence
 from typing import Any, Self, TypeVar
 
@@ -15,12 +16,12 @@ class Columns:
     """n rows; every field is an array whose first axis counts the rows, or again a table of n rows."""
 
     def __len__(self) -> int:
-        return len(getattr(self, dataclasses.fields(self)[0].name))
+        return len(getattr(self, _names(type(self))[0]))
 
     def __getitem__(self, rows: Rows) -> Self:
         """A selection of the rows, as columns again; of a slice, views."""
-        names = (field.name for field in dataclasses.fields(self))
-        return type(self)(*(_selected(getattr(self, name), rows) for name in names))
+        kind = type(self)
+        return kind(*[_selected(getattr(self, name), rows) for name in _names(kind)])
 
 
 ColumnsT = TypeVar("ColumnsT", bound=Columns)
@@ -36,8 +37,13 @@ def join(parts: Sequence[ColumnsT]) -> ColumnsT:
         raise ValueError("nothing to join")
     if len(parts) == 1:
         return parts[0]
-    names = [field.name for field in dataclasses.fields(parts[0])]
-    return type(parts[0])(*(_joined([getattr(part, name) for part in parts]) for name in names))
+    kind = type(parts[0])
+    return kind(*[_joined([getattr(part, name) for part in parts]) for name in _names(kind)])
+
+
+@functools.cache
+def _names(kind: type[Columns]) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(kind))
 
 
 def _joined(values: Sequence[Any]) -> Any:
