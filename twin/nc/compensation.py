@@ -16,7 +16,7 @@ from typing import NoReturn
 
 from twin.nc.arcs import SAME_POINT, Point, distance
 from twin.nc.canonical import Corner
-from twin.nc.contour import Element, crossings, turn_between
+from twin.nc.contour import Box, Element, crossings, turn_between
 from twin.nc.leads import LeadOut, around, lead_depth
 from twin.nc.loops import crossing
 from twin.nc.move_columns import NAN, Segment
@@ -42,11 +42,12 @@ _NECK = 50
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class _Passed:
-    """A compensated element that was emitted, its contour and its source line."""
+    """A compensated element that was emitted, its contour, its source line and where it lies."""
 
     element: Element
     contour: Element | None
     line: int
+    box: Box
 
 
 @dataclasses.dataclass(slots=True)
@@ -268,8 +269,12 @@ class Compensation:
 
     def _pass_by(self, element: Element, contour: Element | None, move: Segment) -> None:
         """Refuse an element that crosses an earlier one, unless the contour crosses itself there."""
-        passed = self._passed
+        passed, box = self._passed, element.box
+        left, low, right, high = box
         for index, older in enumerate(passed):
+            from_x, from_y, to_x, to_y = older.box
+            if from_x > right or to_x < left or from_y > high or to_y < low:
+                continue
             if crossing(older.element, element) is None:
                 continue
             near = list(passed)[max(0, index - 2) : index + 3]
@@ -284,7 +289,7 @@ class Compensation:
                 f"the tool's radius {abs(self._aside):g} does not fit between this element and "
                 f"that of line {older.line}: the path crosses itself",
             )
-        passed.append(_Passed(element, contour, move.line))
+        passed.append(_Passed(element, contour, move.line, box))
 
 
 def _cross(first: Element | None, second: Element) -> bool:

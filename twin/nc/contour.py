@@ -9,8 +9,13 @@ import math
 
 from twin.nc.arcs import Point, distance, turned
 
+Box = tuple[float, float, float, float]
+"""Least abscissa and ordinate, largest abscissa and ordinate [mm]."""
+
 _NEAR = 1e-7
 """Slack of comparisons along an element [mm]."""
+_BOX_SLACK = 1e-3
+"""By which the box of an element is larger than it [mm]: far above any rounding."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -41,6 +46,15 @@ class Element:
         if self.center is None:
             return distance(self.start, self.end)
         return math.radians(abs(self.sweep)) * self.radius
+
+    @property
+    def box(self) -> Box:
+        """Where the element lies, with a little slack; of an arc all of its circle."""
+        if self.center is not None:
+            (x, y), reach = self.center, self.radius + _BOX_SLACK
+            return (x - reach, y - reach, x + reach, y + reach)
+        (x, y), (u, v), slack = self.start, self.end, _BOX_SLACK
+        return (min(x, u) - slack, min(y, v) - slack, max(x, u) + slack, max(y, v) + slack)
 
     def point(self, fraction: float) -> Point:
         """The point at a fraction of its length from the start."""
