@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from twin.nc.arcs import SAME_POINT, distance
 from twin.nc.blends import Blend
-from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray, Motion
+from twin.nc.canonical import Axes, Chunk, Event, FloatArray, IntArray, Motion
 from twin.nc.compensation import Compensation, Refuse, Warn
 from twin.nc.contour import Element
 from twin.nc.even_axes import MOST_MOVES, EvenAxes
@@ -84,7 +84,7 @@ class Path:
         values: FloatArray,
         positions: FloatArray,
         last: Segment | None,
-        functions: list[list[int]],
+        events: list[Event],
     ) -> None:
         """Moves as columns while the path is open.
 
@@ -93,17 +93,15 @@ class Path:
             values: Shape (n, 11).
             positions: Shape (n, 3, k).
             last: The last of them, or None.
-            functions: How many of them lie before each M function between them, its line and its
-                number.
+            events: Those between them; ``before`` counts from the first of them.
         """
         assert self.open
-        for before, line, number in functions:
-            self._columns.function(line, f"M{number}", {}, 0.0, behind=before)
+        self._columns.add_events(events)
         if last is not None:
             self._columns.add_rows(codes, values, positions)
             self._before = last
             self.position = last.end
-        if functions and functions[-1][0] == len(codes):
+        if events and events[-1].before == len(codes):
             self._before = None
 
     def add_point(self, move: Segment, *, flat: bool) -> None:

@@ -9,19 +9,33 @@ import math
 
 import numpy as np
 
-from twin.nc.canonical import Corner, Motion
+from twin.nc.canonical import Corner, Dwell, Event, FloatArray, Function, Motion
 from twin.nc.control import Control
 from twin.nc.hand_over import HandOver, put_into_force
 from twin.nc.lines import Page
 from twin.nc.move_columns import CHUNK, Segment
-from twin.nc.plain_state import Constants, Rows, State
+from twin.nc.plain_state import (
+    DWELL,
+    FUNCTION_ALONE,
+    FUNCTION_WITH_SPEED,
+    IN_SPINDLE,
+    REGISTERS,
+    SELECTED,
+    SPEED,
+    SPINDLE,
+    TOOL,
+    Constants,
+    Rows,
+    State,
+)
 from twin.nc.plain_tables import FEED_FACTORS, PlainTables
 from twin.nc.plain_words_kernels import NOT_PLAIN
-from twin.nc.planes import XY, YZ, ZX
+from twin.nc.planes import PLANE_ORDER
 from twin.nc.routine_kernels import run_program
 from twin.nc.routine_state import FULL, LEFT, OFF_PAGE, PAUSED, UNREAD
 from twin.nc.translator import Translator
 
+_PLANES = np.array([plane.axes for plane in PLANE_ORDER])
 _WORTHWHILE = 4
 """Blocks that a run must have to pay for handing the state over and back."""
 _LONGEST_PAUSE = 256
@@ -48,8 +62,12 @@ class PlainRunner:
             np.zeros((CHUNK, 5), np.int64),
             np.zeros((CHUNK, 11)),
             np.zeros((CHUNK, 3, axes)),
-            np.zeros((CHUNK, 3), np.int64),
+            np.zeros((CHUNK, 4), np.int64),
+            np.zeros(CHUNK),
         )
+        table = control.tools.table
+        self._tools = np.array([float(number) for number in table])
+        self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
         self._pause = 1
         self._wait = 0
         self.full = False
@@ -109,7 +127,7 @@ class PlainRunner:
         modal, disturbed = control.modal, control.dialect.disturbed
         return (
             modal.cycle is None
-            and modal.plane in (XY, YZ, ZX)
+            and modal.plane in PLANE_ORDER
             and modal.feed_mode in FEED_FACTORS
             and control.frame.plain
             and modal.correct_center
@@ -123,8 +141,6 @@ class PlainRunner:
     def _constants(self) -> Constants:
         control, rapid = self._control, self._tables.rapid_feed
         return Constants(
-            total=np.array(control.frame.total),
-            plane=np.array(control.modal.plane.axes),
             default_feed=control.settings.default_feed,
             default_rotary_feed=control.settings.default_rotary_feed,
             feed_may_lack=control.report.has_said("no-feed"),
@@ -133,6 +149,9 @@ class PlainRunner:
             last_values=np.array(
                 [control.modal.corner_tolerance, control.acceleration, control.deceleration]
             ),
+            planes=_PLANES,
+            tools=self._tools,
+            longer=self._longer,
         )
 
     def _state(self) -> State:
@@ -144,7 +163,36 @@ class PlainRunner:
             programmed=np.array(control.programmed),
             part=np.array(control.part),
             happened=np.zeros(1, np.int64),
+            registers=self._registers(),
+            shifts=np.array(control.frame.shifts),
+            total=np.array(control.frame.total),
+            label=np.zeros(len(control.part)),
         )
+
+    def _registers(self) -> FloatArray:
+        control = self._control
+        registers = np.zeros(REGISTERS)
+        tools = control.tools
+        for place, value in (
+            (SPINDLE, control.spindle),
+            (SELECTED, tools.selected),
+            (IN_SPINDLE, tools.spindle),
+        ):
+            registers[place] = math.nan if value is None else value
+        for place, number in control.dialect.registers(control).items():
+            registers[place] = number
+        return registers
+
+    def _take_registers(self, registers: list[float]) -> None:
+        control = self._control
+        speed, selected, in_spindle = (
+            None if math.isnan(registers[place]) else registers[place]
+            for place in (SPINDLE, SELECTED, IN_SPINDLE)
+        )
+        control.spindle = speed
+        control.tools.selected = None if selected is None else int(selected)
+        control.tools.spindle = None if in_spindle is None else int(in_spindle)
+        control.dialect.take_registers(control, registers)
 
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control
@@ -152,9 +200,28 @@ class PlainRunner:
         feed = float(state.feed[0])
         control.feed = None if math.isnan(feed) else feed
         last = _segment(rows) if len(rows.codes) else None
-        functions = rows.functions[: state.happened[0]].tolist()
-        control.path.add_rows(rows.codes, rows.values, rows.positions, last, functions)
+        self._take_registers(state.registers.tolist())
+        control.frame.set_shifts(state.shifts.tolist())
+        happened = int(state.happened[0])
+        events = zip(rows.events[:happened].tolist(), rows.amounts[:happened].tolist(), strict=True)
+        control.path.add_rows(
+            rows.codes, rows.values, rows.positions, last, list(map(_event, events))
+        )
         control.came_to(state.programmed.tolist(), state.part.tolist(), last)
+
+
+def _event(row: tuple[list[int], float]) -> Event:
+    """An event of the run; its place counts from the run's first move."""
+    (before, line, kind, number), amount = row
+    if kind == FUNCTION_ALONE:
+        return Function(before, line, f"M{number}", {})
+    if kind == FUNCTION_WITH_SPEED:
+        return Function(before, line, f"M{number}", {} if math.isnan(amount) else {"S": amount})
+    if kind == SPEED:
+        return Function(before, line, "S", {"S": amount})
+    if kind == DWELL:
+        return Dwell(before, line, amount)
+    return Function(before, line, f"{'T' if kind == TOOL else 'H'}{number}", {})
 
 
 def _segment(rows: Rows) -> Segment:

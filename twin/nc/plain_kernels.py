@@ -18,9 +18,13 @@ from twin.nc.plain_state import (
     CORNER,
     EARLY,
     FEED_FACTOR,
+    FUNCTION_ALONE,
     INCREMENTAL,
     INTERPOLATION,
     NO_MOTION,
+    PLANE,
+    POLAR_ANGLE,
+    POLAR_RADIUS,
     RAPID_LINE,
     UNIT,
     BlockTables,
@@ -54,6 +58,7 @@ def run_words(
     modal: FloatArray,
     rows: Rows,
     row: int,
+    polar: bool,
 ) -> int:
     """Run one block of words.
 
@@ -64,9 +69,10 @@ def run_words(
         tables: What blocks mean.
         constants: What stays.
         state: What changes.
-        modal: Room for the modal state, shape (7,).
+        modal: Room for the modal state, shape (``MODAL``,).
         rows: Room for the move.
         row: Its row.
+        polar: The label of ``state`` holds where the move goes in the plane.
 
     Returns:
         The number of rows after it, or ``NOT_PLAIN`` with the state untouched.
@@ -105,27 +111,52 @@ def run_words(
                 if tables.function[function] == NOT_PLAIN:
                     return NOT_PLAIN
     after = row
-    if seen >> RADIUS:
+    if polar or seen >> RADIUS:
         after = _move(
-            line, number, roles, values, seen, tables, constants, state, modal, feed, rows, row
+            line,
+            number,
+            roles,
+            values,
+            seen,
+            tables,
+            constants,
+            state,
+            modal,
+            feed,
+            rows,
+            row,
+            polar,
         )
         if after == NOT_PLAIN:
             return NOT_PLAIN
     if function != NOT_PLAIN:
-        happened = rows.functions[state.happened[0]]
-        happened[0] = row if tables.function[function] == EARLY else after
-        happened[1], happened[2] = line, function
-        state.happened[0] += 1
+        before = row if tables.function[function] == EARLY else after
+        report(rows, state, before, line, FUNCTION_ALONE, function, np.nan)
     for word in range(len(roles)):
         if roles[word] == CODE:
             code = int(values[word])
             state.in_force[tables.group[code]] = code
     copy(modal, state.modal)
     state.feed[0] = feed
-    if seen >> RADIUS:
+    if polar or seen >> RADIUS:
         copy(rows.positions[row, 1], state.part)
         copy(rows.positions[row, 2], state.programmed)
+        plane = constants.planes[int(modal[PLANE])]
+        if seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))):
+            state.registers[POLAR_RADIUS] = state.registers[POLAR_ANGLE] = np.nan
     return after
+
+
+@numba.njit(cache=True)
+def report(
+    rows: Rows, state: State, before: int, line: int, kind: int, number: int, amount: float
+) -> None:
+    """Write an event."""
+    at = state.happened[0]
+    event = rows.events[at]
+    event[0], event[1], event[2], event[3] = before, line, kind, number
+    rows.amounts[at] = amount
+    state.happened[0] = at + 1
 
 
 @numba.njit(cache=True)
@@ -149,26 +180,33 @@ def _move(
     feed: float,
     rows: Rows,
     row: int,
+    polar: bool,
 ) -> int:
     """Write the block's move; the number of rows after it, or ``NOT_PLAIN``."""
     kind = tables.kind[int(modal[INTERPOLATION])]
     if kind == NO_MOTION:
         return NOT_PLAIN
     is_arc = kind == ARC
+    if polar and is_arc:
+        return NOT_PLAIN
     if not is_arc and (seen >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1):
         return NOT_PLAIN
     axes = len(state.part)
     position = rows.positions[row]
     turning, spatial, other = not is_arc, 0.0, 0.0
+    if polar:
+        _aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
     for axis in range(axes):
         target = state.programmed[axis]
-        if seen & (1 << (AXIS + axis)):
+        if polar and axis < 3:
+            target = state.label[axis]
+        elif seen & (1 << (AXIS + axis)):
             value = value_of(AXIS + axis, roles, values)
             value *= modal[UNIT] if tables.linear[axis] else 1.0
             target = value + target if modal[INCREMENTAL] != 0.0 else value
             if not abs(target) <= LARGEST_COORDINATE:
                 return NOT_PLAIN
-        end = target + constants.total[axis]
+        end = target + state.total[axis]
         position[0, axis] = state.part[axis]
         position[1, axis] = end
         position[2, axis] = target
@@ -209,3 +247,37 @@ def _move(
     rows.codes[row, 3] = number
     rows.codes[row, 4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
     return row + 1
+
+
+@numba.njit(cache=True)
+def _aim(
+    plane: IntArray,
+    roles: IntArray,
+    values: FloatArray,
+    seen: int,
+    state: State,
+    modal: FloatArray,
+) -> None:
+    """Abscissa and ordinate of the label and the height of the block, as ``Plane.world`` has them."""
+    abscissa, ordinate = state.label[0], state.label[1]
+    x, y, z = state.programmed[0], state.programmed[1], state.programmed[2]
+    across = plane[2]
+    if seen & (1 << (AXIS + across)):
+        value = value_of(AXIS + across, roles, values) * modal[UNIT]
+        height = value + state.programmed[across] if modal[INCREMENTAL] != 0.0 else value
+        x = height if across == 0 else x
+        y = height if across == 1 else y
+        z = height if across == 2 else z
+    height = _one(across, 0) * x + _one(across, 1) * y + _one(across, 2) * z
+    for axis in range(3):
+        state.label[axis] = (
+            _one(plane[0], axis) * abscissa
+            + _one(plane[1], axis) * ordinate
+            + _one(across, axis) * height
+        )
+
+
+@numba.njit(cache=True)
+def _one(axis: int, other: int) -> float:
+    """Component of the unit vector along an axis."""
+    return 1.0 if axis == other else 0.0

@@ -33,8 +33,10 @@ from twin.nc.plain_state import (
     INCREMENTAL,
     INTERPOLATION,
     LATE,
+    MODAL,
     NO_MOTION,
     NOTHING,
+    PLANE,
     RAPID_LINE,
     UNIT,
     BlockTables,
@@ -51,6 +53,7 @@ from twin.nc.plain_words_kernels import (
     RADIUS,
     LineTables,
 )
+from twin.nc.planes import PLANE_ORDER
 from twin.nc.settings import ControlSettings
 
 FEED_FACTORS = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
@@ -88,8 +91,10 @@ class PlainTables:
         self.blocks = self._block_tables(dialect, settings)
 
     def modal(self, modal: Modal) -> FloatArray:
-        """The modal state as the kernel keeps it, shape (7,)."""
-        state = np.zeros(len(_FIELDS) + 1)
+        """The modal state as the kernel keeps it, shape (``MODAL``,)."""
+        state = np.zeros(MODAL)
+        if modal.plane in PLANE_ORDER:
+            state[PLANE] = PLANE_ORDER.index(modal.plane)
         for name, place in _FIELDS.items():
             value = self._number(name, getattr(modal, name))
             state[place] = 0.0 if value is None else value
@@ -109,10 +114,10 @@ class PlainTables:
         value = np.zeros(CODES)
         group = np.zeros(CODES, np.int64)
         for number, code in dialect.g.items():
+            group[number] = self.groups.index(code.group)
             meant = self._meaning(code)
             if meant is not None:
                 field[number], value[number] = meant
-                group[number] = self.groups.index(code.group)
         plain = [each.plain if each else None for each in self._interpolations]
         arcs = [each if isinstance(each, PlainArc) else PlainArc(clockwise=False) for each in plain]
         return BlockTables(

@@ -13,7 +13,7 @@ from twin.nc.canonical import IntArray
 from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
 from twin.nc.lexer import LONGEST_LINE
 from twin.nc.plain_kernels import run_words
-from twin.nc.plain_state import MOST_WORDS, BlockTables, Constants, Rows, State
+from twin.nc.plain_state import MOST_EVENTS, MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import (
     NOT_PLAIN,
     ByteArray,
@@ -90,7 +90,7 @@ def run_program(
         line = int(progress[LINE])
         if line >= lines:
             return ENDED
-        if progress[MADE] == len(rows.codes) or state.happened[0] == len(rows.functions):
+        if progress[MADE] == len(rows.codes) or state.happened[0] + MOST_EVENTS > len(rows.events):
             return FULL
         row = int(table.first[line])
         if row == GENERAL:
@@ -123,6 +123,7 @@ def run_program(
                 bench.modal,
                 rows,
                 progress[MADE],
+                False,
             )
             if made == NOT_PLAIN:
                 return UNREAD

@@ -8,13 +8,14 @@ import numpy as np
 
 from twin.nc.bench_kernels import Bench, copy_force, copy_state
 from twin.nc.canonical import IntArray
+from twin.nc.deed_kernels import DOUBTFUL, polar_target, run_deed
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
 from twin.nc.instructions import PART_BITS, Step, Table
 from twin.nc.memory_kernels import NO_SLOT, load, own_value, slot_of_number, store
 from twin.nc.plain_kernels import run_words
 from twin.nc.plain_state import BlockTables, Constants, Rows, State
-from twin.nc.plain_words_kernels import NOT_PLAIN
+from twin.nc.plain_words_kernels import NOT_PLAIN, NUMBER
 from twin.nc.routine_state import (
     AGAIN,
     BACK,
@@ -79,7 +80,11 @@ DONE = -1
     _REPEAT,
     _MAY_RETURN,
     _RETURN,
-) = range(len(Step))  # plain integers compile faster than members
+    _KEEP,
+    _RUN_CODES,
+    _RUN_POLAR,
+    _FIRST_DEED,
+) = range(int(Step.IN_FORCE) + 1)  # plain integers compile faster than members
 _PART_MASK = (1 << PART_BITS) - 1
 
 
@@ -114,6 +119,7 @@ def run_steps(
     behind = (line + 1) << PART_BITS if table.argument[row] == 0 else place + 1
     going, range_end, restores = behind, NO_PLACE, NOTHING_RESTORED
     top, words, stores, own, why = 0, 0, 0, 0, LEFT
+    kept = False
     while steps_left >= 0:
         row += 1
         step, argument = table.step[row], table.argument[row]
@@ -187,7 +193,22 @@ def run_steps(
             else:
                 bench.values[words] = table.number[row]
             words += 1
-        elif step in (_RUN, _RUN_OFTEN):
+        elif step == _KEEP:
+            copy_state(state, bench.kept)
+            kept = True
+        elif step >= _FIRST_DEED:
+            top = run_deed(
+                step, argument, stack, top, line + 1, made, tables, constants, state, rows
+            )
+            if top == DOUBTFUL:
+                break
+        elif step in (_RUN, _RUN_OFTEN, _RUN_CODES, _RUN_POLAR):
+            polar = step == _RUN_POLAR
+            if polar:
+                radius = stack[top - 1 - (argument == 3)] if argument & 1 else 0.0
+                angle = stack[top - 1] if argument & 2 else 0.0
+                if not polar_target(argument, radius, angle, constants, state):
+                    break
             count = 1.0
             if step == _RUN_OFTEN:
                 top -= 1
@@ -210,6 +231,7 @@ def run_steps(
                     bench.modal,
                     rows,
                     after,
+                    polar,
                 )
                 if after == NOT_PLAIN:
                     break
@@ -218,6 +240,8 @@ def run_steps(
                     copy_state(bench.kept, state)
                 break
             made = after
+            if step == _RUN_CODES:
+                words = 1 if words > 0 and bench.roles[0] == NUMBER else 0
         elif step == _JUMP:
             going = argument
         elif step in (_JUMP_IF, _JUMP_UNLESS):
@@ -296,6 +320,8 @@ def run_steps(
             progress[MADE] = made
             progress[BLOCKS] += 1
             return DONE
+    if kept:
+        copy_state(bench.kept, state)
     while stores > 0:
         stores -= 1
         store(memory, progress[DEPTH], bench.slots[stores], bench.before[stores])

@@ -7,6 +7,7 @@ import dataclasses
 
 from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
+from twin.nc.block_words import write_words
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Block
 from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
@@ -117,7 +118,7 @@ def translate(control: Control, block: Block, writer: BlockWriter) -> None:
     targets = [word for word in block.words if jumps and word.address == "L"]
     counts = [word for word in block.words if jumps and word.address == "Q"]
     taken = (*jumps[:1], *targets[:1], *counts[:1])
-    writer.words([word for word in block.words if word not in taken])
+    write_words(control, [word for word in block.words if word not in taken], writer)
     if jumps:
         times = control.number(counts[0]) if counts else 1.0
         if not targets or times < 0.0 or times != int(times):
@@ -266,6 +267,7 @@ MEFI = Dialect(
     start=iso.START,
     m=iso.M_CODES,
     words=iso.WORDS,
+    word_translations=iso.WORD_TRANSLATIONS,
     word_meanings={
         **iso.WORD_MEANINGS,
         "R": "radius of an arc below 180 degrees; reference plane of a cycle",
