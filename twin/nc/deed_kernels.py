@@ -10,11 +10,12 @@ from numba.extending import register_jitable
 from twin.nc import arcs
 from twin.nc.canonical import FloatArray
 from twin.nc.control_motion import LARGEST_COORDINATE
+from twin.nc.event_kernels import report
 from twin.nc.frame import SHIFTS
 from twin.nc.instructions import Step
-from twin.nc.plain_kernels import report
 from twin.nc.plain_state import (
     AUXILIARY,
+    CYCLE,
     DWELL,
     FUNCTION_ALONE,
     FUNCTION_WITH_SPEED,
@@ -41,6 +42,7 @@ register_jitable(arcs.direction)
 register_jitable(arcs.angle_of)
 
 DOUBTFUL = -1
+_NO_EVENT = -1
 (
     _IN_FORCE,
     _PLANE,
@@ -99,23 +101,26 @@ def run_deed(
     """
     registers = state.registers
     value = stack[top - 1] if top > 0 else 0.0
+    kind, number, amount = _NO_EVENT, argument, np.nan
     if step == _IN_FORCE:
         state.in_force[tables.group[argument]] = argument
     elif step == _PLANE:
+        if state.modal[CYCLE] != 0.0:
+            return DOUBTFUL
         state.modal[PLANE] = argument
         if not np.isnan(registers[POLAR_ABSCISSA]):
             registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
     elif step == _FUNCTION:
-        report(rows, state, made, line, FUNCTION_ALONE, argument, np.nan)
+        kind = FUNCTION_ALONE
     elif step == _SPINDLE_FUNCTION:
-        report(rows, state, made, line, FUNCTION_WITH_SPEED, argument, registers[SPINDLE])
+        kind, amount = FUNCTION_WITH_SPEED, registers[SPINDLE]
     elif step == _SPEED:
         if value < 0.0:
             return DOUBTFUL
         registers[SPINDLE] = value
         if argument:
-            report(rows, state, made, line, SPEED, 0, value)
+            kind, amount = SPEED, value
         top -= 1
     elif step == _TOOL:
         if not 0.0 <= value <= _LARGEST_NUMBER or value != np.floor(value):
@@ -123,17 +128,17 @@ def run_deed(
         if argument and len(constants.tools) > 0 and _tool(constants, value) == DOUBTFUL:
             return DOUBTFUL
         registers[SELECTED] = value
-        report(rows, state, made, line, TOOL, int(value), np.nan)
+        kind, number = TOOL, int(value)
         top -= 1
     elif step == _AUXILIARY:
         if not 0.0 <= value < _LARGEST_NUMBER or value != np.floor(value):
             return DOUBTFUL
-        report(rows, state, made, line, AUXILIARY, int(value), np.nan)
+        kind, number = AUXILIARY, int(value)
         top -= 1
     elif step == _DWELL:
         if value < 0.0:
             return DOUBTFUL
-        report(rows, state, made, line, DWELL, 0, value)
+        kind, amount = DWELL, value
         top -= 1
     elif step == _CHANGE_TOOL:
         registers[IN_SPINDLE] = registers[SELECTED]
@@ -175,6 +180,8 @@ def run_deed(
         stack[top - 1] = value * (state.modal[UNIT] if tables.linear[argument] else 1.0)
     elif step == _FORGET_POLAR:
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
+    if kind != _NO_EVENT:
+        report(rows, state, made, line, kind, number, amount)
     return top
 
 

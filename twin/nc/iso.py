@@ -7,8 +7,9 @@ from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.circular import clockwise_arc, counter_clockwise_arc, plain_arc
 from twin.nc.control import Control
-from twin.nc.dialect import FeedMode, GCode, Interpolation, MCode, PlainLine, Translation
+from twin.nc.dialect import FeedMode, GCode, MCode, Translation
 from twin.nc.instructions import Step
+from twin.nc.interpolation import Interpolation, PlainLine
 from twin.nc.iso_cycles import CYCLES
 from twin.nc.linear import feed_line, rapid_line
 from twin.nc.offsets import COMPENSATION, LENGTH, OFFSETS, PRESET, refuse_plane_change

@@ -11,7 +11,10 @@ import numpy as np
 
 from twin.nc.canonical import Corner, Dwell, Event, FloatArray, Function, Motion
 from twin.nc.control import Control
+from twin.nc.diagnostics import ProgramError
+from twin.nc.drilling import Drilling, acts
 from twin.nc.hand_over import HandOver, put_into_force
+from twin.nc.interpolation import PlainHole
 from twin.nc.lines import Page
 from twin.nc.move_columns import CHUNK, Segment
 from twin.nc.plain_state import (
@@ -25,6 +28,7 @@ from twin.nc.plain_state import (
     SPINDLE,
     TOOL,
     Constants,
+    Hole,
     Rows,
     State,
 )
@@ -36,6 +40,8 @@ from twin.nc.routine_state import FULL, LEFT, OFF_PAGE, PAUSED, UNREAD
 from twin.nc.translator import Translator
 
 _PLANES = np.array([plane.axes for plane in PLANE_ORDER])
+_MOST_STOPS = 500
+"""Stops of a hole: its moves must fit into a chunk."""
 _WORTHWHILE = 4
 """Blocks that a run must have to pay for handing the state over and back."""
 _LONGEST_PAUSE = 256
@@ -68,6 +74,7 @@ class PlainRunner:
         table = control.tools.table
         self._tools = np.array([float(number) for number in table])
         self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
+        self._hole: Drilling | None = None
         self._pause = 1
         self._wait = 0
         self.full = False
@@ -80,6 +87,7 @@ class PlainRunner:
             return False
         control = self._control
         room = CHUNK - len(control.path)
+        self._hole = self._drilled()
         if room <= 0 or not self._may_run():
             return False
         state, rows = self._state(), self._rows.first(room)
@@ -126,7 +134,7 @@ class PlainRunner:
         control = self._control
         modal, disturbed = control.modal, control.dialect.disturbed
         return (
-            modal.cycle is None
+            (modal.cycle is None or self._hole is not None)
             and modal.plane in PLANE_ORDER
             and modal.feed_mode in FEED_FACTORS
             and control.frame.plain
@@ -152,7 +160,21 @@ class PlainRunner:
             planes=_PLANES,
             tools=self._tools,
             longer=self._longer,
+            hole=_NO_HOLE if self._hole is None else _as_columns(self._hole),
+            over=np.zeros(len(control.part)),
         )
+
+    def _drilled(self) -> Drilling | None:
+        """What plain words drill; None where they do not, or the general way must say what is wrong."""
+        control = self._control
+        cycle = control.modal.cycle
+        if cycle is None or not isinstance(cycle.plain, PlainHole):
+            return None
+        try:
+            drilling = cycle.plain.drilling(control)
+        except ProgramError:
+            return None
+        return drilling if len(drilling.stops) <= _MOST_STOPS else None
 
     def _state(self) -> State:
         control = self._control
@@ -208,6 +230,15 @@ class PlainRunner:
             rows.codes, rows.values, rows.positions, last, list(map(_event, events))
         )
         control.came_to(state.programmed.tolist(), state.part.tolist(), last)
+
+
+def _as_columns(drilling: Drilling) -> Hole:
+    done = acts(drilling)
+    kinds, values = [int(act) for act, _ in done], [value for _, value in done]
+    return Hole(float(drilling.reference), np.array(kinds), np.array(values, np.float64))
+
+
+_NO_HOLE = _as_columns(Drilling(reference=0.0, bottom=0.0, back=0.0))
 
 
 def _event(row: tuple[list[int], float]) -> Event:

@@ -10,12 +10,15 @@ import numpy as np
 
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.control_motion import LARGEST_COORDINATE
+from twin.nc.event_kernels import report
+from twin.nc.hole_kernels import write_hole
 from twin.nc.line_reader import LARGEST_LABEL
 from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
 from twin.nc.plain_state import (
     ARC,
     CODES,
     CORNER,
+    CYCLE,
     EARLY,
     FEED_FACTOR,
     FUNCTION_ALONE,
@@ -75,7 +78,7 @@ def run_words(
         polar: The label of ``state`` holds where the move goes in the plane.
 
     Returns:
-        The number of rows after it, or ``NOT_PLAIN`` with the state untouched.
+        The number of rows after it, or ``NOT_PLAIN`` or ``NO_ROOM`` with the state untouched.
     """
     copy(state.modal, modal)
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
@@ -96,6 +99,8 @@ def run_words(
                 return NOT_PLAIN
             groups |= group
             modal[tables.field[code]] = tables.value[code]
+            if tables.ends_cycle[code]:
+                modal[CYCLE] = 0.0
         else:
             if seen & (1 << role) or not abs(value) <= LARGEST_COORDINATE:
                 return NOT_PLAIN
@@ -110,8 +115,28 @@ def run_words(
                 function = int(value)
                 if tables.function[function] == NOT_PLAIN:
                     return NOT_PLAIN
-    after = row
-    if polar or seen >> RADIUS:
+    after, happened = row, state.happened[0]
+    drills = modal[CYCLE] != 0.0
+    if drills and (polar or seen >> RADIUS):
+        after = _drill(
+            line,
+            number,
+            roles,
+            values,
+            seen,
+            tables,
+            constants,
+            state,
+            modal,
+            feed,
+            rows,
+            row,
+            polar,
+        )
+        if after < 0:
+            state.happened[0] = happened
+            return after
+    elif polar or seen >> RADIUS:
         after = _move(
             line,
             number,
@@ -139,8 +164,12 @@ def run_words(
     copy(modal, state.modal)
     state.feed[0] = feed
     if polar or seen >> RADIUS:
-        copy(rows.positions[row, 1], state.part)
-        copy(rows.positions[row, 2], state.programmed)
+        if drills:
+            copy(state.label, state.part)
+            copy(constants.over, state.programmed)
+        else:
+            copy(rows.positions[row, 1], state.part)
+            copy(rows.positions[row, 2], state.programmed)
         plane = constants.planes[int(modal[PLANE])]
         if seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))):
             state.registers[POLAR_RADIUS] = state.registers[POLAR_ANGLE] = np.nan
@@ -148,22 +177,49 @@ def run_words(
 
 
 @numba.njit(cache=True)
-def report(
-    rows: Rows, state: State, before: int, line: int, kind: int, number: int, amount: float
-) -> None:
-    """Write an event."""
-    at = state.happened[0]
-    event = rows.events[at]
-    event[0], event[1], event[2], event[3] = before, line, kind, number
-    rows.amounts[at] = amount
-    state.happened[0] = at + 1
-
-
-@numba.njit(cache=True)
 def copy(source: FloatArray, target: FloatArray) -> None:
     """Copy a column."""
     for index in range(len(target)):
         target[index] = source[index]
+
+
+@numba.njit(cache=True)
+def _drill(
+    line: int,
+    number: int,
+    roles: IntArray,
+    values: FloatArray,
+    seen: int,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    modal: FloatArray,
+    feed: float,
+    rows: Rows,
+    row: int,
+    polar: bool,
+) -> int:
+    """Drill the hole that the block names; the number of rows after it, or why not."""
+    across = constants.planes[int(modal[PLANE])][2]
+    axes = len(state.part)
+    if (seen >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or seen & (1 << (AXIS + across)):
+        return NOT_PLAIN
+    if polar:
+        _aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
+    elif not seen >> AXIS:
+        return NOT_PLAIN
+    target = constants.over
+    for axis in range(axes):
+        target[axis] = state.programmed[axis]
+        if polar and axis < 3:
+            target[axis] = state.label[axis]
+        elif seen & (1 << (AXIS + axis)):
+            value = value_of(AXIS + axis, roles, values)
+            value *= modal[UNIT] if tables.linear[axis] else 1.0
+            target[axis] = value + target[axis] if modal[INCREMENTAL] != 0.0 else value
+            if not abs(target[axis]) <= LARGEST_COORDINATE:
+                return NOT_PLAIN
+    return write_hole(line, number, target, constants, state, modal, feed, rows, row)
 
 
 @numba.njit(cache=True, forceinline=True)

@@ -7,9 +7,19 @@ import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
 
-INTERPOLATION, INCREMENTAL, CENTER_ABSOLUTE, UNIT, CORNER, FEED_FACTOR, PLANE, NOTHING = range(8)
+(
+    INTERPOLATION,
+    INCREMENTAL,
+    CENTER_ABSOLUTE,
+    UNIT,
+    CORNER,
+    FEED_FACTOR,
+    PLANE,
+    CYCLE,
+    NOTHING,
+) = range(9)
 """Places in the modal state; ``NOTHING`` takes what codes without effect set."""
-MODAL = 8
+MODAL = 9
 (
     SPINDLE,
     SELECTED,
@@ -47,6 +57,7 @@ class BlockTables(NamedTuple):
             for codes that do more.
         value: To what it sets it, shape (``CODES``,).
         group: Its modal group, shape (``CODES``,).
+        ends_cycle: Whether each G code ends a drilling cycle, shape (``CODES``,).
         function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
             shape (``CODES``,); ``NOT_PLAIN`` for codes that do more than that.
         kind: Kind of each interpolation, shape (i,).
@@ -62,6 +73,7 @@ class BlockTables(NamedTuple):
     field: IntArray
     value: FloatArray
     group: IntArray
+    ends_cycle: npt.NDArray[np.bool_]
     function: IntArray
     kind: IntArray
     clockwise: npt.NDArray[np.bool_]
@@ -71,6 +83,20 @@ class BlockTables(NamedTuple):
     signed_radius: npt.NDArray[np.bool_]
     fits_radius: npt.NDArray[np.bool_]
     linear: npt.NDArray[np.bool_]
+
+
+class Hole(NamedTuple):
+    """A drilling cycle in force.
+
+    Attributes:
+        reference: Height of the reference plane [mm].
+        acts: What happens over the hole, as ``drilling.acts`` has it, shape (n,).
+        values: Heights [mm] and seconds, shape (n,).
+    """
+
+    reference: float
+    acts: IntArray
+    values: FloatArray
 
 
 class Constants(NamedTuple):
@@ -87,6 +113,8 @@ class Constants(NamedTuple):
         planes: Columns of abscissa, ordinate and normal of each plane, shape (3, 3).
         tools: Numbers of the tools that the job lists, shape (t,).
         longer: How much longer each is than the first, shape (t,) [mm].
+        hole: What a block drills while a cycle is in force.
+        over: Room for where the hole lies, shape (k,).
     """
 
     default_feed: float
@@ -98,6 +126,8 @@ class Constants(NamedTuple):
     planes: IntArray
     tools: FloatArray
     longer: FloatArray
+    hole: Hole
+    over: FloatArray
 
 
 class State(NamedTuple):

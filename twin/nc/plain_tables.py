@@ -11,22 +11,15 @@ import numpy as np
 from twin.nc import iso
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.control import Control
-from twin.nc.dialect import (
-    Comment,
-    Dialect,
-    FeedMode,
-    GCode,
-    Interpolation,
-    Modal,
-    PlainArc,
-    PlainLine,
-)
+from twin.nc.dialect import Comment, Dialect, FeedMode, GCode, Modal
 from twin.nc.functions import SPINDLE_STARTS
+from twin.nc.interpolation import Interpolation, PlainArc, PlainLine
 from twin.nc.plain_state import (
     ARC,
     CENTER_ABSOLUTE,
     CODES,
     CORNER,
+    CYCLE,
     EARLY,
     FEED_FACTOR,
     FEED_LINE,
@@ -95,6 +88,7 @@ class PlainTables:
         state = np.zeros(MODAL)
         if modal.plane in PLANE_ORDER:
             state[PLANE] = PLANE_ORDER.index(modal.plane)
+        state[CYCLE] = float(modal.cycle is not None)
         for name, place in _FIELDS.items():
             value = self._number(name, getattr(modal, name))
             state[place] = 0.0 if value is None else value
@@ -113,8 +107,10 @@ class PlainTables:
         field = np.full(CODES, NOT_PLAIN, np.int64)
         value = np.zeros(CODES)
         group = np.zeros(CODES, np.int64)
+        ends_cycle = np.zeros(CODES, np.bool_)
         for number, code in dialect.g.items():
             group[number] = self.groups.index(code.group)
+            ends_cycle[number] = "cycle" in code.sets and code.sets["cycle"] is None
             meant = self._meaning(code)
             if meant is not None:
                 field[number], value[number] = meant
@@ -124,6 +120,7 @@ class PlainTables:
             field=field,
             value=value,
             group=group,
+            ends_cycle=ends_cycle,
             function=_functions(dialect),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),

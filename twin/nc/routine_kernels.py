@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from twin.nc.bench_kernels import new_bench
 from twin.nc.canonical import IntArray
+from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
 from twin.nc.lexer import LONGEST_LINE
 from twin.nc.plain_kernels import run_words
@@ -127,6 +128,8 @@ def run_program(
             )
             if made == NOT_PLAIN:
                 return UNREAD
+            if made == NO_ROOM:
+                return FULL
             progress[FURTHEST] = max(progress[FURTHEST], place)
             progress[STEPS_LEFT], progress[MADE] = steps_left, made
             progress[BLOCKS] += 1

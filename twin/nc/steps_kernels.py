@@ -11,11 +11,12 @@ from twin.nc.canonical import IntArray
 from twin.nc.deed_kernels import DOUBTFUL, polar_target, run_deed
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
+from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import PART_BITS, Step, Table
 from twin.nc.memory_kernels import NO_SLOT, load, own_value, slot_of_number, store
 from twin.nc.plain_kernels import run_words
-from twin.nc.plain_state import BlockTables, Constants, Rows, State
-from twin.nc.plain_words_kernels import NOT_PLAIN, NUMBER
+from twin.nc.plain_state import CYCLE, BlockTables, Constants, Rows, State
+from twin.nc.plain_words_kernels import NUMBER
 from twin.nc.routine_state import (
     AGAIN,
     BACK,
@@ -215,6 +216,8 @@ def run_steps(
                 count = stack[top]
                 if not 1.0 <= count <= table.number[row] or count != np.floor(count):
                     break
+                if state.modal[CYCLE] != 0.0:
+                    break
                 if made + count > len(rows.codes):
                     why = FULL
                     break
@@ -233,9 +236,10 @@ def run_steps(
                     after,
                     polar,
                 )
-                if after == NOT_PLAIN:
+                if after < 0:
                     break
-            if after == NOT_PLAIN:
+            if after < 0:
+                why = FULL if after == NO_ROOM else LEFT
                 if step == _RUN_OFTEN:
                     copy_state(bench.kept, state)
                 break

@@ -12,17 +12,8 @@ from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Block
 from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
-from twin.nc.dialect import (
-    HEADING,
-    Comment,
-    Decision,
-    Dialect,
-    GCode,
-    Interpolation,
-    Mark,
-    PlainArc,
-    Syntax,
-)
+from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
+from twin.nc.interpolation import Interpolation, PlainArc
 
 
 @dataclasses.dataclass(slots=True)

@@ -2,7 +2,7 @@
 
 from twin.nc import iso, offsets
 from twin.nc.blends import BlendKind
-from twin.nc.dialect import GCode, Interpolation, PlainLine
+from twin.nc.dialect import GCode
 from twin.nc.dialects.codesys import actions, jumps, program, words
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
@@ -12,6 +12,7 @@ from twin.nc.dialects.codesys.curves import (
     PARABOLA,
     SPATIAL_SPLINE,
 )
+from twin.nc.interpolation import Interpolation, PlainLine
 from twin.nc.linear import rapid_line
 from twin.nc.planes import XY, YZ, ZX, Plane
 
