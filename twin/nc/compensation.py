@@ -16,9 +16,9 @@ from typing import NoReturn
 
 from twin.nc.arcs import SAME_POINT, Point, distance
 from twin.nc.canonical import Corner
-from twin.nc.contour import Box, Element, crossings, turn_between
+from twin.nc.contour import Element, crossing, crossings, turn_between
+from twin.nc.curves import Box
 from twin.nc.leads import LeadOut, around, lead_depth
-from twin.nc.loops import crossing
 from twin.nc.move_columns import NAN, Segment
 from twin.nc.planes import Plane
 from twin.nc.segments import element_of, level_arc

@@ -62,6 +62,7 @@ _NO_EVENT = -1
     _RELABEL,
     _POLAR_ORIGIN,
     _TO_MILLIMETRES,
+    _NO_CYCLE,
     _FORGET_POLAR,
 ) = range(int(Step.IN_FORCE), int(Step.FORGET_POLAR) + 1)
 _LENGTH = SHIFTS.index("length")
@@ -178,6 +179,9 @@ def run_deed(
         top -= argument
     elif step == _TO_MILLIMETRES:
         stack[top - 1] = value * (state.modal[UNIT] if tables.linear[argument] else 1.0)
+    elif step == _NO_CYCLE:
+        if state.modal[CYCLE] != 0.0:
+            return DOUBTFUL
     elif step == _FORGET_POLAR:
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
     if kind != _NO_EVENT:

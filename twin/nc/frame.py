@@ -21,7 +21,7 @@ class Frame:
     """
 
     def __init__(self, axis_count: int) -> None:
-        self._shifts = {name: [0.0] * axis_count for name in SHIFTS}
+        self._shifts: dict[str, list[float]] = {name: [0.0] * axis_count for name in SHIFTS}
         self.total = [0.0] * axis_count
         """Sum of all shifts, shape (k,) [mm or deg]."""
         self.matrix = IDENTITY

@@ -147,7 +147,9 @@ class Step(enum.IntEnum):
     """The two topmost values (``argument`` 2) are the polar origin; 0: it is where the tool stands."""
     TO_MILLIMETRES = 56
     """The topmost value is in the unit in force, of the axis ``argument``."""
-    FORGET_POLAR = 57
+    NO_CYCLE = 57
+    """No drilling cycle may be in force."""
+    FORGET_POLAR = 58
     """The last R and Q hold no longer."""
 
 

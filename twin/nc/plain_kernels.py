@@ -117,6 +117,10 @@ def run_words(
                     return NOT_PLAIN
     after, happened = row, state.happened[0]
     drills = modal[CYCLE] != 0.0
+    plane = constants.planes[int(modal[PLANE])]
+    in_plane = seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))) != 0
+    if polar and in_plane:
+        return NOT_PLAIN
     if drills and (polar or seen >> RADIUS):
         after = _drill(
             line,
@@ -170,8 +174,7 @@ def run_words(
         else:
             copy(rows.positions[row, 1], state.part)
             copy(rows.positions[row, 2], state.programmed)
-        plane = constants.planes[int(modal[PLANE])]
-        if seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))):
+        if in_plane:
             state.registers[POLAR_RADIUS] = state.registers[POLAR_ANGLE] = np.nan
     return after
 

@@ -206,8 +206,8 @@ def run_steps(
         elif step in (_RUN, _RUN_OFTEN, _RUN_CODES, _RUN_POLAR):
             polar = step == _RUN_POLAR
             if polar:
-                radius = stack[top - 1 - (argument == 3)] if argument & 1 else 0.0
-                angle = stack[top - 1] if argument & 2 else 0.0
+                radius = stack[top - 2 if argument == 3 else top - 1]
+                angle = stack[top - 1]
                 if not polar_target(argument, radius, angle, constants, state):
                     break
             count = 1.0

@@ -13,6 +13,7 @@ from twin.nc.blocks import Block
 from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
 from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
+from twin.nc.instructions import Step
 from twin.nc.interpolation import Interpolation, PlainArc
 
 
@@ -109,6 +110,8 @@ def translate(control: Control, block: Block, writer: BlockWriter) -> None:
     targets = [word for word in block.words if jumps and word.address == "L"]
     counts = [word for word in block.words if jumps and word.address == "Q"]
     taken = (*jumps[:1], *targets[:1], *counts[:1])
+    if counts:
+        writer.step(Step.NO_CYCLE)  # a cycle would take Q as its own
     write_words(control, [word for word in block.words if word not in taken], writer)
     if jumps:
         times = control.number(counts[0]) if counts else 1.0
