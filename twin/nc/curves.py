@@ -63,10 +63,11 @@ def leaves_room(curve: Curve, by: float) -> bool:
     """There is a parallel curve, ``by`` to the left [mm]: an arc does not vanish."""
     if not curve[0]:
         return True
-    return _scale(curve, by) > NEAR
+    return scale_of(curve, by) > NEAR
 
 
-def _scale(curve: Curve, by: float) -> float:
+def scale_of(curve: Curve, by: float) -> float:
+    """How much larger the parallel of an arc is."""
     radius = radius_of(curve)
     return (radius - math.copysign(by, by * curve[4])) / radius
 
@@ -78,8 +79,8 @@ def aside_of(curve: Curve, by: float) -> Curve:
         x, y = tangent_of(curve, False)
         dx, dy = -y * by, x * by
         return (False, moved(start, dx, dy), moved(end, dx, dy), center, sweep)
-    scale = _scale(curve, by)
-    return (True, _towards(center, start, scale), _towards(center, end, scale), center, sweep)
+    scale = scale_of(curve, by)
+    return (True, towards(center, start, scale), towards(center, end, scale), center, sweep)
 
 
 def along(curve: Curve, point: Point) -> float:
@@ -155,12 +156,12 @@ _NOWHERE = (0, (0.0, 0.0), (0.0, 0.0))
 def meetings(first: Curve, second: Curve) -> Meetings:
     """Where two curves meet that go on without limit."""
     if first[0] and second[0]:
-        return _circle_circle(first, second)
+        return circle_circle(first, second)
     if first[0]:
-        return _line_circle(second, first)
+        return line_circle(second, first)
     if second[0]:
-        return _line_circle(first, second)
-    return _line_line(first, second)
+        return line_circle(first, second)
+    return line_line(first, second)
 
 
 def crossing_of(older: Curve, younger: Curve) -> tuple[bool, float, float]:
@@ -170,19 +171,21 @@ def crossing_of(older: Curve, younger: Curve) -> tuple[bool, float, float]:
     for number in range(count):
         point = first if number == 0 else second
         one, other = along(older, point), along(younger, point)
-        if _inside(older, one) and _inside(younger, other):
+        if inside(older, one) and inside(younger, other):
             if not found or (one, other) < (left, right):
                 left, right = one, other
             found = True
     return (found, left, right)
 
 
-def _inside(curve: Curve, share: float) -> bool:
+def inside(curve: Curve, share: float) -> bool:
+    """Whether a place lies between the curve's ends, not near them."""
     end = _END / max(length_of(curve), _END)
     return end < share < 1.0 - end
 
 
-def _line_line(first: Curve, second: Curve) -> Meetings:
+def line_line(first: Curve, second: Curve) -> Meetings:
+    """As ``meetings``, of two lines."""
     ax, ay = tangent_of(first, False)
     bx, by = tangent_of(second, False)
     area = ax * by - ay * bx
@@ -193,7 +196,8 @@ def _line_line(first: Curve, second: Curve) -> Meetings:
     return (1, moved(first[1], ax * far, ay * far), (0.0, 0.0))
 
 
-def _line_circle(straight: Curve, circle: Curve) -> Meetings:
+def line_circle(straight: Curve, circle: Curve) -> Meetings:
+    """As ``meetings``, of a line and an arc."""
     ux, uy = tangent_of(straight, False)
     dx, dy = circle[3][0] - straight[1][0], circle[3][1] - straight[1][1]
     far, beside = dx * ux + dy * uy, dy * ux - dx * uy
@@ -201,11 +205,12 @@ def _line_circle(straight: Curve, circle: Curve) -> Meetings:
     radius, beside = radius_of(circle), abs(beside)
     if beside > radius + NEAR:
         return _NOWHERE
-    half = _half(radius, beside)
+    half = half_chord(radius, beside)
     return (2, moved(foot, ux * half, uy * half), moved(foot, ux * -half, uy * -half))
 
 
-def _circle_circle(first: Curve, second: Curve) -> Meetings:
+def circle_circle(first: Curve, second: Curve) -> Meetings:
+    """As ``meetings``, of two arcs."""
     apart = distance(first[3], second[3])
     if apart < NEAR:
         return _NOWHERE
@@ -215,11 +220,11 @@ def _circle_circle(first: Curve, second: Curve) -> Meetings:
     foot = moved(first[3], ux * far, uy * far)
     if abs(far) > one + NEAR:
         return _NOWHERE
-    half = _half(one, abs(far))
+    half = half_chord(one, abs(far))
     return (2, moved(foot, -uy * half, ux * half), moved(foot, -uy * -half, ux * -half))
 
 
-def _half(radius: float, beside: float) -> float:
+def half_chord(radius: float, beside: float) -> float:
     """Half the chord that lies ``beside`` a circle's centre."""
     return math.sqrt(max(0.0, radius * radius - beside * beside))
 
@@ -229,7 +234,8 @@ def moved(point: Point, dx: float, dy: float) -> Point:
     return (point[0] + dx, point[1] + dy)
 
 
-def _towards(center: Point, point: Point, scale: float) -> Point:
+def towards(center: Point, point: Point, scale: float) -> Point:
+    """A point moved from a centre by a factor."""
     return (
         center[0] + (point[0] - center[0]) * scale,
         center[1] + (point[1] - center[1]) * scale,

@@ -106,7 +106,7 @@ def run_deed(
     if step == _IN_FORCE:
         state.in_force[tables.group[argument]] = argument
     elif step == _PLANE:
-        if state.modal[CYCLE] != 0.0:
+        if state.modal[CYCLE] != 0.0 or constants.compensates:
             return DOUBTFUL
         state.modal[PLANE] = argument
         if not np.isnan(registers[POLAR_ABSCISSA]):

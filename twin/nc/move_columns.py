@@ -135,10 +135,12 @@ class MoveColumns:
             self._parts.append((codes, values, positions))
             self._clear_lists()
 
-    def add_events(self, events: Iterable[Event]) -> None:
-        """Append events; their places count from the next move."""
+    def add_events(self, events: Iterable[Event], *, here: bool = False) -> None:
+        """Append events; their places count from the next move, or are ``here``, before it."""
         ahead = self._count
-        if ahead:
+        if here:
+            events = [dataclasses.replace(event, before=ahead) for event in events]
+        elif ahead:
             events = [dataclasses.replace(event, before=event.before + ahead) for event in events]
         self._events += events
 

@@ -9,7 +9,10 @@ import math
 
 import numpy as np
 
-from twin.nc.canonical import Corner, Dwell, Event, FloatArray, Function, Motion
+from twin.nc.canonical import Dwell, Event, FloatArray, Function
+from twin.nc.compensation import Followed
+from twin.nc.contour_columns import fill, gone, new_contour, segment
+from twin.nc.contour_state import Row
 from twin.nc.control import Control
 from twin.nc.diagnostics import ProgramError
 from twin.nc.drilling import Drilling, acts
@@ -75,6 +78,8 @@ class PlainRunner:
         self._tools = np.array([float(number) for number in table])
         self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
         self._hole: Drilling | None = None
+        self._followed: Followed | None = None
+        self._contour = new_contour(axes)
         self._pause = 1
         self._wait = 0
         self.full = False
@@ -87,11 +92,12 @@ class PlainRunner:
             return False
         control = self._control
         room = CHUNK - len(control.path)
-        self._hole = self._drilled()
+        self._hole, self._followed = self._drilled(), control.path.followed
         if room <= 0 or not self._may_run():
             return False
         state, rows = self._state(), self._rows.first(room)
-        handed = HandOver(control, state)
+        fill(self._contour, self._followed, self._followed_plane())
+        handed = HandOver(control, state, self._contour)
         why = self._run(state, rows, handed)
         self.full = why == FULL and room - handed.made < CHUNK
         worthwhile = handed.blocks >= _WORTHWHILE
@@ -139,7 +145,7 @@ class PlainRunner:
             and modal.feed_mode in FEED_FACTORS
             and control.frame.plain
             and modal.correct_center
-            and control.path.open
+            and (control.path.open or self._followed is not None)
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)
             and not (control.axis_limits or control.axis_accelerations)
@@ -161,6 +167,7 @@ class PlainRunner:
             tools=self._tools,
             longer=self._longer,
             hole=_NO_HOLE if self._hole is None else _as_columns(self._hole),
+            compensates=self._followed is not None,
             over=np.zeros(len(control.part)),
         )
 
@@ -221,15 +228,27 @@ class PlainRunner:
         put_into_force(control, state.in_force)
         feed = float(state.feed[0])
         control.feed = None if math.isnan(feed) else feed
-        last = _segment(rows) if len(rows.codes) else None
         self._take_registers(state.registers.tolist())
         control.frame.set_shifts(state.shifts.tolist())
         happened = int(state.happened[0])
-        events = zip(rows.events[:happened].tolist(), rows.amounts[:happened].tolist(), strict=True)
-        control.path.add_rows(
-            rows.codes, rows.values, rows.positions, last, list(map(_event, events))
-        )
+        pairs = zip(rows.events[:happened].tolist(), rows.amounts[:happened].tolist(), strict=True)
+        last = self._add(rows, [_event(each) for each in pairs])
         control.came_to(state.programmed.tolist(), state.part.tolist(), last)
+
+    def _add(self, rows: Rows, events: list[Event]) -> Segment | None:
+        """Add moves and events to the path; the last programmed move, if any."""
+        path, moves = self._control.path, (rows.codes, rows.values, rows.positions)
+        if self._followed is None:
+            last = segment(Row(*(each[-1] for each in moves))) if len(rows.codes) else None
+            path.add_rows(*moves, last, events)
+            return last
+        held_back = [event for event in events if event.before < 0]
+        gone_on = gone(self._contour, self._followed, held_back)
+        path.add_followed(*moves, events[: len(events) - len(held_back)], gone_on)
+        return gone_on.latest
+
+    def _followed_plane(self) -> tuple[int, int, int]:
+        return (0, 1, 2) if self._followed is None else self._control.path.compensation_plane
 
 
 def _as_columns(drilling: Drilling) -> Hole:
@@ -253,29 +272,3 @@ def _event(row: tuple[list[int], float]) -> Event:
     if kind == DWELL:
         return Dwell(before, line, amount)
     return Function(before, line, f"{'T' if kind == TOOL else 'H'}{number}", {})
-
-
-def _segment(rows: Rows) -> Segment:
-    """The last row as the control keeps it."""
-    motion, _, line, block, corner = rows.codes[-1].tolist()
-    *center_and_normal, sweep, feed, tolerance, acceleration, deceleration = rows.values[
-        -1
-    ].tolist()
-    start, end, display = rows.positions[-1].tolist()
-    a, b, c, i, j, k = center_and_normal
-    return Segment(
-        motion=Motion(motion),
-        line=line,
-        block=block,
-        start=start,
-        end=end,
-        display=display,
-        feed=feed,
-        corner=Corner(corner),
-        corner_tolerance=tolerance,
-        acceleration=acceleration,
-        deceleration=deceleration,
-        center=None if math.isnan(a) else (a, b, c),
-        normal=(i, j, k),
-        sweep=sweep,
-    )

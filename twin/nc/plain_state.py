@@ -114,6 +114,7 @@ class Constants(NamedTuple):
         tools: Numbers of the tools that the job lists, shape (t,).
         longer: How much longer each is than the first, shape (t,) [mm].
         hole: What a block drills while a cycle is in force.
+        compensates: Radius compensation is in force.
         over: Room for where the hole lies, shape (k,).
     """
 
@@ -127,6 +128,7 @@ class Constants(NamedTuple):
     tools: FloatArray
     longer: FloatArray
     hole: Hole
+    compensates: bool
     over: FloatArray
 
 

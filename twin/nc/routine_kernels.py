@@ -8,8 +8,10 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from twin.nc.bench_kernels import new_bench
+from twin.nc.bench_kernels import copy_state, new_bench
 from twin.nc.canonical import IntArray
+from twin.nc.contour_kernels import DOUBTFUL, follow
+from twin.nc.contour_state import ACTIVE, ROOM
 from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
 from twin.nc.lexer import LONGEST_LINE
@@ -86,12 +88,15 @@ def run_program(
     progress, calls = routine.progress, routine.calls
     bench = new_bench(state)
     lines = len(table.first) - 1
+    contour = routine.contour
+    compensates = contour.counts[ACTIVE] != 0
+    most_rows = len(rows.codes) - (ROOM if compensates else 1)
     for _ in range(most):
         _end_parts(progress, calls)
         line = int(progress[LINE])
         if line >= lines:
             return ENDED
-        if progress[MADE] == len(rows.codes) or state.happened[0] + MOST_EVENTS > len(rows.events):
+        if progress[MADE] > most_rows or state.happened[0] + MOST_EVENTS > len(rows.events):
             return FULL
         row = int(table.first[line])
         if row == GENERAL:
@@ -114,6 +119,9 @@ def run_program(
             steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
             if steps_left < 0:
                 return LEFT
+            first_event = state.happened[0]
+            if compensates:
+                copy_state(state, bench.kept)
             made = run_words(
                 line + 1,
                 bench.roles[:words],
@@ -130,6 +138,12 @@ def run_program(
                 return UNREAD
             if made == NO_ROOM:
                 return FULL
+            if compensates:
+                behind = state.happened[0]
+                made = follow(progress[MADE], made, first_event, behind, contour, rows)
+                if made == DOUBTFUL:
+                    copy_state(bench.kept, state)
+                    return LEFT
             progress[FURTHEST] = max(progress[FURTHEST], place)
             progress[STEPS_LEFT], progress[MADE] = steps_left, made
             progress[BLOCKS] += 1

@@ -8,6 +8,8 @@ import numpy as np
 
 from twin.nc.bench_kernels import Bench, copy_force, copy_state
 from twin.nc.canonical import IntArray
+from twin.nc.contour_kernels import follow, hold_events
+from twin.nc.contour_state import ACTIVE
 from twin.nc.deed_kernels import DOUBTFUL, polar_target, run_deed
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
@@ -120,7 +122,10 @@ def run_steps(
     behind = (line + 1) << PART_BITS if table.argument[row] == 0 else place + 1
     going, range_end, restores = behind, NO_PLACE, NOTHING_RESTORED
     top, words, stores, own, why = 0, 0, 0, 0, LEFT
-    kept = False
+    contour, first_event = routine.contour, state.happened[0]
+    kept = compensates = contour.counts[ACTIVE] != 0
+    if compensates:
+        copy_state(state, bench.kept)
     while steps_left >= 0:
         row += 1
         step, argument = table.step[row], table.argument[row]
@@ -194,7 +199,7 @@ def run_steps(
             else:
                 bench.values[words] = table.number[row]
             words += 1
-        elif step == _KEEP:
+        elif step == _KEEP and not kept:
             copy_state(state, bench.kept)
             kept = True
         elif step >= _FIRST_DEED:
@@ -216,7 +221,7 @@ def run_steps(
                 count = stack[top]
                 if not 1.0 <= count <= table.number[row] or count != np.floor(count):
                     break
-                if state.modal[CYCLE] != 0.0:
+                if state.modal[CYCLE] != 0.0 or compensates:
                     break
                 if made + count > len(rows.codes):
                     why = FULL
@@ -243,6 +248,12 @@ def run_steps(
                 if step == _RUN_OFTEN:
                     copy_state(bench.kept, state)
                 break
+            if compensates:
+                behind = state.happened[0]
+                after = follow(made, after, first_event, behind, contour, rows)
+                if after == DOUBTFUL:
+                    break
+                first_event = behind
             made = after
             if step == _RUN_CODES:
                 words = 1 if words > 0 and bench.roles[0] == NUMBER else 0
@@ -322,6 +333,8 @@ def run_steps(
             progress[FURTHEST] = max(progress[FURTHEST], place)
             progress[STEPS_LEFT], progress[DEPTH], progress[CALLS] = steps_left, depth, called
             progress[MADE] = made
+            if compensates:
+                hold_events(contour, rows, first_event, state.happened[0])
             progress[BLOCKS] += 1
             return DONE
     if kept:
