@@ -17,11 +17,11 @@ def program(dialect: str, random_: Random) -> str:
         lines.insert(0, random_.choice(["G136", "G137", "G138"]))
     x, y, heading = 0.0, 0.0, random_.uniform(0.0, 6.0)
     lines.append("X0 Y0")
-    sharp = random_.choice([0.1, 0.5, 1.5, 3.0])
+    sharp = random_.choice([0.1, 0.2, 0.5, 2.0])
     rare = random_.choice([0.0, 0.05, 0.3])
     for _ in range(random_.randrange(5, 60)):
         heading += random_.uniform(-sharp, sharp) if random_.random() < 0.9 else 0.0
-        length = random_.choice([1.0, 5.0, 20.0]) * random_.uniform(0.5, 2.0)
+        length = random_.choice([3.0, 8.0, 20.0]) * random_.uniform(0.5, 2.0)
         if random_.random() < 0.3:
             lines.append(_arc(random_, x, y, heading, length))
             heading += math.pi / 2.0 if lines[-1].startswith("G3") else -math.pi / 2.0
@@ -31,7 +31,9 @@ def program(dialect: str, random_: Random) -> str:
         else:
             x += length * math.cos(heading)
             y += length * math.sin(heading)
-            lines.append(f"G1 X{x:.3f} Y{y:.3f}" + random_.choice(["", "", f" Z{length:.2f}", " M8"]))
+            lines.append(
+                f"G1 X{x:.3f} Y{y:.3f}" + random_.choice(["", "", f" Z{length:.2f}", " M8"])
+            )
         if random_.random() < rare:
             text = random_.choice(BETWEEN.split("|"))
             lines += text.format(*[f"{random_.uniform(1, 9):.2f}"] * 2, dwell=dwell).split("\n")

@@ -36,7 +36,6 @@ from twin.nc.move_columns import Segment
 
 def new_contour(axes: int) -> Contour:
     """Columns for a machine with so many axes; no compensation is in force."""
-    one = Row(np.zeros(5, np.int64), np.zeros(11), np.zeros((3, axes)))
     several = Row(
         np.zeros((MOST_WAITING, 5), np.int64),
         np.zeros((MOST_WAITING, 11)),
@@ -46,8 +45,8 @@ def new_contour(axes: int) -> Contour:
         counts=np.zeros(COUNTS, np.int64),
         plane=np.zeros(3, np.int64),
         aside=np.zeros(1),
-        held=one,
-        latest=Row(*(column.copy() for column in one)),
+        held=_empty_row(axes),
+        latest=_empty_row(axes),
         curves=np.zeros((2, CURVE)),
         start=np.zeros(2),
         here=np.zeros(axes),
@@ -55,6 +54,10 @@ def new_contour(axes: int) -> Contour:
         rows_after=np.zeros(MOST_WAITING + 1, np.int64),
         passed=np.zeros((NECK, PASSED_COLUMNS)),
     )
+
+
+def _empty_row(axes: int) -> Row:
+    return Row(np.zeros(5, np.int64), np.zeros(11), np.zeros((3, axes)))
 
 
 def fill(contour: Contour, followed: Followed | None, plane: tuple[int, int, int]) -> None:

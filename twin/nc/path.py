@@ -84,24 +84,29 @@ class Path:
         codes: IntArray,
         values: FloatArray,
         positions: FloatArray,
-        last: Segment | None,
         events: list[Event],
+        last: Segment | None,
+        gone: Gone | None = None,
     ) -> None:
-        """Moves as columns while the path is open.
+        """Moves as columns: of an open path, or such as compensation has let go.
 
         Args:
             codes: Shape (n, 5), as in ``MoveColumns.add_rows``.
             values: Shape (n, 11).
             positions: Shape (n, 3, k).
-            last: The last of them, or None.
             events: Those between them; ``before`` counts from the first of them.
+            last: The last of them, or None.
+            gone: How far compensation has come; None: the path is open.
         """
-        assert self.open
         self._columns.add_events(events)
-        if last is not None:
+        if len(codes):
             self._columns.add_rows(codes, values, positions)
+            self.position = positions[-1, 1].tolist()
+        if gone is not None:
+            self._resume(gone)
+            return
+        if last is not None:
             self._before = last
-            self.position = last.end
         if events and events[-1].before == len(codes):
             self._before = None
 
@@ -121,29 +126,10 @@ class Path:
         assert self._compensation is not None
         return self._compensation.plane.axes
 
-    def add_followed(
-        self,
-        codes: IntArray,
-        values: FloatArray,
-        positions: FloatArray,
-        events: list[Event],
-        gone: Gone,
-    ) -> None:
-        """Moves as columns that compensation has let go, and how far it has come.
-
-        Args:
-            codes: Shape (n, 5), as in ``MoveColumns.add_rows``.
-            values: Shape (n, 11).
-            positions: Shape (n, 3, k).
-            events: Those between them; ``before`` counts from the first of them.
-            gone: What it holds.
-        """
+    def _resume(self, gone: Gone) -> None:
+        """Compensation has gone on by itself."""
         compensation = self._compensation
         assert compensation is not None
-        self._columns.add_events(events)
-        if len(codes):
-            self._columns.add_rows(codes, values, positions)
-            self.position = positions[-1, 1].tolist()
         if gone.came:
             self._before = gone.before
         compensation.resume(gone.followed)

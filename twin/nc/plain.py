@@ -240,11 +240,12 @@ class PlainRunner:
         path, moves = self._control.path, (rows.codes, rows.values, rows.positions)
         if self._followed is None:
             last = segment(Row(*(each[-1] for each in moves))) if len(rows.codes) else None
-            path.add_rows(*moves, last, events)
+            path.add_rows(*moves, events, last)
             return last
         held_back = [event for event in events if event.before < 0]
         gone_on = gone(self._contour, self._followed, held_back)
-        path.add_followed(*moves, events[: len(events) - len(held_back)], gone_on)
+        placed = events[: len(events) - len(held_back)]
+        path.add_rows(*moves, placed, gone_on.latest, gone_on)
         return gone_on.latest
 
     def _followed_plane(self) -> tuple[int, int, int]:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.bench_kernels import copy_state, new_bench
+from twin.nc.call_kernels import end_parts
 from twin.nc.canonical import IntArray
 from twin.nc.contour_kernels import DOUBTFUL, follow
 from twin.nc.contour_state import ACTIVE, ROOM
@@ -25,22 +26,14 @@ from twin.nc.plain_words_kernels import (
     read_words,
 )
 from twin.nc.routine_state import (
-    AGAIN,
-    BACK,
     BLOCKS,
-    CALLS,
-    DEPTH,
     ENDED,
-    FIRST,
     FULL,
     FURTHEST,
-    LAST,
     LEFT,
     LINE,
     MADE,
-    NO_PLACE,
     OFF_PAGE,
-    OWN,
     PART,
     PAUSED,
     STEPS_LEFT,
@@ -92,7 +85,7 @@ def run_program(
     compensates = contour.counts[ACTIVE] != 0
     most_rows = len(rows.codes) - (ROOM if compensates else 1)
     for _ in range(most):
-        _end_parts(progress, calls)
+        end_parts(progress, calls)
         line = int(progress[LINE])
         if line >= lines:
             return ENDED
@@ -158,24 +151,6 @@ def run_program(
         if result != DONE:
             return result
     return PAUSED
-
-
-@numba.njit(cache=True)
-def _end_parts(progress: IntArray, calls: IntArray) -> None:
-    """Parts that end by place and have been passed run again, or go back to their caller."""
-    while progress[CALLS] > 0:
-        call = calls[progress[CALLS] - 1]
-        here = progress[LINE] << PART_BITS | progress[PART]
-        if call[LAST] == NO_PLACE or here <= call[LAST]:
-            return
-        to = call[FIRST]
-        if call[AGAIN] > 0:
-            call[AGAIN] -= 1
-        else:
-            to = call[BACK]
-            progress[CALLS] -= 1
-            progress[DEPTH] -= call[OWN]
-        progress[LINE], progress[PART] = to >> PART_BITS, to & _PART_MASK
 
 
 @numba.njit(cache=True)

@@ -7,7 +7,7 @@ import numba
 import numpy as np
 
 from twin.nc.bench_kernels import Bench, copy_force, copy_state
-from twin.nc.canonical import IntArray
+from twin.nc.call_kernels import innermost
 from twin.nc.contour_kernels import follow, hold_events
 from twin.nc.contour_state import ACTIVE
 from twin.nc.deed_kernels import DOUBTFUL, polar_target, run_deed
@@ -317,11 +317,11 @@ def run_steps(
         elif step == _RANGE:
             range_end = argument
         elif step == _MAY_RETURN:
-            from_part = _innermost(calls, called)
+            from_part = innermost(calls, called)
             if from_part == 0 or calls[from_part - 1, RESTORES] == RESTORED_BY_CONTROL:
                 break
         elif step == _RETURN:
-            called = _innermost(calls, called) - 1
+            called = innermost(calls, called) - 1
             depth -= calls[called, OWN]
             going = calls[called, BACK]
             if calls[called, RESTORES] == RESTORED_HERE:
@@ -343,11 +343,3 @@ def run_steps(
         stores -= 1
         store(memory, progress[DEPTH], bench.slots[stores], bench.before[stores])
     return why
-
-
-@numba.njit(cache=True)
-def _innermost(calls: IntArray, called: int) -> int:
-    """How many parts are being run up to the innermost that a word ends; 0: there is none."""
-    while called > 0 and calls[called - 1, LAST] != NO_PLACE:
-        called -= 1
-    return called
