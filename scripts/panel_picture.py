@@ -65,7 +65,7 @@ def take_panel(
             _until(lambda: gate.heard > seen)
             page.screenshot(path=out)
             browser.close()
-        room.handle.close()
+        room.stop()
         thread.join(timeout=PATIENCE_S)
 
 

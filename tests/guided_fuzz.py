@@ -17,6 +17,8 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 LONGEST_FILE = 1 << 16
 """No damaged file is larger [bytes]."""
+SLOWER = 10.0
+"""Times that a reader takes longer while its lines are watched."""
 STUCK_S = 60
 """A file that is still being read after so long is kept as one that failed [s]."""
 MEMORY_MB = 3000
@@ -56,6 +58,8 @@ def main(name: str, tries: int, seed: int = 1) -> None:
         include=["twin", "tomllib", "trimesh"], exclude=compiled_modules()
     ):
         from tests import file_fuzz, fuzz_kinds
+        from tests.nc import nc_fuzz
+    nc_fuzz.LONGEST_SECONDS *= SLOWER
     kind = fuzz_kinds.KINDS[name]
     corpus, found = ROOT / ".fuzz" / name, ROOT / ".fuzz" / "found"
     for folder in (corpus, found):

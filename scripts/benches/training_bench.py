@@ -80,7 +80,6 @@ def _open_page() -> Iterator[tuple[OpenRoom, Callable[[], float]]]:
         thread = threading.Thread(target=room.serve, daemon=True)
         thread.start()
         gate = room.gate
-        assert gate is not None
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
             page = browser.new_context(
@@ -103,7 +102,7 @@ def _open_page() -> Iterator[tuple[OpenRoom, Callable[[], float]]]:
 
             yield room, click
             browser.close()
-        room.handle.close()
+        room.stop()
         thread.join(timeout=10.0)
 
 
@@ -143,7 +142,6 @@ def _reaction(room: OpenRoom, hold: Callable[[], float]) -> float:
 def _frame(room: OpenRoom) -> float:
     """How long the page takes for a frame [s]."""
     gate = room.gate
-    assert gate is not None
     begin, before = time.perf_counter(), gate.heard
     time.sleep(WATCHED_S)
     return (time.perf_counter() - begin) / max(1, gate.heard - before)

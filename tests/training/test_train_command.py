@@ -40,10 +40,14 @@ def test_the_list_names_every_scene_in_the_language_asked_for() -> None:
         (["--certificate", "nowhere.pem"], "no certificate with its key"),
         (["--key", "nowhere.pem"], "belongs to a --certificate"),
         (["--port", "99999"], ""),
-        (["--window"], "without it the room opens in a browser"),
+        (["--window"], "without --window the room opens in any browser"),
     ],
 )
-def test_what_cannot_be_opened_is_refused(arguments: list[str], message: str) -> None:
+def test_what_cannot_be_opened_is_refused(
+    arguments: list[str], message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
     done = CliRunner().invoke(app, ["train", *arguments])
     refusal = done.exception
     if isinstance(refusal, TwinError):

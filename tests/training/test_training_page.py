@@ -176,7 +176,7 @@ def operator(tmp_path) -> Iterator[Operator]:
             )
             yield Operator(room, context)
             browser.close()
-        room.handle.close()
+        room.stop()
         thread.join(timeout=PATIENCE_S)
     # What Studio leaves open is collected here, where it is expected, and not in another test: once
     # its threads, which it waits for no longer than 5 s, have ended.
@@ -243,6 +243,22 @@ def test_a_scene_is_played_in_the_browser_survives_its_loss_and_goes_to_the_trai
     operator.until(lambda: room.mode == "jog", "the key of the mode")
     operator.idle()
     assert operator.done("mode") == modes + 1
+
+    operator.page.keyboard.press("Comma")
+    operator.until(lambda: room.rapid_override == 90, "the key of the rapid override")
+    operator.page.keyboard.press("t")
+    operator.until(lambda: operator.room.shown.panel.side.sheet == "offsets", "the next sheet")
+    operator.page.keyboard.press("F4")
+    operator.until(lambda: operator.shows(lambda now: now.mode == "mdi"), "MDI")
+    operator.page.keyboard.press("Enter")
+    operator.idle()
+    operator.page.keyboard.type("G91 G0 Z1")
+    operator.until(lambda: operator.room.shown.panel.desk.entry == "G91 G0 Z1", "the MDI line")
+    operator.page.keyboard.press("Enter")
+    operator.until(lambda: operator.done("mdi") == 1, "the MDI block")
+    operator.until(lambda: not room.running, "its end")
+    operator.ask("mode", mode="jog")
+    operator.until(lambda: room.mode == "jog", "jog again")
 
     # A lost browser does not stop the machine, and another one finds it as it is.
     place = float(room.machine.position[2])

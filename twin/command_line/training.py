@@ -18,7 +18,8 @@ def train(
         str | None, typer.Option("--language", help="en, ru, it or cs; default: the scene's.")
     ] = None,
     window: Annotated[
-        bool, typer.Option("--window", help="A window instead of a browser page.")
+        bool,
+        typer.Option("--window", help="Show the page in a window of its own; closing it ends."),
     ] = False,
     host: Annotated[
         str | None, typer.Option("--host", help="Listen there too; needs --token.")

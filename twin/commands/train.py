@@ -1,5 +1,6 @@
 """``twin train``: the training room."""
 
+import contextlib
 import ssl
 from pathlib import Path
 
@@ -80,13 +81,14 @@ def train(
     from twin.first_compilation import announce_compilation
     from twin.training.gate import LOOPBACK
     from twin.training.launch import open_room
+    from twin.training.window import find_browser, open_window
 
+    browser = find_browser() if window else None
     announce_compilation()
     scene = read_scene(scene_path(name))
     with open_room(
         scene,
         language=language_named(language),
-        window=window,
         host=host or LOOPBACK,
         port=port,
         token=token or "",
@@ -95,19 +97,21 @@ def train(
         plain=plain,
         out=out or Path("out") / "training",
     ) as room:
-        if room.gate is not None:
-            typer.echo(f"{scene.name}: open {room.gate.address} in a browser; Ctrl+C ends")
-            if room.trainer_gate is not None:
-                typer.echo(f"the trainer's own page: {room.trainer_gate.address}")
-            if host is not None and certificate is None:
-                typer.echo(
-                    "other computers' browsers show the page over https only: give --certificate "
-                    "and --key, or lead them here through ssh -L", err=True,
-                )  # fmt: skip
-        try:
-            room.serve()
-        except KeyboardInterrupt:
-            typer.echo("")
+        typer.echo(f"{scene.name}: open {room.gate.address} in a browser; Ctrl+C ends")
+        if room.trainer_gate is not None:
+            typer.echo(f"the trainer's own page: {room.trainer_gate.address}")
+        if host is not None and certificate is None:
+            typer.echo(
+                "other computers' browsers show the page over https only: give --certificate "
+                "and --key, or lead them here through ssh -L", err=True,
+            )  # fmt: skip
+        with contextlib.ExitStack() as stack:
+            if browser is not None:
+                stack.enter_context(open_window(browser, room.gate.address, room.stop))
+            try:
+                room.serve()
+            except KeyboardInterrupt:
+                typer.echo("")
         judge = room.session.room.judge
     typer.echo(f"{scene.name}: {judge.score} of {scene.points} points; sheet in {room.folder}")
     return ExitCode.FAILED if judge.over and judge.score < scene.points else ExitCode.OK

@@ -1,17 +1,15 @@
-"""From a scene to a page or a window, and the files that are left of it."""
+"""From a scene to a page, and the files that are left of it."""
 
 import contextlib
 import secrets
 import ssl
-import sys
 import tempfile
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
-import mujoco
 from mujoco.studio import messages, viewer_handle
 
-from twin.errors import UsageError
 from twin.training.gate import LOOPBACK, Gate
 from twin.training.page import open_page
 from twin.training.panel.panel import Panel
@@ -23,11 +21,6 @@ from twin.training.studio_files import own_files
 from twin.training.texts import Language, in_language
 from twin.training.vocabulary import Words
 
-_WINDOW_PYTHON = (3, 12)
-"""What Studio's window needs: its Filament helper imports ``collections.abc.Buffer``."""
-_WITHOUT_WINDOW = "4.0.0"
-"""MuJoCo whose window ends on its first frame: it draws to a target that its renderer does not have
-(``Target not found``). Drawn off screen instead, it shows neither the panel nor what moves."""
 _TOKEN_BYTES = 12
 """Length of the trainer's token, made anew for every session."""
 
@@ -40,7 +33,7 @@ class OpenRoom:
         driver: Lets its time go on.
         shown: Shows it.
         handle: Studio's side of it.
-        gate: Where browsers come in; None for a window.
+        gate: Where browsers come in.
         trainer_gate: Where the trainer's browser comes in; None where there is no trainer.
         folder: Where log and score sheet lie; None for nowhere.
     """
@@ -51,7 +44,7 @@ class OpenRoom:
         driver: RoomPlugin,
         shown: PanelPlugin,
         handle: viewer_handle.ViewerHandle,
-        gate: Gate | None,
+        gate: Gate,
         trainer_gate: Gate | None,
         folder: Path | None,
     ) -> None:
@@ -62,11 +55,16 @@ class OpenRoom:
         self.gate = gate
         self.trainer_gate = trainer_gate
         self.folder = folder
+        self._over = threading.Event()
 
     def serve(self) -> None:
-        """Let time go on until the window is closed or Ctrl+C is pressed."""
-        while self.handle.is_running():
+        """Let time go on until Ctrl+C is pressed or the room is stopped."""
+        while not self._over.is_set() and self.handle.is_running():
             self.handle.sync()
+
+    def stop(self) -> None:
+        """End ``serve``, which runs on another thread, after the slice of time that it is at."""
+        self._over.set()
 
 
 @contextlib.contextmanager
@@ -74,7 +72,6 @@ def open_room(
     scene: Scene,
     *,
     language: Language | None = None,
-    window: bool = False,
     host: str = LOOPBACK,
     port: int = 0,
     token: str = "",
@@ -88,17 +85,16 @@ def open_room(
     Args:
         scene: The scene.
         language: Of the panel; the scene's by default.
-        window: A desktop window instead of a page.
         host: Where the page's gate listens.
         port: Its port; 0: the first free one.
         token: What a browser must know.
         tls: Certificate for https.
-        trainer: There is a trainer: with an address of their own, or at the window.
+        trainer: There is a trainer, with an address of their own.
         plain: Draw plainly, for computers without a graphics card.
         out: Folder for log and score sheet; none: none are written.
 
     Raises:
-        TwinError: The scene does not fit its machine, the port is taken, there is no window here.
+        TwinError: The scene does not fit its machine, the port is taken.
     """
     words = Words(language or scene.file.language, scene.preparation.dialect.name)
     warm_up(scene)
@@ -110,17 +106,14 @@ def open_room(
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="twin-train-")))
         stack.enter_context(own_files(folder))
         inside = folder / "studio.sock"
-        gate = trainer_gate = None
-        if not window:
-            gate = Gate(inside, host=host, port=port, token=token, tls=tls)
-            if trainer:
-                own = secrets.token_urlsafe(_TOKEN_BYTES)
-                trainer_gate = Gate(inside, host=host, token=own, tls=tls)
+        gate = Gate(inside, host=host, port=port, token=token, tls=tls)
+        trainer_gate = None
+        if trainer:
+            own = secrets.token_urlsafe(_TOKEN_BYTES)
+            trainer_gate = Gate(inside, host=host, token=own, tls=tls)
         gates = [each for each in (gate, trainer_gate) if each is not None]
 
         def trainer_has_panel() -> bool:
-            if gate is None:
-                return trainer
             return trainer_gate is not None and trainer_gate.has_panel and not gate.has_panel
 
         shown = PanelPlugin(
@@ -129,13 +122,11 @@ def open_room(
             scene.file.picture.camera,
             plain=plain,
             trainer=trainer_has_panel,
+            wake=driver.wake,
         )
-        if gate is None:
-            handle = _open_window(title, [shown, driver])
-        else:
-            handle = open_page(
-                title, [shown, driver], inside, lambda: sum(each.heard for each in gates)
-            )
+        handle = open_page(
+            title, [shown, driver], inside, lambda: sum(each.heard for each in gates)
+        )
         for each in gates:
             stack.enter_context(each)
         stack.enter_context(handle)
@@ -151,28 +142,3 @@ def warm_up(scene: Scene) -> None:
     session = Session(scene)
     session.submit({"do": "cycle_start"})
     session.advance(20)
-
-
-def _open_window(title: str, plugins: list[RoomPlugin | PanelPlugin]) -> viewer_handle.ViewerHandle:
-    """Open a desktop window.
-
-    Raises:
-        UsageError: There can be none here.
-    """
-    if sys.version_info < _WINDOW_PYTHON:
-        needed = ".".join(map(str, _WINDOW_PYTHON))
-        raise UsageError(
-            f"--window needs Python {needed} or newer (MuJoCo Studio's window does); "
-            "without it the room opens in a browser"
-        )
-    if mujoco.__version__ == _WITHOUT_WINDOW:
-        raise UsageError(
-            f"--window: the window of MuJoCo {mujoco.__version__} ends with an error of its own on "
-            "the first frame; without it the room opens in a browser"
-        )
-    from mujoco.studio import launch_native, viewer_protocol
-
-    config = viewer_protocol.ViewerConfig(
-        title=title, width=1600, height=960, gfx="opengl_headless"
-    )
-    return launch_native.launch(config, plugins=plugins)

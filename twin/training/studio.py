@@ -5,6 +5,7 @@ ready for one, and the machine never waits for it.
 """
 
 import dataclasses
+import threading
 import time
 from collections.abc import Callable
 
@@ -26,8 +27,8 @@ from twin.training.session import Session
 from twin.training.snapshot import Snapshot, take_snapshot
 from twin.training.trail import Trail
 
-PICTURE_S = 1.0 / 60.0
-"""How often states are sent and requests are heard [s]."""
+SHORTEST_REST_S = 0.001
+"""What the machine always leaves to the picture between two looks at the clock [s]."""
 MOST_BEHIND_S = 0.25
 """How far machine time may fall behind the wall's before it is given up [s]."""
 _COSTLY = ("SHADOW", "REFLECTION", "HAZE")
@@ -81,7 +82,12 @@ class RoomPlugin(plugin.SimPlugin):
         self._tool = session.room.tables.spindle
         self._replay: Replay | None = None
         self._speed = 1.0
+        self._asked = threading.Event()
         self._restart_clock()
+
+    def wake(self) -> None:
+        """Hear what was asked for at once, and not when the next slice of time is due."""
+        self._asked.set()
 
     def _restart_clock(self) -> None:
         self._wall = time.perf_counter()
@@ -133,8 +139,9 @@ class RoomPlugin(plugin.SimPlugin):
         if event.data is self.display.data:
             event.data.time = room.time_s
         self.handle.send_to_viewer(RoomSnapshot(self._look(room)))
-        rest = PICTURE_S - (time.perf_counter() - now)
-        time.sleep(max(rest, 0.001))
+        due = self.session.room.slice_s - self._owed_s - (time.perf_counter() - now)
+        self._asked.wait(max(due, SHORTEST_REST_S))
+        self._asked.clear()
         return True
 
     def _go_on(self, passed: float) -> None:
@@ -173,6 +180,7 @@ class PanelPlugin(plugin.ViewerPlugin):
         *,
         plain: bool,
         trainer: Callable[[], bool],
+        wake: Callable[[], None],
     ) -> None:
         """Prepare the panel for Studio.
 
@@ -182,9 +190,11 @@ class PanelPlugin(plugin.ViewerPlugin):
             camera: Named camera that the view begins with.
             plain: Draw plainly, for computers without a graphics card.
             trainer: Tells whether it is the trainer who has the panel.
+            wake: Called after everything that is sent to the machine.
         """
         self.panel = panel
         self._trainer = trainer
+        self._wake = wake
         self._plain = plain
         self.now: Snapshot | None = None
         self._frame = display.frame
@@ -247,3 +257,4 @@ class PanelPlugin(plugin.ViewerPlugin):
         for request in self.panel.build(self.now, trainer=trainer):
             by = dataclasses.replace(request, who="trainer") if trainer else request
             self.viewer.send_to_sim(RequestEvent(by))
+            self._wake()

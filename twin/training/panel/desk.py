@@ -31,6 +31,8 @@ class DeskState:
 
     step: float | None = 1.0
     entry: str = ""
+    wanted: bool = False
+    """Whether the MDI line shall take the keys."""
     chosen: int = 0
     """Line of the program that is being edited; 0: none."""
     edited: str = ""
@@ -169,9 +171,13 @@ def build_entry(kit: Kit, words: Words, now: Snapshot, state: DeskState) -> list
     asked: list[Request] = []
     imgui.SetNextItemWidth(imgui.GetContentRegionAvail().x)
     if now.mode == "mdi":
+        if state.wanted:
+            imgui.SetKeyboardFocusHere()
+            state.wanted = False
         _, state.entry = imgui.InputTextWithHint("###entry", "G91 G1 X10 F500", state.entry)
-        kit.note("entry")
-        if kit.key("enter", words["enter"], lit=GREEN if state.entry == now.entered else None):
+        entered = kit.entered("entry")
+        lit = GREEN if state.entry == now.entered else None
+        if kit.key("enter", words["enter"], lit=lit) or entered:
             asked.append(do("mdi", text=state.entry))
         return asked
     if not 1 <= state.chosen <= len(now.program):

@@ -172,6 +172,12 @@ class Kit:
         low, high = imgui.GetItemRectMin(), imgui.GetItemRectMax()
         self.places[name] = (low.x, low.y, high.x, high.y)
 
+    def entered(self, name: str) -> bool:
+        """Note where the last field lies; whether it was left with Enter."""
+        self.note(name)
+        keys = imgui.Key.Enter, imgui.Key.KeypadEnter
+        return imgui.IsItemDeactivated() and any(imgui.IsKeyPressed(key) for key in keys)
+
     @staticmethod
     def text(text: str, colour: Colour = TEXT, scale: float = 1.0) -> None:
         """A line of text."""

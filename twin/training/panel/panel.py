@@ -23,6 +23,7 @@ from twin.training.panel.side import (
     build_trainer,
     build_view,
     build_zero,
+    sheets,
 )
 from twin.training.scene import SceneFile
 from twin.training.snapshot import Snapshot
@@ -72,7 +73,7 @@ class Panel:
         size = imgui.GetIO().DisplaySize
         self.width = size.x
         kit, words = self.kit, self._words
-        asked = read_keyboard(now, self.desk)
+        asked = read_keyboard(now, self.desk, self.side, trainer=trainer)
         middle = size.y - HEAD - DESK - 4 * GAP
         with kit.dressed():
             with kit.window("head", GAP, GAP, size.x - 2 * GAP, HEAD):
@@ -113,10 +114,10 @@ class Panel:
         kit, words = self.kit, self._words
         asked: list[Request] = []
         side = self.side
-        sheets = ["tasks", "offsets", "tools", "display"] + ["trainer"] * trainer
-        if side.sheet not in sheets:
+        names = sheets(trainer=trainer)
+        if side.sheet not in names:
             side.sheet = "tasks"
-        for number, sheet in enumerate(sheets):
+        for number, sheet in enumerate(names):
             if number:
                 kit.beside(words[sheet])
             if kit.key(f"tab {sheet}", words[sheet], lit=BLUE if sheet == side.sheet else None):

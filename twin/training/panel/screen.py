@@ -50,7 +50,7 @@ def build_head(kit: Kit, words: Words, now: Snapshot) -> None:
         refusal = translated(now.refusal, words.language)
         kit.fitting(f"{words['refused']}: {refusal}", YELLOW)
     else:
-        kit.fitting(words["keys"], QUIET)
+        kit.wrapped(words["keys"], QUIET)
 
 
 def _state(words: Words, now: Snapshot) -> tuple[str, tuple[float, float, float, float]]:

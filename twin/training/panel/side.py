@@ -30,6 +30,11 @@ class SideState:
     fault_value: float = 0.05
 
 
+def sheets(*, trainer: bool) -> list[str]:
+    """The side's sheets, in their order."""
+    return ["tasks", "offsets", "tools", "display", *["trainer"] * trainer]
+
+
 def build_tasks(kit: Kit, words: Words, now: Snapshot, scene: SceneFile) -> list[Request]:
     """The story, the tasks with their marks, questions, hints and points."""
     asked: list[Request] = []
@@ -86,10 +91,10 @@ def build_zero(kit: Kit, words: Words, now: Snapshot, state: SideState) -> list[
             f"###reading {axis}", state.readings.get(axis, 0.0), 0.0, 0.0, "%.3f"
         )
         state.readings[axis] = value
-        kit.note(f"reading {axis}")
+        entered = kit.entered(f"reading {axis}")
         imgui.TableNextColumn()
         width = imgui.GetContentRegionAvail().x
-        if kit.key(f"preset {axis}", words["preset"], width=width):
+        if kit.key(f"preset {axis}", words["preset"], width=width) or entered:
             asked.append(do("set_zero", axis=axis, reading=value))
     imgui.EndTable()
     return asked
@@ -108,9 +113,18 @@ def build_tools(kit: Kit, words: Words, now: Snapshot) -> list[Request]:
         if here:
             kit.beside(words["touch_off"])
             if kit.key("touch off", words["touch_off"]):
-                length = tool.length + now.position[now.axes.index("Z")]
-                asked.append(do("set_tool", number=tool.number, length=round(length, 4)))
+                asked += measured_tool(now)
     return asked
+
+
+def measured_tool(now: Snapshot) -> list[Request]:
+    """The tool in the spindle is as long as it must be to touch Z0; nothing where there is none."""
+    above = now.position[now.axes.index("Z")]
+    return [
+        do("set_tool", number=tool.number, length=round(tool.length + above, 4))
+        for tool in now.tools
+        if tool.number == now.tool
+    ]
 
 
 def build_view(kit: Kit, words: Words, state: SideState) -> None:

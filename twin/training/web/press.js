@@ -19,14 +19,16 @@
 
   // The keys of the panel: the browser's number, and the bit in the message.
   const KEYS = new Map([
-    [27, 14], [32, 12], // Escape, space
+    [27, 14], [32, 12], [13, 13], // Escape, space, Enter
     [33, 5], [34, 6], [35, 8], [36, 7], // page up, page down, end, home
     [37, 1], [38, 3], [39, 2], [40, 4], // arrows: left, up, right, down
-    [72, 41], [82, 51], // H, R
+    [66, 35], [67, 36], [72, 41], [77, 46], [80, 49], [82, 51], // B, C, H, M, P, R
+    [83, 52], [84, 53], [87, 56], // S, T, W
+    [49, 25], [50, 26], [51, 27], [52, 28], [53, 29], [188, 85], [190, 87], // 1 to 5, comma, full stop
     [112, 60], [113, 61], [114, 62], [115, 63], // F1 to F4
     [173, 86], [189, 86], [61, 90], [187, 90], [107, 114], [109, 113], // - and +, twice
   ]);
-  const MOVES_IN_TEXT = (number) => number >= 33 && number <= 40;
+  const ACTS_ON_TEXT = (number) => number === 13 || (number >= 33 && number <= 40);
 
   // A change waits until the server has looked at the one before: then a press and its release
   // between two looks are two states, not none. Of the pictures that come the first can be older
@@ -146,7 +148,7 @@
     if (down && (event.ctrlKey || event.altKey || event.metaKey)) return;
     if (down) held.keys.add(bit);
     else held.keys.delete(bit);
-    note(MOVES_IN_TEXT(event.keyCode));
+    note(ACTS_ON_TEXT(event.keyCode));
   }
 
   function release() {
