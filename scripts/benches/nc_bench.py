@@ -22,14 +22,16 @@ from benches.row import REPEATS, Row, median_cpu_seconds
 from twin.nc.canonical import Axes
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
-from twin.nc.settings import ControlSettings
+from twin.nc.settings import ControlSettings, ToolData
 from twin.nc.source import read_source
 
 PEERS = Path(__file__).resolve().parents[2] / ".peers"
 """Where ``scripts/bench --peers`` puts them."""
 BLOCKS = LINES
 _AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
-_SETTINGS = ControlSettings(axes=_AXES, step_limit=10 * ROUNDS)
+_SETTINGS = ControlSettings(
+    axes=_AXES, step_limit=10 * ROUNDS, tools={1: ToolData(radius=2.0, length=60.0)}
+)
 
 
 def rows() -> Iterator[Row]:

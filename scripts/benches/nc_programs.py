@@ -31,6 +31,12 @@ def programs() -> Iterator[Computing]:
     for task, dialect, ours, theirs, blocks in _FORMS:
         filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
         yield Computing(task, dialect, *filled, blocks * ROUNDS)
+    for task, ours, theirs, blocks in _IN_LOOPS:
+        texts = (_WHILE.format(ours), _THEIR_WHILE.format(theirs))
+        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in texts)
+        yield Computing(task, "fagor8070", *filled, blocks * ROUNDS)
+    holes = (text.replace("ROUNDS", str(ROUNDS)) for text in _HOLES)
+    yield Computing("a loop over holes of G83", "fagor8070", *holes, 4 * ROUNDS)
     for task, dialect, start, ours, theirs in _NOW_AND_THEN:
         every = f"{LINES:,} lines, every tenth {task}"
         texts = (_long(start, ours), _long("#101=1\n", theirs).replace("M30", "M2"))
@@ -147,6 +153,49 @@ _FORMS = (
         "N5 G91 G1 F1000\nN10 G1 X1 Y2\nN20 G2 X10 Y0 I5\nN30 G1 X-11 Y-2 G73 L10 QROUNDS\nN40 M30\n",
         "G91 G1 F1000\no110 repeat [ROUNDS]\nG1 X1 Y2\nG2 X10 Y0 I5\nG1 X-11 Y-2\no110 endrepeat\nM2\n",
         3,
+    ),
+)
+
+_WHILE = "P1=0\nG90 G1 F1000\n$WHILE P1<ROUNDS\nP1=P1+1\n{}\n$ENDWHILE\nG80\nM30\n"
+_THEIR_WHILE = (
+    "#101=0\nG90 G1 F1000\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\n{}\no110 endwhile\nG80\nM2\n"
+)
+_IN_LOOPS = (
+    (
+        "a dwell in a loop",
+        "X[P1*0.01]\nZ1\nG04 K0.1\nZ2",
+        "X[#101*0.01]\nZ1\nG4 P0.1\nG1 Z2",
+        7,
+    ),
+    (
+        "spindle and coolant in a loop",
+        "S1000 M3\nG1 X[P1*0.01]\nM8\nZ1\nM9",
+        "S1000 M3\nG1 X[#101*0.01]\nM8\nZ1\nM9",
+        8,
+    ),
+    (
+        "a tool change in a loop",
+        "T1\nM6\nG1 X[P1*0.01]\nZ1",
+        "T1\nM6\nG1 X[#101*0.01]\nZ1",
+        7,
+    ),
+    (
+        "work offsets in a loop",
+        "G54\nX[P1*0.01]\nG92 X0\nZ1",
+        "G54\nX[#101*0.01]\nG92 X0\nZ1",
+        7,
+    ),
+    ("polar moves in a loop", "R10 Q[P1]\nR11 Q[P1+1]", "@10 ^[#101]\n@11 ^[#101+1]", 5),
+)
+"""Ours, theirs and our blocks a round."""
+_HOLES = (
+    (
+        "P1=0\nG90 G1 F1000\nG83 Z2 I2 J3 X0\n$WHILE P1<ROUNDS\nP1=P1+1\nX[P1*0.01] Y5\n"
+        "$ENDWHILE\nG80\nM30\n"
+    ),
+    (
+        "#101=0\nG90 G1 F1000\nG83 Z-4 R2 Q2 X0\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\n"
+        "X[#101*0.01] Y5\no110 endwhile\nG80\nM2\n"
     ),
 )
 

@@ -32,10 +32,11 @@ SOUND = [
     "",
 ]
 RARE = {
-    "gost": "G102 C360|G102 C0|$ text|(a) G1 X1 (b)|G9 G1 X3|M3 S100|G41 D1|G40|% heading",
+    "gost": "G102 C360|G102 C0|$ text|(a) G1 X1 (b)|G9 G1 X3|M3 S100|G41 D1|G40|% heading"
+    "|G4 P2|S100|T2 M6|T1|G54|G55 X3|G92 X1|G43 H2|G49|G18|G17|M3 S5 M8|M8 M5|G53|G81 Z-9 R8|G80",
     "codesys": "(* a *) G1 X1|// X2|FX3|LET #a : LREAL := 2|G1 X(1+2)|N1 X1 N2 X2|FF5|E5|M7 K2",
     "fagor8070": "G1 R5 Q30|P1=2|G1 XP1|G1 X20I|; text|G73|G11|G10|G1 X5 NR3|[HERE]",
-    "mefi": '"text|G1 X1 "behind|Z1 G10|M5|S200',
+    "mefi": '"text|G1 X1 "behind|Z1 G10|M5|S200|G4 P2|T2 M6|G54|G55 X3|G92 X1|G43 H2|G49|M3 S5 M8',
 }
 """What the general way must run in between."""
 WRONG = {

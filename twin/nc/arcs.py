@@ -1,8 +1,7 @@
 """Arc geometry in a plane: centres from radii, tangents and points, and signed sweeps.
 
-The fast way through plain blocks (``plain_kernels``) compiles ``distance``, ``sweep_between``,
-``reaches``, ``center_at_radius`` and ``equidistant`` as they stand here: what they use must give the same bits
-either way, which ``math.hypot`` does not.
+The fast way (``plain_kernels``) compiles most of these functions as they stand here: what they use
+must give the same bits either way, which ``math.hypot`` does not.
 """
 
 import math
@@ -26,7 +25,8 @@ def distance(left: Point, right: Point) -> float:
 
 def direction(angle: float) -> Point:
     """Unit vector at an angle [deg]; exact at every quarter turn."""
-    angle = math.fmod(angle, TURN)
+    rest = abs(angle) % TURN
+    angle = -rest if angle < 0.0 else rest
     quarter = angle / 90.0
     if quarter == int(quarter):
         return _QUARTERS[int(quarter) % 4]

@@ -43,6 +43,10 @@ def new_bench(state: State) -> Bench:
         np.zeros_like(state.programmed),
         np.zeros_like(state.part),
         np.zeros_like(state.happened),
+        np.zeros_like(state.registers),
+        np.zeros_like(state.shifts),
+        np.zeros_like(state.total),
+        np.zeros_like(state.label),
     )
     return Bench(
         np.zeros(MOST_WORDS, np.int64),
@@ -72,3 +76,7 @@ def copy_state(source: State, target: State) -> None:
     copy(source.feed, target.feed)
     copy(source.programmed, target.programmed)
     copy(source.part, target.part)
+    copy(source.registers, target.registers)
+    copy(source.total, target.total)
+    target.shifts[:, :] = source.shifts
+    target.happened[0] = source.happened[0]

@@ -61,10 +61,12 @@ class BlockWriter:
         self._live = live
         self._stores = 0
         self._begin = 0
+        self._keeps = False
 
     def begin(self, block: Block) -> None:
         """A block begins, with its N number."""
         self._stores = 0
+        self._keeps = False
         self._begin = self._instructions.rows
         self._add(Step.BLOCK)
         if block.number != NO_BLOCK_NUMBER:
@@ -75,6 +77,13 @@ class BlockWriter:
             raise NotTranslatableError
         self._instructions.add(step, argument, number)
 
+    def step(self, step: Step, argument: int = 0) -> None:
+        """Append one of the steps that do more than compute, move and jump."""
+        if not self._keeps:
+            self._keeps = True
+            self._add(Step.KEEP)
+        self._add(step, argument)
+
     # --- words
 
     def words(self, words: Iterable[Word], *, often: int | None = None) -> None:
@@ -83,6 +92,26 @@ class BlockWriter:
         Raises:
             NotTranslatableError: One of them has another meaning than plain words.
         """
+        self._put(words)
+        if often is None:
+            self._add(Step.RUN)
+        else:
+            self._add(Step.RUN_OFTEN, 0, float(often))
+
+    def codes(self, words: Iterable[Word]) -> None:
+        """Run plain words that do not move, before others of the block."""
+        self._put(words)
+        self.step(Step.RUN_CODES)
+
+    def polar(self, radius: Word | None, angle: Word | None, words: Iterable[Word]) -> None:
+        """Move to where R and Q lead, and other axes by plain words."""
+        self._put(words)
+        for word in (radius, angle):
+            if word is not None:
+                self.word_value(word)
+        self.step(Step.RUN_POLAR, (radius is not None) + 2 * (angle is not None))
+
+    def _put(self, words: Iterable[Word]) -> None:
         words = list(words)
         if len(words) >= MOST_WORDS:
             raise NotTranslatableError
@@ -95,12 +124,15 @@ class BlockWriter:
                 self._add(Step.WORD, role)
             else:
                 self._add(Step.WORD_NUMBER, role, word.value)
-        if often is None:
-            self._add(Step.RUN)
-        else:
-            self._add(Step.RUN_OFTEN, 0, float(often))
 
     # --- values
+
+    def word_value(self, word: Word) -> None:
+        """Put the value of a word on the stack."""
+        if isinstance(word.value, Expression):
+            self.value(word.value)
+        else:
+            self.number(word.value)
 
     def value(self, expression: Expression | Tree) -> None:
         """Put a value on the stack.

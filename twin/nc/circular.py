@@ -12,7 +12,7 @@ from twin.nc.arcs import (
 )
 from twin.nc.blocks import Word
 from twin.nc.control import Control
-from twin.nc.dialect import PlainArc
+from twin.nc.interpolation import PlainArc
 from twin.nc.planes import Local, Vector
 
 RADIUS_TOLERANCE = 0.01

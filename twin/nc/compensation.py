@@ -16,9 +16,9 @@ from typing import NoReturn
 
 from twin.nc.arcs import SAME_POINT, Point, distance
 from twin.nc.canonical import Corner
-from twin.nc.contour import Element, crossings, turn_between
+from twin.nc.contour import Element, crossing, crossings, turn_between
+from twin.nc.curves import Box
 from twin.nc.leads import LeadOut, around, lead_depth
-from twin.nc.loops import crossing
 from twin.nc.move_columns import NAN, Segment
 from twin.nc.planes import Plane
 from twin.nc.segments import element_of, level_arc
@@ -29,24 +29,50 @@ Refuse = Callable[[Segment, str, str], NoReturn]
 Warn = Callable[[Segment, str, str], None]
 """The same for a warning."""
 
-_LARGEST_SQUARE = 90.0 + 1e-9
+LARGEST_SQUARE = 90.0 + 1e-9
 """Square corners are extended up to this turn, beyond it rolled around [deg]."""
 
-_STRAIGHT_ON = 1e-4
+STRAIGHT_ON = 1e-4
 """Corners that turn by less pass as straight on [deg]."""
 
 
-_NECK = 50
+NECK = 50
 """Elements of the contour that a new one is checked against: beyond them a neck goes unnoticed."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class _Passed:
-    """A compensated element that was emitted, its contour and its source line."""
+class Passed:
+    """A compensated element that was emitted, its contour, its source line and where it lies."""
 
     element: Element
     contour: Element | None
     line: int
+    box: Box
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Followed:
+    """A contour between two of its moves.
+
+    Attributes:
+        aside: The tool's radius, signed as its side [mm].
+        square: Outside corners between lines are extended.
+        move: The move that is held, as programmed.
+        contour: Itself in the plane.
+        element: Its parallel.
+        start: Where its compensated path begins in the plane.
+        here: Where the path has come to, shape (k,).
+        passed: What was passed, the oldest first.
+    """
+
+    aside: float
+    square: bool
+    move: Segment
+    contour: Element
+    element: Element
+    start: Point
+    here: list[float]
+    passed: list[Passed]
 
 
 @dataclasses.dataclass(slots=True)
@@ -90,7 +116,7 @@ class Compensation:
         self._square = square
         self._indirect = indirect
         self._warn = warn
-        self._passed: collections.deque[_Passed] = collections.deque(maxlen=_NECK)
+        self._passed: collections.deque[Passed] = collections.deque(maxlen=NECK)
         self.plane = plane
         self._aside = side * radius
         self._emit = emit
@@ -120,6 +146,34 @@ class Compensation:
             event()
         else:
             self._held.waiting.append(event)
+
+    @property
+    def progress(self) -> "Followed | None":
+        """How far the contour has come, between two of its moves where nothing waits; else None."""
+        held = self._held
+        if held is None or held.element is None or held.waiting or not self._here:
+            return None
+        return Followed(
+            self._aside,
+            self._square,
+            held.move,
+            held.contour,
+            held.element,
+            held.start,
+            self._here,
+            list(self._passed),
+        )
+
+    def resume(self, followed: "Followed") -> None:
+        """The contour has gone on as far as this."""
+        self._here = followed.here
+        self._held = _Held(followed.move, followed.contour, followed.element, followed.start, [])
+        self._passed = collections.deque(followed.passed, maxlen=NECK)
+
+    def wait(self, move: Segment) -> None:
+        """A move along the plane's normal at the end of the held one."""
+        assert self._held is not None
+        self._held.waiting.append(move)
 
     def finish(self) -> LeadOut | None:
         """G40: what is held ends square to itself.
@@ -170,15 +224,15 @@ class Compensation:
             self._lead_in(held, contour, element)
             return element.start
         turn = turn_between(held.contour, contour)
-        if abs(turn) < _STRAIGHT_ON:
+        if abs(turn) < STRAIGHT_ON:
             self._end(held, element.start)
             return element.start
         straight = held.contour.center is None and contour.center is None
-        if self._square and straight and turn * self._aside < 0.0 and abs(turn) <= _LARGEST_SQUARE:
+        if self._square and straight and turn * self._aside < 0.0 and abs(turn) <= LARGEST_SQUARE:
             (corner,) = crossings(held.element, element)
             self._end(held, corner)
             return corner
-        if turn * self._aside < 0.0 or abs(turn) > 180.0 - _STRAIGHT_ON:
+        if turn * self._aside < 0.0 or abs(turn) > 180.0 - STRAIGHT_ON:
             self._end(held, held.element.end)
             self._roll(held, contour.start, element.start, turn)
             return element.start
@@ -268,8 +322,12 @@ class Compensation:
 
     def _pass_by(self, element: Element, contour: Element | None, move: Segment) -> None:
         """Refuse an element that crosses an earlier one, unless the contour crosses itself there."""
-        passed = self._passed
+        passed, box = self._passed, element.box
+        left, low, right, high = box
         for index, older in enumerate(passed):
+            from_x, from_y, to_x, to_y = older.box
+            if from_x > right or to_x < left or from_y > high or to_y < low:
+                continue
             if crossing(older.element, element) is None:
                 continue
             near = list(passed)[max(0, index - 2) : index + 3]
@@ -284,7 +342,7 @@ class Compensation:
                 f"the tool's radius {abs(self._aside):g} does not fit between this element and "
                 f"that of line {older.line}: the path crosses itself",
             )
-        passed.append(_Passed(element, contour, move.line))
+        passed.append(Passed(element, contour, move.line, box))
 
 
 def _cross(first: Element | None, second: Element) -> bool:

@@ -7,10 +7,9 @@ left of the direction of travel, -1 right of it.
 import dataclasses
 import math
 
+from twin.nc import curves
 from twin.nc.arcs import Point, distance, turned
-
-_NEAR = 1e-7
-"""Slack of comparisons along an element [mm]."""
+from twin.nc.curves import Box, Curve
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -30,17 +29,26 @@ class Element:
     sweep: float = 0.0
 
     @property
+    def curve(self) -> Curve:
+        """Itself as the functions of ``curves`` take it."""
+        if self.center is None:
+            return curves.line(self.start, self.end)
+        return curves.arc(self.start, self.end, self.center, self.sweep)
+
+    @property
     def radius(self) -> float:
         """Of an arc [mm]."""
-        assert self.center is not None
-        return distance(self.start, self.center)
+        return curves.radius_of(self.curve)
 
     @property
     def length(self) -> float:
         """Along the element [mm]."""
-        if self.center is None:
-            return distance(self.start, self.end)
-        return math.radians(abs(self.sweep)) * self.radius
+        return curves.length_of(self.curve)
+
+    @property
+    def box(self) -> Box:
+        """Where the element lies, with a little slack; of an arc all of its circle."""
+        return curves.box_of(self.curve)
 
     def point(self, fraction: float) -> Point:
         """The point at a fraction of its length from the start."""
@@ -53,46 +61,20 @@ class Element:
 
     def tangent(self, *, at_end: bool) -> Point:
         """Unit direction of travel at the start or the end."""
-        if self.center is None:
-            return _unit(self.end[0] - self.start[0], self.end[1] - self.start[1])
-        point = self.end if at_end else self.start
-        x, y = _unit(point[0] - self.center[0], point[1] - self.center[1])
-        return (-y, x) if self.sweep > 0.0 else (y, -x)
+        return curves.tangent_of(self.curve, at_end)
 
     def aside(self, by: float) -> "Element | None":
         """The parallel element, ``by`` to the left [mm]; None where an arc would vanish."""
-        if self.center is None:
-            x, y = self.tangent(at_end=False)
-            dx, dy = -y * by, x * by
-            return Element(_moved(self.start, dx, dy), _moved(self.end, dx, dy))
-        radius = self.radius
-        scale = (radius - math.copysign(by, by * self.sweep)) / radius
-        if scale <= _NEAR:
+        if not curves.leaves_room(self.curve, by):
             return None
-        start = _towards(self.center, self.start, scale)
-        end = _towards(self.center, self.end, scale)
-        return Element(start, end, self.center, self.sweep)
+        return element_from(curves.aside_of(self.curve, by))
 
     def along(self, point: Point) -> float:
         """How far along the element's own curve a point of it lies: 0 at its start, 1 at its end.
 
         Beyond the ends of an arc the nearer end counts: below 0 or above 1.
         """
-        if self.center is None:
-            dx, dy = self.end[0] - self.start[0], self.end[1] - self.start[1]
-            length = dx * dx + dy * dy
-            if length == 0.0:
-                return 0.0
-            return ((point[0] - self.start[0]) * dx + (point[1] - self.start[1]) * dy) / length
-        angle = _angle_from(self.start, point, self.center)
-        if self.sweep < 0.0:
-            angle = -angle
-        angle %= 360.0
-        size = abs(self.sweep)
-        over = 360.0 - size % 360.0 if size < 360.0 else 0.0
-        if size < 360.0 and angle > size + over / 2.0:
-            angle -= 360.0
-        return angle / size
+        return curves.along(self.curve, point)
 
     def last_along(self, point: Point) -> float:
         """As ``along``; on an arc of several turns in its last one."""
@@ -100,30 +82,22 @@ class Element:
         if self.center is None or abs(self.sweep) < 360.0:
             return fraction
         turn = 360.0 / abs(self.sweep)
-        return fraction + turn * math.floor((1.0 - fraction) / turn + _NEAR)
+        return fraction + turn * math.floor((1.0 - fraction) / turn + curves.NEAR)
 
     def tangent_at(self, fraction: float) -> Point:
         """Unit direction of travel at a fraction of its length."""
         if self.center is None:
             return self.tangent(at_end=False)
-        x, y = _unit(*(a - b for a, b in zip(self.point(fraction), self.center, strict=True)))
+        x, y = curves.unit(*(a - b for a, b in zip(self.point(fraction), self.center, strict=True)))
         return (-y, x) if self.sweep > 0.0 else (y, -x)
 
     def within(self, fraction: float) -> bool:
         """Whether a place along the element lies on it, with a little slack."""
-        slack = _NEAR / max(self.length, _NEAR)
-        return -slack <= fraction <= 1.0 + slack
+        return curves.within(self.curve, fraction)
 
     def cut(self, start: Point, end: Point) -> "Element":
         """The part between two points of it; on an arc of several turns those nearest its ends."""
-        if self.center is None:
-            return Element(start, end)
-        before, after = self.along(start), self.along(end)
-        if abs(self.sweep) >= 360.0:
-            turn = 360.0 / abs(self.sweep)
-            before -= turn * round(before / turn)
-            after += turn * round((1.0 - after) / turn)
-        return Element(start, end, self.center, self.sweep * (after - before))
+        return element_from(curves.cut(self.curve, start, end))
 
     def cut_share(self, last: float) -> "Element":
         """The part from its start to a share of its way."""
@@ -157,83 +131,22 @@ def distance_to(element: Element, point: Point) -> float:
 
 def crossings(first: Element, second: Element) -> list[Point]:
     """Where the unlimited curves of two elements meet; at most two points."""
-    if first.center is None and second.center is None:
-        return _line_line(first, second)
-    if first.center is None:
-        return _line_circle(first, second)
-    if second.center is None:
-        return _line_circle(second, first)
-    return _circle_circle(first, second)
+    count, *points = curves.meetings(first.curve, second.curve)
+    return points[:count]
+
+
+def crossing(older: Element, younger: Element) -> tuple[float, float] | None:
+    """Where two elements cross, as shares of their ways: the first place on the older one."""
+    found, left, right = curves.crossing_of(older.curve, younger.curve)
+    return (left, right) if found else None
 
 
 def turn_between(first: Element, second: Element) -> float:
     """Signed angle from the end of one element to the start of the next, ±180 [deg]."""
-    ax, ay = first.tangent(at_end=True)
-    bx, by = second.tangent(at_end=False)
-    return math.degrees(math.atan2(ax * by - ay * bx, ax * bx + ay * by))
+    return curves.turn_from(first.curve, second.curve)
 
 
-def _line_line(first: Element, second: Element) -> list[Point]:
-    ax, ay = first.tangent(at_end=False)
-    bx, by = second.tangent(at_end=False)
-    area = ax * by - ay * bx
-    if abs(area) < 1e-12:
-        return []
-    dx, dy = second.start[0] - first.start[0], second.start[1] - first.start[1]
-    along = (dx * by - dy * bx) / area
-    return [_moved(first.start, ax * along, ay * along)]
-
-
-def _line_circle(line: Element, arc: Element) -> list[Point]:
-    assert arc.center is not None
-    ux, uy = line.tangent(at_end=False)
-    dx, dy = arc.center[0] - line.start[0], arc.center[1] - line.start[1]
-    along, aside = dx * ux + dy * uy, dy * ux - dx * uy
-    foot = _moved(line.start, ux * along, uy * along)
-    return [_moved(foot, ux * s, uy * s) for s in _halves(arc.radius, abs(aside))]
-
-
-def _circle_circle(first: Element, second: Element) -> list[Point]:
-    assert first.center is not None
-    assert second.center is not None
-    apart = distance(first.center, second.center)
-    if apart < _NEAR:
-        return []
-    ux, uy = (
-        (second.center[0] - first.center[0]) / apart,
-        (second.center[1] - first.center[1]) / apart,
-    )
-    along = (apart * apart + first.radius**2 - second.radius**2) / (2.0 * apart)
-    foot = _moved(first.center, ux * along, uy * along)
-    return [_moved(foot, -uy * s, ux * s) for s in _halves(first.radius, abs(along))]
-
-
-def _halves(radius: float, aside: float) -> list[float]:
-    """Plus and minus half the chord that lies ``aside`` from a circle's centre."""
-    if aside > radius + _NEAR:
-        return []
-    half = math.sqrt(max(0.0, radius * radius - aside * aside))
-    return [half, -half]
-
-
-def _unit(x: float, y: float) -> Point:
-    """The direction of a vector; none, 0 0, where a slot as wide as the tool leaves no way."""
-    length = math.hypot(x, y)
-    return (x / length, y / length) if length > 0.0 else (0.0, 0.0)
-
-
-def _moved(point: Point, dx: float, dy: float) -> Point:
-    return (point[0] + dx, point[1] + dy)
-
-
-def _towards(center: Point, point: Point, scale: float) -> Point:
-    return (
-        center[0] + (point[0] - center[0]) * scale,
-        center[1] + (point[1] - center[1]) * scale,
-    )
-
-
-def _angle_from(start: Point, point: Point, center: Point) -> float:
-    ax, ay = start[0] - center[0], start[1] - center[1]
-    bx, by = point[0] - center[0], point[1] - center[1]
-    return math.degrees(math.atan2(ax * by - ay * bx, ax * bx + ay * by))
+def element_from(curve: Curve) -> Element:
+    """A curve as an element."""
+    is_arc, start, end, center, sweep = curve
+    return Element(start, end, center, sweep) if is_arc else Element(start, end)

@@ -2,16 +2,17 @@
 
 import dataclasses
 import enum
-import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from twin.nc.canonical import Corner
 from twin.nc.expressions import ExpressionSyntax
+from twin.nc.interpolation import Interpolation
 from twin.nc.planes import XY, Plane
 
 if TYPE_CHECKING:
+    from twin.nc.block_words import BlockWords
     from twin.nc.block_writer import BlockWriter
     from twin.nc.blocks import Block, Statement, Word
     from twin.nc.control import Control
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 Action = Callable[["Control"], None]
 WordAction = Callable[["Control", "Word"], None]
+Translation = Callable[["BlockWords", "BlockWriter"], None]
+"""Writes as instructions what a code or a word does, taking the words that belong to it."""
 StatementAction = Callable[["Control", "Statement"], None]
 
 Ground = Literal["seed", "manual", "decision"]
@@ -32,57 +35,6 @@ class FeedMode(enum.Enum):
     PER_SECOND = "per second"
     SECONDS_PER_BLOCK = "seconds per block"
     PER_REVOLUTION = "per revolution of the spindle"
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class PlainLine:
-    """A block of plain axis words goes straight to their target.
-
-    Attributes:
-        rapid_feed: Of a rapid at a pace that the program sets: its own feed per second, 0 where it
-            follows F; None: the machine's pace.
-    """
-
-    rapid_feed: Callable[["Control"], float] | None = None
-
-
-@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class PlainArc:
-    """A block of plain axis words with I, J, K of the plane or R is an arc.
-
-    Within these bounds nothing about it is doubtful: no error, no warning, no correction to report.
-
-    Attributes:
-        clockwise: Its sense.
-        mismatch: How far the distances of start and end from the centre may differ [mm].
-        mismatch_share: The same as a share of the larger one.
-        shift: How far the centre may be moved to fit [mm].
-        signed_radius: A negative radius asks for the larger arc; else it is not plain.
-        fits_radius: A centre found by its radius is fitted to both points like a given one.
-    """
-
-    clockwise: bool
-    mismatch: float = math.inf
-    mismatch_share: float = math.inf
-    shift: float = math.inf
-    signed_radius: bool = True
-    fits_radius: bool = False
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Interpolation:
-    """How axis words become a move.
-
-    Attributes:
-        perform: Takes the block's words and moves.
-        rapid: At the machine's own speed.
-        plain: What it does in a block of plain words, for the fast way; None: ``perform`` alone
-            knows.
-    """
-
-    perform: Action
-    rapid: bool = False
-    plain: PlainLine | PlainArc | None = None
 
 
 @dataclasses.dataclass(slots=True)
@@ -125,6 +77,7 @@ class GCode:
         once: What it sets holds for its block only.
         alone: No other word may stand in its block.
         refused: Why the twin refuses a code that the control knows; empty: it does not.
+        translate: Writes what ``action`` or ``perform`` does for the fast way; None: it cannot.
         ground: On what the meaning rests.
     """
 
@@ -138,6 +91,7 @@ class GCode:
     once: bool = False
     alone: bool = False
     refused: str = ""
+    translate: Translation | None = None
     ground: Ground = "decision"
 
 
@@ -152,6 +106,7 @@ class MCode:
         ends: Ends the program.
         action: What it does besides being reported as a function.
         silent: It is not reported.
+        translate: Writes what ``action`` does for the fast way; None: it cannot.
         ground: On what the meaning rests.
     """
 
@@ -161,6 +116,7 @@ class MCode:
     ends: bool = False
     silent: bool = False
     action: Action | None = None
+    translate: Translation | None = None
     ground: Ground = "decision"
 
 
@@ -266,6 +222,7 @@ class Dialect:
         signed: Addresses that are two words, one above and one below 0.
         series: Addresses that may stand several times in a block with a switch point, in order.
         words: Addresses with a modal meaning, and what they do.
+        word_translations: The same for the fast way, of those that it can do.
         statements: Keywords of statements, and what they do.
         other_statement: What the others do, which begin with a name.
         word_meanings: What the addresses mean, for people.
@@ -288,6 +245,8 @@ class Dialect:
             raises ``NotTranslatableError`` for what is left to the general way; None: all is.
         disturbed: Something that only this dialect remembers acts on plain blocks now, so that they
             must go the general way; None: nothing can.
+        registers: What the fast way is given of its memory, by places in ``plain_state``.
+        take_registers: Takes all of them back.
     """
 
     name: str
@@ -308,6 +267,7 @@ class Dialect:
     signed: tuple[str, ...] = ()
     series: str = ""
     words: Mapping[str, WordAction]
+    word_translations: Mapping[str, Translation] = dataclasses.field(default_factory=dict)
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
     other_statement: StatementAction | None = None
     word_meanings: Mapping[str, str]
@@ -330,3 +290,5 @@ class Dialect:
     finish: Action | None = None
     translate: Callable[["Control", "Block", "BlockWriter"], None] | None = None
     disturbed: Callable[["Control"], bool] | None = None
+    registers: Callable[["Control"], Mapping[int, float]] = lambda _control: {}
+    take_registers: Callable[["Control", list[float]], None] = lambda _control, _values: None

@@ -98,36 +98,44 @@ def drill(control: Control, cycle: Drilling, target: list[float]) -> None:
         up[axis] = over[axis]
         control.line_to(up, rapid=True)
     control.line_to(over, rapid=True)
-    _to(control, axis, cycle.reference, rapid=True)
+    turning = {} if control.spindle is None else {"S": control.spindle}
+    for act, value in acts(cycle):
+        if act in (Act.RAPID, Act.FEED):
+            there = list(control.programmed)
+            there[axis] = value
+            control.line_to(there, rapid=act is Act.RAPID)
+        elif act is Act.DWELL:
+            control.dwell(value)
+        else:
+            control.function(act.name, {} if act is Act.M5 else turning)
+
+
+class Act(enum.IntEnum):
+    """What happens at a hole: moves to a height, a dwell, the spindle."""
+
+    RAPID = 0
+    FEED = 1
+    DWELL = 2
+    M3 = 3
+    M4 = 4
+    M5 = 5
+
+
+def acts(cycle: Drilling) -> list[tuple[Act, float]]:
+    """What happens when the tool stands over the hole, with heights [mm] and seconds."""
+    done = [(Act.RAPID, cycle.reference)]
     for number, stop in enumerate(cycle.stops, start=1):
-        _to(control, axis, stop, rapid=False)
         full = number % cycle.full_every == 0
         up = cycle.reference if full else min(stop + cycle.lift, cycle.reference)
-        _to(control, axis, up, rapid=True)
-        _to(control, axis, min(stop + cycle.clearance, up), rapid=True)
-    _to(control, axis, cycle.bottom, rapid=False)
+        done += [(Act.FEED, stop), (Act.RAPID, up), (Act.RAPID, min(stop + cycle.clearance, up))]
+    done.append((Act.FEED, cycle.bottom))
     if cycle.dwell > 0.0:
-        control.dwell(cycle.dwell)
-    _leave(control, axis, cycle)
-
-
-def _leave(control: Control, axis: int, cycle: Drilling) -> None:
+        done.append((Act.DWELL, cycle.dwell))
     if cycle.retract is Retract.REVERSED:
-        turning = {} if control.spindle is None else {"S": control.spindle}
-        control.function("M4", turning)
-        _to(control, axis, cycle.reference, rapid=False)
-        control.function("M3", turning)
+        done += [(Act.M4, 0.0), (Act.FEED, cycle.reference), (Act.M3, 0.0)]
     elif cycle.retract is Retract.FEED:
-        _to(control, axis, cycle.reference, rapid=False)
+        done.append((Act.FEED, cycle.reference))
     elif cycle.retract is Retract.STOPPED:
-        turning = {} if control.spindle is None else {"S": control.spindle}
-        control.function("M5", {})
-        _to(control, axis, cycle.back, rapid=True)
-        control.function("M3", turning)
-    _to(control, axis, cycle.back, rapid=True)
-
-
-def _to(control: Control, axis: int, height: float, *, rapid: bool) -> None:
-    target = list(control.programmed)
-    target[axis] = height
-    control.line_to(target, rapid=rapid)
+        done += [(Act.M5, 0.0), (Act.RAPID, cycle.back), (Act.M3, 0.0)]
+    done.append((Act.RAPID, cycle.back))
+    return done

@@ -1,11 +1,16 @@
 """From programmed coordinates to the part's: offsets, presets, turns, mirror, rotation, scale."""
 
 import math
+from collections.abc import Iterable
 
 from twin.nc.planes import Vector
 
 Matrix = tuple[Vector, Vector, Vector]
 IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+SHIFTS = ("offset", "preset", "length", "increment", "rotation", "turns")
+"""Every shift, in the order in which they are added."""
 
 
 class Frame:
@@ -16,8 +21,7 @@ class Frame:
     """
 
     def __init__(self, axis_count: int) -> None:
-        self._shifts: dict[str, list[float]] = {}
-        self._count = axis_count
+        self._shifts: dict[str, list[float]] = {name: [0.0] * axis_count for name in SHIFTS}
         self.total = [0.0] * axis_count
         """Sum of all shifts, shape (k,) [mm or deg]."""
         self.matrix = IDENTITY
@@ -27,12 +31,22 @@ class Frame:
 
     def shift(self, name: str) -> list[float]:
         """The named shift, shape (k,)."""
-        return list(self._shifts.get(name, [0.0] * self._count))
+        return list(self._shifts[name])
 
     def set_shift(self, name: str, values: list[float]) -> None:
         """Replace the named shift."""
         self._shifts[name] = values
-        self.total = [sum(each) for each in zip(*self._shifts.values(), strict=True)]
+        self.total = [added(each) for each in zip(*self._shifts.values(), strict=True)]
+
+    @property
+    def shifts(self) -> list[list[float]]:
+        """All of them in the order of ``SHIFTS``, shape (s, k)."""
+        return list(self._shifts.values())
+
+    def set_shifts(self, shifts: list[list[float]]) -> None:
+        """Replace all of them, in this order."""
+        self._shifts = dict(zip(SHIFTS, shifts, strict=True))
+        self.total = [added(each) for each in zip(*shifts, strict=True)]
 
     def set_matrix(self, matrix: Matrix) -> None:
         """Replace mirror, rotation and scale."""
@@ -78,6 +92,14 @@ class Frame:
         x, y, z = self.turn(normal)
         length = math.sqrt(x * x + y * y + z * z)
         return (x / length, y / length, z / length), sweep * self.handedness
+
+
+def added(values: Iterable[float]) -> float:
+    """The sum from left to right: Python's own has more digits from version to version."""
+    total = 0.0
+    for value in values:
+        total += value
+    return total
 
 
 def multiply(left: Matrix, right: Matrix) -> Matrix:

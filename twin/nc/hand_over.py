@@ -3,6 +3,7 @@
 import numpy as np
 
 from twin.nc.canonical import IntArray
+from twin.nc.contour_state import Contour
 from twin.nc.control import Control
 from twin.nc.dialect import Modal
 from twin.nc.flow import Place, Progress, Return
@@ -39,13 +40,15 @@ from twin.nc.routine_state import (
 class HandOver:
     """One run: what the kernel is given of a control's program, and what it makes of it."""
 
-    def __init__(self, control: Control, state: State) -> None:
+    def __init__(self, control: Control, state: State, contour: Contour) -> None:
         """Begin a run.
 
         Args:
             control: Stands where the run begins.
             state: What the run changes besides.
+            contour: Radius compensation, in force or not.
         """
+        self._contour = contour
         self._control = control
         self._saved = Saved(
             np.zeros((MOST_CALLS, len(state.modal))),
@@ -71,7 +74,7 @@ class HandOver:
         memory = Memory(
             variables.common, variables.given_common, variables.local, variables.given_local
         )
-        return Routine(self._progress, self._calls, memory, self._saved)
+        return Routine(self._progress, self._calls, memory, self._saved, self._contour)
 
     @property
     def line(self) -> int:

@@ -104,6 +104,53 @@ class Step(enum.IntEnum):
     """There must be a part that can be returned from."""
     RETURN = 35
     """Go back behind the call."""
+    KEEP = 36
+    """What follows changes more than variables; keep how all was."""
+    RUN_CODES = 37
+    """Run the words so far, and forget them but for N."""
+    RUN_POLAR = 38
+    """Run the words, on a straight way to where R (``argument`` 1), Q (2) or both (3) lead, whose
+    values are the topmost."""
+    IN_FORCE = 39
+    """The G code ``argument`` is in force."""
+    PLANE = 40
+    """The plane ``argument`` is in force: 0 to 2."""
+    FUNCTION = 41
+    """Report the M function ``argument``."""
+    SPINDLE_FUNCTION = 42
+    """The same with the spindle's speed."""
+    SPEED = 43
+    """The spindle's speed is the topmost value; ``argument`` 1: report it."""
+    TOOL = 44
+    """The tool with the topmost number comes next; ``argument`` 1: it must be one of the job's."""
+    AUXILIARY = 45
+    """Report H with the topmost value."""
+    DWELL = 46
+    """Wait as many seconds as the topmost value."""
+    CHANGE_TOOL = 47
+    """The tool that comes next is used from now on."""
+    OFFSET_ON = 48
+    """Tools have their offset, or with ``argument`` 0 not."""
+    TOOL_LENGTH = 49
+    """The tool in use moves Z by its length, where it has its offset."""
+    SHIFT = 50
+    """The topmost values, one for each axis, are the shift ``argument``."""
+    REFRAME = 51
+    """The shifts have changed."""
+    BEGIN_LABEL = 52
+    """The place where the machine stands gets new coordinates: at first those that it has."""
+    LABEL = 53
+    """The topmost value is that of the axis ``argument``."""
+    RELABEL = 54
+    """They hold from now on, by the shift ``argument``."""
+    POLAR_ORIGIN = 55
+    """The two topmost values (``argument`` 2) are the polar origin; 0: it is where the tool stands."""
+    TO_MILLIMETRES = 56
+    """The topmost value is in the unit in force, of the axis ``argument``."""
+    NO_CYCLE = 57
+    """No drilling cycle may be in force."""
+    FORGET_POLAR = 58
+    """The last R and Q hold no longer."""
 
 
 class Table(NamedTuple):

@@ -2,14 +2,18 @@
 
 import re
 
+from twin.nc.block_words import BlockWords
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.circular import clockwise_arc, counter_clockwise_arc, plain_arc
 from twin.nc.control import Control
-from twin.nc.dialect import FeedMode, GCode, Interpolation, MCode, PlainLine
+from twin.nc.dialect import FeedMode, GCode, MCode, Translation
+from twin.nc.instructions import Step
+from twin.nc.interpolation import Interpolation, PlainLine
 from twin.nc.iso_cycles import CYCLES
 from twin.nc.linear import feed_line, rapid_line
 from twin.nc.offsets import COMPENSATION, LENGTH, OFFSETS, PRESET, refuse_plane_change
-from twin.nc.planes import XY, YZ, ZX
+from twin.nc.planes import PLANE_ORDER, XY, YZ, ZX, Plane
 
 RAPID = Interpolation(rapid_line, rapid=True, plain=PlainLine())
 FEED = Interpolation(feed_line, plain=PlainLine())
@@ -50,6 +54,18 @@ def set_spindle(control: Control, word: Word) -> None:
         control.function("S", {"S": speed})
 
 
+def write_spindle(block: BlockWords, writer: BlockWriter) -> None:
+    """S, for the fast way."""
+    writer.word_value(block.words.pop("S"))
+    writer.step(Step.SPEED, 0 if block.starts_spindle() else 1)
+
+
+def write_tool(block: BlockWords, writer: BlockWriter) -> None:
+    """T, for the fast way."""
+    writer.word_value(block.words.pop("T"))
+    writer.step(Step.TOOL)
+
+
 def select_tool(control: Control, word: Word) -> None:
     """T: the tool that comes next."""
     number = control.number(word)
@@ -64,6 +80,29 @@ def change_tool(control: Control) -> None:
     control.tools.change()
 
 
+def write_tool_change(_block: BlockWords, writer: BlockWriter) -> None:
+    """M6, for the fast way."""
+    writer.step(Step.CHANGE_TOOL)
+
+
+def write_dwell(block: BlockWords, writer: BlockWriter) -> None:
+    """G4, for the fast way.
+
+    Raises:
+        NotTranslatableError: It has no time, or two.
+    """
+    words = [block.words.pop(letter) for letter in "PXF" if letter in block.words]
+    if len(words) != 1:
+        raise NotTranslatableError
+    writer.word_value(words[0])
+    writer.step(Step.DWELL)
+
+
+def write_plane(plane: Plane) -> Translation:
+    """G17, G18, G19, for the fast way."""
+    return lambda _block, writer: writer.step(Step.PLANE, PLANE_ORDER.index(plane))
+
+
 def dwell_seconds(control: Control) -> None:
     """G4: wait for the seconds of P, X or F."""
     words = [control.words.pop(letter) for letter in "PXF" if letter in control.words]
@@ -75,10 +114,20 @@ def dwell_seconds(control: Control) -> None:
     control.dwell(seconds)
 
 
+def _plane(meaning: str, plane: Plane) -> GCode:
+    return GCode(
+        meaning=meaning,
+        group="plane",
+        sets={"plane": plane},
+        action=refuse_plane_change,
+        translate=write_plane(plane),
+    )
+
+
 PLANES = {
-    17: GCode(meaning="plane X Y", group="plane", sets={"plane": XY}, action=refuse_plane_change),
-    18: GCode(meaning="plane Z X", group="plane", sets={"plane": ZX}, action=refuse_plane_change),
-    19: GCode(meaning="plane Y Z", group="plane", sets={"plane": YZ}, action=refuse_plane_change),
+    17: _plane("plane X Y", XY),
+    18: _plane("plane Z X", ZX),
+    19: _plane("plane Y Z", YZ),
 }
 DISTANCE = {
     90: GCode(meaning="absolute coordinates", group="distance", sets={"incremental": False}),
@@ -102,7 +151,14 @@ MOTION = {
         sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None},
     ),
 }
-DWELL = {4: GCode(meaning="dwell, seconds in P, X or F", perform=dwell_seconds, takes="F")}
+DWELL = {
+    4: GCode(
+        meaning="dwell, seconds in P, X or F",
+        perform=dwell_seconds,
+        takes="F",
+        translate=write_dwell,
+    )
+}
 
 FEEDS = {
     94: GCode(meaning="feed per minute", group="feed", sets={"feed_mode": FeedMode.PER_MINUTE}),
@@ -162,7 +218,7 @@ M_CODES = {
     3: MCode(meaning="spindle clockwise", group="spindle"),
     4: MCode(meaning="spindle counter-clockwise", group="spindle"),
     5: MCode(meaning="spindle stop", group="spindle", late=True),
-    6: MCode(meaning="tool change", action=change_tool),
+    6: MCode(meaning="tool change", action=change_tool, translate=write_tool_change),
     7: MCode(meaning="mist on"),
     8: MCode(meaning="coolant on", group="coolant"),
     9: MCode(meaning="coolant off", group="coolant", late=True),
@@ -170,6 +226,7 @@ M_CODES = {
 }
 
 WORDS = {"F": set_feed, "S": set_spindle, "T": select_tool}
+WORD_TRANSLATIONS = {"S": write_spindle, "T": write_tool}
 
 WORD_MEANINGS = {
     "N": "block number",

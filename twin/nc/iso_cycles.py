@@ -8,8 +8,9 @@ was called, or with G99 to the reference plane.
 """
 
 from twin.nc.control import Control
-from twin.nc.dialect import GCode, Interpolation
+from twin.nc.dialect import GCode
 from twin.nc.drilling import Drilling, Retract, drill, pecks
+from twin.nc.interpolation import Interpolation, PlainHole
 
 
 def _cycle(name: str, *, dwell: bool = False, peck: bool = False, retract: Retract) -> GCode:
@@ -17,19 +18,23 @@ def _cycle(name: str, *, dwell: bool = False, peck: bool = False, retract: Retra
         axis = control.modal.plane.axes[2]
         control.cycle_values.setdefault("start", control.programmed[axis])
 
+    def drilling(control: Control) -> Drilling:
+        return _drilling(control, name, dwell=dwell, peck=peck, retract=retract)
+
     def perform(control: Control) -> None:
-        drill_hole(control, name, dwell=dwell, peck=peck, retract=retract)
+        _read_words(control, dwell=dwell, peck=peck)
+        drill(control, drilling(control), control.target())
 
     return GCode(
         meaning=f"{_MEANINGS[name]}: X Y Z R" + (" P" if dwell else "") + (" Q" if peck else ""),
         group="cycle",
-        sets={"cycle": Interpolation(perform)},
+        sets={"cycle": Interpolation(perform, plain=PlainHole(drilling))},
         action=start,
     )
 
 
-def drill_hole(control: Control, name: str, *, dwell: bool, peck: bool, retract: Retract) -> None:
-    """Drill the hole that the block names."""
+def _read_words(control: Control, *, dwell: bool, peck: bool) -> None:
+    """Take the words that stay in force."""
     axis = control.modal.plane.axes[2]
     letter = control.settings.axes.names[axis]
     values = control.cycle_values
@@ -43,6 +48,14 @@ def drill_hole(control: Control, name: str, *, dwell: bool, peck: bool, retract:
     for address, wanted in (("P", dwell), ("Q", peck)):
         if wanted and (word := control.take(address)) is not None:
             values[address] = control.number(word) if address == "P" else control.length(word)
+
+
+def _drilling(
+    control: Control, name: str, *, dwell: bool, peck: bool, retract: Retract
+) -> Drilling:
+    """The cycle in force, whose words must be there."""
+    values = control.cycle_values
+    letter = control.settings.axes.names[control.modal.plane.axes[2]]
     needed = ["R", letter, *(["Q"] if peck else [])]
     missing = [address for address in needed if address not in values]
     if missing:
@@ -54,7 +67,7 @@ def drill_hole(control: Control, name: str, *, dwell: bool, peck: bool, retract:
             "in pecks above 0",
         )
     back = values["R"] if control.modal.return_to_reference else max(values["start"], values["R"])
-    cycle = Drilling(
+    return Drilling(
         reference=values["R"],
         bottom=values[letter],
         back=back,
@@ -62,7 +75,6 @@ def drill_hole(control: Control, name: str, *, dwell: bool, peck: bool, retract:
         stops=pecks(control, values["R"], values[letter], values["Q"]) if peck else (),
         retract=retract,
     )
-    drill(control, cycle, control.target())
 
 
 _MEANINGS = {

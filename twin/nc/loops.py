@@ -9,16 +9,13 @@ import collections
 import dataclasses
 from collections.abc import Callable
 
-from twin.nc.contour import Element, crossings
+from twin.nc.contour import Element, crossing
 from twin.nc.move_columns import Segment
 from twin.nc.planes import Plane
 from twin.nc.segments import element_of, part_of
 
 LONGEST_LOOP = 32
 """Moves that a loop may have."""
-
-_END = 1e-6
-"""So near its end a move does not cross: there it meets its neighbours [mm]."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -84,18 +81,3 @@ class Loops:
         tail = dataclasses.replace(tail, start=head.end)
         self._held.append(_Held(head, older.element.cut_share(left), waiting))
         return tail, element_of(tail, self._plane) or element
-
-
-def crossing(older: Element, younger: Element) -> tuple[float, float] | None:
-    """Where two elements cross, as shares of their ways: the first place on the older one."""
-    places: list[tuple[float, float]] = []
-    for point in crossings(older, younger):
-        left, right = older.along(point), younger.along(point)
-        if _inside(older, left) and _inside(younger, right):
-            places.append((left, right))
-    return min(places, default=None)
-
-
-def _inside(element: Element, share: float) -> bool:
-    end = _END / max(element.length, _END)
-    return end < share < 1.0 - end

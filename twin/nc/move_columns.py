@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -134,15 +135,22 @@ class MoveColumns:
             self._parts.append((codes, values, positions))
             self._clear_lists()
 
+    def add_events(self, events: Iterable[Event], *, here: bool = False) -> None:
+        """Append events; their places count from the next move, or are ``here``, before it."""
+        ahead = self._count
+        if here:
+            events = [dataclasses.replace(event, before=ahead) for event in events]
+        elif ahead:
+            events = [dataclasses.replace(event, before=event.before + ahead) for event in events]
+        self._events += events
+
     def dwell(self, line: int, seconds: float) -> None:
         """Append a dwell after the moves so far."""
         self._events.append(Dwell(self._count, line, seconds))
 
-    def function(
-        self, line: int, word: str, arguments: dict[str, float], at: float, behind: int = 0
-    ) -> None:
-        """Append a function after the moves so far, and behind some that follow at once."""
-        self._events.append(Function(self._count + behind, line, word, arguments, at))
+    def function(self, line: int, word: str, arguments: dict[str, float], at: float) -> None:
+        """Append a function after the moves so far."""
+        self._events.append(Function(self._count, line, word, arguments, at))
 
     def take(self) -> Chunk:
         """All that was appended, as columns; nothing is left here."""

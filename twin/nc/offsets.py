@@ -5,12 +5,17 @@ where the job gives it no values; a work offset ends a preset (G92). G53 puts co
 machine zero until the next work offset.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
+from twin.nc.block_words import BlockWords
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.control import Control
 from twin.nc.control_state import integer_of
-from twin.nc.dialect import GCode
+from twin.nc.dialect import GCode, Translation
+from twin.nc.expressions import Expression
+from twin.nc.frame import SHIFTS
+from twin.nc.instructions import Step
 
 LEFT, RIGHT = 1.0, -1.0
 
@@ -58,6 +63,66 @@ def _shift_by(control: Control, values: Mapping[str, float]) -> None:
     control.reframed()
 
 
+def write_shift(name: str, values: Iterable[float], writer: BlockWriter) -> None:
+    """A shift with fixed values, for the fast way."""
+    for value in values:
+        writer.number(value)
+    writer.step(Step.SHIFT, SHIFTS.index(name))
+
+
+def write_offset(name: str) -> Translation:
+    """A work offset of the job, for the fast way."""
+
+    def write(block: BlockWords, writer: BlockWriter) -> None:
+        settings = block.control.settings
+        values = settings.offsets.get(name)
+        if values is None and name != "G54":
+            raise NotTranslatableError
+        names = settings.axes.names
+        write_shift("offset", [(values or {}).get(axis, 0.0) for axis in names], writer)
+        write_shift("preset", [0.0] * len(names), writer)
+        writer.step(Step.REFRAME)
+
+    return write
+
+
+def write_label(shift: str) -> Translation:
+    """New coordinates for where the machine stands, for the fast way."""
+
+    def write(block: BlockWords, writer: BlockWriter) -> None:
+        words = block.take_axes()
+        if not words or any(word.incremental for _, word in words):
+            raise NotTranslatableError
+        writer.step(Step.BEGIN_LABEL)
+        for index, word in words:
+            writer.word_value(word)
+            writer.step(Step.TO_MILLIMETRES, index)
+            writer.step(Step.LABEL, index)
+        writer.step(Step.RELABEL, SHIFTS.index(shift))
+
+    return write
+
+
+def _write_length(sign: float) -> Translation:
+    """G43 H, G44 H, for the fast way."""
+
+    def write(block: BlockWords, writer: BlockWriter) -> None:
+        word, tools = block.take("H"), block.control.tools
+        if word is None or isinstance(word.value, Expression) or word.value not in tools.table:
+            raise NotTranslatableError
+        longer = sign * tools.longer(tools.table[int(word.value)])
+        axes = len(block.control.settings.axes)
+        write_shift("length", [longer if axis == 2 else 0.0 for axis in range(axes)], writer)
+        writer.step(Step.REFRAME)
+
+    return write
+
+
+def _write_no_length(block: BlockWords, writer: BlockWriter) -> None:
+    write_shift("length", [0.0] * len(block.control.settings.axes), writer)
+    writer.step(Step.REFRAME)
+
+
 def preset(control: Control) -> None:
     """G92: the place where the machine stands gets the coordinates of the block."""
     programmed = list(control.programmed)
@@ -75,6 +140,7 @@ def _work_offset(number: int) -> GCode:
         meaning=f"work offset {name} of the job",
         group="offset",
         action=lambda control: select_offset(control, name, control.code_word(number)),
+        translate=write_offset(name),
     )
 
 
@@ -84,7 +150,7 @@ OFFSETS = {
     ),
     **{number: _work_offset(number) for number in range(54, 60)},
 }
-PRESET = {92: GCode(meaning="preset the position", perform=preset)}
+PRESET = {92: GCode(meaning="preset the position", perform=preset, translate=write_label("preset"))}
 
 
 # --- tools
@@ -211,15 +277,18 @@ LENGTH = {
         meaning="tool length compensation",
         group="length",
         action=lambda control: length_by_table(control, 1.0),
+        translate=_write_length(1.0),
     ),
     44: GCode(
         meaning="tool length compensation, reversed",
         group="length",
         action=lambda control: length_by_table(control, -1.0),
+        translate=_write_length(-1.0),
     ),
     49: GCode(
         meaning="tool length compensation off",
         group="length",
         action=lambda control: set_length(control, 0.0),
+        translate=_write_no_length,
     ),
 }

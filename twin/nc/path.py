@@ -9,14 +9,15 @@ from collections.abc import Callable
 
 from twin.nc.arcs import SAME_POINT, distance
 from twin.nc.blends import Blend
-from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray, Motion
-from twin.nc.compensation import Compensation, Refuse, Warn
+from twin.nc.canonical import Axes, Chunk, Event, FloatArray, IntArray, Motion
+from twin.nc.compensation import Compensation, Followed, Refuse, Warn
 from twin.nc.contour import Element
+from twin.nc.contour_columns import Gone
 from twin.nc.even_axes import MOST_MOVES, EvenAxes
 from twin.nc.leads import LeadOut, around, lead_depth
 from twin.nc.loops import Loops
 from twin.nc.move_columns import MoveColumns, Segment
-from twin.nc.planes import Plane
+from twin.nc.planes import PLANE_ORDER, Plane
 from twin.nc.rounding import Rounding
 from twin.nc.segments import level_arc
 from twin.nc.splines import Spline
@@ -83,28 +84,60 @@ class Path:
         codes: IntArray,
         values: FloatArray,
         positions: FloatArray,
+        events: list[Event],
         last: Segment | None,
-        functions: list[list[int]],
+        gone: Gone | None = None,
     ) -> None:
-        """Moves as columns while the path is open.
+        """Moves as columns: of an open path, or such as compensation has let go.
 
         Args:
             codes: Shape (n, 5), as in ``MoveColumns.add_rows``.
             values: Shape (n, 11).
             positions: Shape (n, 3, k).
+            events: Those between them; ``before`` counts from the first of them.
             last: The last of them, or None.
-            functions: How many of them lie before each M function between them, its line and its
-                number.
+            gone: How far compensation has come; None: the path is open.
         """
-        assert self.open
-        for before, line, number in functions:
-            self._columns.function(line, f"M{number}", {}, 0.0, behind=before)
-        if last is not None:
+        self._columns.add_events(events)
+        if len(codes):
             self._columns.add_rows(codes, values, positions)
+            self.position = positions[-1, 1].tolist()
+        if gone is not None:
+            self._resume(gone)
+            return
+        if last is not None:
             self._before = last
-            self.position = last.end
-        if functions and functions[-1][0] == len(codes):
+        if events and events[-1].before == len(codes):
             self._before = None
+
+    @property
+    def followed(self) -> Followed | None:
+        """Compensation between two moves of a contour, where it alone holds and changes moves."""
+        compensation = self._compensation
+        if compensation is None or compensation.plane not in PLANE_ORDER:
+            return None
+        if self._spline or self._rounding or self._loops or self._even:
+            return None
+        return compensation.progress
+
+    @property
+    def compensation_plane(self) -> tuple[int, int, int]:
+        """Columns of its abscissa, ordinate and normal."""
+        assert self._compensation is not None
+        return self._compensation.plane.axes
+
+    def _resume(self, gone: Gone) -> None:
+        """Compensation has gone on by itself."""
+        compensation = self._compensation
+        assert compensation is not None
+        if gone.came:
+            self._before = gone.before
+        compensation.resume(gone.followed)
+        for each in gone.waiting:
+            if isinstance(each, Segment):
+                compensation.wait(each)
+            else:
+                compensation.event(lambda event=each: self._columns.add_events([event], here=True))
 
     def add_point(self, move: Segment, *, flat: bool) -> None:
         """The straight way to the next point of a spline; ``flat``: its height goes linearly."""

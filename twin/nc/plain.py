@@ -9,19 +9,42 @@ import math
 
 import numpy as np
 
-from twin.nc.canonical import Corner, Motion
+from twin.nc.canonical import Dwell, Event, FloatArray, Function
+from twin.nc.compensation import Followed
+from twin.nc.contour_columns import fill, gone, new_contour, segment
+from twin.nc.contour_state import Row
 from twin.nc.control import Control
+from twin.nc.diagnostics import ProgramError
+from twin.nc.drilling import Drilling, acts
 from twin.nc.hand_over import HandOver, put_into_force
+from twin.nc.interpolation import PlainHole
 from twin.nc.lines import Page
 from twin.nc.move_columns import CHUNK, Segment
-from twin.nc.plain_state import Constants, Rows, State
+from twin.nc.plain_state import (
+    DWELL,
+    FUNCTION_ALONE,
+    FUNCTION_WITH_SPEED,
+    IN_SPINDLE,
+    REGISTERS,
+    SELECTED,
+    SPEED,
+    SPINDLE,
+    TOOL,
+    Constants,
+    Hole,
+    Rows,
+    State,
+)
 from twin.nc.plain_tables import FEED_FACTORS, PlainTables
 from twin.nc.plain_words_kernels import NOT_PLAIN
-from twin.nc.planes import XY, YZ, ZX
+from twin.nc.planes import PLANE_ORDER
 from twin.nc.routine_kernels import run_program
 from twin.nc.routine_state import FULL, LEFT, OFF_PAGE, PAUSED, UNREAD
 from twin.nc.translator import Translator
 
+_PLANES = np.array([plane.axes for plane in PLANE_ORDER])
+_MOST_STOPS = 500
+"""Stops of a hole: its moves must fit into a chunk."""
 _WORTHWHILE = 4
 """Blocks that a run must have to pay for handing the state over and back."""
 _LONGEST_PAUSE = 256
@@ -48,8 +71,15 @@ class PlainRunner:
             np.zeros((CHUNK, 5), np.int64),
             np.zeros((CHUNK, 11)),
             np.zeros((CHUNK, 3, axes)),
-            np.zeros((CHUNK, 3), np.int64),
+            np.zeros((CHUNK, 4), np.int64),
+            np.zeros(CHUNK),
         )
+        table = control.tools.table
+        self._tools = np.array([float(number) for number in table])
+        self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
+        self._hole: Drilling | None = None
+        self._followed: Followed | None = None
+        self._contour = new_contour(axes)
         self._pause = 1
         self._wait = 0
         self.full = False
@@ -62,10 +92,12 @@ class PlainRunner:
             return False
         control = self._control
         room = CHUNK - len(control.path)
+        self._hole, self._followed = self._drilled(), control.path.followed
         if room <= 0 or not self._may_run():
             return False
         state, rows = self._state(), self._rows.first(room)
-        handed = HandOver(control, state)
+        fill(self._contour, self._followed, self._followed_plane())
+        handed = HandOver(control, state, self._contour)
         why = self._run(state, rows, handed)
         self.full = why == FULL and room - handed.made < CHUNK
         worthwhile = handed.blocks >= _WORTHWHILE
@@ -108,12 +140,12 @@ class PlainRunner:
         control = self._control
         modal, disturbed = control.modal, control.dialect.disturbed
         return (
-            modal.cycle is None
-            and modal.plane in (XY, YZ, ZX)
+            (modal.cycle is None or self._hole is not None)
+            and modal.plane in PLANE_ORDER
             and modal.feed_mode in FEED_FACTORS
             and control.frame.plain
             and modal.correct_center
-            and control.path.open
+            and (control.path.open or self._followed is not None)
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)
             and not (control.axis_limits or control.axis_accelerations)
@@ -123,8 +155,6 @@ class PlainRunner:
     def _constants(self) -> Constants:
         control, rapid = self._control, self._tables.rapid_feed
         return Constants(
-            total=np.array(control.frame.total),
-            plane=np.array(control.modal.plane.axes),
             default_feed=control.settings.default_feed,
             default_rotary_feed=control.settings.default_rotary_feed,
             feed_may_lack=control.report.has_said("no-feed"),
@@ -133,7 +163,25 @@ class PlainRunner:
             last_values=np.array(
                 [control.modal.corner_tolerance, control.acceleration, control.deceleration]
             ),
+            planes=_PLANES,
+            tools=self._tools,
+            longer=self._longer,
+            hole=_NO_HOLE if self._hole is None else _as_columns(self._hole),
+            compensates=self._followed is not None,
+            over=np.zeros(len(control.part)),
         )
+
+    def _drilled(self) -> Drilling | None:
+        """What plain words drill; None where they do not, or the general way must say what is wrong."""
+        control = self._control
+        cycle = control.modal.cycle
+        if cycle is None or not isinstance(cycle.plain, PlainHole):
+            return None
+        try:
+            drilling = cycle.plain.drilling(control)
+        except ProgramError:
+            return None
+        return drilling if len(drilling.stops) <= _MOST_STOPS else None
 
     def _state(self) -> State:
         control = self._control
@@ -144,40 +192,84 @@ class PlainRunner:
             programmed=np.array(control.programmed),
             part=np.array(control.part),
             happened=np.zeros(1, np.int64),
+            registers=self._registers(),
+            shifts=np.array(control.frame.shifts),
+            total=np.array(control.frame.total),
+            label=np.zeros(len(control.part)),
         )
+
+    def _registers(self) -> FloatArray:
+        control = self._control
+        registers = np.zeros(REGISTERS)
+        tools = control.tools
+        for place, value in (
+            (SPINDLE, control.spindle),
+            (SELECTED, tools.selected),
+            (IN_SPINDLE, tools.spindle),
+        ):
+            registers[place] = math.nan if value is None else value
+        for place, number in control.dialect.registers(control).items():
+            registers[place] = number
+        return registers
+
+    def _take_registers(self, registers: list[float]) -> None:
+        control = self._control
+        speed, selected, in_spindle = (
+            None if math.isnan(registers[place]) else registers[place]
+            for place in (SPINDLE, SELECTED, IN_SPINDLE)
+        )
+        control.spindle = speed
+        control.tools.selected = None if selected is None else int(selected)
+        control.tools.spindle = None if in_spindle is None else int(in_spindle)
+        control.dialect.take_registers(control, registers)
 
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control
         put_into_force(control, state.in_force)
         feed = float(state.feed[0])
         control.feed = None if math.isnan(feed) else feed
-        last = _segment(rows) if len(rows.codes) else None
-        functions = rows.functions[: state.happened[0]].tolist()
-        control.path.add_rows(rows.codes, rows.values, rows.positions, last, functions)
+        self._take_registers(state.registers.tolist())
+        control.frame.set_shifts(state.shifts.tolist())
+        happened = int(state.happened[0])
+        pairs = zip(rows.events[:happened].tolist(), rows.amounts[:happened].tolist(), strict=True)
+        last = self._add(rows, [_event(each) for each in pairs])
         control.came_to(state.programmed.tolist(), state.part.tolist(), last)
 
+    def _add(self, rows: Rows, events: list[Event]) -> Segment | None:
+        """Add moves and events to the path; the last programmed move, if any."""
+        path, moves = self._control.path, (rows.codes, rows.values, rows.positions)
+        if self._followed is None:
+            last = segment(Row(*(each[-1] for each in moves))) if len(rows.codes) else None
+            path.add_rows(*moves, events, last)
+            return last
+        held_back = [event for event in events if event.before < 0]
+        gone_on = gone(self._contour, self._followed, held_back)
+        placed = events[: len(events) - len(held_back)]
+        path.add_rows(*moves, placed, gone_on.latest, gone_on)
+        return gone_on.latest
 
-def _segment(rows: Rows) -> Segment:
-    """The last row as the control keeps it."""
-    motion, _, line, block, corner = rows.codes[-1].tolist()
-    *center_and_normal, sweep, feed, tolerance, acceleration, deceleration = rows.values[
-        -1
-    ].tolist()
-    start, end, display = rows.positions[-1].tolist()
-    a, b, c, i, j, k = center_and_normal
-    return Segment(
-        motion=Motion(motion),
-        line=line,
-        block=block,
-        start=start,
-        end=end,
-        display=display,
-        feed=feed,
-        corner=Corner(corner),
-        corner_tolerance=tolerance,
-        acceleration=acceleration,
-        deceleration=deceleration,
-        center=None if math.isnan(a) else (a, b, c),
-        normal=(i, j, k),
-        sweep=sweep,
-    )
+    def _followed_plane(self) -> tuple[int, int, int]:
+        return (0, 1, 2) if self._followed is None else self._control.path.compensation_plane
+
+
+def _as_columns(drilling: Drilling) -> Hole:
+    done = acts(drilling)
+    kinds, values = [int(act) for act, _ in done], [value for _, value in done]
+    return Hole(float(drilling.reference), np.array(kinds), np.array(values, np.float64))
+
+
+_NO_HOLE = _as_columns(Drilling(reference=0.0, bottom=0.0, back=0.0))
+
+
+def _event(row: tuple[list[int], float]) -> Event:
+    """An event of the run; its place counts from the run's first move."""
+    (before, line, kind, number), amount = row
+    if kind == FUNCTION_ALONE:
+        return Function(before, line, f"M{number}", {})
+    if kind == FUNCTION_WITH_SPEED:
+        return Function(before, line, f"M{number}", {} if math.isnan(amount) else {"S": amount})
+    if kind == SPEED:
+        return Function(before, line, "S", {"S": amount})
+    if kind == DWELL:
+        return Dwell(before, line, amount)
+    return Function(before, line, f"{'T' if kind == TOOL else 'H'}{number}", {})

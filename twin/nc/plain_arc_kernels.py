@@ -11,6 +11,7 @@ from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.plain_state import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
+    PLANE,
     UNIT,
     BlockTables,
     Constants,
@@ -70,7 +71,7 @@ def write_arc(
         Whether nothing about the arc is doubtful; if something is, the row is not to be used.
     """
     interpolation = int(modal[INTERPOLATION])
-    plane = constants.plane
+    plane = constants.planes[int(modal[PLANE])]
     first_axis, second_axis, across = int(plane[0]), int(plane[1]), int(plane[2])
     display = rows.positions[row, 2]
     start = (state.programmed[first_axis], state.programmed[second_axis])
@@ -121,9 +122,9 @@ def write_arc(
     if not arcs.distance(start, center) * abs(sweep) > SHORTEST * arcs.TURN:
         return False
     value = rows.values[row]
-    value[first_axis] = center[0] + constants.total[first_axis]
-    value[second_axis] = center[1] + constants.total[second_axis]
-    value[across] = state.programmed[across] + constants.total[across]
+    value[first_axis] = center[0] + state.total[first_axis]
+    value[second_axis] = center[1] + state.total[second_axis]
+    value[across] = state.programmed[across] + state.total[across]
     value[3:6] = 0.0
     value[3 + across] = 1.0
     value[6] = sweep

@@ -10,17 +10,24 @@ import numpy as np
 
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.control_motion import LARGEST_COORDINATE
+from twin.nc.event_kernels import report
+from twin.nc.hole_kernels import write_hole
 from twin.nc.line_reader import LARGEST_LABEL
 from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
 from twin.nc.plain_state import (
     ARC,
     CODES,
     CORNER,
+    CYCLE,
     EARLY,
     FEED_FACTOR,
+    FUNCTION_ALONE,
     INCREMENTAL,
     INTERPOLATION,
     NO_MOTION,
+    PLANE,
+    POLAR_ANGLE,
+    POLAR_RADIUS,
     RAPID_LINE,
     UNIT,
     BlockTables,
@@ -54,6 +61,7 @@ def run_words(
     modal: FloatArray,
     rows: Rows,
     row: int,
+    polar: bool,
 ) -> int:
     """Run one block of words.
 
@@ -64,12 +72,13 @@ def run_words(
         tables: What blocks mean.
         constants: What stays.
         state: What changes.
-        modal: Room for the modal state, shape (7,).
+        modal: Room for the modal state, shape (``MODAL``,).
         rows: Room for the move.
         row: Its row.
+        polar: The label of ``state`` holds where the move goes in the plane.
 
     Returns:
-        The number of rows after it, or ``NOT_PLAIN`` with the state untouched.
+        The number of rows after it, or ``NOT_PLAIN`` or ``NO_ROOM`` with the state untouched.
     """
     copy(state.modal, modal)
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
@@ -90,6 +99,8 @@ def run_words(
                 return NOT_PLAIN
             groups |= group
             modal[tables.field[code]] = tables.value[code]
+            if tables.ends_cycle[code]:
+                modal[CYCLE] = 0.0
         else:
             if seen & (1 << role) or not abs(value) <= LARGEST_COORDINATE:
                 return NOT_PLAIN
@@ -104,27 +115,67 @@ def run_words(
                 function = int(value)
                 if tables.function[function] == NOT_PLAIN:
                     return NOT_PLAIN
-    after = row
-    if seen >> RADIUS:
+    after, happened = row, state.happened[0]
+    drills = modal[CYCLE] != 0.0
+    plane = constants.planes[int(modal[PLANE])]
+    in_plane = seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))) != 0
+    if polar and in_plane:
+        return NOT_PLAIN
+    if drills and (polar or seen >> RADIUS):
+        after = _drill(
+            line,
+            number,
+            roles,
+            values,
+            seen,
+            tables,
+            constants,
+            state,
+            modal,
+            feed,
+            rows,
+            row,
+            polar,
+        )
+        if after < 0:
+            state.happened[0] = happened
+            return after
+    elif polar or seen >> RADIUS:
         after = _move(
-            line, number, roles, values, seen, tables, constants, state, modal, feed, rows, row
+            line,
+            number,
+            roles,
+            values,
+            seen,
+            tables,
+            constants,
+            state,
+            modal,
+            feed,
+            rows,
+            row,
+            polar,
         )
         if after == NOT_PLAIN:
             return NOT_PLAIN
     if function != NOT_PLAIN:
-        happened = rows.functions[state.happened[0]]
-        happened[0] = row if tables.function[function] == EARLY else after
-        happened[1], happened[2] = line, function
-        state.happened[0] += 1
+        before = row if tables.function[function] == EARLY else after
+        report(rows, state, before, line, FUNCTION_ALONE, function, np.nan)
     for word in range(len(roles)):
         if roles[word] == CODE:
             code = int(values[word])
             state.in_force[tables.group[code]] = code
     copy(modal, state.modal)
     state.feed[0] = feed
-    if seen >> RADIUS:
-        copy(rows.positions[row, 1], state.part)
-        copy(rows.positions[row, 2], state.programmed)
+    if polar or seen >> RADIUS:
+        if drills:
+            copy(state.label, state.part)
+            copy(constants.over, state.programmed)
+        else:
+            copy(rows.positions[row, 1], state.part)
+            copy(rows.positions[row, 2], state.programmed)
+        if in_plane:
+            state.registers[POLAR_RADIUS] = state.registers[POLAR_ANGLE] = np.nan
     return after
 
 
@@ -133,6 +184,45 @@ def copy(source: FloatArray, target: FloatArray) -> None:
     """Copy a column."""
     for index in range(len(target)):
         target[index] = source[index]
+
+
+@numba.njit(cache=True)
+def _drill(
+    line: int,
+    number: int,
+    roles: IntArray,
+    values: FloatArray,
+    seen: int,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    modal: FloatArray,
+    feed: float,
+    rows: Rows,
+    row: int,
+    polar: bool,
+) -> int:
+    """Drill the hole that the block names; the number of rows after it, or why not."""
+    across = constants.planes[int(modal[PLANE])][2]
+    axes = len(state.part)
+    if (seen >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or seen & (1 << (AXIS + across)):
+        return NOT_PLAIN
+    if polar:
+        _aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
+    elif not seen >> AXIS:
+        return NOT_PLAIN
+    target = constants.over
+    for axis in range(axes):
+        target[axis] = state.programmed[axis]
+        if polar and axis < 3:
+            target[axis] = state.label[axis]
+        elif seen & (1 << (AXIS + axis)):
+            value = value_of(AXIS + axis, roles, values)
+            value *= modal[UNIT] if tables.linear[axis] else 1.0
+            target[axis] = value + target[axis] if modal[INCREMENTAL] != 0.0 else value
+            if not abs(target[axis]) <= LARGEST_COORDINATE:
+                return NOT_PLAIN
+    return write_hole(line, number, target, constants, state, modal, feed, rows, row)
 
 
 @numba.njit(cache=True, forceinline=True)
@@ -149,26 +239,33 @@ def _move(
     feed: float,
     rows: Rows,
     row: int,
+    polar: bool,
 ) -> int:
     """Write the block's move; the number of rows after it, or ``NOT_PLAIN``."""
     kind = tables.kind[int(modal[INTERPOLATION])]
     if kind == NO_MOTION:
         return NOT_PLAIN
     is_arc = kind == ARC
+    if polar and is_arc:
+        return NOT_PLAIN
     if not is_arc and (seen >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1):
         return NOT_PLAIN
     axes = len(state.part)
     position = rows.positions[row]
     turning, spatial, other = not is_arc, 0.0, 0.0
+    if polar:
+        _aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
     for axis in range(axes):
         target = state.programmed[axis]
-        if seen & (1 << (AXIS + axis)):
+        if polar and axis < 3:
+            target = state.label[axis]
+        elif seen & (1 << (AXIS + axis)):
             value = value_of(AXIS + axis, roles, values)
             value *= modal[UNIT] if tables.linear[axis] else 1.0
             target = value + target if modal[INCREMENTAL] != 0.0 else value
             if not abs(target) <= LARGEST_COORDINATE:
                 return NOT_PLAIN
-        end = target + constants.total[axis]
+        end = target + state.total[axis]
         position[0, axis] = state.part[axis]
         position[1, axis] = end
         position[2, axis] = target
@@ -209,3 +306,37 @@ def _move(
     rows.codes[row, 3] = number
     rows.codes[row, 4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
     return row + 1
+
+
+@numba.njit(cache=True)
+def _aim(
+    plane: IntArray,
+    roles: IntArray,
+    values: FloatArray,
+    seen: int,
+    state: State,
+    modal: FloatArray,
+) -> None:
+    """Abscissa and ordinate of the label and the height of the block, as ``Plane.world`` has them."""
+    abscissa, ordinate = state.label[0], state.label[1]
+    x, y, z = state.programmed[0], state.programmed[1], state.programmed[2]
+    across = plane[2]
+    if seen & (1 << (AXIS + across)):
+        value = value_of(AXIS + across, roles, values) * modal[UNIT]
+        height = value + state.programmed[across] if modal[INCREMENTAL] != 0.0 else value
+        x = height if across == 0 else x
+        y = height if across == 1 else y
+        z = height if across == 2 else z
+    height = _one(across, 0) * x + _one(across, 1) * y + _one(across, 2) * z
+    for axis in range(3):
+        state.label[axis] = (
+            _one(plane[0], axis) * abscissa
+            + _one(plane[1], axis) * ordinate
+            + _one(across, axis) * height
+        )
+
+
+@numba.njit(cache=True)
+def _one(axis: int, other: int) -> float:
+    """Component of the unit vector along an axis."""
+    return 1.0 if axis == other else 0.0

@@ -7,8 +7,36 @@ import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
 
-INTERPOLATION, INCREMENTAL, CENTER_ABSOLUTE, UNIT, CORNER, FEED_FACTOR, NOTHING = range(7)
+(
+    INTERPOLATION,
+    INCREMENTAL,
+    CENTER_ABSOLUTE,
+    UNIT,
+    CORNER,
+    FEED_FACTOR,
+    PLANE,
+    CYCLE,
+    NOTHING,
+) = range(9)
 """Places in the modal state; ``NOTHING`` takes what codes without effect set."""
+MODAL = 9
+(
+    SPINDLE,
+    SELECTED,
+    IN_SPINDLE,
+    OFFSET_ON,
+    POLAR_ABSCISSA,
+    POLAR_ORDINATE,
+    POLAR_RADIUS,
+    POLAR_ANGLE,
+) = range(8)
+"""Places in the registers: S; the tool that comes next and the one that is in use; whether it has
+its offset; the polar origin, the last R and Q. NaN: none."""
+REGISTERS = 8
+MOST_EVENTS = 16
+"""Events of a block."""
+FUNCTION_ALONE, FUNCTION_WITH_SPEED, SPEED, TOOL, AUXILIARY, DWELL = range(6)
+"""Kinds of events: an M function; one with S; S; T; H; a dwell."""
 
 NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
 """Kinds of interpolation."""
@@ -29,6 +57,7 @@ class BlockTables(NamedTuple):
             for codes that do more.
         value: To what it sets it, shape (``CODES``,).
         group: Its modal group, shape (``CODES``,).
+        ends_cycle: Whether each G code ends a drilling cycle, shape (``CODES``,).
         function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
             shape (``CODES``,); ``NOT_PLAIN`` for codes that do more than that.
         kind: Kind of each interpolation, shape (i,).
@@ -44,6 +73,7 @@ class BlockTables(NamedTuple):
     field: IntArray
     value: FloatArray
     group: IntArray
+    ends_cycle: npt.NDArray[np.bool_]
     function: IntArray
     kind: IntArray
     clockwise: npt.NDArray[np.bool_]
@@ -55,12 +85,24 @@ class BlockTables(NamedTuple):
     linear: npt.NDArray[np.bool_]
 
 
+class Hole(NamedTuple):
+    """A drilling cycle in force.
+
+    Attributes:
+        reference: Height of the reference plane [mm].
+        acts: What happens over the hole, as ``drilling.acts`` has it, shape (n,).
+        values: Heights [mm] and seconds, shape (n,).
+    """
+
+    reference: float
+    acts: IntArray
+    values: FloatArray
+
+
 class Constants(NamedTuple):
     """What stays as it is during a run.
 
     Attributes:
-        total: From programmed to part coordinates, shape (k,) [mm or deg].
-        plane: Columns of abscissa, ordinate and normal, shape (3,).
         default_feed: Where none is programmed [mm/min].
         default_rotary_feed: The same for rotary axes alone [deg/min].
         feed_may_lack: A feed move without a programmed feed was warned of already.
@@ -68,28 +110,42 @@ class Constants(NamedTuple):
         own_rapid_feed: Feed per second of rapids that the program paces, 0 where they follow F;
             NaN: ``rapid_feed`` counts.
         last_values: Corner tolerance, acceleration and deceleration of every move, shape (3,).
+        planes: Columns of abscissa, ordinate and normal of each plane, shape (3, 3).
+        tools: Numbers of the tools that the job lists, shape (t,).
+        longer: How much longer each is than the first, shape (t,) [mm].
+        hole: What a block drills while a cycle is in force.
+        compensates: Radius compensation is in force.
+        over: Room for where the hole lies, shape (k,).
     """
 
-    total: FloatArray
-    plane: IntArray
     default_feed: float
     default_rotary_feed: float
     feed_may_lack: bool
     rapid_feed: float
     own_rapid_feed: float
     last_values: FloatArray
+    planes: IntArray
+    tools: FloatArray
+    longer: FloatArray
+    hole: Hole
+    compensates: bool
+    over: FloatArray
 
 
 class State(NamedTuple):
     """What changes during a run; the arrays are written to.
 
     Attributes:
-        modal: The modal state, shape (7,).
+        modal: The modal state, shape (``MODAL``,).
         in_force: G code set in each group during the run, ``NOT_PLAIN`` for none, shape (g,).
         feed: F as programmed, NaN for none, shape (1,).
         programmed: Programmed position, shape (k,) [mm or deg].
         part: Part position, shape (k,) [mm or deg].
-        happened: Functions that were reported, shape (1,).
+        happened: Events that were reported, shape (1,).
+        registers: Shape (``REGISTERS``,).
+        shifts: In the order of ``frame.SHIFTS``, shape (s, k) [mm or deg].
+        total: Their sum, from programmed to part coordinates, shape (k,) [mm or deg].
+        label: The coordinates that a block gives to the place where it stands, shape (k,).
     """
 
     modal: FloatArray
@@ -98,6 +154,10 @@ class State(NamedTuple):
     programmed: FloatArray
     part: FloatArray
     happened: IntArray
+    registers: FloatArray
+    shifts: FloatArray
+    total: FloatArray
+    label: FloatArray
 
 
 class Rows(NamedTuple):
@@ -107,13 +167,15 @@ class Rows(NamedTuple):
         codes: Shape (n, 5).
         values: Shape (n, 11).
         positions: Start, end and display, shape (n, 3, k).
-        functions: Moves before each function, its line and its number, shape (m, 3).
+        events: Moves before each event, its line, kind and number, shape (m, 4).
+        amounts: What it counts, NaN for nothing, shape (m,).
     """
 
     codes: IntArray
     values: FloatArray
     positions: FloatArray
-    functions: IntArray
+    events: IntArray
+    amounts: FloatArray
 
     def first(self, count: int) -> "Rows":
         """The first moves, as columns again."""

@@ -11,30 +11,25 @@ import numpy as np
 from twin.nc import iso
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.control import Control
-from twin.nc.dialect import (
-    Comment,
-    Dialect,
-    FeedMode,
-    GCode,
-    Interpolation,
-    Modal,
-    PlainArc,
-    PlainLine,
-)
+from twin.nc.dialect import Comment, Dialect, FeedMode, GCode, Modal
 from twin.nc.functions import SPINDLE_STARTS
+from twin.nc.interpolation import Interpolation, PlainArc, PlainLine
 from twin.nc.plain_state import (
     ARC,
     CENTER_ABSOLUTE,
     CODES,
     CORNER,
+    CYCLE,
     EARLY,
     FEED_FACTOR,
     FEED_LINE,
     INCREMENTAL,
     INTERPOLATION,
     LATE,
+    MODAL,
     NO_MOTION,
     NOTHING,
+    PLANE,
     RAPID_LINE,
     UNIT,
     BlockTables,
@@ -51,6 +46,7 @@ from twin.nc.plain_words_kernels import (
     RADIUS,
     LineTables,
 )
+from twin.nc.planes import PLANE_ORDER
 from twin.nc.settings import ControlSettings
 
 FEED_FACTORS = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
@@ -88,8 +84,11 @@ class PlainTables:
         self.blocks = self._block_tables(dialect, settings)
 
     def modal(self, modal: Modal) -> FloatArray:
-        """The modal state as the kernel keeps it, shape (7,)."""
-        state = np.zeros(len(_FIELDS) + 1)
+        """The modal state as the kernel keeps it, shape (``MODAL``,)."""
+        state = np.zeros(MODAL)
+        if modal.plane in PLANE_ORDER:
+            state[PLANE] = PLANE_ORDER.index(modal.plane)
+        state[CYCLE] = float(modal.cycle is not None)
         for name, place in _FIELDS.items():
             value = self._number(name, getattr(modal, name))
             state[place] = 0.0 if value is None else value
@@ -108,17 +107,20 @@ class PlainTables:
         field = np.full(CODES, NOT_PLAIN, np.int64)
         value = np.zeros(CODES)
         group = np.zeros(CODES, np.int64)
+        ends_cycle = np.zeros(CODES, np.bool_)
         for number, code in dialect.g.items():
+            group[number] = self.groups.index(code.group)
+            ends_cycle[number] = "cycle" in code.sets and code.sets["cycle"] is None
             meant = self._meaning(code)
             if meant is not None:
                 field[number], value[number] = meant
-                group[number] = self.groups.index(code.group)
         plain = [each.plain if each else None for each in self._interpolations]
         arcs = [each if isinstance(each, PlainArc) else PlainArc(clockwise=False) for each in plain]
         return BlockTables(
             field=field,
             value=value,
             group=group,
+            ends_cycle=ends_cycle,
             function=_functions(dialect),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),

@@ -66,6 +66,8 @@ _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 XY = Plane("XY (G17)", _X, _Y, _Z)
 ZX = Plane("ZX (G18)", _Z, _X, _Y)
 YZ = Plane("YZ (G19)", _Y, _Z, _X)
+PLANE_ORDER = (XY, ZX, YZ)
+"""Those along the axes, as the fast way numbers them."""
 
 
 def plane_with_normal(normal: Vector) -> Plane:

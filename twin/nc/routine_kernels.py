@@ -8,12 +8,16 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from twin.nc.bench_kernels import new_bench
+from twin.nc.bench_kernels import copy_state, new_bench
+from twin.nc.call_kernels import end_parts
 from twin.nc.canonical import IntArray
+from twin.nc.contour_kernels import DOUBTFUL, follow
+from twin.nc.contour_state import ACTIVE, ROOM
+from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
 from twin.nc.lexer import LONGEST_LINE
 from twin.nc.plain_kernels import run_words
-from twin.nc.plain_state import MOST_WORDS, BlockTables, Constants, Rows, State
+from twin.nc.plain_state import MOST_EVENTS, MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import (
     NOT_PLAIN,
     ByteArray,
@@ -22,22 +26,14 @@ from twin.nc.plain_words_kernels import (
     read_words,
 )
 from twin.nc.routine_state import (
-    AGAIN,
-    BACK,
     BLOCKS,
-    CALLS,
-    DEPTH,
     ENDED,
-    FIRST,
     FULL,
     FURTHEST,
-    LAST,
     LEFT,
     LINE,
     MADE,
-    NO_PLACE,
     OFF_PAGE,
-    OWN,
     PART,
     PAUSED,
     STEPS_LEFT,
@@ -85,12 +81,15 @@ def run_program(
     progress, calls = routine.progress, routine.calls
     bench = new_bench(state)
     lines = len(table.first) - 1
+    contour = routine.contour
+    compensates = contour.counts[ACTIVE] != 0
+    most_rows = len(rows.codes) - (ROOM if compensates else 1)
     for _ in range(most):
-        _end_parts(progress, calls)
+        end_parts(progress, calls)
         line = int(progress[LINE])
         if line >= lines:
             return ENDED
-        if progress[MADE] == len(rows.codes) or state.happened[0] == len(rows.functions):
+        if progress[MADE] > most_rows or state.happened[0] + MOST_EVENTS > len(rows.events):
             return FULL
         row = int(table.first[line])
         if row == GENERAL:
@@ -113,6 +112,9 @@ def run_program(
             steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
             if steps_left < 0:
                 return LEFT
+            first_event = state.happened[0]
+            if compensates:
+                copy_state(state, bench.kept)
             made = run_words(
                 line + 1,
                 bench.roles[:words],
@@ -123,9 +125,18 @@ def run_program(
                 bench.modal,
                 rows,
                 progress[MADE],
+                False,
             )
             if made == NOT_PLAIN:
                 return UNREAD
+            if made == NO_ROOM:
+                return FULL
+            if compensates:
+                behind = state.happened[0]
+                made = follow(progress[MADE], made, first_event, behind, contour, rows)
+                if made == DOUBTFUL:
+                    copy_state(bench.kept, state)
+                    return LEFT
             progress[FURTHEST] = max(progress[FURTHEST], place)
             progress[STEPS_LEFT], progress[MADE] = steps_left, made
             progress[BLOCKS] += 1
@@ -140,24 +151,6 @@ def run_program(
         if result != DONE:
             return result
     return PAUSED
-
-
-@numba.njit(cache=True)
-def _end_parts(progress: IntArray, calls: IntArray) -> None:
-    """Parts that end by place and have been passed run again, or go back to their caller."""
-    while progress[CALLS] > 0:
-        call = calls[progress[CALLS] - 1]
-        here = progress[LINE] << PART_BITS | progress[PART]
-        if call[LAST] == NO_PLACE or here <= call[LAST]:
-            return
-        to = call[FIRST]
-        if call[AGAIN] > 0:
-            call[AGAIN] -= 1
-        else:
-            to = call[BACK]
-            progress[CALLS] -= 1
-            progress[DEPTH] -= call[OWN]
-        progress[LINE], progress[PART] = to >> PART_BITS, to & _PART_MASK
 
 
 @numba.njit(cache=True)

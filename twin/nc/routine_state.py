@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.contour_state import Contour
 
 LINE, PART, FURTHEST, STEPS_LEFT, DEPTH, CALLS, BLOCKS, MADE = range(8)
 """Places in the progress: line and part that come next, from 0; the furthest place that was run;
@@ -62,9 +63,11 @@ class Routine(NamedTuple):
         calls: The innermost last, shape (``MOST_CALLS``, ``CALL_COLUMNS``).
         memory: Its variables.
         saved: What its calls put back into force.
+        contour: Radius compensation, in force or not.
     """
 
     progress: IntArray
     calls: IntArray
     memory: Memory
     saved: Saved
+    contour: Contour

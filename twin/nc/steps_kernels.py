@@ -7,14 +7,18 @@ import numba
 import numpy as np
 
 from twin.nc.bench_kernels import Bench, copy_force, copy_state
-from twin.nc.canonical import IntArray
+from twin.nc.call_kernels import innermost
+from twin.nc.contour_kernels import follow, hold_events
+from twin.nc.contour_state import ACTIVE
+from twin.nc.deed_kernels import DOUBTFUL, polar_target, run_deed
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
+from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import PART_BITS, Step, Table
 from twin.nc.memory_kernels import NO_SLOT, load, own_value, slot_of_number, store
 from twin.nc.plain_kernels import run_words
-from twin.nc.plain_state import BlockTables, Constants, Rows, State
-from twin.nc.plain_words_kernels import NOT_PLAIN
+from twin.nc.plain_state import CYCLE, BlockTables, Constants, Rows, State
+from twin.nc.plain_words_kernels import NUMBER
 from twin.nc.routine_state import (
     AGAIN,
     BACK,
@@ -79,7 +83,11 @@ DONE = -1
     _REPEAT,
     _MAY_RETURN,
     _RETURN,
-) = range(len(Step))  # plain integers compile faster than members
+    _KEEP,
+    _RUN_CODES,
+    _RUN_POLAR,
+    _FIRST_DEED,
+) = range(int(Step.IN_FORCE) + 1)  # plain integers compile faster than members
 _PART_MASK = (1 << PART_BITS) - 1
 
 
@@ -114,6 +122,10 @@ def run_steps(
     behind = (line + 1) << PART_BITS if table.argument[row] == 0 else place + 1
     going, range_end, restores = behind, NO_PLACE, NOTHING_RESTORED
     top, words, stores, own, why = 0, 0, 0, 0, LEFT
+    contour, first_event = routine.contour, state.happened[0]
+    kept = compensates = contour.counts[ACTIVE] != 0
+    if compensates:
+        copy_state(state, bench.kept)
     while steps_left >= 0:
         row += 1
         step, argument = table.step[row], table.argument[row]
@@ -187,12 +199,29 @@ def run_steps(
             else:
                 bench.values[words] = table.number[row]
             words += 1
-        elif step in (_RUN, _RUN_OFTEN):
+        elif step == _KEEP and not kept:
+            copy_state(state, bench.kept)
+            kept = True
+        elif step >= _FIRST_DEED:
+            top = run_deed(
+                step, argument, stack, top, line + 1, made, tables, constants, state, rows
+            )
+            if top == DOUBTFUL:
+                break
+        elif step in (_RUN, _RUN_OFTEN, _RUN_CODES, _RUN_POLAR):
+            polar = step == _RUN_POLAR
+            if polar:
+                radius = stack[top - 2 if argument == 3 else top - 1]
+                angle = stack[top - 1]
+                if not polar_target(argument, radius, angle, constants, state):
+                    break
             count = 1.0
             if step == _RUN_OFTEN:
                 top -= 1
                 count = stack[top]
                 if not 1.0 <= count <= table.number[row] or count != np.floor(count):
+                    break
+                if state.modal[CYCLE] != 0.0 or compensates:
                     break
                 if made + count > len(rows.codes):
                     why = FULL
@@ -210,14 +239,24 @@ def run_steps(
                     bench.modal,
                     rows,
                     after,
+                    polar,
                 )
-                if after == NOT_PLAIN:
+                if after < 0:
                     break
-            if after == NOT_PLAIN:
+            if after < 0:
+                why = FULL if after == NO_ROOM else LEFT
                 if step == _RUN_OFTEN:
                     copy_state(bench.kept, state)
                 break
+            if compensates:
+                behind = state.happened[0]
+                after = follow(made, after, first_event, behind, contour, rows)
+                if after == DOUBTFUL:
+                    break
+                first_event = behind
             made = after
+            if step == _RUN_CODES:
+                words = 1 if words > 0 and bench.roles[0] == NUMBER else 0
         elif step == _JUMP:
             going = argument
         elif step in (_JUMP_IF, _JUMP_UNLESS):
@@ -278,11 +317,11 @@ def run_steps(
         elif step == _RANGE:
             range_end = argument
         elif step == _MAY_RETURN:
-            from_part = _innermost(calls, called)
+            from_part = innermost(calls, called)
             if from_part == 0 or calls[from_part - 1, RESTORES] == RESTORED_BY_CONTROL:
                 break
         elif step == _RETURN:
-            called = _innermost(calls, called) - 1
+            called = innermost(calls, called) - 1
             depth -= calls[called, OWN]
             going = calls[called, BACK]
             if calls[called, RESTORES] == RESTORED_HERE:
@@ -294,17 +333,13 @@ def run_steps(
             progress[FURTHEST] = max(progress[FURTHEST], place)
             progress[STEPS_LEFT], progress[DEPTH], progress[CALLS] = steps_left, depth, called
             progress[MADE] = made
+            if compensates:
+                hold_events(contour, rows, first_event, state.happened[0])
             progress[BLOCKS] += 1
             return DONE
+    if kept:
+        copy_state(bench.kept, state)
     while stores > 0:
         stores -= 1
         store(memory, progress[DEPTH], bench.slots[stores], bench.before[stores])
     return why
-
-
-@numba.njit(cache=True)
-def _innermost(calls: IntArray, called: int) -> int:
-    """How many parts are being run up to the innermost that a word ends; 0: there is none."""
-    while called > 0 and calls[called - 1, LAST] != NO_PLACE:
-        called -= 1
-    return called

@@ -8,6 +8,9 @@ import math
 import re
 
 from twin.nc import iso, iso_cycles, iso_decisions
+from twin.nc.block_words import write_words
+from twin.nc.block_writer import BlockWriter
+from twin.nc.blocks import Block
 from twin.nc.canonical import Corner
 from twin.nc.control import Control
 from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
@@ -99,6 +102,15 @@ def excuse(line: str, previous: str) -> str | None:
     return None
 
 
+def translate(control: Control, block: Block, writer: BlockWriter) -> None:
+    """Write a block as instructions for the fast way.
+
+    Raises:
+        NotTranslatableError: It is left to the general way.
+    """
+    write_words(control, block.words, writer)
+
+
 DECISIONS = (
     Decision(
         "Does the recalculation touch G0?",
@@ -173,6 +185,7 @@ GOST = Dialect(
     start=(*iso.START, 64, 98),
     m=iso.M_CODES,
     words=iso.WORDS,
+    word_translations=iso.WORD_TRANSLATIONS,
     word_meanings=iso.WORD_MEANINGS,
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
@@ -182,5 +195,6 @@ GOST = Dialect(
     ),
     memory=Periods,
     before_motion=recalculate_start,
+    translate=translate,
     disturbed=lambda control: bool(_periods(control).by_axis),
 )

@@ -7,21 +7,14 @@ import dataclasses
 
 from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
+from twin.nc.block_words import write_words
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Block
 from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
 from twin.nc.control import Control
-from twin.nc.dialect import (
-    HEADING,
-    Comment,
-    Decision,
-    Dialect,
-    GCode,
-    Interpolation,
-    Mark,
-    PlainArc,
-    Syntax,
-)
+from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
+from twin.nc.instructions import Step
+from twin.nc.interpolation import Interpolation, PlainArc
 
 
 @dataclasses.dataclass(slots=True)
@@ -117,7 +110,9 @@ def translate(control: Control, block: Block, writer: BlockWriter) -> None:
     targets = [word for word in block.words if jumps and word.address == "L"]
     counts = [word for word in block.words if jumps and word.address == "Q"]
     taken = (*jumps[:1], *targets[:1], *counts[:1])
-    writer.words([word for word in block.words if word not in taken])
+    if counts:
+        writer.step(Step.NO_CYCLE)  # a cycle would take Q as its own
+    write_words(control, [word for word in block.words if word not in taken], writer)
     if jumps:
         times = control.number(counts[0]) if counts else 1.0
         if not targets or times < 0.0 or times != int(times):
@@ -266,6 +261,7 @@ MEFI = Dialect(
     start=iso.START,
     m=iso.M_CODES,
     words=iso.WORDS,
+    word_translations=iso.WORD_TRANSLATIONS,
     word_meanings={
         **iso.WORD_MEANINGS,
         "R": "radius of an arc below 180 degrees; reference plane of a cycle",

@@ -3,10 +3,14 @@
 import math
 
 from twin.nc.blends import Blend, BlendKind
+from twin.nc.block_words import BlockWords
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.control import Control
 from twin.nc.dialect import Action
 from twin.nc.dialects.codesys.program import variables
+from twin.nc.frame import SHIFTS
+from twin.nc.instructions import Step
 from twin.nc.offsets import LEFT, RIGHT, compensate
 from twin.nc.planes import XY, plane_with_normal
 
@@ -16,12 +20,49 @@ FIRST_ADDITIONAL = 4
 """Number of the first of them, A (manual)."""
 
 
+def write_no_shift(block: BlockWords, writer: BlockWriter) -> None:
+    """G53.
+
+    Raises:
+        NotTranslatableError: It has words.
+    """
+    if block.words:
+        raise NotTranslatableError
+    write_shift(block, writer)
+
+
 def dwell(control: Control) -> None:
     """G4: wait T seconds."""
     word = control.take("T")
     if word is None or control.number(word) < 0.0:
         control.fail("dwell", "G4 needs T, its seconds", word, hint="write G4 T1")
     control.dwell(control.number(word))
+
+
+def write_dwell(block: BlockWords, writer: BlockWriter) -> None:
+    """G4 T.
+
+    Raises:
+        NotTranslatableError: It has no time.
+    """
+    word = block.take("T")
+    if word is None:
+        raise NotTranslatableError
+    writer.word_value(word)
+    writer.step(Step.DWELL)
+
+
+def write_shift(block: BlockWords, writer: BlockWriter) -> None:
+    """G54; G53, which has no axes."""
+    words = dict(block.take_axes())
+    for index in range(len(block.control.settings.axes)):
+        if index in words:
+            writer.word_value(words[index])
+            writer.step(Step.TO_MILLIMETRES, index)
+        else:
+            writer.number(0.0)
+    writer.step(Step.SHIFT, SHIFTS.index("offset"))
+    writer.step(Step.REFRAME)
 
 
 def free_plane(control: Control) -> None:

@@ -11,7 +11,7 @@ from twin.nc.arcs import (
 from twin.nc.blocks import Word
 from twin.nc.circular import start_and_end, sweep_arc, take_center
 from twin.nc.control import Control
-from twin.nc.dialect import Interpolation, PlainArc
+from twin.nc.interpolation import Interpolation, PlainArc
 
 CENTER_SHARE = 0.1
 """Share by which start and end radius may differ before the arc becomes a line.

@@ -2,7 +2,7 @@
 
 from twin.nc import iso, offsets
 from twin.nc.blends import BlendKind
-from twin.nc.dialect import GCode, Interpolation, PlainLine
+from twin.nc.dialect import GCode
 from twin.nc.dialects.codesys import actions, jumps, program, words
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
@@ -12,6 +12,7 @@ from twin.nc.dialects.codesys.curves import (
     PARABOLA,
     SPATIAL_SPLINE,
 )
+from twin.nc.interpolation import Interpolation, PlainLine
 from twin.nc.linear import rapid_line
 from twin.nc.planes import XY, YZ, ZX, Plane
 
@@ -31,6 +32,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=offsets.refuse_plane_change,
+        translate=iso.write_plane(plane),
         ground="manual",
     )
 
@@ -45,7 +47,12 @@ CODES: dict[int, GCode] = {
     1: _motion("straight line", iso.FEED, seed=True),
     2: _motion("arc clockwise", CLOCKWISE, seed=True),
     3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
-    4: GCode(meaning="dwell, seconds in T", perform=actions.dwell, ground="manual"),
+    4: GCode(
+        meaning="dwell, seconds in T",
+        perform=actions.dwell,
+        translate=actions.write_dwell,
+        ground="manual",
+    ),
     5: _motion("point of a spline in X Y", FLAT_SPLINE),
     6: _motion("parabola: X Y, vertex I J", PARABOLA),
     8: _motion("ellipse clockwise: X Y I J K R", CLOCKWISE_ELLIPSE),
@@ -124,14 +131,27 @@ CODES: dict[int, GCode] = {
         action=actions.smooth_corners(BlendKind.ARC),
         ground="manual",
     ),
-    53: GCode(meaning="coordinate shift off", perform=actions.reset_shift, ground="manual"),
+    53: GCode(
+        meaning="coordinate shift off",
+        perform=actions.reset_shift,
+        translate=actions.write_no_shift,
+        ground="manual",
+    ),
     54: GCode(
-        meaning="coordinate shift, absolute", perform=actions.shift_absolutely, ground="manual"
+        meaning="coordinate shift, absolute",
+        perform=actions.shift_absolutely,
+        translate=actions.write_shift,
+        ground="manual",
     ),
     55: GCode(
         meaning="coordinate shift, relative", perform=actions.shift_relatively, ground="manual"
     ),
-    56: GCode(meaning="set the reference here", perform=actions.set_reference, ground="manual"),
+    56: GCode(
+        meaning="set the reference here",
+        perform=actions.set_reference,
+        translate=offsets.write_label("offset"),
+        ground="manual",
+    ),
     60: GCode(
         meaning="loop avoidance off", group="loops", action=actions.keep_loops, ground="manual"
     ),

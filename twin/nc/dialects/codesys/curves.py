@@ -10,7 +10,7 @@ from collections.abc import Callable
 from twin.nc.arcs import Point, direction
 from twin.nc.circular import start_and_end
 from twin.nc.control import Control
-from twin.nc.dialect import Interpolation
+from twin.nc.interpolation import Interpolation
 from twin.nc.planes import XY
 from twin.nc.splines import CHORD_ERROR, MOST_CHORDS
 

@@ -1,6 +1,7 @@
 """Blocks of CODESYS SoftMotion as instructions for the fast way: the same as its actions do."""
 
 from twin.nc import arithmetic
+from twin.nc.block_words import write_words
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Block, Statement, Word
 from twin.nc.control import Control
@@ -27,7 +28,7 @@ def translate(control: Control, block: Block, writer: BlockWriter) -> None:
     elif _WRITE in codes or _ADD in codes:
         _change(control, _words_beside(block, "OD"), writer, add=_ADD in codes)
     else:
-        writer.words(block.words)
+        write_words(control, block.words, writer)
 
 
 def _words_beside(block: Block, letters: str) -> dict[str, Word]:

@@ -7,12 +7,20 @@ from twin.nc.dialects.fagor8070 import (
     arcs,
     corners,
     frames,
+    memory,
     statements,
     subroutines,
     translation,
     variables,
 )
-from twin.nc.dialects.fagor8070.codes import CODES, INSTEAD, auxiliary, plain_dwell
+from twin.nc.dialects.fagor8070.codes import (
+    CODES,
+    INSTEAD,
+    auxiliary,
+    plain_dwell,
+    write_auxiliary,
+    write_plain_dwell,
+)
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import with_globals
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
@@ -62,7 +70,12 @@ FAGOR8070 = Dialect(
     start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
     m={
         **iso.M_CODES,
-        6: MCode(meaning="tool change", action=frames.change_tool, ground="manual"),
+        6: MCode(
+            meaning="tool change",
+            action=frames.change_tool,
+            translate=frames.write_tool_change,
+            ground="manual",
+        ),
         17: MCode(
             meaning="end of subroutine",
             late=True,
@@ -91,6 +104,13 @@ FAGOR8070 = Dialect(
         "G04": plain_dwell,
         "G159": frames.numbered_offset,
         "G263": arcs.set_circle_radius,
+    },
+    word_translations={
+        "S": iso.write_spindle,
+        "T": frames.write_tool,
+        "D": frames.write_tool_offset,
+        "H": write_auxiliary,
+        "G04": write_plain_dwell,
     },
     statements=statements.STATEMENTS,
     other_statement=statements.other_statement,
@@ -150,4 +170,6 @@ FAGOR8070 = Dialect(
     finish=statements.warn_of_missing_end,
     translate=translation.translate,
     disturbed=acts_on_plain_blocks,
+    registers=memory.registers,
+    take_registers=memory.take_registers,
 )

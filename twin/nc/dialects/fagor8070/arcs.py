@@ -28,9 +28,9 @@ from twin.nc.circular import (
     take_center,
 )
 from twin.nc.control import Control
-from twin.nc.dialect import Interpolation, PlainLine
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
+from twin.nc.interpolation import Interpolation, PlainLine
 
 HELIX_ANGLE = 0.1
 """A helix whose pitch misses its end point by more than this earns a warning [deg]."""

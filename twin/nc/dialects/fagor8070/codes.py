@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 
-from twin.nc import iso_cycles, offsets
+from twin.nc import iso, iso_cycles, offsets
+from twin.nc.block_words import BlockWords
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.canonical import Corner
 from twin.nc.control import Control
@@ -10,10 +12,12 @@ from twin.nc.dialect import (
     Action,
     FeedMode,
     GCode,
+    Translation,
 )
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar
 from twin.nc.dialects.fagor8070.cycles import CYCLES
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.instructions import Step
 from twin.nc.planes import XY, YZ, ZX, Plane
 
 
@@ -23,6 +27,32 @@ def dwell(control: Control) -> None:
     if word is None or control.number(word) < 0.0:
         control.fail("dwell", "G04 needs its seconds", word, hint="write G04 K1.5 or G04 1.5")
     control.dwell(control.number(word))
+
+
+def write_dwell(block: BlockWords, writer: BlockWriter) -> None:
+    """G04 K, for the fast way.
+
+    Raises:
+        NotTranslatableError: It has no time.
+    """
+    word = block.take("K")
+    if word is None:
+        raise NotTranslatableError
+    writer.word_value(word)
+    writer.step(Step.DWELL)
+
+
+def write_plain_dwell(block: BlockWords, writer: BlockWriter) -> None:
+    """G04 1.5, for the fast way.
+
+    Raises:
+        NotTranslatableError: It does not stand alone.
+    """
+    word = block.words.pop("G04")
+    if block.words or block.codes or block.functions:
+        raise NotTranslatableError
+    writer.word_value(word)
+    writer.step(Step.DWELL)
 
 
 def plain_dwell(control: Control, word: Word) -> None:
@@ -35,6 +65,12 @@ def plain_dwell(control: Control, word: Word) -> None:
 def auxiliary(control: Control, word: Word) -> None:
     """H: an auxiliary function of the machine."""
     control.function(f"H{control.number(word):g}", {})
+
+
+def write_auxiliary(block: BlockWords, writer: BlockWriter) -> None:
+    """H, for the fast way."""
+    writer.word_value(block.words.pop("H"))
+    writer.step(Step.AUXILIARY)
 
 
 def _compensate(side: float) -> Action:
@@ -63,6 +99,16 @@ def forget_polar_values(action: Action | None) -> Action:
     return both
 
 
+def _and_forget_polar(translation: Translation | None) -> Translation:
+    assert translation is not None
+
+    def both(block: BlockWords, writer: BlockWriter) -> None:
+        translation(block, writer)
+        writer.step(Step.FORGET_POLAR)
+
+    return both
+
+
 def _g(meaning: str, group: str = "", **sets: object) -> GCode:
     return GCode(meaning=meaning, group=group, sets=sets, ground="manual")
 
@@ -86,14 +132,22 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=frames.change_plane,
+        translate=iso.write_plane(plane),
         ground="seed",
     )
 
 
-def _do(meaning: str, action: Action, *, group: str = "", takes: str = "") -> GCode:
+def _do(
+    meaning: str,
+    action: Action,
+    *,
+    group: str = "",
+    takes: str = "",
+    translate: Translation | None = None,
+) -> GCode:
     if takes:
         return GCode(meaning=meaning, group=group, perform=action, takes=takes, ground="manual")
-    return GCode(meaning=meaning, group=group, action=action, ground="manual")
+    return GCode(meaning=meaning, group=group, action=action, translate=translate, ground="manual")
 
 
 def _decided(meaning: str, action: Action) -> GCode:
@@ -127,7 +181,12 @@ CODES: dict[int, GCode] = {
     1: _motion("straight line", arcs.FEED),
     2: _motion("arc clockwise, Cartesian or polar", arcs.CLOCKWISE, seed=True),
     3: _motion("arc counter-clockwise, Cartesian or polar", arcs.COUNTER_CLOCKWISE, seed=True),
-    4: GCode(meaning="dwell, seconds in K or right behind", perform=dwell, ground="manual"),
+    4: GCode(
+        meaning="dwell, seconds in K or right behind",
+        perform=dwell,
+        translate=write_dwell,
+        ground="manual",
+    ),
     5: _g("round corner", "corner", corner=Corner.CONTINUOUS),
     6: _once("centre in absolute coordinates, this block", center_absolute=True),
     7: _g("square corner", "corner", corner=Corner.EXACT_STOP),
@@ -142,7 +201,11 @@ CODES: dict[int, GCode] = {
     18: _plane("plane Z X", ZX),
     19: _plane("plane Y Z", YZ),
     20: GCode(meaning="any plane: X1 Z2", group="plane", action=frames.any_plane, ground="manual"),
-    30: _do("polar origin: I J, or where the tool stands", polar.set_polar_origin),
+    30: _do(
+        "polar origin: I J, or where the tool stands",
+        polar.set_polar_origin,
+        translate=polar.write_polar_origin,
+    ),
     31: _do("temporary polar origin at the arc's centre", polar.temporary_polar_origin),
     33: GCode(meaning="threading", refused="the twin's spindle has no angle", ground="manual"),
     36: _decided("corner rounded by the radius I", corners.round_corner),
@@ -159,6 +222,7 @@ CODES: dict[int, GCode] = {
             f"work offset G{number} of the job",
             forget_polar_values(offsets.OFFSETS[number].action),
             group="offset",
+            translate=_and_forget_polar(offsets.OFFSETS[number].translate),
         )
         for number in range(54, 60)
     },
@@ -178,6 +242,7 @@ CODES: dict[int, GCode] = {
     92: GCode(
         meaning="preset part zero",
         perform=forget_polar_values(offsets.preset),
+        translate=_and_forget_polar(offsets.write_label("preset")),
         ground="manual",
     ),
     93: GCode(
@@ -210,7 +275,12 @@ CODES: dict[int, GCode] = {
     151: GCode(meaning="programming in diameters", refused="a mill has none", ground="manual"),
     152: _g("programming in radii", "diameters"),
     157: GCode(meaning="axes without offset", refused=_UNKNOWN, ground="manual"),
-    158: GCode(meaning="incremental offset", perform=frames.incremental_offset, ground="manual"),
+    158: GCode(
+        meaning="incremental offset",
+        perform=frames.incremental_offset,
+        translate=frames.write_increment,
+        ground="manual",
+    ),
     **_refused("multiple machining", "write the positions one by one", range(160, 166)),
     **_refused("Hirth axes", _UNKNOWN, range(170, 172)),
     174: GCode(meaning="set the machine coordinate", refused=_UNKNOWN, ground="manual"),

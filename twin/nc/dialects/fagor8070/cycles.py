@@ -14,10 +14,11 @@ reference plane, and returns with rapid to C, 1 mm, above where it was.
 from collections.abc import Callable
 
 from twin.nc.control import Control
-from twin.nc.dialect import GCode, Ground, Interpolation
+from twin.nc.dialect import GCode, Ground
 from twin.nc.dialects.fagor8070.pockets import mill_pocket
 from twin.nc.dialects.fagor8070.polar import take_goal
 from twin.nc.drilling import CHIP_CLEARANCE, Drilling, Retract, drill, pecks
+from twin.nc.interpolation import Interpolation, PlainHole
 
 _CLEARANCE = 1.0
 """G82: C where it is missing [mm]."""
@@ -27,7 +28,7 @@ def _cycle(
     number: int,
     meaning: str,
     words: str,
-    perform: Callable[[Control, str], None],
+    interpolation: Callable[[str], Interpolation],
     *,
     lengths: str = "",
     ground: Ground = "decision",
@@ -45,16 +46,28 @@ def _cycle(
                 control.cycle_values[address] = value
         _read_height(control)
 
-    def run(control: Control) -> None:
-        perform(control, f"G{number}")
-
     return GCode(
         meaning=f"{meaning}: Z I {' '.join(words)}".rstrip(),
         group="cycle",
-        sets={"cycle": Interpolation(run)},
+        sets={"cycle": interpolation(f"G{number}")},
         action=start,
         ground=ground,
     )
+
+
+def _holes(make: Callable[[Control, str], Drilling]) -> Callable[[str], Interpolation]:
+    """A cycle that drills."""
+
+    def interpolation(name: str) -> Interpolation:
+        def drilling(control: Control) -> Drilling:
+            return make(control, name)
+
+        def run(control: Control) -> None:
+            drill(control, drilling(control), take_goal(control, arc=False).target)
+
+        return Interpolation(run, plain=PlainHole(drilling))
+
+    return interpolation
 
 
 def _refuse_corner_type(control: Control, words: str) -> None:
@@ -82,24 +95,24 @@ def _read_height(control: Control) -> None:
         values["bottom"] = control.length(depth) + (values["Z"] if relative else 0.0)
 
 
-def _drilling(retract: Retract) -> Callable[[Control, str], None]:
-    def perform(control: Control, name: str) -> None:
+def _drilling(retract: Retract) -> Callable[[Control, str], Drilling]:
+    def make(control: Control, name: str) -> Drilling:
         values = _needed(control, name, "I")
-        _drill(control, name, values["bottom"], retract=retract)
+        return _made(control, name, values["bottom"], retract=retract)
 
-    return perform
+    return make
 
 
-def _equal_pecks(control: Control, name: str) -> None:
+def _equal_pecks(control: Control, name: str) -> Drilling:
     values = _needed(control, name, "IJ")
     depth, surface = abs(values["I"]), values["Z"] - values.get("D", 0.0)
     bottom = surface - depth * values["J"]
     if depth <= 0.0:
         control.fail("cycle-depth", f"{name} needs pecks above 0")
-    _drill(control, name, bottom, stops=pecks(control, surface, bottom, depth))
+    return _made(control, name, bottom, stops=pecks(control, surface, bottom, depth))
 
 
-def _variable_pecks(control: Control, name: str) -> None:
+def _variable_pecks(control: Control, name: str) -> Drilling:
     values = _needed(control, name, "IB")
     surface, factor = values["Z"] - values.get("D", 0.0), values.get("R", 1.0)
     every, lift = values.get("J", 0.0), values.get("H", 0.0)
@@ -109,7 +122,7 @@ def _variable_pecks(control: Control, name: str) -> None:
     stops = pecks(control, surface, values["bottom"], values["B"], factor, values.get("L", 0.0))
     full_every = 1 if lift == 0.0 else int(every) or len(stops) + 1
     clearance = values.get("C", _CLEARANCE)
-    _drill(
+    return _made(
         control,
         name,
         values["bottom"],
@@ -128,7 +141,7 @@ def _needed(control: Control, name: str, addresses: str) -> dict[str, float]:
     return values
 
 
-def _drill(
+def _made(
     control: Control,
     name: str,
     bottom: float,
@@ -138,14 +151,14 @@ def _drill(
     full_every: int = 1,
     lift: float = 0.0,
     clearance: float = CHIP_CLEARANCE,
-) -> None:
+) -> Drilling:
     values = control.cycle_values
     reference = values["Z"]
     if bottom >= reference or values.get("K", 0.0) < 0.0 or clearance < 0.0:
         message = f"{name} must drill downwards, from Z{reference:g} to {bottom:g}"
         control.fail("cycle-depth", message)
     back = reference if control.modal.return_to_reference else max(values["start"], reference)
-    cycle = Drilling(
+    return Drilling(
         reference=reference,
         bottom=bottom,
         back=back,
@@ -156,27 +169,36 @@ def _drill(
         lift=lift,
         retract=retract,
     )
-    drill(control, cycle, take_goal(control, arc=False).target)
 
 
-def _rectangle(control: Control, name: str) -> None:
-    mill_pocket(control, name, circular=False)
+def _pocket(*, circular: bool) -> Callable[[str], Interpolation]:
+    def interpolation(name: str) -> Interpolation:
+        return Interpolation(lambda control: mill_pocket(control, name, circular=circular))
 
-
-def _circle(control: Control, name: str) -> None:
-    mill_pocket(control, name, circular=True)
+    return interpolation
 
 
 CYCLES = {
     80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, ground="manual"),
-    81: _cycle(81, "drilling", "K", _drilling(Retract.RAPID), ground="manual"),
-    82: _cycle(82, "drilling in variable pecks", "BDRLHJCK", _variable_pecks, lengths="BDLHC"),
-    83: _cycle(83, "deep drilling in equal pecks", "JDK", _equal_pecks, lengths="D"),
-    84: _cycle(84, "tapping", "K", _drilling(Retract.REVERSED)),
-    85: _cycle(85, "reaming, back with the feed", "K", _drilling(Retract.FEED)),
-    86: _cycle(86, "boring, back with the spindle stopped", "K", _drilling(Retract.STOPPED)),
-    87: _cycle(
-        87, "rectangular pocket", "DAJKBCLHV", _rectangle, lengths="DJKBCLHV", ground="manual"
+    81: _cycle(81, "drilling", "K", _holes(_drilling(Retract.RAPID)), ground="manual"),
+    82: _cycle(
+        82, "drilling in variable pecks", "BDRLHJCK", _holes(_variable_pecks), lengths="BDLHC"
     ),
-    88: _cycle(88, "circular pocket", "DJBCLHV", _circle, lengths="DJBCLHV", ground="manual"),
+    83: _cycle(83, "deep drilling in equal pecks", "JDK", _holes(_equal_pecks), lengths="D"),
+    84: _cycle(84, "tapping", "K", _holes(_drilling(Retract.REVERSED))),
+    85: _cycle(85, "reaming, back with the feed", "K", _holes(_drilling(Retract.FEED))),
+    86: _cycle(
+        86, "boring, back with the spindle stopped", "K", _holes(_drilling(Retract.STOPPED))
+    ),
+    87: _cycle(
+        87,
+        "rectangular pocket",
+        "DAJKBCLHV",
+        _pocket(circular=False),
+        lengths="DJKBCLHV",
+        ground="manual",
+    ),
+    88: _cycle(
+        88, "circular pocket", "DJBCLHV", _pocket(circular=True), lengths="DJBCLHV", ground="manual"
+    ),
 }

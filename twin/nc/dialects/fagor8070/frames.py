@@ -1,11 +1,14 @@
 """Planes, offsets, mirror, scale and rotation of the Fagor CNC 8070."""
 
 from twin.nc.arcs import direction
+from twin.nc.block_words import BlockWords
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar, reset_polar_origin
-from twin.nc.frame import IDENTITY, Matrix, multiply
+from twin.nc.frame import IDENTITY, SHIFTS, Matrix, multiply
+from twin.nc.instructions import Step
 from twin.nc.offsets import refuse_plane_change, select_offset, set_length, tool_numbered
 from twin.nc.planes import Plane, Vector, cross
 
@@ -191,6 +194,46 @@ def select_tool(control: Control, word: Word) -> None:
     number = tool_numbered(control, word) if control.tools.table else int(control.number(word))
     control.tools.selected = number
     control.function(f"T{number}", {})
+
+
+def write_tool_offset(block: BlockWords, writer: BlockWriter) -> None:
+    """D0, D1, for the fast way.
+
+    Raises:
+        NotTranslatableError: It is neither.
+    """
+    value = block.words.pop("D").value
+    if value not in (0.0, 1.0):
+        raise NotTranslatableError
+    writer.step(Step.OFFSET_ON, int(value == 1.0))
+    writer.step(Step.TOOL_LENGTH)
+
+
+def write_tool(block: BlockWords, writer: BlockWriter) -> None:
+    """T, for the fast way."""
+    writer.word_value(block.words.pop("T"))
+    writer.step(Step.TOOL, 1)
+
+
+def write_tool_change(_block: BlockWords, writer: BlockWriter) -> None:
+    """M06, for the fast way."""
+    writer.step(Step.CHANGE_TOOL)
+    writer.step(Step.OFFSET_ON, 1)
+    writer.step(Step.TOOL_LENGTH)
+
+
+def write_increment(block: BlockWords, writer: BlockWriter) -> None:
+    """G158, for the fast way."""
+    words = dict(block.take_axes())
+    for index in range(len(block.control.settings.axes)):
+        if index in words:
+            writer.word_value(words[index])
+            writer.step(Step.TO_MILLIMETRES, index)
+        else:
+            writer.number(0.0)
+    writer.step(Step.SHIFT, SHIFTS.index("increment"))
+    writer.step(Step.REFRAME)
+    writer.step(Step.FORGET_POLAR)
 
 
 def change_tool(control: Control) -> None:

@@ -1,11 +1,19 @@
 """What only the Fagor CNC 8070 remembers from block to block."""
 
 import dataclasses
+import math
 
 from twin.nc.arcs import Point
 from twin.nc.blocks import Statement
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.structure import Structure
+from twin.nc.plain_state import (
+    OFFSET_ON,
+    POLAR_ABSCISSA,
+    POLAR_ANGLE,
+    POLAR_ORDINATE,
+    POLAR_RADIUS,
+)
 
 ModalCall = tuple[str, dict[str, float], Statement]
 
@@ -58,11 +66,36 @@ def memory_of(control: Control) -> FagorMemory:
 
 
 def acts_on_plain_blocks(control: Control) -> bool:
-    """Polar values, a radius in force, a modal call or module axes: plain blocks heed them."""
+    """A radius in force, a rotation, a modal call or module axes: plain blocks heed them."""
     memory = memory_of(control)
     return (
         memory.temporary
         or memory.modal_call is not None
-        or not (memory.radius is memory.angle is memory.circle_radius is None)
+        or memory.circle_radius is not None
+        or memory.rotation is not None
         or control.settings.module_rotary
     )
+
+
+def registers(control: Control) -> dict[int, float]:
+    """What the fast way is given of it; no polar origin while G53 is in force (E1530)."""
+    memory = memory_of(control)
+    abscissa, ordinate = memory.origin
+    return {
+        OFFSET_ON: float(memory.offset_on),
+        POLAR_ABSCISSA: math.nan if control.active.get("offset") == 53 else abscissa,
+        POLAR_ORDINATE: ordinate,
+        POLAR_RADIUS: math.nan if memory.radius is None else memory.radius,
+        POLAR_ANGLE: math.nan if memory.angle is None else memory.angle,
+    }
+
+
+def take_registers(control: Control, values: list[float]) -> None:
+    """Take it back."""
+    memory = memory_of(control)
+    memory.offset_on = values[OFFSET_ON] != 0.0
+    if not math.isnan(values[POLAR_ABSCISSA]):
+        memory.origin = (values[POLAR_ABSCISSA], values[POLAR_ORDINATE])
+    radius, angle = values[POLAR_RADIUS], values[POLAR_ANGLE]
+    memory.radius = None if math.isnan(radius) else radius
+    memory.angle = None if math.isnan(angle) else angle

@@ -1,6 +1,7 @@
 """Where a block of the Fagor CNC 8070 goes: Cartesian, polar, or a coordinate and an angle."""
 
 import dataclasses
+from collections.abc import Iterable
 
 from twin.nc.arcs import (
     SAME_POINT,
@@ -8,9 +9,12 @@ from twin.nc.arcs import (
     direction,
     distance,
 )
+from twin.nc.block_words import BlockWords, sorted_words
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.instructions import Step
 
 HELIX_ANGLE = 0.1
 """A helix whose pitch misses its end point by more than this earns a warning [deg]."""
@@ -58,6 +62,50 @@ def set_polar_origin(control: Control) -> None:
         origin = (control.length(abscissa), control.length(ordinate))
     memory_of(control).origin = origin
     forget_polar(control)
+
+
+def write_polar_origin(block: BlockWords, writer: BlockWriter) -> None:
+    """G30, for the fast way.
+
+    Raises:
+        NotTranslatableError: Only one of I and J is given, or the block does more.
+    """
+    words = [block.take("I"), block.take("J")]
+    given = [word for word in words if word is not None]
+    if len(given) == 1 or block.words or len(block.codes) > 1:
+        raise NotTranslatableError
+    for word in given:
+        writer.word_value(word)
+    writer.step(Step.POLAR_ORIGIN, len(given))
+
+
+def is_polar(control: Control, words: Iterable[Word]) -> bool:
+    """A block with R or Q goes there, unless it names a coordinate of the plane in force."""
+    addresses = {word.address for word in words}
+    names = control.settings.axes.names
+    abscissa, ordinate, _ = (names[index] for index in control.modal.plane.axes)
+    return not addresses.isdisjoint("RQ") and addresses.isdisjoint((abscissa, ordinate, *"IJK"))
+
+
+def write_polar(control: Control, words: Iterable[Word], writer: BlockWriter) -> None:
+    """Write a polar block for the fast way.
+
+    Raises:
+        NotTranslatableError: It does more than that.
+    """
+    block = sorted_words(control, words)
+    radius, angle, feed = block.take("R"), block.take("Q"), block.take("F")
+    addresses = control.dialect.axis_letters
+    if (
+        block.functions
+        or block.words.keys() - addresses
+        or any(code.translate or code.action or code.perform for _, code in block.codes)
+        or any(word is not None and word.incremental for word in (radius, angle))
+    ):
+        raise NotTranslatableError
+    codes = [word for word, _ in block.codes]
+    writer.codes(codes if feed is None else [*codes, feed])
+    writer.polar(radius, angle, block.words.values())
 
 
 def refuse_origin_by_g93(control: Control) -> None:

@@ -2,14 +2,16 @@
 
 from collections.abc import Callable
 
+from twin.nc.block_words import write_words
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Block, Statement
 from twin.nc.control import Control
-from twin.nc.dialects.fagor8070 import flow, subroutines
+from twin.nc.dialects.fagor8070 import flow, polar, subroutines
 from twin.nc.dialects.fagor8070.subroutines import DEEPEST_CALL
 from twin.nc.dialects.fagor8070.variables import EXPRESSIONS, assignments
 from twin.nc.expressions import Expression
 from twin.nc.flow import Place
+from twin.nc.instructions import Step
 
 _RETURNS = (17.0, 29.0)
 
@@ -45,13 +47,17 @@ def _words(control: Control, block: Block, writer: BlockWriter) -> None:
             writer.value(count)
         else:
             writer.number(count)
+        if any(word.address in control.dialect.word_translations for word in rest):
+            raise NotTranslatableError
         writer.words(rest, often=control.settings.step_limit)
     elif returns:
         writer.may_return()
-        writer.words(rest)
+        write_words(control, rest, writer)
         writer.go_back()
+    elif polar.is_polar(control, rest):
+        polar.write_polar(control, rest, writer)
     else:
-        writer.words(rest)
+        write_words(control, rest, writer)
 
 
 def _assign(control: Control, statement: Statement, writer: BlockWriter) -> None:
@@ -177,6 +183,11 @@ def _return(_control: Control, _statement: Statement, writer: BlockWriter) -> No
     writer.go_back()
 
 
+def _dwell(control: Control, statement: Statement, writer: BlockWriter) -> None:
+    writer.value(control.expression(statement.text, statement.text_column))
+    writer.step(Step.DWELL)
+
+
 _STATEMENTS: dict[str, Callable[[Control, Statement, BlockWriter], None]] = {
     "$IF": _if,
     "$ELSEIF": _leave,
@@ -199,5 +210,6 @@ _STATEMENTS: dict[str, Callable[[Control, Statement, BlockWriter], None]] = {
     "L": _call,
     "#PCALL": _call_with_parameters,
     "#RET": _return,
+    "#TIME": _dwell,
 }
 """The others, which end in diagnostics, events or nothing that is run twice, have no counterpart."""

@@ -1,0 +1,288 @@
+"""What blocks do besides moving and computing, compiled: events, tools, shifts of coordinates, polar moves.
+
+Each is what ``instructions.Step`` says of it; the state is kept before the first of a block.
+"""
+
+import numba
+import numpy as np
+from numba.extending import register_jitable
+
+from twin.nc import arcs
+from twin.nc.canonical import FloatArray
+from twin.nc.control_motion import LARGEST_COORDINATE
+from twin.nc.event_kernels import report
+from twin.nc.frame import SHIFTS
+from twin.nc.instructions import Step
+from twin.nc.plain_state import (
+    AUXILIARY,
+    CYCLE,
+    DWELL,
+    FUNCTION_ALONE,
+    FUNCTION_WITH_SPEED,
+    IN_SPINDLE,
+    INCREMENTAL,
+    OFFSET_ON,
+    PLANE,
+    POLAR_ABSCISSA,
+    POLAR_ANGLE,
+    POLAR_ORDINATE,
+    POLAR_RADIUS,
+    SELECTED,
+    SPEED,
+    SPINDLE,
+    TOOL,
+    UNIT,
+    BlockTables,
+    Constants,
+    Rows,
+    State,
+)
+
+register_jitable(arcs.direction)
+register_jitable(arcs.angle_of)
+
+DOUBTFUL = -1
+_NO_EVENT = -1
+(
+    _IN_FORCE,
+    _PLANE,
+    _FUNCTION,
+    _SPINDLE_FUNCTION,
+    _SPEED,
+    _TOOL,
+    _AUXILIARY,
+    _DWELL,
+    _CHANGE_TOOL,
+    _OFFSET_ON,
+    _TOOL_LENGTH,
+    _SHIFT,
+    _REFRAME,
+    _BEGIN_LABEL,
+    _LABEL,
+    _RELABEL,
+    _POLAR_ORIGIN,
+    _TO_MILLIMETRES,
+    _NO_CYCLE,
+    _FORGET_POLAR,
+) = range(int(Step.IN_FORCE), int(Step.FORGET_POLAR) + 1)
+_LENGTH = SHIFTS.index("length")
+_LARGEST_NUMBER = 1e6
+"""Numbers of tools and of auxiliary functions above this are left to the general way."""
+
+
+@numba.njit(cache=True)
+def run_deed(
+    step: int,
+    argument: int,
+    stack: FloatArray,
+    top: int,
+    line: int,
+    made: int,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    rows: Rows,
+) -> int:
+    """Do one step.
+
+    Args:
+        step: Which.
+        argument: Its argument.
+        stack: Values.
+        top: How many there are.
+        line: The block's line, from 1.
+        made: Moves that were made.
+        tables: What words mean.
+        constants: What stays.
+        state: What changes.
+        rows: Where events go.
+
+    Returns:
+        How many values are left, or ``DOUBTFUL``.
+    """
+    registers = state.registers
+    value = stack[top - 1] if top > 0 else 0.0
+    kind, number, amount = _NO_EVENT, argument, np.nan
+    if step == _IN_FORCE:
+        state.in_force[tables.group[argument]] = argument
+    elif step == _PLANE:
+        if state.modal[CYCLE] != 0.0 or constants.compensates:
+            return DOUBTFUL
+        state.modal[PLANE] = argument
+        if not np.isnan(registers[POLAR_ABSCISSA]):
+            registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
+        registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
+    elif step == _FUNCTION:
+        kind = FUNCTION_ALONE
+    elif step == _SPINDLE_FUNCTION:
+        kind, amount = FUNCTION_WITH_SPEED, registers[SPINDLE]
+    elif step == _SPEED:
+        if value < 0.0:
+            return DOUBTFUL
+        registers[SPINDLE] = value
+        if argument:
+            kind, amount = SPEED, value
+        top -= 1
+    elif step == _TOOL:
+        if not 0.0 <= value <= _LARGEST_NUMBER or value != np.floor(value):
+            return DOUBTFUL
+        if argument and len(constants.tools) > 0 and _tool(constants, value) == DOUBTFUL:
+            return DOUBTFUL
+        registers[SELECTED] = value
+        kind, number = TOOL, int(value)
+        top -= 1
+    elif step == _AUXILIARY:
+        if not 0.0 <= value < _LARGEST_NUMBER or value != np.floor(value):
+            return DOUBTFUL
+        kind, number = AUXILIARY, int(value)
+        top -= 1
+    elif step == _DWELL:
+        if value < 0.0:
+            return DOUBTFUL
+        kind, amount = DWELL, value
+        top -= 1
+    elif step == _CHANGE_TOOL:
+        registers[IN_SPINDLE] = registers[SELECTED]
+    elif step == _OFFSET_ON:
+        registers[OFFSET_ON] = argument
+    elif step == _TOOL_LENGTH:
+        longer = 0.0
+        if registers[OFFSET_ON] != 0.0:
+            tool = _tool(constants, registers[IN_SPINDLE])
+            if tool == DOUBTFUL:
+                return DOUBTFUL
+            longer = constants.longer[tool]
+        state.shifts[_LENGTH, :] = 0.0
+        state.shifts[_LENGTH, 2] = longer
+        reframe(state)
+    elif step == _SHIFT:
+        top -= len(state.part)
+        for axis in range(len(state.part)):
+            state.shifts[argument, axis] = stack[top + axis]
+    elif step == _REFRAME:
+        reframe(state)
+    elif step == _BEGIN_LABEL:
+        for axis in range(len(state.part)):
+            state.label[axis] = state.programmed[axis]
+    elif step == _LABEL:
+        state.label[argument] = value
+        top -= 1
+    elif step == _RELABEL:
+        for axis in range(len(state.part)):
+            here = state.label[axis] + state.total[axis]
+            shift = state.shifts[argument, axis]
+            state.shifts[argument, axis] = shift + state.part[axis] - here
+            state.programmed[axis] = state.label[axis]
+        _add_up(state)
+    elif step == _POLAR_ORIGIN:
+        _set_polar_origin(stack, top, argument, constants, state)
+        top -= argument
+    elif step == _TO_MILLIMETRES:
+        stack[top - 1] = value * (state.modal[UNIT] if tables.linear[argument] else 1.0)
+    elif step == _NO_CYCLE:
+        if state.modal[CYCLE] != 0.0:
+            return DOUBTFUL
+    elif step == _FORGET_POLAR:
+        registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
+    if kind != _NO_EVENT:
+        report(rows, state, made, line, kind, number, amount)
+    return top
+
+
+@numba.njit(cache=True)
+def _tool(constants: Constants, number: float) -> int:
+    """Row of a tool that the job lists, or ``DOUBTFUL``."""
+    for tool in range(len(constants.tools)):
+        if constants.tools[tool] == number:
+            return tool
+    return DOUBTFUL
+
+
+@numba.njit(cache=True)
+def _add_up(state: State) -> None:
+    """The shifts have changed: their sum."""
+    for axis in range(len(state.total)):
+        total = 0.0
+        for shift in range(len(state.shifts)):
+            total += state.shifts[shift, axis]
+        state.total[axis] = total
+
+
+@numba.njit(cache=True)
+def reframe(state: State) -> None:
+    """The shifts have changed: see where the control stands now."""
+    _add_up(state)
+    for axis in range(len(state.total)):
+        state.programmed[axis] = state.part[axis] - state.total[axis]
+
+
+@numba.njit(cache=True)
+def _set_polar_origin(
+    stack: FloatArray, top: int, given: int, constants: Constants, state: State
+) -> None:
+    """The polar origin: two values on the stack, or where the tool stands."""
+    plane = constants.planes[int(state.modal[PLANE])]
+    abscissa, ordinate = _along(state.programmed, plane[0]), _along(state.programmed, plane[1])
+    if given:
+        abscissa, ordinate = stack[top - 2] * state.modal[UNIT], stack[top - 1] * state.modal[UNIT]
+    registers = state.registers
+    if not np.isnan(registers[POLAR_ABSCISSA]):
+        registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE] = abscissa, ordinate
+    registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
+
+
+@numba.njit(cache=True)
+def _along(position: FloatArray, axis: int) -> float:
+    """A coordinate as ``Plane.local`` computes it, the sign of zero included."""
+    x, y, z = position[0], position[1], position[2]
+    if axis == 0:
+        return 1.0 * x + 0.0 * y + 0.0 * z
+    if axis == 1:
+        return 0.0 * x + 1.0 * y + 0.0 * z
+    return 0.0 * x + 0.0 * y + 1.0 * z
+
+
+@numba.njit(cache=True)
+def polar_target(
+    seen: int, radius_word: float, angle_word: float, constants: Constants, state: State
+) -> bool:
+    """Where R and Q lead: ``state.label`` becomes abscissa and ordinate.
+
+    Args:
+        seen: 1 with R, 2 with Q, 3 with both.
+        radius_word: Value of R.
+        angle_word: Value of Q.
+        constants: What stays.
+        state: Its registers get the last R and Q.
+
+    Returns:
+        Whether nothing about it is doubtful.
+    """
+    registers, modal = state.registers, state.modal
+    plane = constants.planes[int(modal[PLANE])]
+    origin = (registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE])
+    if np.isnan(origin[0]):
+        return False
+    start = (_along(state.programmed, plane[0]), _along(state.programmed, plane[1]))
+    radius, angle = registers[POLAR_RADIUS], registers[POLAR_ANGLE]
+    if np.isnan(radius):
+        radius = arcs.distance(origin, start)
+    if np.isnan(angle):
+        angle = arcs.angle_of(start, origin)
+    incremental = modal[INCREMENTAL] != 0.0
+    if seen & 1:
+        value = radius_word * modal[UNIT]
+        radius = radius + value if incremental else value
+        if not 0.0 <= radius <= LARGEST_COORDINATE:
+            return False
+    if seen & 2:
+        angle = angle + angle_word if incremental else angle_word
+        if not abs(angle) <= LARGEST_COORDINATE:
+            return False
+    cosine, sine = arcs.direction(angle)
+    end = (origin[0] + radius * cosine, origin[1] + radius * sine)
+    if arcs.distance(start, end) < arcs.SAME_POINT / 1000.0:
+        end = start
+    state.label[0], state.label[1] = end
+    registers[POLAR_RADIUS], registers[POLAR_ANGLE] = radius, angle
+    return True

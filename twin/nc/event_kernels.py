@@ -1,0 +1,17 @@
+"""Events of the compiled run."""
+
+import numba
+
+from twin.nc.plain_state import Rows, State
+
+
+@numba.njit(cache=True)
+def report(
+    rows: Rows, state: State, before: int, line: int, kind: int, number: int, amount: float
+) -> None:
+    """Write an event."""
+    at = state.happened[0]
+    event = rows.events[at]
+    event[0], event[1], event[2], event[3] = before, line, kind, number
+    rows.amounts[at] = amount
+    state.happened[0] = at + 1
