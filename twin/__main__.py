@@ -10,8 +10,9 @@ import resource
 import signal
 import sys
 
-LEAST_ADDRESS_SPACE = 512_000_000
-"""In less the libraries cannot be loaded, and some of them die of it without a word [bytes]."""
+LEAST_ADDRESS_SPACE = 900_000_000
+"""In less the libraries of a run cannot be loaded, and some die of it without a word, or never come
+to an end [bytes]."""
 
 COLLECT_AFTER = 100_000
 """New objects between two searches for garbage: what libraries make while they load all stays."""

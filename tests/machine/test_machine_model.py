@@ -1,3 +1,6 @@
+from types import SimpleNamespace
+from typing import cast
+
 import mujoco
 import numpy as np
 import pytest
@@ -5,7 +8,7 @@ from machine_fixtures import shipped_machine, write_machine
 
 from twin.errors import ConfigError
 from twin.machine.config import read_machine
-from twin.machine.model import build_spec, drives, physics_model, spindle_over_table_mm
+from twin.machine.model import build_spec, compiled, drives, physics_model, spindle_over_table_mm
 from twin.machine.tool_shape import DefaultTool
 from twin.resources import machine_file, machine_names
 from twin.toolpath.part_frame import PartFrame
@@ -108,3 +111,14 @@ def test_a_model_that_is_no_mjcf_is_refused(tmp_path):
     path.write_text(machine_file("mill4").read_text().replace("scene.xml", "broken.xml"))
     with pytest.raises(ConfigError, match="is not an MJCF model"):
         build_spec(read_machine(path))
+
+
+def test_a_model_that_cannot_be_compiled_without_a_reason_is_refused():
+    machine = read_machine(machine_file(machine_names()[0]))
+
+    def fails() -> mujoco.MjModel:
+        raise RuntimeError("Caught an unknown exception!")
+
+    spec = SimpleNamespace(compile=fails)
+    with pytest.raises(ConfigError, match="so it is where memory runs out"):
+        compiled(cast("mujoco.MjSpec", spec), machine)

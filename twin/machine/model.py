@@ -205,6 +205,12 @@ def compiled(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
         return spec.compile()
     except ValueError as error:
         raise ConfigError(f"{machine.model_path}: does not compile: {error}") from error
+    except RuntimeError as error:
+        # MuJoCo tells what is wrong with a model by ValueError.
+        raise ConfigError(
+            f"{machine.model_path}: MuJoCo could not compile it, and does not say why ({error}); "
+            "so it is where memory runs out"
+        ) from error
 
 
 def drives(machine: Machine, model: mujoco.MjModel) -> tuple[Drive, ...]:
