@@ -58,7 +58,12 @@ def test_what_cannot_be_opened_is_refused(
         assert not message
 
 
-def test_the_room_opens_on_loopback_and_ctrl_c_keeps_the_sheet(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "visited"), [(signal.SIGINT, True), (signal.SIGINT, False), (signal.SIGTERM, False)]
+)
+def test_the_room_opens_on_loopback_and_an_asked_end_keeps_the_sheet(
+    tmp_path: Path, number: signal.Signals, visited: bool
+) -> None:
     command = [sys.executable, "-m", "twin", "train", "mefi_lead", "--out", str(tmp_path)]
     with (
         subprocess.Popen(
@@ -74,11 +79,12 @@ def test_the_room_opens_on_loopback_and_ctrl_c_keeps_the_sheet(tmp_path: Path) -
         assert found, first
         address = urllib.parse.urlsplit(found[1])
         assert address.hostname == "127.0.0.1"
-        page = http.client.HTTPConnection("127.0.0.1", address.port or 0, timeout=PATIENCE_S)
-        page.request("GET", "/")
-        assert page.getresponse().status == 200
-        page.close()
-        twin.send_signal(signal.SIGINT)
+        if visited:
+            page = http.client.HTTPConnection("127.0.0.1", address.port or 0, timeout=PATIENCE_S)
+            page.request("GET", "/")
+            assert page.getresponse().status == 200
+            page.close()
+        twin.send_signal(number)
         rest, errors = twin.communicate(timeout=PATIENCE_S)
     assert twin.returncode == 0, errors
     assert not errors

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import typer
 
+from twin.commands.interruption import let_interruption_stop
 from twin.errors import ExitCode, UsageError
 from twin.training.scene import read_scene, scene_names, scene_path
 from twin.training.texts import LANGUAGES, Language, in_language
@@ -86,17 +87,21 @@ def train(
     browser = find_browser() if window else None
     announce_compilation()
     scene = read_scene(scene_path(name))
-    with open_room(
-        scene,
-        language=language_named(language),
-        host=host or LOOPBACK,
-        port=port,
-        token=token or "",
-        tls=_tls(certificate, key),
-        trainer=trainer,
-        plain=plain,
-        out=out or Path("out") / "training",
-    ) as room:
+    with contextlib.ExitStack() as stack:
+        room = stack.enter_context(
+            open_room(
+                scene,
+                language=language_named(language),
+                host=host or LOOPBACK,
+                port=port,
+                token=token or "",
+                tls=_tls(certificate, key),
+                trainer=trainer,
+                plain=plain,
+                out=out or Path("out") / "training",
+            )
+        )
+        interrupted = stack.enter_context(let_interruption_stop(room.stop))
         typer.echo(f"{scene.name}: open {room.gate.address} in a browser; Ctrl+C ends")
         if room.trainer_gate is not None:
             typer.echo(f"the trainer's own page: {room.trainer_gate.address}")
@@ -105,13 +110,11 @@ def train(
                 "other computers' browsers show the page over https only: give --certificate "
                 "and --key, or lead them here through ssh -L", err=True,
             )  # fmt: skip
-        with contextlib.ExitStack() as stack:
-            if browser is not None:
-                stack.enter_context(open_window(browser, room.gate.address, room.stop))
-            try:
-                room.serve()
-            except KeyboardInterrupt:
-                typer.echo("")
+        if browser is not None:
+            stack.enter_context(open_window(browser, room.gate.address, room.stop))
+        room.serve()
+        if interrupted:
+            typer.echo("")  # the terminal has shown its ^C
         judge = room.session.room.judge
     typer.echo(f"{scene.name}: {judge.score} of {scene.points} points; sheet in {room.folder}")
     return ExitCode.FAILED if judge.over and judge.score < scene.points else ExitCode.OK

@@ -1,0 +1,37 @@
+"""What Ctrl+C does to a command that goes on until somebody ends it."""
+
+import contextlib
+import signal
+from collections.abc import Callable, Iterator
+
+
+@contextlib.contextmanager
+def let_interruption_stop(stop: Callable[[], None]) -> Iterator[list[int]]:
+    """Let the first Ctrl+C, or an asked end, be the regular end, wherever the command is just then.
+
+    The second interrupts whatever is being done, as everywhere else.
+
+    Args:
+        stop: Asks for the end; called between two steps of the main thread, so it may not wait.
+
+    Yields:
+        The signals that came.
+    """
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    came: list[int] = []
+
+    def put_back() -> None:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+    def asked(number: int, _: object) -> None:
+        came.append(number)
+        put_back()
+        stop()
+
+    for number in before:
+        signal.signal(number, asked)
+    try:
+        yield came
+    finally:
+        put_back()
