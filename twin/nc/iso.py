@@ -85,17 +85,17 @@ def write_tool_change(_block: BlockWords, writer: BlockWriter) -> None:
     writer.step(Step.CHANGE_TOOL)
 
 
-def write_dwell(block: BlockWords, writer: BlockWriter) -> None:
-    """G4, for the fast way.
+def write_dwell(letters: str) -> Translation:
+    """A dwell whose time stands in one of these words, for the fast way."""
 
-    Raises:
-        NotTranslatableError: It has no time, or two.
-    """
-    words = [block.words.pop(letter) for letter in "PXF" if letter in block.words]
-    if len(words) != 1:
-        raise NotTranslatableError
-    writer.word_value(words[0])
-    writer.step(Step.DWELL)
+    def write(block: BlockWords, writer: BlockWriter) -> None:
+        words = [block.words.pop(letter) for letter in letters if letter in block.words]
+        if len(words) != 1:
+            raise NotTranslatableError
+        writer.word_value(words[0])
+        writer.step(Step.DWELL)
+
+    return write
 
 
 def write_plane(plane: Plane) -> Translation:
@@ -156,7 +156,7 @@ DWELL = {
         meaning="dwell, seconds in P, X or F",
         perform=dwell_seconds,
         takes="F",
-        translate=write_dwell,
+        translate=write_dwell("PXF"),
     )
 }
 

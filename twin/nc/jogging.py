@@ -15,4 +15,9 @@ def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
     """
     mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
     assert isinstance(mode, FeedMode)
-    return f"N1 G91 G1 {axis}{distance:.6f} F{feed / FEED_FACTORS[mode]:.6f}"
+    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / FEED_FACTORS[mode])}"
+
+
+def _written(number: float) -> str:
+    """A number to a nanometre, without an exponent and without zeros that say nothing."""
+    return f"{number:.6f}".rstrip("0").rstrip(".")

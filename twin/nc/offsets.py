@@ -70,6 +70,18 @@ def write_shift(name: str, values: Iterable[float], writer: BlockWriter) -> None
     writer.step(Step.SHIFT, SHIFTS.index(name))
 
 
+def write_programmed_shift(name: str, block: BlockWords, writer: BlockWriter) -> None:
+    """A shift with the block's values, 0 for the axes that it leaves out, for the fast way."""
+    words = dict(block.take_axes())
+    for index in range(len(block.control.settings.axes)):
+        if index in words:
+            writer.word_value(words[index])
+            writer.step(Step.TO_MILLIMETRES, index)
+        else:
+            writer.number(0.0)
+    writer.step(Step.SHIFT, SHIFTS.index(name))
+
+
 def write_offset(name: str) -> Translation:
     """A work offset of the job, for the fast way."""
 

@@ -44,6 +44,7 @@ from twin.nc.plain_words_kernels import (
     NUMBER,
     RADIUS,
 )
+from twin.nc.plane_kernels import one, place
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
 _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
@@ -213,16 +214,31 @@ def _drill(
         return NOT_PLAIN
     target = constants.over
     for axis in range(axes):
-        target[axis] = state.programmed[axis]
-        if polar and axis < 3:
-            target[axis] = state.label[axis]
-        elif seen & (1 << (AXIS + axis)):
-            value = value_of(AXIS + axis, roles, values)
-            value *= modal[UNIT] if tables.linear[axis] else 1.0
-            target[axis] = value + target[axis] if modal[INCREMENTAL] != 0.0 else value
-            if not abs(target[axis]) <= LARGEST_COORDINATE:
-                return NOT_PLAIN
+        target[axis] = _goal(axis, roles, values, seen, tables, state, modal, polar)
+        if not abs(target[axis]) <= LARGEST_COORDINATE:
+            return NOT_PLAIN
     return write_hole(line, number, target, constants, state, modal, feed, rows, row)
+
+
+@numba.njit(cache=True, forceinline=True)
+def _goal(
+    axis: int,
+    roles: IntArray,
+    values: FloatArray,
+    seen: int,
+    tables: BlockTables,
+    state: State,
+    modal: FloatArray,
+    polar: bool,
+) -> float:
+    """Where the block wants an axis, as programmed; a polar block has aimed already."""
+    if polar and axis < 3:
+        return state.label[axis]
+    if not seen & (1 << (AXIS + axis)):
+        return state.programmed[axis]
+    value = value_of(AXIS + axis, roles, values)
+    value *= modal[UNIT] if tables.linear[axis] else 1.0
+    return value + state.programmed[axis] if modal[INCREMENTAL] != 0.0 else value
 
 
 @numba.njit(cache=True, forceinline=True)
@@ -256,15 +272,9 @@ def _move(
     if polar:
         _aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
     for axis in range(axes):
-        target = state.programmed[axis]
-        if polar and axis < 3:
-            target = state.label[axis]
-        elif seen & (1 << (AXIS + axis)):
-            value = value_of(AXIS + axis, roles, values)
-            value *= modal[UNIT] if tables.linear[axis] else 1.0
-            target = value + target if modal[INCREMENTAL] != 0.0 else value
-            if not abs(target) <= LARGEST_COORDINATE:
-                return NOT_PLAIN
+        target = _goal(axis, roles, values, seen, tables, state, modal, polar)
+        if not abs(target) <= LARGEST_COORDINATE:
+            return NOT_PLAIN
         end = target + state.total[axis]
         position[0, axis] = state.part[axis]
         position[1, axis] = end
@@ -327,16 +337,5 @@ def _aim(
         x = height if across == 0 else x
         y = height if across == 1 else y
         z = height if across == 2 else z
-    height = _one(across, 0) * x + _one(across, 1) * y + _one(across, 2) * z
-    for axis in range(3):
-        state.label[axis] = (
-            _one(plane[0], axis) * abscissa
-            + _one(plane[1], axis) * ordinate
-            + _one(across, axis) * height
-        )
-
-
-@numba.njit(cache=True)
-def _one(axis: int, other: int) -> float:
-    """Component of the unit vector along an axis."""
-    return 1.0 if axis == other else 0.0
+    height = one(across, 0) * x + one(across, 1) * y + one(across, 2) * z
+    place(plane, (abscissa, ordinate), height, state.label)

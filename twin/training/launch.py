@@ -10,6 +10,7 @@ from pathlib import Path
 
 from mujoco.studio import messages, viewer_handle
 
+from twin.nc.jogging import jog_block
 from twin.training.gate import LOOPBACK, Gate
 from twin.training.page import open_page
 from twin.training.panel.panel import Panel
@@ -21,6 +22,8 @@ from twin.training.studio_files import own_files
 from twin.training.texts import Language, in_language
 from twin.training.vocabulary import Words
 
+_EXAMPLE = (10.0, 600.0)
+"""Way [mm] and feed [mm/min] of the block that the empty MDI line shows."""
 _TOKEN_BYTES = 12
 """Length of the trainer's token, made anew for every session."""
 
@@ -96,7 +99,8 @@ def open_room(
     Raises:
         TwinError: The scene does not fit its machine, the port is taken.
     """
-    words = Words(language or scene.file.language, scene.preparation.dialect.name)
+    dialect = scene.preparation.dialect
+    words = Words(language or scene.file.language, dialect.name)
     warm_up(scene)
     session = Session(scene)
     writer = SheetWriter(session, words, out)
@@ -117,7 +121,7 @@ def open_room(
             return trainer_gate is not None and trainer_gate.has_panel and not gate.has_panel
 
         shown = PanelPlugin(
-            Panel(scene.file, words),
+            Panel(scene.file, words, jog_block(dialect, "X", *_EXAMPLE)),
             driver.display,
             scene.file.picture.camera,
             plain=plain,

@@ -29,6 +29,8 @@ _MUSHROOM = 128.0
 class DeskState:
     """What is set at the desk and concerns nobody else."""
 
+    example: str = ""
+    """What the empty MDI line shows."""
     step: float | None = 1.0
     entry: str = ""
     wanted: bool = False
@@ -174,7 +176,7 @@ def build_entry(kit: Kit, words: Words, now: Snapshot, state: DeskState) -> list
         if state.wanted:
             imgui.SetKeyboardFocusHere()
             state.wanted = False
-        _, state.entry = imgui.InputTextWithHint("###entry", "G91 G1 X10 F500", state.entry)
+        _, state.entry = imgui.InputTextWithHint("###entry", state.example, state.entry)
         entered = kit.entered("entry")
         lit = GREEN if state.entry == now.entered else None
         if kit.key("enter", words["enter"], lit=lit) or entered:

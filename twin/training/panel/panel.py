@@ -52,11 +52,18 @@ class Panel:
         width: Of the page in the last frame [px].
     """
 
-    def __init__(self, scene: SceneFile, words: Words) -> None:
+    def __init__(self, scene: SceneFile, words: Words, example: str) -> None:
+        """Prepare it.
+
+        Args:
+            scene: The scene.
+            words: What stands on it.
+            example: A block in the control's language, for the empty MDI line.
+        """
         self._scene = scene
         self._words = words
         self.kit = Kit()
-        self.desk = DeskState()
+        self.desk = DeskState(example=example)
         self.side = SideState()
         self.width = 0.0
 

@@ -9,9 +9,8 @@ from twin.nc.blocks import Word
 from twin.nc.control import Control
 from twin.nc.dialect import Action
 from twin.nc.dialects.codesys.program import variables
-from twin.nc.frame import SHIFTS
 from twin.nc.instructions import Step
-from twin.nc.offsets import LEFT, RIGHT, compensate
+from twin.nc.offsets import LEFT, RIGHT, compensate, write_programmed_shift
 from twin.nc.planes import XY, plane_with_normal
 
 ADDITIONAL = "ABCPQUVW"
@@ -39,29 +38,9 @@ def dwell(control: Control) -> None:
     control.dwell(control.number(word))
 
 
-def write_dwell(block: BlockWords, writer: BlockWriter) -> None:
-    """G4 T.
-
-    Raises:
-        NotTranslatableError: It has no time.
-    """
-    word = block.take("T")
-    if word is None:
-        raise NotTranslatableError
-    writer.word_value(word)
-    writer.step(Step.DWELL)
-
-
 def write_shift(block: BlockWords, writer: BlockWriter) -> None:
     """G54; G53, which has no axes."""
-    words = dict(block.take_axes())
-    for index in range(len(block.control.settings.axes)):
-        if index in words:
-            writer.word_value(words[index])
-            writer.step(Step.TO_MILLIMETRES, index)
-        else:
-            writer.number(0.0)
-    writer.step(Step.SHIFT, SHIFTS.index("offset"))
+    write_programmed_shift("offset", block, writer)
     writer.step(Step.REFRAME)
 
 

@@ -50,7 +50,7 @@ CODES: dict[int, GCode] = {
     4: GCode(
         meaning="dwell, seconds in T",
         perform=actions.dwell,
-        translate=actions.write_dwell,
+        translate=iso.write_dwell("T"),
         ground="manual",
     ),
     5: _motion("point of a spline in X Y", FLAT_SPLINE),

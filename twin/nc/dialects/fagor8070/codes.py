@@ -29,19 +29,6 @@ def dwell(control: Control) -> None:
     control.dwell(control.number(word))
 
 
-def write_dwell(block: BlockWords, writer: BlockWriter) -> None:
-    """G04 K, for the fast way.
-
-    Raises:
-        NotTranslatableError: It has no time.
-    """
-    word = block.take("K")
-    if word is None:
-        raise NotTranslatableError
-    writer.word_value(word)
-    writer.step(Step.DWELL)
-
-
 def write_plain_dwell(block: BlockWords, writer: BlockWriter) -> None:
     """G04 1.5, for the fast way.
 
@@ -184,7 +171,7 @@ CODES: dict[int, GCode] = {
     4: GCode(
         meaning="dwell, seconds in K or right behind",
         perform=dwell,
-        translate=write_dwell,
+        translate=iso.write_dwell("K"),
         ground="manual",
     ),
     5: _g("round corner", "corner", corner=Corner.CONTINUOUS),

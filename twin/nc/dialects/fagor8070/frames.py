@@ -7,9 +7,15 @@ from twin.nc.blocks import Word
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar, reset_polar_origin
-from twin.nc.frame import IDENTITY, SHIFTS, Matrix, multiply
+from twin.nc.frame import IDENTITY, Matrix, multiply
 from twin.nc.instructions import Step
-from twin.nc.offsets import refuse_plane_change, select_offset, set_length, tool_numbered
+from twin.nc.offsets import (
+    refuse_plane_change,
+    select_offset,
+    set_length,
+    tool_numbered,
+    write_programmed_shift,
+)
 from twin.nc.planes import Plane, Vector, cross
 
 OFFSETS_BY_NUMBER = 20
@@ -224,14 +230,7 @@ def write_tool_change(_block: BlockWords, writer: BlockWriter) -> None:
 
 def write_increment(block: BlockWords, writer: BlockWriter) -> None:
     """G158, for the fast way."""
-    words = dict(block.take_axes())
-    for index in range(len(block.control.settings.axes)):
-        if index in words:
-            writer.word_value(words[index])
-            writer.step(Step.TO_MILLIMETRES, index)
-        else:
-            writer.number(0.0)
-    writer.step(Step.SHIFT, SHIFTS.index("increment"))
+    write_programmed_shift("increment", block, writer)
     writer.step(Step.REFRAME)
     writer.step(Step.FORGET_POLAR)
 
