@@ -50,7 +50,7 @@ def piece_limits(
     speeding, braking, readiness = np.zeros(count), np.zeros(count), np.ones(count)
     curved = np.zeros(count, np.bool_)
     for i in range(count):
-        row = int(owner[i])
+        row = max(0, owner[i])
         path_a = stretch[row] * (path[2] if rotary_alone[row] else path[0])
         path_j = stretch[row] * (path[3] if rotary_alone[row] else path[1])
         v, a, j = _straight_limits(
@@ -69,7 +69,7 @@ def piece_limits(
             readiness[i] = 1.0 / (1.0 + a * a / (v * j))
     if np.any(curved):
         reach_velocities(
-            bounds, against, curved, length, out[0], ceilings, axis_acceleration,
+            bounds, against, curved, length, out, ceilings, axis_acceleration,
             speeding, braking, readiness,
         )  # fmt: skip
         _leave_room_for_curves(bounds, against, curved, out, axis_acceleration, axis_jerk)
@@ -99,14 +99,14 @@ def _straight_limits(
         Highest v, as if a were 0; highest a and j, as if v were 0.
     """
     velocity, acceleration, jerk = wanted, path_acceleration, path_jerk
-    square, cube = math.inf, math.inf
-    if bend > 0.0:
+    # Each division waits for a limit that binds.
+    square, cube = wanted * wanted, wanted * wanted * wanted
+    if square * stretch * bend > path_acceleration:
         square = path_acceleration / (stretch * bend)
     for axis in range(len(axis_velocity)):
         first, second, third = bounds[0, axis], bounds[1, axis], bounds[2, axis]
         if first == second == 0.0:
             continue
-        # Each division waits for a limit that binds.
         if velocity * first > axis_velocity[axis]:
             velocity = axis_velocity[axis] / first
         if acceleration * first > axis_acceleration[axis]:
@@ -143,7 +143,7 @@ def _leave_room_for_curves(
         if not curved[i]:
             continue
         v, a, d, j = limits[0, i], limits[1, i], limits[2, i], limits[3, i]
-        mixed = math.inf
+        mixed = max(a, d)
         for axis in range(len(axis_jerk)):
             first, second, third = bounds[i, 0, axis], bounds[i, 1, axis], bounds[i, 2, axis]
             centripetal = second * v * v

@@ -13,7 +13,7 @@ from twin.nc.canonical import FloatArray
 @numba.njit(cache=True, error_model="numpy")
 def reach_velocities(
     bounds: FloatArray, against: npt.NDArray[np.bool_],
-    curved: BoolArray, length: FloatArray, velocity: FloatArray,
+    curved: BoolArray, length: FloatArray, limits: FloatArray,
     ceilings: FloatArray, axis_acceleration: FloatArray, speeding: FloatArray, braking: FloatArray,
     readiness: FloatArray,
 ) -> None:  # fmt: skip
@@ -29,48 +29,48 @@ def reach_velocities(
             shape (n, 2, k).
         curved: Whether any q'' is not 0, shape (n,).
         length: Shape (n,).
-        velocity: Ceilings, lowered along curved pieces, shape (n,).
+        limits: Rows velocity, lowered along curved pieces, acceleration and deceleration without
+            what a curve takes, jerk; shape (4, n).
         ceilings: The same at the pieces' borders, shape (n + 1,).
         axis_acceleration: Shape (k,).
         speeding: Highest a of the path, shape (n,).
         braking: Highest -a of the path, shape (n,).
         readiness: Share of the acceleration that the jerk leaves on average, shape (n,).
     """
-    count = len(length)
+    count, axes = len(length), len(axis_acceleration)
+    velocity = limits[0]
     border = np.zeros(count + 1)
-    for i in range(count + 1):
-        highest = ceilings[i]
-        if i < count:
-            highest = min(highest, velocity[i])
-        if i > 0:
-            highest = min(highest, velocity[i - 1])
+    before = math.inf
+    for i in range(count):
+        highest = min(ceilings[i], velocity[i], before)
         border[i] = 0.5 * highest * highest
+        before = velocity[i]
+    highest = min(ceilings[count], before)
+    border[count] = 0.5 * highest * highest
     for direction in range(2):
+        along = speeding if direction == 0 else braking
         for step in range(count):
             i = step if direction == 0 else count - 1 - step
             known, wanted = (i, i + 1) if direction == 0 else (i + 1, i)
-            if border[known] >= border[wanted]:
+            start = border[known]
+            if start >= border[wanted]:
                 continue
-            along = speeding[i] if direction == 0 else braking[i]
-            highest = border[known] + length[i] * along * readiness[i]
-            for axis in range(len(axis_acceleration)):
+            way = length[i] * readiness[i]
+            highest = start + way * along[i]
+            for axis in range(axes):
                 slope = bounds[i, 0, axis]
                 if slope > 0.0:
-                    usable = axis_acceleration[axis] * readiness[i]
                     curve = bounds[i, 1, axis] if against[i, direction, axis] else 0.0
-                    top = (slope * border[known] + length[i] * usable) / (
-                        slope + 2.0 * length[i] * curve * readiness[i]
-                    )
+                    # The division does not wait for the piece before.
+                    share = 1.0 / (slope + 2.0 * way * curve)
+                    top = (slope * start + way * axis_acceleration[axis]) * share
                     highest = min(highest, top)
-            border[wanted] = min(border[wanted], max(highest, border[known]))
+            border[wanted] = min(border[wanted], max(highest, start))
     for i in range(count):
         # Along a straight piece velocity and acceleration do not compete.
         if curved[i]:
             top = max(border[i], border[i + 1])
-            gain = length[i] * min(speeding[i], braking[i])
-            for axis in range(len(axis_acceleration)):
-                if bounds[i, 0, axis] > 0.0:
-                    gain = min(gain, length[i] * axis_acceleration[axis] / bounds[i, 0, axis])
+            gain = length[i] * min(limits[1, i], limits[2, i])
             if top < 0.5 * gain:
                 # So slow at both ends that the piece's own peak counts.
                 top = 0.5 * (border[i] + border[i + 1] + gain)
