@@ -9,11 +9,12 @@ from collections.abc import Callable
 
 from twin.nc.arcs import SAME_POINT, distance
 from twin.nc.blends import Blend
-from twin.nc.canonical import Axes, Chunk, Event, FloatArray, IntArray, Motion
+from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray, Motion
 from twin.nc.compensation import Compensation, Followed, Refuse, Warn
 from twin.nc.contour import Element
 from twin.nc.contour_columns import Gone
 from twin.nc.even_axes import MOST_MOVES, EvenAxes
+from twin.nc.event_columns import EventRows
 from twin.nc.leads import LeadOut, around, lead_depth
 from twin.nc.loops import Loops
 from twin.nc.move_columns import MoveColumns, Segment
@@ -84,7 +85,7 @@ class Path:
         codes: IntArray,
         values: FloatArray,
         positions: FloatArray,
-        events: list[Event],
+        events: EventRows,
         last: Segment | None,
         gone: Gone | None = None,
     ) -> None:
@@ -98,7 +99,7 @@ class Path:
             last: The last of them, or None.
             gone: How far compensation has come; None: the path is open.
         """
-        self._columns.add_events(events)
+        self._columns.add_event_rows(events)
         if len(codes):
             self._columns.add_rows(codes, values, positions)
             self.position = positions[-1, 1].tolist()
@@ -107,7 +108,7 @@ class Path:
             return
         if last is not None:
             self._before = last
-        if events and events[-1].before == len(codes):
+        if len(events) and events.before[-1] == len(codes):
             self._before = None
 
     @property
@@ -137,7 +138,7 @@ class Path:
             if isinstance(each, Segment):
                 compensation.wait(each)
             else:
-                compensation.event(lambda event=each: self._columns.add_events([event], here=True))
+                compensation.event(lambda event=each: self._columns.add_event(event))
 
     def add_point(self, move: Segment, *, flat: bool) -> None:
         """The straight way to the next point of a spline; ``flat``: its height goes linearly."""
