@@ -1,0 +1,157 @@
+"""A training room in a process of its own, as an operator's is, and what a bench asks of it.
+
+Whoever leads the browser works hard while it clicks: in the room's process that would be measured.
+"""
+
+import contextlib
+import multiprocessing
+import threading
+import time
+from collections.abc import Callable, Iterator
+from multiprocessing.connection import Connection
+from typing import Any
+
+from twin.training.launch import OpenRoom, open_room
+from twin.training.panel.request import do
+from twin.training.scene import read_scene, scene_path
+from twin.training.studio import RequestEvent
+
+SCENE = "mefi_helix_hold"
+OVERRIDE = 20
+"""Feed override, so that the program lasts [%]."""
+FEED = 400.0
+"""The helix's feed at this override [mm/min]."""
+PATIENCE_S = 60.0
+LOOK_S = 0.002
+"""Between two looks at the machine [s]: often enough to tell, and rarely enough not to disturb."""
+GONE = 0.02
+"""Share of the speed that is gone when the machine counts as having reacted."""
+
+
+class MeasuredRoom:
+    """What a bench may ask of the room, called in the room's own process."""
+
+    def __init__(self, room: OpenRoom) -> None:
+        self._room = room
+        room.session.room.feed_override = OVERRIDE
+
+    def address(self) -> str:
+        """Of its page."""
+        return self._room.gate.address
+
+    def heard(self) -> int:
+        """How often the page has spoken."""
+        return self._room.gate.heard
+
+    def width(self) -> float:
+        """Of the panel on the page [px]."""
+        return self._room.shown.panel.width
+
+    def machine_time(self) -> float:
+        """What the machine has lived so far [s]."""
+        return self._room.session.room.time_s
+
+    def place(self, name: str) -> tuple[float, float, float, float]:
+        """Where a key of the panel lies: left, top, right, bottom [px]."""
+        return self._room.shown.panel.kit.places[name]
+
+    def run_steadily(self) -> None:
+        """Let the program run at its steady feed."""
+        if not self._steady():
+            wait_until(lambda: not self._room.session.room.moving)
+            self._ask("cycle_start")
+            wait_until(self._steady)
+
+    def braked(self) -> float:
+        """Wait for the first loss of speed; returns when it was, by ``time.time`` [s]."""
+        steady = self._speed()
+        wait_until(lambda: self._speed() < (1.0 - GONE) * steady)
+        return time.time()
+
+    def reaction_to_request(self) -> float:
+        """Time from the panel's request for a hold to the loss of speed [s]."""
+        begin = time.time()
+        self._ask("feed_hold")
+        return self.braked() - begin
+
+    def _steady(self) -> bool:
+        return abs(self._speed() - FEED) < 0.001 * FEED
+
+    def _ask(self, name: str) -> None:
+        self._room.shown.viewer.send_to_sim(RequestEvent(do(name)))
+        self._room.driver.wake()
+
+    def _speed(self) -> float:
+        velocity = self._room.session.room.samples.joint_velocity[-1, :3]
+        return 60.0 * float((velocity @ velocity) ** 0.5)
+
+
+class RoomProcess:
+    """The other end of it."""
+
+    def __init__(self, line: Connection) -> None:
+        self._line = line
+
+    def begin(self, name: str, *arguments: Any) -> None:
+        """Ask for something that takes a while."""
+        self._line.send((name, arguments))
+
+    def end(self) -> Any:
+        """What it said.
+
+        Raises:
+            TimeoutError: It did not do what it was asked for.
+        """
+        if not self._line.poll(2.0 * PATIENCE_S):
+            raise TimeoutError("the training room did not do what it was asked for")
+        return self._line.recv()
+
+    def ask(self, name: str, *arguments: Any) -> Any:
+        """Ask for something, and wait."""
+        self.begin(name, *arguments)
+        return self.end()
+
+
+@contextlib.contextmanager
+def room_process() -> Iterator[RoomProcess]:
+    """Open the room."""
+    context = multiprocessing.get_context("spawn")
+    here, there = context.Pipe()
+    process = context.Process(target=_live, args=(there,), daemon=True)
+    process.start()
+    there.close()
+    try:
+        yield RoomProcess(here)
+    finally:
+        here.close()
+        process.join(timeout=10.0)
+        process.kill()
+
+
+def _live(line: Connection) -> None:
+    with open_room(read_scene(scene_path(SCENE)), plain=True) as room:
+        measured = MeasuredRoom(room)
+
+        def answer() -> None:
+            # The line breaks when the bench is over.
+            with contextlib.suppress(EOFError):
+                while True:
+                    name, arguments = line.recv()
+                    line.send(getattr(measured, name)(*arguments))
+            room.stop()
+
+        threading.Thread(target=answer, daemon=True).start()
+        room.serve()
+
+
+def wait_until(come: Callable[[], bool]) -> None:
+    """Wait for something.
+
+    Raises:
+        TimeoutError: It did not come.
+    """
+    end = time.perf_counter() + PATIENCE_S
+    while not come():
+        if time.perf_counter() > end:
+            raise TimeoutError("the training room did not do what it was asked for")
+        time.sleep(LOOK_S)
