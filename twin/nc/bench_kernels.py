@@ -2,12 +2,12 @@
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.column_kernels import copy, copy_rows
 from twin.nc.instructions import MOST_STORES, MOST_VALUES
-from twin.nc.plain_kernels import copy
+from twin.nc.kernel import kernel
 from twin.nc.plain_state import MOST_WORDS, State
 
 
@@ -33,7 +33,6 @@ class Bench(NamedTuple):
     before: FloatArray
 
 
-@numba.njit(cache=True)
 def new_bench(state: State) -> Bench:
     """Room to work in, for a state of this size."""
     kept = State(
@@ -59,17 +58,16 @@ def new_bench(state: State) -> Bench:
     )
 
 
-@numba.njit(cache=True)
+@kernel
 def copy_force(
     modal: FloatArray, in_force: IntArray, to_modal: FloatArray, to_force: IntArray
 ) -> None:
     """Copy what is in force."""
     copy(modal, to_modal)
-    for group in range(len(in_force)):
-        to_force[group] = in_force[group]
+    copy(in_force, to_force)
 
 
-@numba.njit(cache=True)
+@kernel
 def copy_state(source: State, target: State) -> None:
     """Copy every column of a state."""
     copy_force(source.modal, source.in_force, target.modal, target.in_force)
@@ -78,5 +76,5 @@ def copy_state(source: State, target: State) -> None:
     copy(source.part, target.part)
     copy(source.registers, target.registers)
     copy(source.total, target.total)
-    target.shifts[:, :] = source.shifts
+    copy_rows(source.shifts, target.shifts)
     target.happened[0] = source.happened[0]

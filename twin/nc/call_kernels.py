@@ -1,9 +1,8 @@
 """Parts of the program that are called or repeated, in the compiled run."""
 
-import numba
-
 from twin.nc.canonical import IntArray
 from twin.nc.instructions import PART_BITS
+from twin.nc.kernel import kernel
 from twin.nc.routine_state import (
     AGAIN,
     BACK,
@@ -20,7 +19,7 @@ from twin.nc.routine_state import (
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@numba.njit(cache=True)
+@kernel
 def end_parts(progress: IntArray, calls: IntArray) -> None:
     """Parts that end by place and have been passed run again, or go back to their caller."""
     while progress[CALLS] > 0:
@@ -38,7 +37,7 @@ def end_parts(progress: IntArray, calls: IntArray) -> None:
         progress[LINE], progress[PART] = to >> PART_BITS, to & _PART_MASK
 
 
-@numba.njit(cache=True)
+@kernel
 def innermost(calls: IntArray, called: int) -> int:
     """How many parts are being run up to the innermost that a word ends; 0: there is none."""
     while called > 0 and calls[called - 1, LAST] != NO_PLACE:

@@ -21,7 +21,7 @@ Conventions, once for all rooms:
 
 import dataclasses
 import enum
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -239,4 +239,4 @@ class Chunk:
     """A few thousand moves with the events between them, in program order."""
 
     moves: Moves
-    events: tuple[Event, ...] = ()
+    events: Sequence[Event] = ()

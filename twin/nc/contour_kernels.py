@@ -4,13 +4,13 @@ Each step is the one of ``Compensation`` between two moves of a contour, with th
 ``curves``. Beginnings, ends, warnings and refusals are left to it.
 """
 
-import numba
 import numpy as np
 from numba.extending import register_jitable
 
 from twin.nc import curves
 from twin.nc.arcs import SAME_POINT, Point, distance
 from twin.nc.canonical import Corner, FloatArray, Shape
+from twin.nc.column_kernels import copy, copy_rows
 from twin.nc.compensation import LARGEST_SQUARE, STRAIGHT_ON
 from twin.nc.contour_state import (
     BOX,
@@ -32,6 +32,7 @@ from twin.nc.contour_state import (
     Row,
 )
 from twin.nc.curves import Box, Curve
+from twin.nc.kernel import kernel
 from twin.nc.plain_state import Rows
 from twin.nc.plane_kernels import along_axis, one, place
 
@@ -65,7 +66,7 @@ _ARC = int(Shape.ARC)
 _EXACT_PATH = int(Corner.EXACT_PATH)
 
 
-@numba.njit(cache=True)
+@kernel
 def hold_events(contour: Contour, rows: Rows, first: int, behind: int) -> None:
     """Events of the block, from ``first`` on, wait for the end of the held move."""
     for event in range(first, behind):
@@ -73,7 +74,7 @@ def hold_events(contour: Contour, rows: Rows, first: int, behind: int) -> None:
         contour.counts[LATEST] = EVENT
 
 
-@numba.njit(cache=True)
+@kernel
 def follow(row: int, made: int, first_event: int, behind: int, contour: Contour, rows: Rows) -> int:
     """Compensate what a block has made.
 
@@ -107,9 +108,9 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
             return DOUBTFUL
         hold_events(contour, rows, first_event, early)
         _keep(rows, row, contour.latest)
-        contour.waiting.codes[waiting] = rows.codes[row]
-        contour.waiting.values[waiting] = rows.values[row]
-        contour.waiting.positions[waiting] = position
+        copy(rows.codes[row], contour.waiting.codes[waiting])
+        copy(rows.values[row], contour.waiting.values[waiting])
+        copy_rows(position, contour.waiting.positions[waiting])
         counts[WAITING], counts[PASSED], counts[OLDEST] = waiting + 1, 0, 0
         counts[LATEST], counts[MOVED] = MOVE, 1
         hold_events(contour, rows, early, behind)
@@ -150,9 +151,9 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
         _roll(contour, corner, rows, after)
         after += 1
         _pass(contour, corner, curves.box_of(corner), held, False)
-    contour.held.codes[:] = contour.latest.codes
-    contour.held.values[:] = contour.latest.values
-    contour.held.positions[:, :] = contour.latest.positions
+    copy(contour.latest.codes, contour.held.codes)
+    copy(contour.latest.values, contour.held.values)
+    copy_rows(contour.latest.positions, contour.held.positions)
     _set_curve(contour.curves[CONTOUR], curve)
     _set_curve(contour.curves[ELEMENT], element)
     contour.start[0], contour.start[1] = follows
@@ -161,14 +162,14 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
     return after
 
 
-@numba.njit(cache=True)
+@kernel
 def _keep(rows: Rows, row: int, kept: Row) -> None:
-    kept.codes[:] = rows.codes[row]
-    kept.values[:] = rows.values[row]
-    kept.positions[:, :] = rows.positions[row]
+    copy(rows.codes[row], kept.codes)
+    copy(rows.values[row], kept.values)
+    copy_rows(rows.positions[row], kept.positions)
 
 
-@numba.njit(cache=True)
+@kernel
 def _curve(column: FloatArray) -> Curve:
     return (
         column[0] != 0.0,
@@ -179,7 +180,7 @@ def _curve(column: FloatArray) -> Curve:
     )
 
 
-@numba.njit(cache=True)
+@kernel
 def _set_curve(column: FloatArray, curve: Curve) -> None:
     column[0] = 1.0 if curve[0] else 0.0
     column[1], column[2] = curve[1]
@@ -188,7 +189,7 @@ def _set_curve(column: FloatArray, curve: Curve) -> None:
     column[7] = curve[4]
 
 
-@numba.njit(cache=True)
+@kernel
 def _corner(
     held: Curve,
     before: Curve,
@@ -225,7 +226,7 @@ def _corner(
     return (found, False, at, at)
 
 
-@numba.njit(cache=True)
+@kernel
 def _crosses_passed(contour: Contour, element: Curve, box: Box, first: int) -> bool:
     """Whether an element crosses one that was passed, from the ``first`` on."""
     passed = contour.passed
@@ -240,7 +241,7 @@ def _crosses_passed(contour: Contour, element: Curve, box: Box, first: int) -> b
     return False
 
 
-@numba.njit(cache=True)
+@kernel
 def _pass(contour: Contour, element: Curve, box: Box, held: Curve, has_contour: bool) -> None:
     """Remember an element that was passed."""
     counts, passed = contour.counts, contour.passed
@@ -256,7 +257,7 @@ def _pass(contour: Contour, element: Curve, box: Box, held: Curve, has_contour: 
     latest[BOX], latest[BOX + 1], latest[BOX + 2], latest[BOX + 3] = box
 
 
-@numba.njit(cache=True)
+@kernel
 def _let_go(
     contour: Contour, before: Curve, part: Curve, at: Point, rows: Rows, row: int, events: int
 ) -> int:
@@ -266,12 +267,14 @@ def _let_go(
     for number in range(counts[WAITING] + 1):
         value, position = rows.values[after], rows.positions[after]
         if number == 0:
-            rows.codes[after], value[:], position[:, :] = held.codes, held.values, held.positions
+            copy(held.codes, rows.codes[after])
+            copy(held.values, value)
+            copy_rows(held.positions, position)
         else:
             waiting = contour.waiting
-            rows.codes[after] = waiting.codes[number - 1]
-            value[:] = waiting.values[number - 1]
-            position[:, :] = waiting.positions[number - 1]
+            copy(waiting.codes[number - 1], rows.codes[after])
+            copy(waiting.values[number - 1], value)
+            copy_rows(waiting.positions[number - 1], position)
         is_arc = number == 0 and before[0]
         if is_arc:
             place(plane, before[3], along_axis(position[0], plane[2]), value)
@@ -279,7 +282,7 @@ def _let_go(
                 value[3 + axis] = one(plane[2], axis)
             value[6] = part[4]
         place(plane, at, along_axis(position[1], plane[2]), position[1])
-        position[0] = contour.here
+        copy(contour.here, position[0])
         stands = not is_arc
         for axis in range(len(contour.here)):
             stands = stands and position[0, axis] == position[1, axis]
@@ -293,21 +296,21 @@ def _let_go(
     return after
 
 
-@numba.njit(cache=True)
+@kernel
 def _roll(contour: Contour, corner: Curve, rows: Rows, row: int) -> None:
     """Go around a corner where the path has come to."""
     held, plane = contour.held, contour.plane
     code, value, position = rows.codes[row], rows.values[row], rows.positions[row]
-    code[:] = held.codes
+    copy(held.codes, code)
     code[1], code[4] = _ARC, _EXACT_PATH
-    value[:] = held.values
+    copy(held.values, value)
     height = along_axis(contour.here, plane[2])
     place(plane, corner[3], height, value)
     for axis in range(3):
         value[3 + axis] = one(plane[2], axis)
     value[6] = corner[4]
-    position[0] = contour.here
-    position[1] = contour.here
+    copy(contour.here, position[0])
+    copy(contour.here, position[1])
     place(plane, corner[2], height, position[1])
     for axis in range(len(contour.here)):
         shown, end = held.positions[2, axis], held.positions[1, axis]

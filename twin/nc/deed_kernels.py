@@ -3,22 +3,19 @@
 Each is what ``instructions.Step`` says of it; the state is kept before the first of a block.
 """
 
-import numba
 import numpy as np
 from numba.extending import register_jitable
 
 from twin.nc import arcs
 from twin.nc.canonical import FloatArray
 from twin.nc.control_motion import LARGEST_COORDINATE
+from twin.nc.event_columns import AUXILIARY, DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED, SPEED, TOOL
 from twin.nc.event_kernels import report
 from twin.nc.frame import SHIFTS
 from twin.nc.instructions import Step
+from twin.nc.kernel import kernel
 from twin.nc.plain_state import (
-    AUXILIARY,
     CYCLE,
-    DWELL,
-    FUNCTION_ALONE,
-    FUNCTION_WITH_SPEED,
     IN_SPINDLE,
     INCREMENTAL,
     OFFSET_ON,
@@ -28,9 +25,7 @@ from twin.nc.plain_state import (
     POLAR_ORDINATE,
     POLAR_RADIUS,
     SELECTED,
-    SPEED,
     SPINDLE,
-    TOOL,
     UNIT,
     BlockTables,
     Constants,
@@ -70,7 +65,7 @@ _LARGEST_NUMBER = 1e6
 """Numbers of tools and of auxiliary functions above this are left to the general way."""
 
 
-@numba.njit(cache=True)
+@kernel
 def run_deed(
     step: int,
     argument: int,
@@ -189,7 +184,7 @@ def run_deed(
     return top
 
 
-@numba.njit(cache=True)
+@kernel
 def _tool(constants: Constants, number: float) -> int:
     """Row of a tool that the job lists, or ``DOUBTFUL``."""
     for tool in range(len(constants.tools)):
@@ -198,7 +193,7 @@ def _tool(constants: Constants, number: float) -> int:
     return DOUBTFUL
 
 
-@numba.njit(cache=True)
+@kernel
 def _add_up(state: State) -> None:
     """The shifts have changed: their sum."""
     for axis in range(len(state.total)):
@@ -208,7 +203,7 @@ def _add_up(state: State) -> None:
         state.total[axis] = total
 
 
-@numba.njit(cache=True)
+@kernel
 def reframe(state: State) -> None:
     """The shifts have changed: see where the control stands now."""
     _add_up(state)
@@ -216,7 +211,7 @@ def reframe(state: State) -> None:
         state.programmed[axis] = state.part[axis] - state.total[axis]
 
 
-@numba.njit(cache=True)
+@kernel
 def _set_polar_origin(
     stack: FloatArray, top: int, given: int, constants: Constants, state: State
 ) -> None:
@@ -231,7 +226,7 @@ def _set_polar_origin(
     registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
 
 
-@numba.njit(cache=True)
+@kernel
 def _along(position: FloatArray, axis: int) -> float:
     """A coordinate as ``Plane.local`` computes it, the sign of zero included."""
     x, y, z = position[0], position[1], position[2]
@@ -242,7 +237,7 @@ def _along(position: FloatArray, axis: int) -> float:
     return 0.0 * x + 0.0 * y + 1.0 * z
 
 
-@numba.njit(cache=True)
+@kernel
 def polar_target(
     seen: int, radius_word: float, angle_word: float, constants: Constants, state: State
 ) -> bool:

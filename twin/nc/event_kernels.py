@@ -1,11 +1,10 @@
 """Events of the compiled run."""
 
-import numba
-
+from twin.nc.kernel import kernel
 from twin.nc.plain_state import Rows, State
 
 
-@numba.njit(cache=True)
+@kernel
 def report(
     rows: Rows, state: State, before: int, line: int, kind: int, number: int, amount: float
 ) -> None:

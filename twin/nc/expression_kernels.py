@@ -6,11 +6,11 @@ A value that is undefined comes out as infinity or NaN, and stops the block befo
 import math
 from collections.abc import Callable, Mapping
 
-import numba
 import numpy as np
 from numba.extending import register_jitable
 
 from twin.nc import arithmetic
+from twin.nc.kernel import arithmetic_kernel
 
 for _shared in (
     arithmetic.inverted_bits,
@@ -107,7 +107,7 @@ THREE: Mapping[Callable[..., float], int] = {arithmetic.limited: 0, arithmetic.c
 """Functions of three values."""
 
 
-@numba.njit(cache=True, error_model="numpy")
+@arithmetic_kernel
 def of_one(function: int, a: float) -> float:
     """The function of ``ONE`` with this number."""
     if function == 0:
@@ -161,7 +161,7 @@ def of_one(function: int, a: float) -> float:
     return math.log10(a)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@arithmetic_kernel
 def of_two(function: int, a: float, b: float) -> float:
     """The function of ``TWO`` with this number."""
     if function == 0:
@@ -207,7 +207,7 @@ def of_two(function: int, a: float, b: float) -> float:
     return math.pow(a, b)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@arithmetic_kernel
 def of_three(function: int, a: float, b: float, c: float) -> float:
     """The function of ``THREE`` with this number."""
     if function == 0:

@@ -1,19 +1,18 @@
 """Holes of drilling cycles, compiled: ``drilling.drill`` for a block that names a hole by plain words."""
 
-import numba
 import numpy as np
 
 from twin.nc.canonical import Corner, FloatArray, Motion, Shape
+from twin.nc.column_kernels import copy
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.drilling import Act
+from twin.nc.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
 from twin.nc.event_kernels import report
+from twin.nc.kernel import kernel
 from twin.nc.plain_arc_kernels import SHORTEST
 from twin.nc.plain_state import (
     CORNER,
-    DWELL,
     FEED_FACTOR,
-    FUNCTION_ALONE,
-    FUNCTION_WITH_SPEED,
     PLANE,
     SPINDLE,
     UNIT,
@@ -31,7 +30,7 @@ _LINE = int(Shape.LINE)
 _STOP = int(Corner.EXACT_STOP)
 
 
-@numba.njit(cache=True)
+@kernel
 def write_hole(
     line: int,
     number: int,
@@ -67,14 +66,17 @@ def write_hole(
         return NOT_PLAIN
     pace = constants.default_feed if np.isnan(feed) else feed * modal[UNIT] * modal[FEED_FACTOR]
     axis = int(constants.planes[int(modal[PLANE])][2])
-    here, part, goal = state.programmed.copy(), state.part.copy(), state.programmed.copy()
+    here, part, goal = constants.room[0], constants.room[1], constants.room[2]
+    copy(state.programmed, here)
+    copy(state.part, part)
+    copy(state.programmed, goal)
     over = max(here[axis], hole.reference)
     after = row
     for step in range(-2, len(hole.acts)):
         act = _UP if step < 0 else hole.acts[step]
         if act <= _DOWN:
             if step == -1:
-                goal[:] = target
+                copy(target, goal)
             goal[axis] = over if step < 0 else hole.values[step]
             rapid = act == _UP
             speed = constants.rapid_feed if rapid else pace
@@ -91,13 +93,13 @@ def write_hole(
             report(rows, state, after, line, kind, act, amount)
     for each in range(row, after):
         rows.codes[each, 2], rows.codes[each, 3] = line, number
-        rows.values[each, 8:] = constants.last_values
-    target[:] = here
-    state.label[:] = part
+        copy(constants.last_values, rows.values[each, 8:])
+    copy(here, target)
+    copy(part, state.label)
     return after
 
 
-@numba.njit(cache=True)
+@kernel
 def _go(
     goal: FloatArray,
     rapid: bool,
@@ -125,10 +127,10 @@ def _go(
     way = spatial if spatial > 0.0 else other
     if 0.0 < way < SHORTEST:
         return NOT_PLAIN
-    here[:] = goal
+    copy(goal, here)
     if way == 0.0:
         return row
-    part[:] = position[1]
+    copy(position[1], part)
     value, code = rows.values[row], rows.codes[row]
     value[:6] = np.nan
     value[6], value[7] = 0.0, pace

@@ -2,17 +2,17 @@
 
 import math
 
-import numba
 import numpy as np
 
 from twin.nc.canonical import IntArray
+from twin.nc.kernel import kernel
 from twin.nc.routine_state import Memory
 
 NO_SLOT = np.iinfo(np.int64).min
 """No variable."""
 
 
-@numba.njit(cache=True)
+@kernel
 def slot_of_number(numbered: IntArray, index: float) -> int:
     """Slot of the variable with a number; ``NO_SLOT`` where it has none."""
     if not 0.0 <= index < len(numbered) or index != np.floor(index):
@@ -22,13 +22,13 @@ def slot_of_number(numbered: IntArray, index: float) -> int:
     return numbered[int(index)]
 
 
-@numba.njit(cache=True)
+@kernel
 def own_value(memory: Memory, depth: int, slot: int) -> float:
     """What the program has given a variable; NaN: nothing."""
     return memory.common[slot] if slot >= 0 else memory.local[depth, ~slot]
 
 
-@numba.njit(cache=True)
+@kernel
 def load(memory: Memory, depth: int, slot: int) -> float:
     """Value of a variable, the job's where it has none of its own; NaN: none at all."""
     value = own_value(memory, depth, slot)
@@ -37,7 +37,7 @@ def load(memory: Memory, depth: int, slot: int) -> float:
     return value
 
 
-@numba.njit(cache=True)
+@kernel
 def store(memory: Memory, depth: int, slot: int, value: float) -> None:
     """Give a variable a value; NaN takes it away."""
     if slot >= 0:

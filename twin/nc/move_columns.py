@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from collections.abc import Iterable
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from twin.nc.canonical import (
     Moves,
     Shape,
 )
+from twin.nc.event_columns import EventRows, Events
 from twin.nc.planes import Vector
 
 CHUNK = 4096
@@ -77,7 +77,8 @@ class MoveColumns:
 
     def _clear(self) -> None:
         self._parts: list[tuple[IntArray, FloatArray, FloatArray]] = []
-        self._events: list[Event] = []
+        self._event_parts: list[list[Event] | EventRows] = []
+        self._event_list: list[Event] = []
         self._count = 0
         self._clear_lists()
 
@@ -135,22 +136,28 @@ class MoveColumns:
             self._parts.append((codes, values, positions))
             self._clear_lists()
 
-    def add_events(self, events: Iterable[Event], *, here: bool = False) -> None:
-        """Append events; their places count from the next move, or are ``here``, before it."""
-        ahead = self._count
-        if here:
-            events = [dataclasses.replace(event, before=ahead) for event in events]
-        elif ahead:
-            events = [dataclasses.replace(event, before=event.before + ahead) for event in events]
-        self._events += events
+    def add_event(self, event: Event) -> None:
+        """Append an event after the moves so far."""
+        self._event_list.append(dataclasses.replace(event, before=self._count))
+
+    def add_event_rows(self, events: EventRows) -> None:
+        """Append events as columns; their places count from the next move."""
+        if len(events):
+            self._close_event_list()
+            self._event_parts.append(events.behind(self._count))
+
+    def _close_event_list(self) -> None:
+        if self._event_list:
+            self._event_parts.append(self._event_list)
+            self._event_list = []
 
     def dwell(self, line: int, seconds: float) -> None:
         """Append a dwell after the moves so far."""
-        self._events.append(Dwell(self._count, line, seconds))
+        self._event_list.append(Dwell(self._count, line, seconds))
 
     def function(self, line: int, word: str, arguments: dict[str, float], at: float) -> None:
         """Append a function after the moves so far."""
-        self._events.append(Function(self._count, line, word, arguments, at))
+        self._event_list.append(Function(self._count, line, word, arguments, at))
 
     def take(self) -> Chunk:
         """All that was appended, as columns; nothing is left here."""
@@ -159,7 +166,8 @@ class MoveColumns:
         none = (np.zeros((0, 5), np.int64), np.zeros((0, 11)), np.zeros((0, 3, k)))
         columns = zip(*(self._parts or [none]), strict=True)
         codes, values, positions = (np.concatenate(each) for each in columns)
-        events = tuple(self._events)
+        self._close_event_list()
+        events = Events(self._event_parts)
         self._clear()
         start, end = positions[:, 0], positions[:, 1]
         shape = codes[:, 1].astype(np.uint8)

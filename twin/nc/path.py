@@ -4,22 +4,20 @@ The stages, in order: splines through points, blends at corners, tool radius com
 out, additional axes that go evenly. Each is there only while a program asks for it, and holds few moves.
 """
 
-import dataclasses
 from collections.abc import Callable
 
-from twin.nc.arcs import SAME_POINT, distance
 from twin.nc.blends import Blend
-from twin.nc.canonical import Axes, Chunk, Event, FloatArray, IntArray, Motion
+from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray, Motion
 from twin.nc.compensation import Compensation, Followed, Refuse, Warn
-from twin.nc.contour import Element
 from twin.nc.contour_columns import Gone
 from twin.nc.even_axes import MOST_MOVES, EvenAxes
-from twin.nc.leads import LeadOut, around, lead_depth
+from twin.nc.event_columns import EventRows
+from twin.nc.lead_out import lead_out
+from twin.nc.leads import LeadOut
 from twin.nc.loops import Loops
 from twin.nc.move_columns import MoveColumns, Segment
 from twin.nc.planes import PLANE_ORDER, Plane
 from twin.nc.rounding import Rounding
-from twin.nc.segments import level_arc
 from twin.nc.splines import Spline
 
 
@@ -84,7 +82,7 @@ class Path:
         codes: IntArray,
         values: FloatArray,
         positions: FloatArray,
-        events: list[Event],
+        events: EventRows,
         last: Segment | None,
         gone: Gone | None = None,
     ) -> None:
@@ -98,7 +96,7 @@ class Path:
             last: The last of them, or None.
             gone: How far compensation has come; None: the path is open.
         """
-        self._columns.add_events(events)
+        self._columns.add_event_rows(events)
         if len(codes):
             self._columns.add_rows(codes, values, positions)
             self.position = positions[-1, 1].tolist()
@@ -107,7 +105,7 @@ class Path:
             return
         if last is not None:
             self._before = last
-        if events and events[-1].before == len(codes):
+        if len(events) and events.before[-1] == len(codes):
             self._before = None
 
     @property
@@ -137,7 +135,7 @@ class Path:
             if isinstance(each, Segment):
                 compensation.wait(each)
             else:
-                compensation.event(lambda event=each: self._columns.add_events([event], here=True))
+                compensation.event(lambda event=each: self._columns.add_event(event))
 
     def add_point(self, move: Segment, *, flat: bool) -> None:
         """The straight way to the next point of a spline; ``flat``: its height goes linearly."""
@@ -211,31 +209,15 @@ class Path:
             self._compensation.add(move)
             return
         if self._leading_out is not None:
-            move = self._lead_out(move, self._leading_out)
+            moves, leads = lead_out(
+                move, self._leading_out, self.position, self._refuse, self._warn
+            )
+            if leads:
+                self._leading_out = None
+            for each in moves:
+                self._emit(each)
+            return
         self._emit(move)
-
-    def _lead_out(self, move: Segment, leading: LeadOut) -> Segment:
-        """The first line in the plane leads out; until then only its normal and others move."""
-        plane = leading.plane
-        if move.center is not None:
-            self._refuse(move, "compensation-end", "compensation must end on a line")
-        start, end, here = (plane.local(each) for each in (move.start, move.end, self.position))
-        if distance(start[:2], end[:2]) >= SAME_POINT:
-            self._leading_out = None
-            arc = None
-            if leading.indirect:
-                arc = around(end[:2], here[:2], leading.contour.end, -leading.aside)
-            if arc is not None:
-                back = Element(here[:2], arc.start, arc.center, -arc.sweep)
-                self._emit(level_arc(move, plane, back, self.position))
-            lead = Element(plane.local(self.position)[:2], end[:2])
-            depth = lead_depth(lead, leading.contour, abs(leading.aside))
-            if depth:
-                message = f"on its way from the contour the tool cuts {depth:.3f} mm into it"
-                self._warn(move, "compensation-lead", message)
-            return dataclasses.replace(move, start=self.position)
-        level = [*plane.world(here.abscissa, here.ordinate, end.height), *move.end[3:]]
-        return dataclasses.replace(move, start=self.position, end=level)
 
     def _happen(self, happen: Callable[[MoveColumns], None]) -> None:
         if self._compensation is None:

@@ -9,27 +9,24 @@ import math
 
 import numpy as np
 
-from twin.nc.canonical import Dwell, Event, FloatArray, Function
+from twin.nc.bench_kernels import new_bench
+from twin.nc.canonical import FloatArray
 from twin.nc.compensation import Followed
 from twin.nc.contour_columns import fill, gone, new_contour, segment
 from twin.nc.contour_state import Row
 from twin.nc.control import Control
 from twin.nc.diagnostics import ProgramError
 from twin.nc.drilling import Drilling, acts
+from twin.nc.event_columns import EventRows
 from twin.nc.hand_over import HandOver, put_into_force
 from twin.nc.interpolation import PlainHole
 from twin.nc.lines import Page
 from twin.nc.move_columns import CHUNK, Segment
 from twin.nc.plain_state import (
-    DWELL,
-    FUNCTION_ALONE,
-    FUNCTION_WITH_SPEED,
     IN_SPINDLE,
     REGISTERS,
     SELECTED,
-    SPEED,
     SPINDLE,
-    TOOL,
     Constants,
     Hole,
     Rows,
@@ -80,6 +77,7 @@ class PlainRunner:
         self._hole: Drilling | None = None
         self._followed: Followed | None = None
         self._contour = new_contour(axes)
+        self._bench = new_bench(self._state())
         self._pause = 1
         self._wait = 0
         self.full = False
@@ -126,6 +124,7 @@ class PlainRunner:
                 rows,
                 instructions.table,
                 handed.routine,
+                self._bench,
                 _MOST,
             )
             if why == OFF_PAGE:
@@ -169,6 +168,7 @@ class PlainRunner:
             hole=_NO_HOLE if self._hole is None else _as_columns(self._hole),
             compensates=self._followed is not None,
             over=np.zeros(len(control.part)),
+            room=np.zeros((3, len(control.part))),
         )
 
     def _drilled(self) -> Drilling | None:
@@ -231,21 +231,20 @@ class PlainRunner:
         self._take_registers(state.registers.tolist())
         control.frame.set_shifts(state.shifts.tolist())
         happened = int(state.happened[0])
-        pairs = zip(rows.events[:happened].tolist(), rows.amounts[:happened].tolist(), strict=True)
-        last = self._add(rows, [_event(each) for each in pairs])
-        control.came_to(state.programmed.tolist(), state.part.tolist(), last)
+        events = EventRows(rows.events[:happened], rows.amounts[:happened])
+        control.came_to(state.programmed.tolist(), state.part.tolist(), self._add(rows, events))
 
-    def _add(self, rows: Rows, events: list[Event]) -> Segment | None:
+    def _add(self, rows: Rows, events: EventRows) -> Segment | None:
         """Add moves and events to the path; the last programmed move, if any."""
         path, moves = self._control.path, (rows.codes, rows.values, rows.positions)
         if self._followed is None:
             last = segment(Row(*(each[-1] for each in moves))) if len(rows.codes) else None
             path.add_rows(*moves, events, last)
             return last
-        held_back = [event for event in events if event.before < 0]
+        placed = int((events.before >= 0).sum())
+        held_back = list(events.part(placed, len(events)))
         gone_on = gone(self._contour, self._followed, held_back)
-        placed = events[: len(events) - len(held_back)]
-        path.add_rows(*moves, placed, gone_on.latest, gone_on)
+        path.add_rows(*moves, events.part(0, placed), gone_on.latest, gone_on)
         return gone_on.latest
 
     def _followed_plane(self) -> tuple[int, int, int]:
@@ -259,17 +258,3 @@ def _as_columns(drilling: Drilling) -> Hole:
 
 
 _NO_HOLE = _as_columns(Drilling(reference=0.0, bottom=0.0, back=0.0))
-
-
-def _event(row: tuple[list[int], float]) -> Event:
-    """An event of the run; its place counts from the run's first move."""
-    (before, line, kind, number), amount = row
-    if kind == FUNCTION_ALONE:
-        return Function(before, line, f"M{number}", {})
-    if kind == FUNCTION_WITH_SPEED:
-        return Function(before, line, f"M{number}", {} if math.isnan(amount) else {"S": amount})
-    if kind == SPEED:
-        return Function(before, line, "S", {"S": amount})
-    if kind == DWELL:
-        return Dwell(before, line, amount)
-    return Function(before, line, f"{'T' if kind == TOOL else 'H'}{number}", {})

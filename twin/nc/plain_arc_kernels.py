@@ -3,11 +3,11 @@
 The geometry is that of ``arcs``, compiled as it stands there.
 """
 
-import numba
 from numba.extending import register_jitable
 
 from twin.nc import arcs
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.kernel import inlined_kernel, kernel
 from twin.nc.plain_state import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
@@ -33,7 +33,7 @@ SHORTEST = 1e-7
 """A move that goes less far [mm or deg], but does go, is left to the control to measure."""
 
 
-@numba.njit(cache=True)
+@kernel
 def value_of(role: int, roles: IntArray, values: FloatArray) -> float:
     """Value of the word with a role; 0 where there is none."""
     for word in range(len(roles)):
@@ -42,7 +42,7 @@ def value_of(role: int, roles: IntArray, values: FloatArray) -> float:
     return 0.0
 
 
-@numba.njit(cache=True, forceinline=True)
+@inlined_kernel
 def write_arc(
     roles: IntArray,
     values: FloatArray,

@@ -5,13 +5,15 @@ doubtful, and computes the same bits. A block in which something is, be it wrong
 left untouched; the control runs it and makes its diagnostics.
 """
 
-import numba
 import numpy as np
 
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
+from twin.nc.column_kernels import copy
 from twin.nc.control_motion import LARGEST_COORDINATE
+from twin.nc.event_columns import FUNCTION_ALONE
 from twin.nc.event_kernels import report
 from twin.nc.hole_kernels import write_hole
+from twin.nc.kernel import inlined_kernel, kernel
 from twin.nc.line_reader import LARGEST_LABEL
 from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
 from twin.nc.plain_state import (
@@ -21,7 +23,6 @@ from twin.nc.plain_state import (
     CYCLE,
     EARLY,
     FEED_FACTOR,
-    FUNCTION_ALONE,
     INCREMENTAL,
     INTERPOLATION,
     NO_MOTION,
@@ -51,7 +52,7 @@ _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
 _STOP = int(Corner.EXACT_STOP)
 
 
-@numba.njit(cache=True, forceinline=True)
+@inlined_kernel
 def run_words(
     line: int,
     roles: IntArray,
@@ -180,14 +181,7 @@ def run_words(
     return after
 
 
-@numba.njit(cache=True)
-def copy(source: FloatArray, target: FloatArray) -> None:
-    """Copy a column."""
-    for index in range(len(target)):
-        target[index] = source[index]
-
-
-@numba.njit(cache=True)
+@kernel
 def _drill(
     line: int,
     number: int,
@@ -220,7 +214,7 @@ def _drill(
     return write_hole(line, number, target, constants, state, modal, feed, rows, row)
 
 
-@numba.njit(cache=True, forceinline=True)
+@inlined_kernel
 def _goal(
     axis: int,
     roles: IntArray,
@@ -241,7 +235,7 @@ def _goal(
     return value + state.programmed[axis] if modal[INCREMENTAL] != 0.0 else value
 
 
-@numba.njit(cache=True, forceinline=True)
+@inlined_kernel
 def _move(
     line: int,
     number: int,
@@ -318,7 +312,7 @@ def _move(
     return row + 1
 
 
-@numba.njit(cache=True)
+@kernel
 def _aim(
     plane: IntArray,
     roles: IntArray,

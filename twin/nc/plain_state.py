@@ -35,8 +35,6 @@ its offset; the polar origin, the last R and Q. NaN: none."""
 REGISTERS = 8
 MOST_EVENTS = 16
 """Events of a block."""
-FUNCTION_ALONE, FUNCTION_WITH_SPEED, SPEED, TOOL, AUXILIARY, DWELL = range(6)
-"""Kinds of events: an M function; one with S; S; T; H; a dwell."""
 
 NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
 """Kinds of interpolation."""
@@ -116,6 +114,7 @@ class Constants(NamedTuple):
         hole: What a block drills while a cycle is in force.
         compensates: Radius compensation is in force.
         over: Room for where the hole lies, shape (k,).
+        room: Room for the way there, shape (3, k).
     """
 
     default_feed: float
@@ -130,6 +129,7 @@ class Constants(NamedTuple):
     hole: Hole
     compensates: bool
     over: FloatArray
+    room: FloatArray
 
 
 class State(NamedTuple):

@@ -7,11 +7,11 @@ holds, right or wrong, is left to that reader: it alone makes diagnostics.
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.kernel import kernel
 from twin.nc.plain_state import MOST_WORDS
 
 ByteArray = npt.NDArray[np.uint8]
@@ -49,7 +49,7 @@ class LineTables(NamedTuple):
     whole_line: npt.NDArray[np.bool_]
 
 
-@numba.njit(cache=True)
+@kernel
 def line_end(data: ByteArray, begin: int, following: int) -> int:
     """End of a line without its CR, LF or CR LF, given where it and the next one begin."""
     end = following
@@ -62,7 +62,7 @@ def line_end(data: ByteArray, begin: int, following: int) -> int:
     return end
 
 
-@numba.njit(cache=True)
+@kernel
 def read_words(
     data: ByteArray, begin: int, end: int, tables: LineTables, roles: IntArray, values: FloatArray
 ) -> int:
@@ -100,7 +100,7 @@ def read_words(
         count += 1
 
 
-@numba.njit(cache=True)
+@kernel
 def skip_blanks(data: ByteArray, at: int, end: int) -> int:
     """The first place from ``at`` on that holds no blank, or ``end``."""
     while at < end and (data[at] == _BLANK or data[at] == _TAB):
@@ -108,7 +108,7 @@ def skip_blanks(data: ByteArray, at: int, end: int) -> int:
     return at
 
 
-@numba.njit(cache=True)
+@kernel
 def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
     """A number and the place behind it; ``NOT_PLAIN`` where there is none or it is very long."""
     negative = at < end and data[at] == _MINUS
@@ -136,7 +136,7 @@ def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
     return (-value if negative else value), at
 
 
-@numba.njit(cache=True)
+@kernel
 def _skip_comment(data: ByteArray, begin: int, at: int, end: int, tables: LineTables) -> int:
     """The place behind the comment that begins here; ``NOT_PLAIN`` where none does."""
     for kind in range(len(tables.openings)):
@@ -157,7 +157,7 @@ def _skip_comment(data: ByteArray, begin: int, at: int, end: int, tables: LineTa
     return NOT_PLAIN
 
 
-@numba.njit(cache=True)
+@kernel
 def _behind(data: ByteArray, at: int, end: int, mark: ByteArray) -> int:
     """The place behind a mark of one or two bytes; ``NOT_PLAIN`` where it does not stand here."""
     if at >= end or data[at] != mark[0]:

@@ -8,13 +8,14 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from twin.nc.bench_kernels import copy_state, new_bench
+from twin.nc.bench_kernels import Bench, copy_state
 from twin.nc.call_kernels import end_parts
 from twin.nc.canonical import IntArray
 from twin.nc.contour_kernels import DOUBTFUL, follow
 from twin.nc.contour_state import ACTIVE, ROOM
 from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
+from twin.nc.kernel import kernel
 from twin.nc.lexer import LONGEST_LINE
 from twin.nc.plain_kernels import run_words
 from twin.nc.plain_state import MOST_EVENTS, MOST_WORDS, BlockTables, Constants, Rows, State
@@ -46,7 +47,7 @@ _BLOCK = int(Step.BLOCK)
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@numba.njit(cache=True)
+@kernel
 def run_program(
     data: ByteArray,
     starts: IntArray,
@@ -58,6 +59,7 @@ def run_program(
     rows: Rows,
     table: Table,
     routine: Routine,
+    bench: Bench,
     most: int,
 ) -> int:
     """Run blocks until one is for the general way or for the translator, or the rows are full.
@@ -73,13 +75,13 @@ def run_program(
         rows: Room for the moves.
         table: What translated lines do.
         routine: How far the program has come.
+        bench: Room to work in.
         most: Lines and blocks after which it pauses.
 
     Returns:
         Why it ended.
     """
     progress, calls = routine.progress, routine.calls
-    bench = new_bench(state)
     lines = len(table.first) - 1
     contour = routine.contour
     compensates = contour.counts[ACTIVE] != 0

@@ -3,7 +3,6 @@
 Each step is what ``instructions.Step`` says of it.
 """
 
-import numba
 import numpy as np
 
 from twin.nc.bench_kernels import Bench, copy_force, copy_state
@@ -15,6 +14,7 @@ from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
 from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import PART_BITS, Step, Table
+from twin.nc.kernel import kernel
 from twin.nc.memory_kernels import NO_SLOT, load, own_value, slot_of_number, store
 from twin.nc.plain_kernels import run_words
 from twin.nc.plain_state import CYCLE, BlockTables, Constants, Rows, State
@@ -91,7 +91,7 @@ DONE = -1
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@numba.njit(cache=True)
+@kernel
 def run_steps(
     row: int,
     table: Table,
