@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twin.columns import Columns, join
+from twin.columns import Columns, Picked, join
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -39,6 +39,25 @@ def test_cut_anywhere_and_joined_it_is_the_same(cuts: list[int]) -> None:
     assert np.array_equal(again.number, whole.number)
     assert np.array_equal(again.inner.value, whole.inner.value)
     assert np.array_equal(again.row, whole.row)
+
+
+@settings(derandomize=True)
+@given(st.lists(st.integers(0, 11), max_size=20), st.lists(st.integers(0, 20), max_size=4))
+def test_picked_rows_cut_and_joined_are_the_same(numbers: list[int], cuts: list[int]) -> None:
+    picked = Picked(np.array(numbers, np.int64), table(12))
+    count = len(numbers)
+    borders = [0, *sorted(min(cut, count) for cut in cuts), count]
+    again = join([picked[begin:end] for begin, end in itertools.pairwise(borders)])
+    assert len(again) == len(picked) == count
+    assert again.whole().number.tolist() == picked.whole().number.tolist() == numbers
+    assert np.array_equal(again.whole().row, picked.whole().row)
+
+
+def test_a_join_keeps_no_rows_that_nothing_picks() -> None:
+    first, second = Picked(np.array([7, 7, 8]), table(12)), Picked(np.array([2, 4]), table(12))
+    both = join([first[1:], second])
+    assert both.row.tolist() == [0, 1, 2, 4]
+    assert both.table.number.tolist() == [7, 8, 2, 3, 4]
 
 
 def test_rows_are_chosen_by_mask_and_by_number() -> None:

@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 from collections.abc import Sequence
-from typing import Any, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +27,27 @@ class Columns:
 ColumnsT = TypeVar("ColumnsT", bound=Columns)
 
 
+@dataclasses.dataclass(frozen=True, slots=True)
+class Picked(Columns, Generic[ColumnsT]):
+    """n rows of another table by their numbers, for rows that are repeated.
+
+    Attributes:
+        row: Rows of ``table``, shape (n,).
+        table: Rows to pick from.
+    """
+
+    row: npt.NDArray[np.int64]
+    table: ColumnsT
+
+    def __getitem__(self, rows: Rows) -> Self:
+        """A selection of the rows; they are still picked from the same table."""
+        return type(self)(_selected(self.row, rows), self.table)
+
+    def whole(self) -> ColumnsT:
+        """The rows themselves."""
+        return self.table[self.row]
+
+
 def join(parts: Sequence[ColumnsT]) -> ColumnsT:
     """Consecutive tables as one; one alone is returned as it is.
 
@@ -37,8 +58,7 @@ def join(parts: Sequence[ColumnsT]) -> ColumnsT:
         raise ValueError("nothing to join")
     if len(parts) == 1:
         return parts[0]
-    kind = type(parts[0])
-    return kind(*[_joined([getattr(part, name) for part in parts]) for name in _names(kind)])
+    return _joined(parts)
 
 
 @functools.cache
@@ -47,7 +67,23 @@ def _names(kind: type[Columns]) -> tuple[str, ...]:
 
 
 def _joined(values: Sequence[Any]) -> Any:
-    return join(values) if isinstance(values[0], Columns) else np.concatenate(values)
+    if not isinstance(values[0], Columns):
+        return np.concatenate(values)
+    if isinstance(values[0], Picked):
+        return _joined_picked(values)
+    kind = type(values[0])
+    return kind(*[_joined([getattr(value, name) for value in values]) for name in _names(kind)])
+
+
+def _joined_picked(parts: Sequence[Any]) -> Any:
+    """Of each table no more than from the first to the last row that is picked."""
+    rows, tables, before = [], [], 0
+    for part in parts:
+        first, end = part.row.min(initial=len(part.table)), part.row.max(initial=-1) + 1
+        rows.append(part.row + (before - first))
+        tables.append(part.table[first:end])
+        before += max(0, end - first)
+    return type(parts[0])(np.concatenate(rows), join(tables))
 
 
 def _selected(values: Any, rows: Rows) -> Any:

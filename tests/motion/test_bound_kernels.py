@@ -16,8 +16,9 @@ def bounds_of(
     rounding[0, 1] = coefficients
     drift, none = np.array([[0.0, slope, 0.0, 0.0]]), np.zeros((1, 3))
     bounds, _, against = bound_derivatives(
-        drift, none, none, np.zeros(1), np.zeros(1), np.ones(1), np.array([length]), rounding
-    )
+        drift, none, none, np.zeros(1),
+        np.zeros(1, np.int64), np.zeros(1), np.ones(1), np.array([length]), rounding,
+    )  # fmt: skip
     return bounds[0, :, 1], against[0, :, 1]
 
 

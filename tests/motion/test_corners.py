@@ -161,9 +161,9 @@ def derivative_steps(program: Program, machine: MotionLimits, order: int) -> Flo
     def at(x: FloatArray) -> FloatArray:
         fraction = pieces.begin + x * pieces.fraction_per_length
         if order == 0:
-            values = pieces.geometry.position(rows, fraction)
+            values = pieces.geometry.whole().position(rows, fraction)
         else:
-            values = pieces.geometry.derivative(rows, fraction, order)
+            values = pieces.geometry.whole().derivative(rows, fraction, order)
         added = pieces.rounding
         for _ in range(order):
             added = added[:, :, 1:] * np.arange(1, added.shape[2])

@@ -16,11 +16,14 @@ from chromium import CHROMIUM, QUIET
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-SCRIPT = (resources.files("twin.training") / "web" / "press.js").read_text(encoding="utf-8")
+WEB = resources.files("twin.training") / "web"
+SCRIPT = "".join(
+    (WEB / name).read_text(encoding="utf-8") for name in ("studio_input.js", "press.js")
+)
 HEIGHT = 300
 """Of the panel on the page [px]; Studio's own strip lies below."""
 LEFT, RIGHT = 1, 2
-SPACE, KEY_R, KEY_H, ARROW_LEFT, BACKSPACE = 12, 51, 41, 1, 11
+ENTER, KEY_H, KEY_S, ARROW_LEFT, INSERT = 13, 41, 52, 1, 9
 
 STAND_IN = """
 <canvas id="canvas" style="width:600px;height:400px;display:block"></canvas>
@@ -38,7 +41,8 @@ STAND_IN = """
         if (view.getUint8(560 + (bit >> 3)) & (1 << (bit & 7))) keys.push(bit);
       sent.push({ stream: this.url, own: view.getFloat32(16, true), length: message.length,
         x: view.getInt16(12, true), y: view.getInt16(14, true),
-        characters: view.getUint16(536, true), keyframe: view.getUint8(539),
+        text: String.fromCharCode(...Array.from({ length: view.getUint16(536, true) },
+          (_, place) => view.getUint16(24 + 2 * place, true))), keyframe: view.getUint8(539),
         buttons: view.getUint32(552, true), keys, time: performance.now() });
     }
   }
@@ -51,7 +55,7 @@ STAND_IN = """
   const pictures = new Stream("/state?sid=1");
   let count = 0;
   // What Studio's page sends once a frame; the wheel's total tells the page's messages apart.
-  function frame({ x = 5, y = 5, buttons = 0, keys = [], characters = 0, length = 616 } = {}) {
+  function frame({ x = 5, y = 5, buttons = 0, keys = [], text = "", length = 616 } = {}) {
     const message = new Uint8Array(length);
     const view = new DataView(message.buffer);
     view.setUint32(0, length, true);
@@ -62,7 +66,8 @@ STAND_IN = """
     view.setInt16(12, x, true);
     view.setInt16(14, y, true);
     view.setFloat32(16, ++count, true);
-    view.setUint16(536, characters, true);
+    view.setUint16(536, text.length, true);
+    [...text].forEach((letter, place) => view.setUint16(24 + 2 * place, letter.charCodeAt(0), true));
     view.setUint8(539, 1);
     view.setUint32(552, buttons, true);
     for (const bit of keys)
@@ -127,7 +132,7 @@ def test_a_press_is_told_at_once_where_it_happened(page):
     last = told(page)[-1]
     assert (last["buttons"], last["x"], last["y"]) == (LEFT, 100, 50)
     # A copy of the page's message, without what must not be said twice.
-    assert (last["own"], last["length"], last["characters"], last["keyframe"]) == (1, 616, 0, 0)
+    assert (last["own"], last["length"], last["text"], last["keyframe"]) == (1, 616, "", 0)
     assert last["stream"].endswith("/ui?sid=1")
 
 
@@ -180,9 +185,9 @@ def test_a_server_that_makes_no_picture_is_told_all_the_same(page):
 def test_the_panels_keys_are_told_and_others_are_left_to_the_page(page):
     page.keyboard.down("h")
     assert states(page)[-1] == (0, [KEY_H])
-    page.keyboard.down("Backspace")
-    page.evaluate("frame({ keys: [11] })")
-    assert states(page)[-1] == (0, [BACKSPACE, KEY_H])
+    page.keyboard.down("Insert")
+    page.evaluate("frame({ keys: [9] })")
+    assert states(page)[-1] == (0, [INSERT, KEY_H])
     page.evaluate("looked()")
     page.keyboard.up("h")
     until(lambda: KEY_H not in states(page)[-1][1])
@@ -195,13 +200,48 @@ def test_a_browsers_own_shortcut_is_no_press(page):
     assert states(page) == [(0, [])]
 
 
-def test_a_key_that_moves_in_a_text_waits_for_what_was_typed_before_it(page):
+def test_what_is_typed_is_told_at_once_and_once(page):
     page.keyboard.press("x")
-    page.keyboard.down("ArrowLeft")
-    assert len(told(page)) == 1
-    page.evaluate("frame({ characters: 1 })")
-    until(lambda: states(page)[-1] == (0, [ARROW_LEFT]))
-    assert [each["characters"] for each in told(page)] == [0, 1, 0]
+    assert [each["text"] for each in told(page)] == ["", "x"]
+    page.evaluate("frame(); frame({ text: 'x' }); frame({ text: 'xé' })")
+    # The page's own word of it is taken away; what it alone knows of is left to it.
+    assert [each["text"] for each in told(page)] == ["", "x", "", "", "xé"]
+
+
+def test_the_page_cannot_overtake_what_waits(page):
+    page.keyboard.type("xyz")
+    page.evaluate("frame({ text: 'xyz' })")
+    page.evaluate("looked()")
+    until(lambda: told(page)[-1]["text"] == "yz")
+    assert "".join(each["text"] for each in told(page)) == "xyz"
+
+
+def test_a_key_that_acts_on_a_text_waits_for_what_was_typed_before_it(page):
+    page.keyboard.press("s")
+    page.keyboard.press("Enter")
+    page.keyboard.type("G0")
+    for _ in range(5):
+        page.evaluate("looked()")
+    until(lambda: told(page)[-1]["text"] == "G0")
+    page.evaluate("frame({ text: 's' }); frame({ text: 'G0' })")
+    told_ = [(each["keys"], each["text"]) for each in told(page)]
+    assert told_ == [
+        ([], ""), ([KEY_S], "s"), ([], ""), ([ENTER], ""), ([], "G0"), ([], ""), ([], "")
+    ]  # fmt: skip
+
+
+def test_quick_typing_needs_few_words(page):
+    page.keyboard.type("G1 X10")
+    for _ in range(9):
+        page.evaluate("looked()")
+    until(lambda: "".join(each["text"] for each in told(page)) == "G1 X10")
+    assert len(told(page)) <= 7
+
+
+def test_a_letter_of_the_third_level_is_a_letter(page):
+    page.evaluate("""dispatchEvent(new KeyboardEvent("keydown", {
+        key: "[", keyCode: 56, ctrlKey: true, altKey: true, modifierAltGraph: true }))""")
+    assert told(page)[-1]["text"] == "["
 
 
 def test_the_strip_of_studio_is_the_pages_own(page):

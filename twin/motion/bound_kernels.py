@@ -10,7 +10,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import FloatArray, IntArray
 
 FLAT = 1e-9
 """Of the largest q' or q'': what is smaller is rounding and has no sign."""
@@ -19,16 +19,18 @@ FLAT = 1e-9
 @numba.njit(cache=True, error_model="numpy")
 def bound_derivatives(
     drift: FloatArray, cosine: FloatArray, sine: FloatArray, angle: FloatArray,
-    begin: FloatArray, fraction_per_length: FloatArray, length: FloatArray, rounding: FloatArray,
+    owner: IntArray, begin: FloatArray, fraction_per_length: FloatArray, length: FloatArray,
+    rounding: FloatArray,
 ) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:  # fmt: skip
     """Bounds of the path's derivatives by x along pieces.
 
     Args:
-        drift: Columns of the pieces' ``Geometry``, and so on to ``angle``; an arc turns by less than
+        drift: Columns of the moves' ``Geometry``, and so on to ``angle``; an arc turns by less than
             a quarter along a piece.
         cosine: See above.
         sine: See above.
         angle: See above.
+        owner: Move of each piece, shape (n,).
         begin: Path fraction of each piece's begin, shape (n,).
         fraction_per_length: Shape (n,).
         length: Shape (n,).
@@ -39,28 +41,31 @@ def bound_derivatives(
         of X Y Z together, shape (n,); whether q' q'' can be positive, and whether it can be
         negative, shape (n, 2, k).
     """
-    count, axes = drift.shape
-    bounds = np.zeros((count, 3, axes))
-    bend = np.zeros(count)
-    against = np.zeros((count, 2, axes), np.bool_)
+    count, axes = len(owner), drift.shape[1]
+    bounds = np.empty((count, 3, axes))
+    bend = np.empty(count)
+    against = np.empty((count, 2, axes), np.bool_)
     for i in range(count):
-        turn = angle[i] * fraction_per_length[i]
+        move = max(0, owner[i])
+        turn = angle[move] * fraction_per_length[i]
         c, s, c_end, s_end, squares, radius = 1.0, 0.0, 1.0, 0.0, 0.0, 0.0
         if turn != 0.0:
-            at = angle[i] * begin[i]
+            at = angle[move] * begin[i]
             c, s = math.cos(at), math.sin(at)
             at += turn * length[i]
             c_end, s_end = math.cos(at), math.sin(at)
         for axis in range(axes):
-            slope = drift[i, axis] * fraction_per_length[i]
+            slope = drift[move, axis] * fraction_per_length[i]
             added = rounding[i, axis]
             bent = turn != 0.0 and axis < 3
             if not bent and added[2] == added[3] == added[4] == added[5] == 0.0:
                 bounds[i, 0, axis] = abs(slope + added[1])
+                bounds[i, 1, axis] = bounds[i, 2, axis] = 0.0
+                against[i, 0, axis] = against[i, 1, axis] = False
                 continue
             low1, high1, low2, high2, low3, high3 = _polynomial_ranges(added, slope, length[i])
             if bent:
-                p, q = cosine[i, axis], sine[i, axis]
+                p, q = cosine[move, axis], sine[move, axis]
                 amplitude, way = math.hypot(p, q), math.copysign(1.0, turn)
                 x, x_end = p * c + q * s, p * c_end + q * s_end
                 y, y_end = q * c - p * s, q * c_end - p * s_end
@@ -82,10 +87,11 @@ def bound_derivatives(
             if axis < 3:
                 squares += second * second
             still, flat = FLAT * first, FLAT * second
-            if (high1 > still and high2 > flat) or (low1 < -still and low2 < -flat):
-                against[i, 0, axis] = True
-            if (high1 > still and low2 < -flat) or (low1 < -still and high2 > flat):
-                against[i, 1, axis] = True
+            # Bits, not branches: which of them hold changes too often to be foreseen.
+            rises, falls = high1 > still, low1 < -still
+            left, right = high2 > flat, low2 < -flat
+            against[i, 0, axis] = (rises & left) | (falls & right)
+            against[i, 1, axis] = (rises & right) | (falls & left)
         bend[i] = math.sqrt(squares)
         if turn != 0.0 and not np.any(rounding[i]):
             bend[i] = turn * turn * math.sqrt(radius)

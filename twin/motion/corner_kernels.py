@@ -28,7 +28,7 @@ MOST_STEPS = 50
 """Of the search for a width; some four are usual."""
 
 NEARLY = 1e-6
-"""Relative step of Newton's from which on the next would be rounding."""
+"""Relative step of the search from which on the next would be rounding."""
 
 NARROWEST = 1e-4
 """A rounding narrower than this is none [mm or deg]."""
@@ -90,20 +90,25 @@ def _between(
 
 @numba.njit(cache=True, fastmath=SUMS, error_model="numpy")
 def _used(
-    place: FloatArray, per_width: FloatArray, per_square: FloatArray, at: float, width: float
-) -> tuple[float, float]:
+    place: FloatArray, per_width: FloatArray, per_square: FloatArray,
+    i: int, reached: tuple[int, int], width: float,
+) -> tuple[float, float]:  # fmt: skip
     """Share of the tolerance used at a border by roundings of one width, and its slope by width.
 
     Args:
-        place: Of the borders that reach there, shape (m,).
-        per_width: As in ``find_widths``, of these.
-        per_square: As in ``find_widths``, of these.
-        at: Place of the border.
+        place: As in ``find_widths``.
+        per_width: As in ``find_widths``.
+        per_square: As in ``find_widths``.
+        i: The border.
+        reached: The first border that reaches there and the one after the last.
         width: Of all roundings.
     """
     ramps, slopes, bends = 0.0, 0.0, 0.0
-    per_reach = 1.0 / width
-    for other in range(len(place)):
+    at, per_reach = place[i], 1.0 / width
+    # To see that no index is negative helps the compiler; a slice would cost as much as the sum.
+    first = max(0, reached[0])
+    for row in range(reached[1] - first):
+        other = first + row
         t = abs(place[other] - at) * per_reach
         squared = t * t
         flat = 1.0 - squared
@@ -161,45 +166,48 @@ def _even_width(
     high = min(place[i] - place[walls[0]], place[walls[1]] - place[i])
     width, below, above = min(guess, high), 0.0, math.inf
     for _ in range(MOST_STEPS):
-        # What is used grows with the width, and ever faster: Newton comes down to the root.
         near = _reached(place, i, walls, width, near)
-        first, last = near
-        used, slope = _used(
-            place[first:last], per_width[first:last], per_square[first:last], place[i], width
-        )
+        used, slope = _used(place, per_width, per_square, i, near, width)
         if used > 1.0:
             above = width
         elif width == high:
             return high, near
         else:
             below = width
-        new = min(high, width - (used - 1.0) / slope)
+        # What is used grows like a power of the width: the first for a knee alone, the second for
+        # many. Newton's step for such a power, with ``used ** -flatness`` by Padé.
+        flatness = used / (slope * width)
+        new = width * (2.0 + (1.0 - flatness) * (used - 1.0))
+        new = min(high, new / (2.0 + (1.0 + flatness) * (used - 1.0)))
         if abs(new - width) <= NEARLY * width or below >= (1.0 - NEARLY) * above:
             return max(below, new) if new < above else below, near
-        # Where a bend comes within reach its share is there at once: Newton cannot see that.
+        # Where a bend comes within reach its share is there at once: no slope tells.
         width = new if below < new < above else 0.5 * (below + above)
     return below, near
 
 
 @numba.njit(cache=True, fastmath=SUMS, error_model="numpy")
 def _add_shares(
-    excess: FloatArray, place: FloatArray, at: float, width: float,
+    excess: FloatArray, place: FloatArray, i: int, reached: tuple[int, int], width: float,
     per_width: float, per_square: float,
 ) -> None:  # fmt: skip
     """Add what one rounding uses of the tolerance at the borders that it reaches, in place."""
-    per_reach = 1.0 / width
+    at, per_reach = place[i], 1.0 / width
     knee, bend = width * per_width / 16.0, width * width * per_square * BEND_PEAK
-    for other in range(len(place)):
+    first = max(0, reached[0])
+    for row in range(reached[1] - first):
+        other = first + row
         t = abs(place[other] - at) * per_reach
         excess[other] += knee * (3.0 + t * (-8.0 + t * (6.0 - t * t))) + bend
 
 
 @numba.njit(cache=True, fastmath=SUMS, error_model="numpy")
-def _largest(values: FloatArray) -> float:
-    """The largest of them, 1 at least."""
+def _largest(values: FloatArray, first: int, last: int) -> float:
+    """The largest of some of them, 1 at least."""
     most = 1.0
-    for value in values:
-        most = max(most, value)
+    first = max(0, first)
+    for row in range(last - first):
+        most = max(most, values[first + row])
     return most
 
 
@@ -254,11 +262,9 @@ def find_widths(
         guess, near = _even_width(place, per_width, per_square, i, walls, guess, near)
         if guess > 0.0:
             width[i] = guess
-            first, last = _reached(place, i, walls, guess, near)
-            reached[i, 0], reached[i, 1] = first, last
-            _add_shares(
-                excess[first:last], place[first:last], place[i], guess, per_width[i], per_square[i]
-            )
+            near = _reached(place, i, walls, guess, near)
+            reached[i, 0], reached[i, 1] = near
+            _add_shares(excess, place, i, near, guess, per_width[i], per_square[i])
     if np.any(per_square > 0.0):
         within = np.ones(count)
         for i in range(count - 1):
@@ -271,6 +277,6 @@ def find_widths(
     out = np.zeros(count)
     for i in range(count):
         if width[i] > 0.0:
-            narrowed = width[i] / _largest(excess[reached[i, 0] : reached[i, 1]])
+            narrowed = width[i] / _largest(excess, reached[i, 0], reached[i, 1])
             out[i] = narrowed if narrowed >= NARROWEST else 0.0
     return out

@@ -53,15 +53,16 @@ def cut_blocks(
     for i in range(count):
         parts = max(1, math.ceil(abs(angle[i]) / PIECE_ANGLE))
         part, at, begin = 1, first_end[i], 0.0
+        by_angle = length[i] / parts
         while True:
             # The next cut of the two kinds.
-            by_angle = length[i] * part / parts
             if at < first_end[i + 1] and ends[at] - place[i] < by_angle:
                 cut = ends[at] - place[i]
                 at += 1
             elif part < parts:
                 cut = by_angle
                 part += 1
+                by_angle = length[i] * part / parts
             else:
                 break
             if cut - begin > SHORTEST_PIECE and length[i] - cut > SHORTEST_PIECE:
@@ -125,12 +126,19 @@ def _ends_by_block(place: FloatArray, width: FloatArray) -> tuple[IntArray, Floa
     count = len(width)
     first = np.zeros(count + 1, np.int64)
     inside = np.full((count, 2), -1)
+    before, after = 0, 0
     for i in range(count):
         if width[i] > 0.0:
-            before, after = i - 1, i
-            while before > 0 and place[before] > place[i] - width[i]:
+            # From where those of the border before were found: there it is not far.
+            begin, end = place[i] - width[i], place[i] + width[i]
+            before, after = min(before, i - 1), max(after, i)
+            while before > 0 and place[before] > begin:
                 before -= 1
-            while after < count - 1 and place[after + 1] <= place[i] + width[i]:
+            while before < i - 1 and place[before + 1] <= begin:
+                before += 1
+            while after > i and place[after] > end:
+                after -= 1
+            while after < count - 1 and place[after + 1] <= end:
                 after += 1
             inside[i, 0], inside[i, 1] = before, after
             first[before + 1] += 1

@@ -16,7 +16,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from twin.columns import Columns
+from twin.columns import Columns, Picked
 from twin.motion.blocks import BoolArray, Surroundings, blocks_of_chunks, with_neighbours
 from twin.motion.bound_kernels import bound_derivatives
 from twin.motion.corners import CONTEXT, find_borders
@@ -52,7 +52,7 @@ class Pieces(Columns):
         pause: How long a dwell waits, shape (n,) [s].
         rounding: What is added to each axis, coefficients by powers of x from the piece's begin,
             shape (n, k, 6) [mm or deg].
-        geometry: Of each piece's whole move, n rows.
+        geometry: Of each piece's whole move, n rows of a table of moves.
     """
 
     move: IntArray
@@ -69,7 +69,7 @@ class Pieces(Columns):
     entry: FloatArray
     pause: FloatArray
     rounding: FloatArray
-    geometry: Geometry
+    geometry: Picked[Geometry]
 
 
 def pieces_of_chunks(
@@ -92,45 +92,46 @@ def pieces_of_chunks(
 
 
 def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: float) -> Pieces:
-    blocks = surroundings.blocks
+    blocks, shapes = surroundings.blocks, surroundings.blocks.geometry
     borders = find_borders(blocks, limits)
     # The neighbours are cut as well: they tell how fast a piece can be reached and left.
     owner, offset, length, rounding = cut_blocks(
-        blocks.length, blocks.geometry.angle, borders.width, borders.knee, borders.bend
+        blocks.length, shapes.angle, borders.width, borders.knee, borders.bend
     )
     scale, begin, entry = place_pieces(blocks.length, blocks.move, borders.entry, owner, offset)
-    shapes = blocks.geometry[owner]
     feed = blocks.feed * blocks.stretch
     wanted = feed * np.where(blocks.rapid, 1.0, largest_override)
     velocity, acceleration, deceleration, jerk = piece_limits(
         (wanted, blocks.acceleration, blocks.deceleration, blocks.stretch, blocks.rotary_alone),
         owner, length, _ceilings(surroundings, entry),
         *bound_derivatives(
-            shapes.drift, shapes.cosine, shapes.sine, shapes.angle, begin, scale, length, rounding
+            shapes.drift, shapes.cosine, shapes.sine, shapes.angle,
+            owner, begin, scale, length, rounding,
         ),
         (limits.path_acceleration, limits.path_jerk,
          limits.rotary_path_acceleration, limits.rotary_path_jerk),
         limits.velocity, limits.acceleration, limits.jerk,
     )  # fmt: skip
-    pieces = Pieces(
+    first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
+    due = slice(first, last)
+    owner = owner[due]
+    return Pieces(
         move=blocks.move.take(owner),
         line=blocks.line.take(owner),
-        begin=begin,
-        fraction_per_length=scale,
-        length=length,
+        begin=begin[due],
+        fraction_per_length=scale[due],
+        length=length[due],
         rapid=blocks.rapid.take(owner),
         feed=feed.take(owner),
-        velocity=velocity,
-        acceleration=acceleration,
-        deceleration=deceleration,
-        jerk=jerk,
-        entry=entry,
+        velocity=velocity[due],
+        acceleration=acceleration[due],
+        deceleration=deceleration[due],
+        jerk=jerk[due],
+        entry=entry[due],
         pause=blocks.pause.take(owner),
-        rounding=rounding,
-        geometry=shapes,
+        rounding=rounding[due],
+        geometry=Picked(owner, shapes),
     )
-    first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
-    return pieces[first:last]
 
 
 def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:

@@ -49,10 +49,11 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
         limits: Of the axes and the path.
         names: Of the axes.
     """
-    shape = pieces.geometry
+    shape = pieces.geometry.table
     bounds, bend, _ = bound_derivatives(
         shape.drift, shape.cosine, shape.sine, shape.angle,
-        pieces.begin, pieces.fraction_per_length, pieces.length, pieces.rounding,
+        pieces.geometry.row, pieces.begin, pieces.fraction_per_length, pieces.length,
+        pieces.rounding,
     )  # fmt: skip
     first, second, third = bounds[:, 0], bounds[:, 1], bounds[:, 2]
     along_rotary = np.all(first[:, :3] == 0.0, axis=1)
@@ -123,7 +124,7 @@ def _allowed(largest: FloatArray | float, step: FloatArray) -> FloatArray:
 def _steps(pieces: Pieces, rows: IntArray) -> tuple[FloatArray, FloatArray]:
     """Steps of dq/dx and d²q/dx² at the borders before rows, shape (m, k) each."""
     before = np.maximum(rows - 1, 0)
-    shape, scale = pieces.geometry, pieces.fraction_per_length
+    shape, scale = pieces.geometry.whole(), pieces.fraction_per_length
     end = pieces.begin[before] + pieces.length[before] * scale[before]
 
     def step(order: int) -> FloatArray:

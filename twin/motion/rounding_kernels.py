@@ -8,11 +8,16 @@ import numpy as np
 from twin.motion.corner_kernels import MOST_NEIGHBOURS
 from twin.nc.canonical import FloatArray, IntArray
 
-CARRIED = 2.0
-"""How far a sum of polynomials is carried, in widths of the narrowest rounding in it."""
+CARRIED = 8.0
+"""How far a sum of polynomials is carried, in widths of the narrowest rounding in it: a rounding error
+of its fourth power grows by 8⁴, to 1e-15 of the tolerance."""
+
+EXACT = 1e-15
+"""A piece that begins this close to a rounding's end begins there, relative to the place on the path:
+places are sums."""
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def add_rounding(
     coefficients: FloatArray, away: float, width: float, knee: FloatArray, bend: FloatArray,
     share: float = 1.0,
@@ -60,7 +65,34 @@ def add_rounding(
             c[5] += turn * square5
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
+def add_at_end(
+    coefficients: FloatArray, width: float, knee: FloatArray, bend: FloatArray, side: float
+) -> None:
+    """Begin or end a border's rounding at the begin of a piece: ``add_rounding`` at t = -1 or 1.
+
+    The rounding meets the path there with two derivatives, so only higher powers change.
+
+    Args:
+        coefficients: As in ``add_rounding``.
+        width: As in ``add_rounding``.
+        knee: As in ``add_rounding``.
+        bend: As in ``add_rounding``.
+        side: -1 where the rounding begins, 1 where it ends.
+    """
+    per_width = 1.0 / width
+    square = per_width * per_width
+    cube = square * per_width
+    for axis in range(len(knee)):
+        rise, turn = knee[axis], bend[axis] * width
+        if rise != 0.0 or turn != 0.0:
+            c = coefficients[axis]
+            c[3] += square * (0.25 * rise + side * 0.125 * turn)
+            c[4] += cube * (side * 0.0625 * rise + 0.15625 * turn)
+            c[5] += side * cube * per_width * 0.03125 * turn
+
+
+@numba.njit(cache=True, error_model="numpy")
 def add_roundings(
     place: FloatArray, owner: IntArray, offset: FloatArray, extent: FloatArray,
     ends: FloatArray, sources: IntArray,
@@ -80,75 +112,75 @@ def add_roundings(
         bend: See above.
         rounding: Result, shape (m, k, 6).
     """
-    axes = knee.shape[1]
-    active = np.zeros(2 * MOST_NEIGHBOURS + 2, np.int64)
+    count, axes = knee.shape
+    active = np.zeros(count, np.bool_)
     used, passed = 0, 0
-    total = np.zeros((axes, 6))
     since, narrowest = 0.0, math.inf
     for piece in range(len(owner)):
-        i = owner[piece]
+        i = max(0, owner[piece])
         here = place[i] + offset[piece]
         middle = here + 0.5 * extent[piece]
-        if used > 0:
-            shift_polynomials(total, extent[piece - 1])
+        total = rounding[piece]
+        if used == 0:
+            total[:] = 0.0
+        else:
+            shift_polynomials(rounding[piece - 1], extent[piece - 1], total)
             if offset[piece] == 0.0 and width[i] > 0.0:
                 # Over the border: what is added beyond it has lost the kink.
                 for axis in range(axes):
                     total[axis, 1] -= knee[i, axis]
                     total[axis, 2] -= 0.5 * bend[i, axis]
         while passed < len(ends) and ends[passed] <= middle:
-            other = int(sources[passed])
-            passed += 1
+            other = max(0, sources[passed])
+            begins = other > i
+            active[other] = begins
+            used += 1 if begins else -1
             narrowest = min(narrowest, width[other])
-            away = place[i] - place[other] + offset[piece]
-            if other > i:
-                active[used] = other
-                used += 1
-                add_rounding(total, away, width[other], knee[other], bend[other])
+            if abs(here - ends[passed]) <= EXACT * here:
+                side = -1.0 if begins else 1.0
+                add_at_end(total, width[other], knee[other], bend[other], side)
             else:
-                row = 0
-                while active[row] != other:
-                    row += 1
-                used -= 1
-                active[row] = active[used]
-                add_rounding(total, max(0.0, away), width[other], knee[other], bend[other], -1.0)
+                away = place[i] - place[other] + offset[piece]
+                if begins:
+                    add_rounding(total, away, width[other], knee[other], bend[other])
+                else:
+                    away = max(0.0, away)
+                    add_rounding(total, away, width[other], knee[other], bend[other], -1.0)
+            passed += 1
         if used == 0 or here + extent[piece] - since > CARRIED * narrowest:
             total[:] = 0.0
             since, narrowest = here, math.inf
-            for row in range(used):
-                other = int(active[row])
-                away = place[i] - place[other] + offset[piece]
-                if other <= i:
-                    away = max(0.0, away)
-                narrowest = min(narrowest, width[other])
-                add_rounding(total, away, width[other], knee[other], bend[other])
-        for axis in range(axes):
-            for power in range(6):
-                rounding[piece, axis, power] = total[axis, power]
+            for other in range(max(0, i - MOST_NEIGHBOURS), min(count, i + MOST_NEIGHBOURS + 1)):
+                if active[other]:
+                    away = place[i] - place[other] + offset[piece]
+                    if other <= i:
+                        away = max(0.0, away)
+                    narrowest = min(narrowest, width[other])
+                    add_rounding(total, away, width[other], knee[other], bend[other])
 
 
-@numba.njit(cache=True)
-def shift_polynomials(coefficients: FloatArray, way: float) -> None:
-    """Count the x of polynomials from a place further on, in place (Horner's scheme).
+@numba.njit(cache=True, error_model="numpy")
+def shift_polynomials(before: FloatArray, way: float, after: FloatArray) -> None:
+    """Count the x of polynomials from a place further on.
 
     Args:
-        coefficients: By powers of x, shape (k, 6).
+        before: By powers of x, shape (k, 6).
         way: From the old place to the new one.
+        after: Result, shape (k, 6).
     """
-    for axis in range(len(coefficients)):
-        c = coefficients[axis]
-        c0, c1, c2, c3, c4, c5 = c[0], c[1], c[2], c[3], c[4], c[5]
-        if c2 == 0.0 and c3 == 0.0 and c4 == 0.0 and c5 == 0.0:
-            c[0] = c0 + way * c1
-            continue
-        for last in range(5):
-            c4 += way * c5
-            if last <= 3:
-                c3 += way * c4
-            if last <= 2:
-                c2 += way * c3
-            if last <= 1:
-                c1 += way * c2
-            if last == 0:
-                c0 += way * c1
-        c[0], c[1], c[2], c[3], c[4] = c0, c1, c2, c3, c4
+    for axis in range(len(before)):
+        c0, c1, c2, c3, c4, c5 = (
+            before[axis, 0], before[axis, 1], before[axis, 2],
+            before[axis, 3], before[axis, 4], before[axis, 5],
+        )  # fmt: skip
+        if c2 != 0.0 or c3 != 0.0 or c4 != 0.0 or c5 != 0.0:
+            # Taylor's coefficients at the new place.
+            c0 += way * (c1 + way * (c2 + way * (c3 + way * (c4 + way * c5))))
+            c1 += way * (2.0 * c2 + way * (3.0 * c3 + way * (4.0 * c4 + way * 5.0 * c5)))
+            c2 += way * (3.0 * c3 + way * (6.0 * c4 + way * 10.0 * c5))
+            c3 += way * (4.0 * c4 + way * 10.0 * c5)
+            c4 += way * 5.0 * c5
+        else:
+            c0 += way * c1
+        after[axis, 0], after[axis, 1], after[axis, 2] = c0, c1, c2
+        after[axis, 3], after[axis, 4], after[axis, 5] = c3, c4, c5

@@ -47,10 +47,11 @@ def _sample_part(
         piece, path = piece[:count], path[:count]
         fraction = np.zeros(count)
         position, velocity, acceleration = (np.zeros((count, len(part_zero))) for _ in range(3))
-        shape = pieces.geometry
+        shape = pieces.geometry.table
         sample_axes(
             shape.base, shape.drift, shape.cosine, shape.sine, shape.angle, shape.end,
-            pieces.begin, pieces.fraction_per_length, pieces.rounding, part_zero,
+            pieces.geometry.row, pieces.begin, pieces.fraction_per_length, pieces.rounding,
+            part_zero,
             piece, path, fraction, position, velocity, acceleration,
         )  # fmt: skip
         yield Setpoints(
@@ -79,9 +80,9 @@ def standing(position: FloatArray) -> Setpoints:
 def at_end(phases: Phases) -> Setpoints:
     """One sample at rest at the end of the last piece of the phases, part coordinates."""
     pieces = phases.parts[-1]
-    still = np.zeros((1, pieces.geometry.end.shape[1]))
+    end = pieces.geometry[-1:].whole().end
+    still = np.zeros_like(end)
     fraction = np.array([0.0 if pieces.move[-1] < 0 else 1.0])
     return Setpoints(
-        np.zeros(1), pieces.line[-1:], pieces.move[-1:], fraction, pieces.geometry.end[-1:],
-        still, still,
+        np.zeros(1), pieces.line[-1:], pieces.move[-1:], fraction, end, still, still,
     )  # fmt: skip

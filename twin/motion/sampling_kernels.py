@@ -86,7 +86,7 @@ def state_at(
 def sample_axes(
     base: FloatArray, drift: FloatArray, cosine: FloatArray, sine: FloatArray,
     angle: FloatArray, end: FloatArray,
-    begin: FloatArray, fraction_per_length: FloatArray, rounding: FloatArray,
+    owner: IntArray, begin: FloatArray, fraction_per_length: FloatArray, rounding: FloatArray,
     origin: FloatArray,
     piece: IntArray, path: FloatArray,
     fraction: FloatArray, position: FloatArray, velocity: FloatArray, acceleration: FloatArray,
@@ -94,12 +94,13 @@ def sample_axes(
     """The axes where the path is.
 
     Args:
-        base: Columns of the pieces' ``Geometry``, and so on to ``end``.
+        base: Columns of the moves' ``Geometry``, and so on to ``end``.
         drift: See above.
         cosine: See above.
         sine: See above.
         angle: See above.
         end: See above.
+        owner: Move of each piece.
         begin: Columns of ``Pieces``.
         fraction_per_length: See above.
         rounding: See above.
@@ -114,28 +115,29 @@ def sample_axes(
     width = base.shape[1]
     for row in range(len(piece)):
         i = piece[row]
+        move = owner[i]
         scale = fraction_per_length[i]
         u = min(1.0, begin[i] + path[row, 0] * scale)
         du = path[row, 1] * scale
         ddu = path[row, 2] * scale
         fraction[row] = u
         for axis in range(width):
-            position[row, axis] = base[i, axis] + u * drift[i, axis]
-            velocity[row, axis] = drift[i, axis] * du
-            acceleration[row, axis] = drift[i, axis] * ddu
-        if angle[i] != 0.0:
-            turn, turn_v, turn_a = angle[i] * u, angle[i] * du, angle[i] * ddu
+            position[row, axis] = base[move, axis] + u * drift[move, axis]
+            velocity[row, axis] = drift[move, axis] * du
+            acceleration[row, axis] = drift[move, axis] * ddu
+        if angle[move] != 0.0:
+            turn, turn_v, turn_a = angle[move] * u, angle[move] * du, angle[move] * ddu
             c, s = math.cos(turn), math.sin(turn)
             for axis in range(3):
-                across = cosine[i, axis] * c + sine[i, axis] * s
-                along = sine[i, axis] * c - cosine[i, axis] * s
+                across = cosine[move, axis] * c + sine[move, axis] * s
+                along = sine[move, axis] * c - cosine[move, axis] * s
                 position[row, axis] += across
                 velocity[row, axis] += along * turn_v
                 acceleration[row, axis] += along * turn_a - across * turn_v * turn_v
         x, v, a = path[row, 0], path[row, 1], path[row, 2]
         for axis in range(width):
             if u >= 1.0:
-                position[row, axis] = end[i, axis]
+                position[row, axis] = end[move, axis]
             added, slope, bend = 0.0, 0.0, 0.0
             for power in range(5, -1, -1):
                 bend = bend * x + 2.0 * slope

@@ -18,6 +18,7 @@ from collections.abc import Coroutine
 from pathlib import Path
 
 from twin.errors import UsageError
+from twin.training.request_head import OPERATOR_STREAM, RequestHead
 
 LOOPBACK = "127.0.0.1"
 FIRST_PORT = 8080
@@ -28,8 +29,6 @@ _HEAD_LIMIT = 16384
 _HEAD_TIME_S = 10.0
 _COOKIE = "twin_token"
 """Name of the cookie that keeps the token, before the port: browsers share cookies between ports."""
-OPERATOR_STREAM = "/ui"
-_STREAMS = (OPERATOR_STREAM, "/state")
 _LOCAL_NAMES = ("localhost", LOOPBACK, "[::1]")
 _PIECE = 65536
 _BINARY = b"\x82"
@@ -149,7 +148,7 @@ class Gate:
     async def _lead(
         self, head: bytes, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
     ) -> None:
-        request = _Request(head) if len(head) <= _HEAD_LIMIT else None
+        request = RequestHead(head) if len(head) <= _HEAD_LIMIT else None
         if request is None or not request.valid:
             return await _answer(writer, "400 Bad Request")
         if not self._may_come(request):
@@ -175,7 +174,7 @@ class Gate:
             inside_writer.close()
 
     async def _listen(
-        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, request: "_Request"
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, request: RequestHead
     ) -> None:
         """Pass on what a page says."""
         with contextlib.suppress(OSError):
@@ -185,7 +184,7 @@ class Gate:
                 await writer.drain()
 
     async def _show(
-        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, request: "_Request"
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, request: RequestHead
     ) -> None:
         """Pass on what Studio says, and note whether it gives the panel to this page.
 
@@ -205,7 +204,7 @@ class Gate:
             finally:
                 self._panels -= given
 
-    def _may_come(self, request: "_Request") -> bool:
+    def _may_come(self, request: RequestHead) -> bool:
         """Whether the request is meant for this gate, by a page of this gate."""
         names = {f"{name}:{self.port}" for name in _LOCAL_NAMES}
         if self.host not in _LOCAL_NAMES:
@@ -215,7 +214,7 @@ class Gate:
         host = request.headers.get("host", "")
         return host in names and (not origin or origin == host)
 
-    def _knows_token(self, request: "_Request") -> bool:
+    def _knows_token(self, request: RequestHead) -> bool:
         if not self.token:
             return True
         cookie = http.cookies.SimpleCookie()
@@ -224,31 +223,6 @@ class Gate:
         kept = cookie[self._cookie].value if self._cookie in cookie else ""
         shown = [request.token, urllib.parse.unquote(kept)]
         return any(hmac.compare_digest(each.encode(), self.token.encode()) for each in shown)
-
-
-class _Request:
-    """The head of a request, as far as the gate looks at it."""
-
-    def __init__(self, head: bytes) -> None:
-        first, *rest = head.decode("latin-1").split("\r\n")
-        parts = first.split(" ")
-        self.valid = len(parts) == 3 and parts[0] == "GET" and parts[1].startswith("/")
-        split = urllib.parse.urlsplit(parts[1] if self.valid else "/")
-        self.path = split.path
-        self.token = urllib.parse.parse_qs(split.query).get("token", [""])[0]
-        fields = (line.partition(":") for line in rest if ":" in line)
-        self.headers = {name.strip().lower(): value.strip() for name, _, value in fields}
-
-    @property
-    def is_stream(self) -> bool:
-        """Whether it opens one of the page's streams."""
-        return self.path in _STREAMS and self.headers.get("upgrade", "").lower() == "websocket"
-
-    @property
-    def wanted(self) -> bool:
-        """Whether the page needs it: everything is but the upload, and roads out of the folder."""
-        parts = urllib.parse.unquote(self.path).split("/")
-        return self.path != "/drop" and ".." not in parts
 
 
 async def _answer(writer: asyncio.StreamWriter, status: str, **fields: str) -> None:

@@ -26,8 +26,9 @@ _ON_ITS_WAY_S = 0.010
 """How long what the gate has passed on mostly takes through Studio's server [s]. A frame that begins
 before it has come costs the press a whole frame more: Studio begins none sooner than a 60th of a
 second after the last."""
-_LOOKS = 6
-"""Frames of the panel after each word of the page, for what takes longer."""
+_LOOKS_AFTER_S = (_ON_ITS_WAY_S, 0.025, 0.045, 0.080, 0.140)
+"""When the panel has a frame after each word of the page, for what takes longer [s]: a press and its
+answer need three, and Studio's server can be late."""
 _POLL_S = 0.001
 
 
@@ -75,7 +76,7 @@ class RoomViewer(web_viewer.WebViewer):
         self._inside = inside
         self._heard = heard
         self._answered = 0
-        self._looks = 0
+        self._looks: list[float] = []
         super().__init__(config, endpoint, plugins=plugins)
 
     def _start_server(self) -> None:
@@ -102,13 +103,16 @@ class RoomViewer(web_viewer.WebViewer):
         a slow page would fall behind by minutes.
         """
         end = time.perf_counter() + _LONGEST_WAIT_S
-        while not self._looks and self._heard() == self._answered and time.perf_counter() < end:
+        while time.perf_counter() < min([end, *self._looks[:1]]):
+            heard = self._heard()
+            if heard != self._answered:
+                self._answered = heard
+                now = time.perf_counter()
+                looks = [now + after for after in _LOOKS_AFTER_S]
+                # A quick page speaks again before the first: that one stays where it is.
+                self._looks = [min([*self._looks[:1], looks[0]]), *looks[1:]]
             time.sleep(_POLL_S)
-        heard = self._heard()
-        if heard != self._answered:
-            self._answered, self._looks = heard, _LOOKS
-            time.sleep(_ON_ITS_WAY_S)
-        self._looks = max(0, self._looks - 1)
+        del self._looks[:1]
         return super().prepare_next_frame()
 
     def close(self) -> None:

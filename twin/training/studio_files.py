@@ -21,7 +21,7 @@ _FONTS = {
 """Studio's fonts, which have no Cyrillic, and what stands in for them."""
 
 _PAGE = "index.html"
-_SCRIPTS = ("drawing.js", "press.js")
+_SCRIPTS = ("drawing.js", "studio_input.js", "press.js")
 """What the page runs before Studio's own code."""
 _HEAD = "<head>"
 

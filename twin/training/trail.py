@@ -11,10 +11,10 @@ from twin.render.placement import Frame
 
 MOST = 240
 """Points that are kept: the page draws no more than a thousand extra bodies."""
-PLAIN_MOST = 60
-"""The same where a processor draws: each stretch costs it as much as the whole table."""
 APART_MM = 0.5
 """Shortest way between two points [mm]."""
+PLAIN_MOST, PLAIN_APART_MM = 30, 1.0
+"""The same where a processor draws: each stretch costs it as much as the whole table."""
 _RADIUS_M = 0.0004
 _COLOUR = np.array([1.0, 0.45, 0.05, 1.0], np.float32)
 
@@ -29,10 +29,11 @@ class Trail:
             plain: Keep few points, for computers without a graphics card.
         """
         self._points: deque[tuple[float, ...]] = deque(maxlen=PLAIN_MOST if plain else MOST)
+        self._apart = PLAIN_APART_MM if plain else APART_MM
 
     def add(self, tip: tuple[float, ...]) -> None:
         """The tip is there now [mm]."""
-        if not self._points or np.linalg.norm(np.subtract(tip, self._points[-1])) > APART_MM:
+        if not self._points or np.linalg.norm(np.subtract(tip, self._points[-1])) > self._apart:
             self._points.append(tip)
 
     def clear(self) -> None:

@@ -42,12 +42,10 @@ class Kit:
 
     Attributes:
         places: Where each named part was last drawn: left, top, right, bottom [px].
-        writing: Name of the field that takes the keys; empty for none.
     """
 
     def __init__(self) -> None:
         self.places: dict[str, tuple[float, float, float, float]] = {}
-        self.writing = ""
         self._broken: dict[str, tuple[float, list[str]]] = {}
 
     @contextlib.contextmanager
@@ -177,10 +175,6 @@ class Kit:
     def entered(self, name: str) -> bool:
         """Note where the last field lies; whether it was left with Enter."""
         self.note(name)
-        if imgui.IsItemActive():
-            self.writing = name
-        elif self.writing == name:
-            self.writing = ""
         keys = imgui.Key.Enter, imgui.Key.KeypadEnter
         return imgui.IsItemDeactivated() and any(imgui.IsKeyPressed(key) for key in keys)
 
