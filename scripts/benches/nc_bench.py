@@ -1,4 +1,4 @@
-"""Interpreters: blocks a second from the file to moves in memory, ours and the peers'.
+"""Interpreters: blocks a second from the file to moves and events in memory, ours and the peers'.
 
 Ours and nc-gcode-interpreter are called from Python and read the file; rs274 is a process that
 reads it and writes canonical text, its start taken off. Programs are made here, the same for all.

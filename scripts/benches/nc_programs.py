@@ -37,6 +37,8 @@ def programs() -> Iterator[Computing]:
         yield Computing(task, "fagor8070", *filled, blocks * ROUNDS)
     holes = (text.replace("ROUNDS", str(ROUNDS)) for text in _HOLES)
     yield Computing("a loop over holes of G83", "fagor8070", *holes, 4 * ROUNDS)
+    contour = (text.replace("ROUNDS", str(ROUNDS)) for text in _CONTOUR)
+    yield Computing("a contour under G41 in a loop", "fagor8070", *contour, 10 * ROUNDS)
     for task, dialect, start, ours, theirs in _NOW_AND_THEN:
         every = f"{LINES:,} lines, every tenth {task}"
         texts = (_long(start, ours), _long("#101=1\n", theirs).replace("M30", "M2"))
@@ -196,6 +198,16 @@ _HOLES = (
     (
         "#101=0\nG90 G1 F1000\nG83 Z-4 R2 Q2 X0\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\n"
         "X[#101*0.01] Y5\no110 endwhile\nG80\nM2\n"
+    ),
+)
+_CONTOUR = (
+    (
+        "P1=0\nG90 G1 F1000 X-20 Y-20\n$WHILE P1<ROUNDS\nP1=P1+1\nG41\nX0 Y-5\nY30\n"
+        "X[40+P1*0.001]\nY0\nX-5\nG40 X-20 Y-20\n$ENDWHILE\nM30\n"
+    ),
+    (
+        "#101=0\nG90 G1 F1000 X-20 Y-20\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\nG41.1 D4\n"
+        "X0 Y-5\nY30\nX[40+#101*0.001]\nY0\nX-5\nG40 X-20 Y-20\no110 endwhile\nM2\n"
     ),
 )
 

@@ -6,10 +6,12 @@ from random import Random
 
 import pytest
 
-from tests.nc.nc_contours import program
+from tests.nc.nc_contours import program, switched
 from tests.nc.nc_running import WITH_TABLES
 from tests.nc.test_nc_plain import ALWAYS, assert_same, seen
+from twin.nc.blocks import Block
 from twin.nc.canonical import Function
+from twin.nc.control import Control
 from twin.nc.dialects import DIALECTS
 from twin.nc.source import source_from_text
 
@@ -51,3 +53,58 @@ def test_what_waits_when_a_run_ends_comes_at_the_end_of_the_held_move() -> None:
     (on, _), (off, _), *_ = words
     assert off == on + 1
     assert seen(source_from_text(text), "gost", JOB, ALWAYS).error is None
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_both_ways_agree_on_contours_that_are_switched(dialect: str) -> None:
+    ran = moves = 0
+    for seed in range(150):
+        text = switched(dialect, Random(seed))  # noqa: S311 (programs need no cryptography)
+        result = assert_same(source_from_text(text), dialect, JOB)
+        ran += result.error is None
+        moves += len(result.moves)
+    assert ran > 10
+    assert moves > 1000
+
+
+ENDS = {"at once": "G40 X-20 Y-20", "later": "M8\nZ1\nG40\nZ2\nM9\nX-20 Y-9"}
+
+
+@pytest.mark.parametrize("leads", ["G136", "G137", "G138"])
+@pytest.mark.parametrize("end", ENDS.values(), ids=ENDS)
+def test_a_contour_in_a_loop_never_leaves_the_compiled_run(
+    leads: str, end: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    contour = f"G41\nX0 Y-5\nY30\nX[40+P1*0.001]\nY0\nX-5\n{end}"
+    text = (
+        f"{leads}\nP1=0\nG90 G1 F100 X-20 Y-20\n$WHILE P1<300\nP1=P1+1\n{contour}\n$ENDWHILE\nM30"
+    )
+    job = dataclasses.replace(JOB, step_limit=100_000)
+    assert assert_same(source_from_text(text), "fagor8070", job).error is None
+    lines: list[int] = []
+    general = Control.run
+
+    def counted(control: Control, block: Block) -> None:
+        lines.append(block.line)
+        general(control, block)
+
+    monkeypatch.setattr(Control, "run", counted)
+    seen(source_from_text(text), "fagor8070", job, ALWAYS)
+    assert len(lines) < 10
+
+
+def test_an_error_in_a_later_pass_is_told_where_it_stands() -> None:
+    """The slot becomes narrower than the tool; what was made before stays."""
+    contour = "G42\nX0 Y0\nX10\nY[8-P1]\nX0\nG40 X-20 Y-20"
+    text = f"P1=0\nG90 G1 F100 X-20 Y-20\n$WHILE P1<9\nP1=P1+1\n{contour}\n$ENDWHILE\nM30"
+    result = assert_same(source_from_text(text), "fagor8070", JOB)
+    assert result.error is not None
+    assert result.error.code == "compensation-gouge"
+
+
+@pytest.mark.parametrize("block", ["T2 M6", "D0", "G17", "G54", "S500 M3 M8", "/M9", "M3 M5"])
+def test_what_stands_within_a_contour_means_the_same(block: str) -> None:
+    contour = f"G41\nX0 Y-5\nY30\n{block}\nX40\nY0\nX-5\nG40 X-20 Y-20"
+    text = f"P1=0\nG90 G1 F100 X-20 Y-20\n$WHILE P1<50\nP1=P1+1\n{contour}\n$ENDWHILE\nM30"
+    for skip in (True, False):
+        assert_same(source_from_text(text), "fagor8070", dataclasses.replace(JOB, block_skip=skip))

@@ -6,8 +6,8 @@ import numpy as np
 
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.column_kernels import copy, copy_rows
+from twin.nc.compile_kernels import kernel
 from twin.nc.instructions import MOST_STORES, MOST_VALUES
-from twin.nc.kernel import kernel
 from twin.nc.plain_state import MOST_WORDS, State
 
 

@@ -1,8 +1,8 @@
 """Parts of the program that are called or repeated, in the compiled run."""
 
 from twin.nc.canonical import IntArray
+from twin.nc.compile_kernels import kernel
 from twin.nc.instructions import PART_BITS
-from twin.nc.kernel import kernel
 from twin.nc.routine_state import (
     AGAIN,
     BACK,

@@ -6,7 +6,7 @@ Assigning a slice would bring NumPy's error messages into the kernel, which are 
 from typing import TypeVar
 
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.kernel import kernel
+from twin.nc.compile_kernels import kernel
 
 Column = TypeVar("Column", FloatArray, IntArray)
 

@@ -17,7 +17,7 @@ from typing import NoReturn
 from twin.nc.arcs import SAME_POINT, Point, distance
 from twin.nc.canonical import Corner
 from twin.nc.contour import Element, crossing, crossings, turn_between
-from twin.nc.curves import Box
+from twin.nc.followed import NECK, Followed, Passed, Stage
 from twin.nc.leads import LeadOut, around, lead_depth
 from twin.nc.move_columns import NAN, Segment
 from twin.nc.planes import Plane
@@ -34,45 +34,6 @@ LARGEST_SQUARE = 90.0 + 1e-9
 
 STRAIGHT_ON = 1e-4
 """Corners that turn by less pass as straight on [deg]."""
-
-
-NECK = 50
-"""Elements of the contour that a new one is checked against: beyond them a neck goes unnoticed."""
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Passed:
-    """A compensated element that was emitted, its contour, its source line and where it lies."""
-
-    element: Element
-    contour: Element | None
-    line: int
-    box: Box
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Followed:
-    """A contour between two of its moves.
-
-    Attributes:
-        aside: The tool's radius, signed as its side [mm].
-        square: Outside corners between lines are extended.
-        move: The move that is held, as programmed.
-        contour: Itself in the plane.
-        element: Its parallel.
-        start: Where its compensated path begins in the plane.
-        here: Where the path has come to, shape (k,).
-        passed: What was passed, the oldest first.
-    """
-
-    aside: float
-    square: bool
-    move: Segment
-    contour: Element
-    element: Element
-    start: Point
-    here: list[float]
-    passed: list[Passed]
 
 
 @dataclasses.dataclass(slots=True)
@@ -148,27 +109,38 @@ class Compensation:
             self._held.waiting.append(event)
 
     @property
-    def progress(self) -> "Followed | None":
-        """How far the contour has come, between two of its moves where nothing waits; else None."""
-        held = self._held
-        if held is None or held.element is None or held.waiting or not self._here:
-            return None
+    def waits(self) -> bool:
+        """Something waits for the end of the held move."""
+        return self._held is not None and bool(self._held.waiting)
+
+    @property
+    def followed(self) -> Followed:
+        """How far it has come, where nothing waits."""
+        held, stage = self._held, Stage.STARTED
+        if held is not None:
+            stage = Stage.LEADING_IN if held.element is None else Stage.FOLLOWING
         return Followed(
+            stage,
+            self.plane,
             self._aside,
             self._square,
-            held.move,
-            held.contour,
-            held.element,
-            held.start,
+            self._indirect,
+            None if held is None else held.move,
+            None if held is None else held.contour,
+            None if held is None else held.element,
+            (0.0, 0.0) if held is None else held.start,
             self._here,
             list(self._passed),
         )
 
-    def resume(self, followed: "Followed") -> None:
-        """The contour has gone on as far as this."""
+    def resume(self, followed: Followed) -> None:
+        """Go on as if it had come as far as this."""
         self._here = followed.here
-        self._held = _Held(followed.move, followed.contour, followed.element, followed.start, [])
-        self._passed = collections.deque(followed.passed, maxlen=NECK)
+        self._passed.extend(followed.passed)
+        if followed.move is not None and followed.contour is not None:
+            self._held = _Held(
+                followed.move, followed.contour, followed.element, followed.start, []
+            )
 
     def wait(self, move: Segment) -> None:
         """A move along the plane's normal at the end of the held one."""

@@ -8,7 +8,7 @@ import dataclasses
 import math
 
 from twin.nc import curves
-from twin.nc.arcs import Point, distance, turned
+from twin.nc.arcs import Point, turned
 from twin.nc.curves import Box, Curve
 
 
@@ -102,31 +102,6 @@ class Element:
     def cut_share(self, last: float) -> "Element":
         """The part from its start to a share of its way."""
         return Element(self.start, self.point(last), self.center, self.sweep * last)
-
-
-def clearance(line: Element, element: Element) -> float:
-    """Smallest distance between a line and a line or an arc; 0 where they cross [mm]."""
-    for point in crossings(line, element):
-        if line.within(line.along(point)) and element.within(element.along(point)):
-            return 0.0
-    near = [distance_to(element, line.start), distance_to(element, line.end)]
-    near += [distance_to(line, element.start), distance_to(line, element.end)]
-    if element.center is not None:
-        share = line.along(element.center)
-        foot = line.point(share)
-        if line.within(share):
-            near.append(distance_to(element, foot))
-    return min(near)
-
-
-def distance_to(element: Element, point: Point) -> float:
-    """From a point to the nearest point of an element [mm]."""
-    share = element.along(point)
-    if 0.0 <= share <= 1.0:
-        if element.center is not None:
-            return abs(distance(point, element.center) - element.radius)
-        return distance(point, element.point(share))
-    return min(distance(point, element.start), distance(point, element.end))
 
 
 def crossings(first: Element, second: Element) -> list[Point]:

@@ -6,32 +6,35 @@ import math
 import numpy as np
 
 from twin.nc.canonical import Corner, Event, Motion, Shape
-from twin.nc.compensation import NECK, Followed, Passed
 from twin.nc.contour import element_from
 from twin.nc.contour_state import (
-    ACTIVE,
     BOX,
     CONTOUR,
     COUNTS,
     CURVE,
     ELEMENT,
-    EVENT,
     HAS_CONTOUR,
-    LATEST,
+    INDIRECT,
     LINE,
     MOST_WAITING,
-    MOVE,
     MOVED,
+    MOVED_EVENTS,
+    MOVED_ROWS,
     OLDEST,
     PASSED,
     PASSED_COLUMNS,
+    PLACED,
     SQUARE,
+    STAGE,
     WAITING,
     Contour,
     Row,
 )
 from twin.nc.curves import Curve
+from twin.nc.event_columns import EventRows
+from twin.nc.followed import NECK, Followed, Passed, Stage
 from twin.nc.move_columns import Segment
+from twin.nc.planes import PLANE_ORDER
 
 
 def new_contour(axes: int) -> Contour:
@@ -50,6 +53,7 @@ def new_contour(axes: int) -> Contour:
         curves=np.zeros((2, CURVE)),
         start=np.zeros(2),
         here=np.zeros(axes),
+        position=np.zeros(axes),
         waiting=several,
         rows_after=np.zeros(MOST_WAITING + 1, np.int64),
         passed=np.zeros((NECK, PASSED_COLUMNS)),
@@ -60,18 +64,26 @@ def _empty_row(axes: int) -> Row:
     return Row(np.zeros(5, np.int64), np.zeros(11), np.zeros((3, axes)))
 
 
-def fill(contour: Contour, followed: Followed | None, plane: tuple[int, int, int]) -> None:
-    """Give the columns how far a contour has come; None: there is none."""
-    contour.counts[:] = 0
+def fill(contour: Contour, followed: Followed | None, position: list[float]) -> None:
+    """Give the columns how far compensation has come, and where the path has come to."""
+    counts = contour.counts
+    counts[:] = 0
+    contour.position[:] = position
     if followed is None:
         return
-    contour.counts[ACTIVE], contour.counts[SQUARE] = 1, int(followed.square)
-    contour.plane[:], contour.aside[0] = plane, followed.aside
-    _fill_row(contour.held, followed.move)
-    contour.curves[CONTOUR] = _column(followed.contour.curve)
-    contour.curves[ELEMENT] = _column(followed.element.curve)
-    contour.start[:], contour.here[:] = followed.start, followed.here
-    contour.counts[PASSED] = len(followed.passed)
+    counts[STAGE], counts[SQUARE] = followed.stage, followed.square
+    counts[INDIRECT], counts[PLACED] = followed.indirect, bool(followed.here)
+    contour.plane[:], contour.aside[0] = followed.plane.axes, followed.aside
+    if followed.move is not None:
+        _fill_row(contour.held, followed.move)
+        contour.here[:] = followed.move.start
+    if followed.here:
+        contour.here[:] = followed.here
+    for place, element in ((CONTOUR, followed.contour), (ELEMENT, followed.element)):
+        if element is not None:
+            contour.curves[place] = _column(element.curve)
+    contour.start[:] = followed.start
+    counts[PASSED] = len(followed.passed)
     for row, each in zip(contour.passed, followed.passed, strict=False):
         row[:CURVE] = _column(each.element.curve)
         row[HAS_CONTOUR] = each.contour is not None
@@ -85,53 +97,85 @@ class Gone:
     """What a run has made of a contour.
 
     Attributes:
-        followed: How far it has come.
+        followed: How far it has come, or None.
         waiting: Moves and events at the end of the held move, in order.
         latest: The last programmed move, or None where there was none.
         before: The same, unless an event came behind it.
         came: Something came at all.
     """
 
-    followed: Followed
+    followed: Followed | None
     waiting: list[Segment | Event]
     latest: Segment | None
     before: Segment | None
     came: bool
 
 
-def gone(contour: Contour, followed: Followed, held_back: list[Event]) -> Gone:
-    """Read the columns; ``held_back``: events whose place is not known yet."""
+def gone(contour: Contour, moves: Row, events: EventRows) -> tuple[Gone, EventRows]:
+    """Read the columns.
+
+    Args:
+        contour: The columns.
+        moves: Those that were emitted, as columns.
+        events: All that were reported.
+
+    Returns:
+        What was made, and the events whose place is known.
+    """
     counts = contour.counts
+    made, happened = len(moves.codes), len(events)
+    placed = int((events.before >= 0).sum())
+    latest = segment(contour.latest) if counts[MOVED] else None
+    event_behind = happened > counts[MOVED_EVENTS]
+    if made > counts[MOVED_ROWS]:
+        latest = segment(Row(*(column[-1] for column in moves)))
+        event_behind = placed > 0 and events.before[placed - 1] == made
+    before = None if event_behind else latest
+    held_back = list(events.part(placed, happened))
+    waiting = _waiting(contour, held_back)
+    came = latest is not None or happened > 0
+    return Gone(_followed(contour), waiting, latest, before, came), events.part(0, placed)
+
+
+def _waiting(contour: Contour, held_back: list[Event]) -> list[Segment | Event]:
     waiting: list[Segment | Event] = []
-    for number in range(counts[WAITING] + 1):
+    for number in range(contour.counts[WAITING] + 1):
         waiting += [
             dataclasses.replace(each, before=0) for each in held_back if each.before == -1 - number
         ]
-        if number < counts[WAITING]:
+        if number < contour.counts[WAITING]:
             waiting.append(segment(Row(*(column[number] for column in contour.waiting))))
-    passed: list[Passed] = []
-    for number in range(counts[PASSED]):
-        row = contour.passed[(counts[OLDEST] + number) % NECK]
-        around = element_from(_tuple(row[CURVE : 2 * CURVE])) if row[HAS_CONTOUR] else None
-        left, low, right, high = row[BOX:].tolist()
-        element = element_from(_tuple(row[:CURVE]))
-        passed.append(Passed(element, around, int(row[LINE]), (left, low, right, high)))
-    latest = segment(contour.latest) if counts[MOVED] else None
+    return waiting
+
+
+def _followed(contour: Contour) -> Followed | None:
+    counts = contour.counts
+    stage = Stage(int(counts[STAGE]))
+    if stage is Stage.OFF:
+        return None
+    held = stage in (Stage.LEADING_IN, Stage.FOLLOWING)
     x, y = contour.start.tolist()
-    return Gone(
-        dataclasses.replace(
-            followed,
-            move=segment(contour.held),
-            contour=element_from(_tuple(contour.curves[CONTOUR])),
-            element=element_from(_tuple(contour.curves[ELEMENT])),
-            start=(x, y),
-            here=contour.here.tolist(),
-            passed=passed,
-        ),
-        waiting,
-        latest,
-        latest if counts[LATEST] == MOVE else None,
-        counts[LATEST] in (MOVE, EVENT),
+    return Followed(
+        stage,
+        PLANE_ORDER[[plane.axes for plane in PLANE_ORDER].index((*contour.plane.tolist(),))],
+        float(contour.aside[0]),
+        bool(counts[SQUARE]),
+        bool(counts[INDIRECT]),
+        segment(contour.held) if held else None,
+        None if stage is Stage.STARTED else element_from(_tuple(contour.curves[CONTOUR])),
+        element_from(_tuple(contour.curves[ELEMENT])) if stage is Stage.FOLLOWING else None,
+        (x, y),
+        contour.here.tolist() if counts[PLACED] else [],
+        [_passed(contour, number) for number in range(counts[PASSED])],
+    )
+
+
+def _passed(contour: Contour, number: int) -> Passed:
+    row = contour.passed[(contour.counts[OLDEST] + number) % NECK]
+    around = element_from(_tuple(row[CURVE : 2 * CURVE])) if row[HAS_CONTOUR] else None
+    left, low, right, high = row[BOX:].tolist()
+    return Passed(
+        element_from(_tuple(row[:CURVE])), around, int(row[LINE]), (left, low, right, high)
     )
 
 

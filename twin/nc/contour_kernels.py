@@ -1,7 +1,7 @@
 """Radius compensation of one block after the other, compiled: ``Compensation`` where all is clear.
 
 Each step is the one of ``Compensation`` between two moves of a contour, with the same functions of
-``curves``. Beginnings, ends, warnings and refusals are left to it.
+``curves``. Warnings and refusals are left to it.
 """
 
 import numpy as np
@@ -9,32 +9,38 @@ from numba.extending import register_jitable
 
 from twin.nc import curves
 from twin.nc.arcs import SAME_POINT, Point, distance
-from twin.nc.canonical import Corner, FloatArray, Shape
+from twin.nc.canonical import Shape
 from twin.nc.column_kernels import copy, copy_rows
 from twin.nc.compensation import LARGEST_SQUARE, STRAIGHT_ON
+from twin.nc.compile_kernels import kernel
 from twin.nc.contour_state import (
-    BOX,
     CONTOUR,
-    CURVE,
     ELEMENT,
-    EVENT,
-    HAS_CONTOUR,
-    LATEST,
-    LINE,
     MOST_WAITING,
-    MOVE,
-    MOVED,
+    MOVED_ROWS,
     OLDEST,
     PASSED,
+    PLACED,
     SQUARE,
+    STAGE,
     WAITING,
     Contour,
-    Row,
 )
-from twin.nc.curves import Box, Curve
-from twin.nc.kernel import kernel
+from twin.nc.curves import Curve
+from twin.nc.followed import Stage
+from twin.nc.held_kernels import (
+    curve_of,
+    go_around,
+    hold_events,
+    hold_move,
+    let_go,
+    set_curve,
+    take_move,
+)
+from twin.nc.lead_kernels import DOUBTFUL, lead_in, lead_out, take_lead
+from twin.nc.passed_kernels import crosses_passed, gouges, pass_by
 from twin.nc.plain_state import Rows
-from twin.nc.plane_kernels import along_axis, one, place
+from twin.nc.plane_kernels import along_axis
 
 for _shared in (
     curves.radius_of,
@@ -61,17 +67,12 @@ for _shared in (
 ):
     register_jitable(_shared)
 
-DOUBTFUL = -1
+_STARTED, _LEADING_IN, _LEADING_OUT = (
+    int(Stage.STARTED),
+    int(Stage.LEADING_IN),
+    int(Stage.LEADING_OUT),
+)
 _ARC = int(Shape.ARC)
-_EXACT_PATH = int(Corner.EXACT_PATH)
-
-
-@kernel
-def hold_events(contour: Contour, rows: Rows, first: int, behind: int) -> None:
-    """Events of the block, from ``first`` on, wait for the end of the held move."""
-    for event in range(first, behind):
-        rows.events[event, 0] = -1 - contour.counts[WAITING]
-        contour.counts[LATEST] = EVENT
 
 
 @kernel
@@ -83,7 +84,7 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
         made: The row after it.
         first_event: The block's first event.
         behind: The event after its last.
-        contour: Compensation in force.
+        contour: Compensation, which is not off.
         rows: The block's row is replaced by those that it lets go.
 
     Returns:
@@ -91,40 +92,77 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
     """
     if made - row > 1:
         return DOUBTFUL
-    counts = contour.counts
-    early = first_event
-    while early < behind and rows.events[early, 0] == row:
-        early += 1
     if made == row:
         hold_events(contour, rows, first_event, behind)
         return row
+    stage, early = contour.counts[STAGE], first_event
+    while early < behind and rows.events[early, 0] == row:
+        early += 1
+    if stage == _LEADING_OUT:
+        return lead_out(row, early, behind, contour, rows)
     plane, position = contour.plane, rows.positions[row]
     start = (along_axis(position[0], plane[0]), along_axis(position[0], plane[1]))
     end = (along_axis(position[1], plane[0]), along_axis(position[1], plane[1]))
     is_arc = rows.codes[row, 1] == _ARC
     if not is_arc and distance(start, end) < SAME_POINT:
-        waiting = counts[WAITING]
-        if waiting == MOST_WAITING:
+        return _along_normal(row, first_event, early, behind, contour, rows)
+    if stage == _STARTED:
+        if is_arc:
             return DOUBTFUL
-        hold_events(contour, rows, first_event, early)
-        _keep(rows, row, contour.latest)
-        copy(rows.codes[row], contour.waiting.codes[waiting])
-        copy(rows.values[row], contour.waiting.values[waiting])
-        copy_rows(position, contour.waiting.positions[waiting])
-        counts[WAITING], counts[PASSED], counts[OLDEST] = waiting + 1, 0, 0
-        counts[LATEST], counts[MOVED] = MOVE, 1
-        hold_events(contour, rows, early, behind)
-        return row
-    value = rows.values[row]
+        return take_lead(start, end, row, early, behind, contour, rows)
     curve = (False, start, end, (0.0, 0.0), 0.0)
     if is_arc:
+        value = rows.values[row]
         center = (along_axis(value[:3], plane[0]), along_axis(value[:3], plane[1]))
         curve = (True, start, end, center, value[6])
     aside = contour.aside[0]
     if not curves.leaves_room(curve, aside):
         return DOUBTFUL
     element = curves.aside_of(curve, aside)
-    held, before = _curve(contour.curves[CONTOUR]), _curve(contour.curves[ELEMENT])
+    if stage == _LEADING_IN:
+        return lead_in(curve, element, row, first_event, early, behind, contour, rows)
+    return _go_on(curve, element, row, first_event, early, behind, contour, rows)
+
+
+@kernel
+def _along_normal(
+    row: int, first_event: int, early: int, behind: int, contour: Contour, rows: Rows
+) -> int:
+    """A move that does not go in the plane: at once before the lead-in, else behind the held move."""
+    counts = contour.counts
+    waiting = counts[WAITING]
+    if counts[STAGE] == _STARTED:
+        take_move(contour, rows, row, early)
+        copy(rows.positions[row, 1], contour.here)
+        counts[PLACED], counts[MOVED_ROWS] = 1, row + 1
+        return row + 1
+    if waiting == MOST_WAITING:
+        return DOUBTFUL
+    hold_events(contour, rows, first_event, early)
+    take_move(contour, rows, row, early)
+    copy(rows.codes[row], contour.waiting.codes[waiting])
+    copy(rows.values[row], contour.waiting.values[waiting])
+    copy_rows(rows.positions[row], contour.waiting.positions[waiting])
+    counts[WAITING], counts[PASSED], counts[OLDEST] = waiting + 1, 0, 0
+    counts[MOVED_ROWS] = row
+    hold_events(contour, rows, early, behind)
+    return row
+
+
+@kernel
+def _go_on(
+    curve: Curve,
+    element: Curve,
+    row: int,
+    first_event: int,
+    early: int,
+    behind: int,
+    contour: Contour,
+    rows: Rows,
+) -> int:
+    """The contour's next element, with its parallel: as ``lead_in``."""
+    counts, aside = contour.counts, contour.aside[0]
+    held, before = curve_of(contour.curves[CONTOUR]), curve_of(contour.curves[ELEMENT])
     begin = (contour.start[0], contour.start[1])
     turn = curves.turn_from(held, curve)
     clear, rolls, at, follows = _corner(
@@ -135,58 +173,25 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
     part = curves.cut(before, begin, at)
     box = curves.box_of(part)
     corner = (True, before[2], element[1], curve[1], abs(turn) if aside < 0.0 else -abs(turn))
-    if _crosses_passed(contour, part, box, 0):
+    if gouges(contour, part, box, held):
         return DOUBTFUL
     if rolls:
         full = 1 if counts[PASSED] == len(contour.passed) else 0
-        if curves.crossing_of(part, corner)[0] or _crosses_passed(
+        if curves.crossing_of(part, corner)[0] or crosses_passed(
             contour, corner, curves.box_of(corner), full
         ):
             return DOUBTFUL
     hold_events(contour, rows, first_event, early)
-    _keep(rows, row, contour.latest)
-    after = _let_go(contour, before, part, at, rows, row, early)
-    _pass(contour, part, box, held, True)
+    take_move(contour, rows, row, early)
+    after = let_go(contour, before, part, at, rows, row, early)
+    pass_by(contour, part, box, held, True)
     if rolls:
-        _roll(contour, corner, rows, after)
-        after += 1
-        _pass(contour, corner, curves.box_of(corner), held, False)
-    copy(contour.latest.codes, contour.held.codes)
-    copy(contour.latest.values, contour.held.values)
-    copy_rows(contour.latest.positions, contour.held.positions)
-    _set_curve(contour.curves[CONTOUR], curve)
-    _set_curve(contour.curves[ELEMENT], element)
-    contour.start[0], contour.start[1] = follows
-    counts[WAITING], counts[LATEST], counts[MOVED] = 0, MOVE, 1
+        after = go_around(contour, corner, rows, after)
+        pass_by(contour, corner, curves.box_of(corner), held, False)
+    hold_move(contour, curve, follows)
+    set_curve(contour.curves[ELEMENT], element)
     hold_events(contour, rows, early, behind)
     return after
-
-
-@kernel
-def _keep(rows: Rows, row: int, kept: Row) -> None:
-    copy(rows.codes[row], kept.codes)
-    copy(rows.values[row], kept.values)
-    copy_rows(rows.positions[row], kept.positions)
-
-
-@kernel
-def _curve(column: FloatArray) -> Curve:
-    return (
-        column[0] != 0.0,
-        (column[1], column[2]),
-        (column[3], column[4]),
-        (column[5], column[6]),
-        column[7],
-    )
-
-
-@kernel
-def _set_curve(column: FloatArray, curve: Curve) -> None:
-    column[0] = 1.0 if curve[0] else 0.0
-    column[1], column[2] = curve[1]
-    column[3], column[4] = curve[2]
-    column[5], column[6] = curve[3]
-    column[7] = curve[4]
 
 
 @kernel
@@ -224,95 +229,3 @@ def _corner(
             if not found or far < least:
                 found, at, least = True, point, far
     return (found, False, at, at)
-
-
-@kernel
-def _crosses_passed(contour: Contour, element: Curve, box: Box, first: int) -> bool:
-    """Whether an element crosses one that was passed, from the ``first`` on."""
-    passed = contour.passed
-    for number in range(first, contour.counts[PASSED]):
-        older = passed[(contour.counts[OLDEST] + number) % len(passed)]
-        if older[BOX] > box[2] or older[BOX + 2] < box[0]:
-            continue
-        if older[BOX + 1] > box[3] or older[BOX + 3] < box[1]:
-            continue
-        if curves.crossing_of(_curve(older[:CURVE]), element)[0]:
-            return True
-    return False
-
-
-@kernel
-def _pass(contour: Contour, element: Curve, box: Box, held: Curve, has_contour: bool) -> None:
-    """Remember an element that was passed."""
-    counts, passed = contour.counts, contour.passed
-    if counts[PASSED] == len(passed):
-        counts[OLDEST] = (counts[OLDEST] + 1) % len(passed)
-        counts[PASSED] -= 1
-    latest = passed[(counts[OLDEST] + counts[PASSED]) % len(passed)]
-    counts[PASSED] += 1
-    _set_curve(latest[:CURVE], element)
-    _set_curve(latest[CURVE : 2 * CURVE], held)
-    latest[HAS_CONTOUR] = 1.0 if has_contour else 0.0
-    latest[LINE] = contour.held.codes[2]
-    latest[BOX], latest[BOX + 1], latest[BOX + 2], latest[BOX + 3] = box
-
-
-@kernel
-def _let_go(
-    contour: Contour, before: Curve, part: Curve, at: Point, rows: Rows, row: int, events: int
-) -> int:
-    """The held move up to a point, then what waits for its end; the row after them."""
-    held, plane, counts = contour.held, contour.plane, contour.counts
-    after = row
-    for number in range(counts[WAITING] + 1):
-        value, position = rows.values[after], rows.positions[after]
-        if number == 0:
-            copy(held.codes, rows.codes[after])
-            copy(held.values, value)
-            copy_rows(held.positions, position)
-        else:
-            waiting = contour.waiting
-            copy(waiting.codes[number - 1], rows.codes[after])
-            copy(waiting.values[number - 1], value)
-            copy_rows(waiting.positions[number - 1], position)
-        is_arc = number == 0 and before[0]
-        if is_arc:
-            place(plane, before[3], along_axis(position[0], plane[2]), value)
-            for axis in range(3):
-                value[3 + axis] = one(plane[2], axis)
-            value[6] = part[4]
-        place(plane, at, along_axis(position[1], plane[2]), position[1])
-        copy(contour.here, position[0])
-        stands = not is_arc
-        for axis in range(len(contour.here)):
-            stands = stands and position[0, axis] == position[1, axis]
-            contour.here[axis] = position[1, axis]
-        after += 0 if stands else 1
-        contour.rows_after[number] = after
-    event = events - 1
-    while event >= 0 and rows.events[event, 0] < 0:
-        rows.events[event, 0] = contour.rows_after[-1 - rows.events[event, 0]]
-        event -= 1
-    return after
-
-
-@kernel
-def _roll(contour: Contour, corner: Curve, rows: Rows, row: int) -> None:
-    """Go around a corner where the path has come to."""
-    held, plane = contour.held, contour.plane
-    code, value, position = rows.codes[row], rows.values[row], rows.positions[row]
-    copy(held.codes, code)
-    code[1], code[4] = _ARC, _EXACT_PATH
-    copy(held.values, value)
-    height = along_axis(contour.here, plane[2])
-    place(plane, corner[3], height, value)
-    for axis in range(3):
-        value[3 + axis] = one(plane[2], axis)
-    value[6] = corner[4]
-    copy(contour.here, position[0])
-    copy(contour.here, position[1])
-    place(plane, corner[2], height, position[1])
-    for axis in range(len(contour.here)):
-        shown, end = held.positions[2, axis], held.positions[1, axis]
-        position[2, axis] = position[1, axis] + shown - end
-        contour.here[axis] = position[1, axis]

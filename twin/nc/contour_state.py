@@ -3,13 +3,26 @@
 from typing import NamedTuple
 
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.followed import Stage
 
-ACTIVE, WAITING, PASSED, OLDEST, SQUARE, LATEST, MOVED = range(7)
-"""Places in the counts: compensation is in force; moves along the normal that wait for the end of
-the held one; elements that were passed; the place of the oldest; square corners; what came last,
-``NOTHING_YET``, ``MOVE`` or ``EVENT``; whether there was a move."""
-COUNTS = 7
-NOTHING_YET, MOVE, EVENT = range(3)
+(
+    STAGE,
+    WAITING,
+    PASSED,
+    OLDEST,
+    SQUARE,
+    INDIRECT,
+    PLACED,
+    MOVED,
+    MOVED_ROWS,
+    MOVED_EVENTS,
+) = range(10)
+"""Places in the counts: a ``followed.Stage``; moves along the normal that wait for the end of the
+held one; elements that were passed; the place of the oldest; square corners; indirect leads; it is
+known where the path has come to; whether compensation was given a move in this run, the rows that
+were there behind it, and the events before it."""
+COUNTS = 10
+OFF = int(Stage.OFF)
 MOST_WAITING = 16
 ROOM = MOST_WAITING + 4
 """Rows that a block may need."""
@@ -37,17 +50,18 @@ class Row(NamedTuple):
 
 
 class Contour(NamedTuple):
-    """Compensation while a move is held.
+    """Radius compensation between two blocks.
 
     Attributes:
         counts: Shape (``COUNTS``,).
         plane: Columns of abscissa, ordinate and normal, shape (3,).
         aside: The tool's radius, signed as the side of the contour, shape (1,) [mm].
         held: The move that waits for its successor, as programmed.
-        latest: The last programmed move of the run.
+        latest: The last move that compensation was given in this run, as programmed.
         curves: The held move and its parallel in the plane, shape (2, ``CURVE``).
         start: Where its compensated path begins in the plane, shape (2,) [mm].
-        here: Where the path has come to, shape (k,).
+        here: Where the compensated path has come to, shape (k,).
+        position: Where all of the path had come to when the run began, shape (k,).
         waiting: The moves that wait, shape (``MOST_WAITING``, ...).
         rows_after: Row behind the held move and behind each that waits, shape (w + 1,).
         passed: Elements that were passed, a ring, shape (n, ``PASSED_COLUMNS``).
@@ -61,6 +75,7 @@ class Contour(NamedTuple):
     curves: FloatArray
     start: FloatArray
     here: FloatArray
+    position: FloatArray
     waiting: Row
     rows_after: IntArray
     passed: FloatArray

@@ -6,14 +6,13 @@ Each is what ``instructions.Step`` says of it; the state is kept before the firs
 import numpy as np
 from numba.extending import register_jitable
 
-from twin.nc import arcs
+from twin.nc import arcs, steps
 from twin.nc.canonical import FloatArray
+from twin.nc.compile_kernels import kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import AUXILIARY, DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED, SPEED, TOOL
 from twin.nc.event_kernels import report
 from twin.nc.frame import SHIFTS
-from twin.nc.instructions import Step
-from twin.nc.kernel import kernel
 from twin.nc.plain_state import (
     CYCLE,
     IN_SPINDLE,
@@ -38,28 +37,6 @@ register_jitable(arcs.angle_of)
 
 DOUBTFUL = -1
 _NO_EVENT = -1
-(
-    _IN_FORCE,
-    _PLANE,
-    _FUNCTION,
-    _SPINDLE_FUNCTION,
-    _SPEED,
-    _TOOL,
-    _AUXILIARY,
-    _DWELL,
-    _CHANGE_TOOL,
-    _OFFSET_ON,
-    _TOOL_LENGTH,
-    _SHIFT,
-    _REFRAME,
-    _BEGIN_LABEL,
-    _LABEL,
-    _RELABEL,
-    _POLAR_ORIGIN,
-    _TO_MILLIMETRES,
-    _NO_CYCLE,
-    _FORGET_POLAR,
-) = range(int(Step.IN_FORCE), int(Step.FORGET_POLAR) + 1)
 _LENGTH = SHIFTS.index("length")
 _LARGEST_NUMBER = 1e6
 """Numbers of tools and of auxiliary functions above this are left to the general way."""
@@ -77,6 +54,7 @@ def run_deed(
     constants: Constants,
     state: State,
     rows: Rows,
+    compensates: bool,
 ) -> int:
     """Do one step.
 
@@ -91,6 +69,7 @@ def run_deed(
         constants: What stays.
         state: What changes.
         rows: Where events go.
+        compensates: Radius compensation is in force.
 
     Returns:
         How many values are left, or ``DOUBTFUL``.
@@ -98,27 +77,27 @@ def run_deed(
     registers = state.registers
     value = stack[top - 1] if top > 0 else 0.0
     kind, number, amount = _NO_EVENT, argument, np.nan
-    if step == _IN_FORCE:
+    if step == steps.IN_FORCE:
         state.in_force[tables.group[argument]] = argument
-    elif step == _PLANE:
-        if state.modal[CYCLE] != 0.0 or constants.compensates:
+    elif step == steps.PLANE:
+        if state.modal[CYCLE] != 0.0 or compensates:
             return DOUBTFUL
         state.modal[PLANE] = argument
         if not np.isnan(registers[POLAR_ABSCISSA]):
             registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
-    elif step == _FUNCTION:
+    elif step == steps.FUNCTION:
         kind = FUNCTION_ALONE
-    elif step == _SPINDLE_FUNCTION:
+    elif step == steps.SPINDLE_FUNCTION:
         kind, amount = FUNCTION_WITH_SPEED, registers[SPINDLE]
-    elif step == _SPEED:
+    elif step == steps.SPEED:
         if value < 0.0:
             return DOUBTFUL
         registers[SPINDLE] = value
         if argument:
             kind, amount = SPEED, value
         top -= 1
-    elif step == _TOOL:
+    elif step == steps.TOOL:
         if not 0.0 <= value <= _LARGEST_NUMBER or value != np.floor(value):
             return DOUBTFUL
         if argument and len(constants.tools) > 0 and _tool(constants, value) == DOUBTFUL:
@@ -126,21 +105,21 @@ def run_deed(
         registers[SELECTED] = value
         kind, number = TOOL, int(value)
         top -= 1
-    elif step == _AUXILIARY:
+    elif step == steps.AUXILIARY:
         if not 0.0 <= value < _LARGEST_NUMBER or value != np.floor(value):
             return DOUBTFUL
         kind, number = AUXILIARY, int(value)
         top -= 1
-    elif step == _DWELL:
+    elif step == steps.DWELL:
         if value < 0.0:
             return DOUBTFUL
         kind, amount = DWELL, value
         top -= 1
-    elif step == _CHANGE_TOOL:
+    elif step == steps.CHANGE_TOOL:
         registers[IN_SPINDLE] = registers[SELECTED]
-    elif step == _OFFSET_ON:
+    elif step == steps.OFFSET_ON:
         registers[OFFSET_ON] = argument
-    elif step == _TOOL_LENGTH:
+    elif step == steps.TOOL_LENGTH:
         longer = 0.0
         if registers[OFFSET_ON] != 0.0:
             tool = _tool(constants, registers[IN_SPINDLE])
@@ -150,34 +129,41 @@ def run_deed(
         state.shifts[_LENGTH, :] = 0.0
         state.shifts[_LENGTH, 2] = longer
         reframe(state)
-    elif step == _SHIFT:
+    elif step == steps.SHIFT:
         top -= len(state.part)
         for axis in range(len(state.part)):
             state.shifts[argument, axis] = stack[top + axis]
-    elif step == _REFRAME:
+    elif step == steps.REFRAME:
         reframe(state)
-    elif step == _BEGIN_LABEL:
+    elif step == steps.BEGIN_LABEL:
         for axis in range(len(state.part)):
             state.label[axis] = state.programmed[axis]
-    elif step == _LABEL:
+    elif step == steps.LABEL:
         state.label[argument] = value
         top -= 1
-    elif step == _RELABEL:
+    elif step == steps.RELABEL:
         for axis in range(len(state.part)):
             here = state.label[axis] + state.total[axis]
             shift = state.shifts[argument, axis]
             state.shifts[argument, axis] = shift + state.part[axis] - here
             state.programmed[axis] = state.label[axis]
         _add_up(state)
-    elif step == _POLAR_ORIGIN:
+    elif step == steps.POLAR_ORIGIN:
         _set_polar_origin(stack, top, argument, constants, state)
         top -= argument
-    elif step == _TO_MILLIMETRES:
+    elif step == steps.TO_MILLIMETRES:
         stack[top - 1] = value * (state.modal[UNIT] if tables.linear[argument] else 1.0)
-    elif step == _NO_CYCLE:
+    elif step == steps.NO_CYCLE:
         if state.modal[CYCLE] != 0.0:
             return DOUBTFUL
-    elif step == _FORGET_POLAR:
+    elif step == steps.TOOL_RADIUS:
+        tool = _tool(constants, registers[IN_SPINDLE])
+        if tool == DOUBTFUL:
+            return DOUBTFUL
+        offset = argument == 0 or registers[OFFSET_ON] != 0.0
+        stack[top] = constants.radii[tool] if offset else 0.0
+        top += 1
+    elif step == steps.FORGET_POLAR:
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
     if kind != _NO_EVENT:
         report(rows, state, made, line, kind, number, amount)

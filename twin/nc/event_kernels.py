@@ -1,6 +1,6 @@
 """Events of the compiled run."""
 
-from twin.nc.kernel import kernel
+from twin.nc.compile_kernels import kernel
 from twin.nc.plain_state import Rows, State
 
 

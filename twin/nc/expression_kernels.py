@@ -10,7 +10,7 @@ import numpy as np
 from numba.extending import register_jitable
 
 from twin.nc import arithmetic
-from twin.nc.kernel import arithmetic_kernel
+from twin.nc.compile_kernels import arithmetic_kernel
 
 for _shared in (
     arithmetic.inverted_bits,

@@ -4,11 +4,11 @@ import numpy as np
 
 from twin.nc.canonical import Corner, FloatArray, Motion, Shape
 from twin.nc.column_kernels import copy
+from twin.nc.compile_kernels import kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.drilling import Act
 from twin.nc.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
 from twin.nc.event_kernels import report
-from twin.nc.kernel import kernel
 from twin.nc.plain_arc_kernels import SHORTEST
 from twin.nc.plain_state import (
     CORNER,

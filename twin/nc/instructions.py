@@ -151,6 +151,12 @@ class Step(enum.IntEnum):
     """No drilling cycle may be in force."""
     FORGET_POLAR = 58
     """The last R and Q hold no longer."""
+    TOOL_RADIUS = 59
+    """Put the radius of the tool in use on the stack; ``argument`` 1: 0 where it has no offset."""
+    COMPENSATE = 60
+    """Radius compensation begins, of the topmost value, left (``argument`` 1) or right (-1)."""
+    END_COMPENSATION = 61
+    """It ends."""
 
 
 class Table(NamedTuple):

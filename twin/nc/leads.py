@@ -1,14 +1,12 @@
 """How radius compensation begins and ends: the straight moves to and from the contour."""
 
 import dataclasses
-import math
 
-from twin.nc.arcs import Point, distance, sweep_between, turned
-from twin.nc.contour import Element, clearance
+from twin.nc import lead_curves
+from twin.nc.arcs import Point
+from twin.nc.contour import Element, element_from
+from twin.nc.followed import Followed, Stage
 from twin.nc.planes import Plane
-
-ALLOWED_DEPTH = 0.01
-"""How far a lead may cut into the contour without a warning [mm]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -27,11 +25,27 @@ class LeadOut:
     aside: float
     indirect: bool
 
+    @property
+    def followed(self) -> Followed:
+        """As the stage of compensation that it is."""
+        return Followed(
+            Stage.LEADING_OUT,
+            self.plane,
+            self.aside,
+            square=False,
+            indirect=self.indirect,
+            move=None,
+            contour=self.contour,
+            element=None,
+            start=(0.0, 0.0),
+            here=[],
+            passed=[],
+        )
+
 
 def lead_depth(lead: Element, contour: Element, radius: float) -> float:
     """How far a tool on a straight lead cuts into an element of the contour; 0 if little [mm]."""
-    depth = radius - clearance(lead, contour)
-    return depth if depth > ALLOWED_DEPTH else 0.0
+    return lead_curves.depth_of(lead.curve, contour.curve, radius)
 
 
 def around(start: Point, end: Point, corner: Point, aside: float) -> Element | None:
@@ -49,16 +63,5 @@ def around(start: Point, end: Point, corner: Point, aside: float) -> Element | N
     Returns:
         The arc, or None where the straight lead is free or no way around exists.
     """
-    radius, far = abs(aside), distance(start, corner)
-    lead = (end[0] - start[0], end[1] - start[1])
-    arm = (corner[0] - end[0], corner[1] - end[1])
-    if lead[0] * arm[0] + lead[1] * arm[1] >= 0.0 or far <= radius:
-        return None
-    opening = math.degrees(math.acos(radius / far))
-    towards = (
-        corner[0] + (start[0] - corner[0]) * radius / far,
-        corner[1] + (start[1] - corner[1]) * radius / far,
-    )
-    touch = turned(towards, corner, -opening if aside > 0.0 else opening)
-    sweep = sweep_between(touch, end, corner, clockwise=aside > 0.0)
-    return Element(touch, end, corner, sweep) if abs(sweep) < 180.0 else None
+    found, arc = lead_curves.way_around(start, end, corner, aside)
+    return element_from(arc) if found else None

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from twin.nc.canonical import IntArray
-from twin.nc.kernel import kernel
+from twin.nc.compile_kernels import kernel
 from twin.nc.routine_state import Memory
 
 NO_SLOT = np.iinfo(np.int64).min

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from twin.nc.block_words import BlockWords
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
+from twin.nc.compensation_words import write_compensation, write_end_of_compensation
 from twin.nc.control import Control
 from twin.nc.control_state import integer_of
 from twin.nc.dialect import GCode, Translation
@@ -272,16 +273,23 @@ def refuse_plane_change(control: Control) -> None:
 
 
 COMPENSATION = {
-    40: GCode(meaning="radius compensation off", group="compensation", action=end_compensation),
+    40: GCode(
+        meaning="radius compensation off",
+        group="compensation",
+        action=end_compensation,
+        translate=write_end_of_compensation,
+    ),
     41: GCode(
         meaning="radius compensation, tool left of the contour",
         group="compensation",
         action=lambda control: _compensation_by_table(control, LEFT),
+        translate=write_compensation(LEFT),
     ),
     42: GCode(
         meaning="radius compensation, tool right of the contour",
         group="compensation",
         action=lambda control: _compensation_by_table(control, RIGHT),
+        translate=write_compensation(RIGHT),
     ),
 }
 LENGTH = {

@@ -4,14 +4,17 @@ The stages, in order: splines through points, blends at corners, tool radius com
 out, additional axes that go evenly. Each is there only while a program asks for it, and holds few moves.
 """
 
+import math
 from collections.abc import Callable
 
 from twin.nc.blends import Blend
-from twin.nc.canonical import Axes, Chunk, FloatArray, IntArray, Motion
-from twin.nc.compensation import Compensation, Followed, Refuse, Warn
+from twin.nc.canonical import Axes, Chunk, Motion
+from twin.nc.compensation import Compensation, Refuse, Warn
 from twin.nc.contour_columns import Gone
+from twin.nc.contour_state import Row
 from twin.nc.even_axes import MOST_MOVES, EvenAxes
 from twin.nc.event_columns import EventRows
+from twin.nc.followed import Followed, Stage
 from twin.nc.lead_out import lead_out
 from twin.nc.leads import LeadOut
 from twin.nc.loops import Loops
@@ -65,72 +68,58 @@ class Path:
         self._before = move
         self._round(move)
 
-    @property
-    def open(self) -> bool:
-        """No stage holds or changes moves: what is added is emitted at once."""
-        return (
-            self._spline is None
-            and self._rounding is None
-            and self._compensation is None
-            and self._leading_out is None
-            and self._loops is None
-            and self._even is None
-        )
-
-    def add_rows(
-        self,
-        codes: IntArray,
-        values: FloatArray,
-        positions: FloatArray,
-        events: EventRows,
-        last: Segment | None,
-        gone: Gone | None = None,
-    ) -> None:
-        """Moves as columns: of an open path, or such as compensation has let go.
+    def add_rows(self, moves: Row, events: EventRows, gone: Gone) -> None:
+        """Moves as columns: of a path that was handed over, as compensation has let them go.
 
         Args:
-            codes: Shape (n, 5), as in ``MoveColumns.add_rows``.
-            values: Shape (n, 11).
-            positions: Shape (n, 3, k).
+            moves: Moves that are driven.
             events: Those between them; ``before`` counts from the first of them.
-            last: The last of them, or None.
-            gone: How far compensation has come; None: the path is open.
+            gone: How far compensation has come.
         """
         self._columns.add_event_rows(events)
-        if len(codes):
-            self._columns.add_rows(codes, values, positions)
-            self.position = positions[-1, 1].tolist()
-        if gone is not None:
-            self._resume(gone)
-            return
-        if last is not None:
-            self._before = last
-        if len(events) and events.before[-1] == len(codes):
-            self._before = None
+        if len(moves.codes):
+            self._columns.add_rows(*moves)
+            self.position = moves.positions[-1, 1].tolist()
+        self._resume(gone)
+
+    @property
+    def hands_over(self) -> bool:
+        """No stage but compensation holds or changes moves, and nothing waits for a move's end."""
+        if self._spline or self._rounding or self._loops or self._even:
+            return False
+        compensation, leading = self._compensation, self._leading_out
+        if compensation is not None:
+            return not compensation.waits and compensation.plane in PLANE_ORDER
+        return leading is None or leading.plane in PLANE_ORDER
 
     @property
     def followed(self) -> Followed | None:
-        """Compensation between two moves of a contour, where it alone holds and changes moves."""
-        compensation = self._compensation
-        if compensation is None or compensation.plane not in PLANE_ORDER:
-            return None
-        if self._spline or self._rounding or self._loops or self._even:
-            return None
-        return compensation.progress
-
-    @property
-    def compensation_plane(self) -> tuple[int, int, int]:
-        """Columns of its abscissa, ordinate and normal."""
-        assert self._compensation is not None
-        return self._compensation.plane.axes
+        """How far compensation has come, or None."""
+        if self._compensation is not None:
+            return self._compensation.followed
+        return None if self._leading_out is None else self._leading_out.followed
 
     def _resume(self, gone: Gone) -> None:
         """Compensation has gone on by itself."""
-        compensation = self._compensation
-        assert compensation is not None
         if gone.came:
             self._before = gone.before
-        compensation.resume(gone.followed)
+        self._compensation = self._leading_out = None
+        followed = gone.followed
+        if followed is None:
+            return
+        if followed.stage is Stage.LEADING_OUT:
+            assert followed.contour is not None
+            self._leading_out = LeadOut(
+                followed.plane, followed.contour, followed.aside, followed.indirect
+            )
+            return
+        side, radius = math.copysign(1.0, followed.aside), abs(followed.aside)
+        self.start_compensation(
+            followed.plane, side, radius, square=followed.square, indirect=followed.indirect
+        )
+        compensation = self._compensation
+        assert compensation is not None
+        compensation.resume(followed)
         for each in gone.waiting:
             if isinstance(each, Segment):
                 compensation.wait(each)

@@ -11,8 +11,7 @@ import numpy as np
 
 from twin.nc.bench_kernels import new_bench
 from twin.nc.canonical import FloatArray
-from twin.nc.compensation import Followed
-from twin.nc.contour_columns import fill, gone, new_contour, segment
+from twin.nc.contour_columns import fill, gone, new_contour
 from twin.nc.contour_state import Row
 from twin.nc.control import Control
 from twin.nc.diagnostics import ProgramError
@@ -21,7 +20,7 @@ from twin.nc.event_columns import EventRows
 from twin.nc.hand_over import HandOver, put_into_force
 from twin.nc.interpolation import PlainHole
 from twin.nc.lines import Page
-from twin.nc.move_columns import CHUNK, Segment
+from twin.nc.move_columns import CHUNK
 from twin.nc.plain_state import (
     IN_SPINDLE,
     REGISTERS,
@@ -74,8 +73,8 @@ class PlainRunner:
         table = control.tools.table
         self._tools = np.array([float(number) for number in table])
         self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
+        self._radii = np.array([tool.radius for tool in table.values()])
         self._hole: Drilling | None = None
-        self._followed: Followed | None = None
         self._contour = new_contour(axes)
         self._bench = new_bench(self._state())
         self._pause = 1
@@ -90,11 +89,11 @@ class PlainRunner:
             return False
         control = self._control
         room = CHUNK - len(control.path)
-        self._hole, self._followed = self._drilled(), control.path.followed
+        self._hole = self._drilled()
         if room <= 0 or not self._may_run():
             return False
         state, rows = self._state(), self._rows.first(room)
-        fill(self._contour, self._followed, self._followed_plane())
+        fill(self._contour, control.path.followed, control.path.position)
         handed = HandOver(control, state, self._contour)
         why = self._run(state, rows, handed)
         self.full = why == FULL and room - handed.made < CHUNK
@@ -144,7 +143,7 @@ class PlainRunner:
             and modal.feed_mode in FEED_FACTORS
             and control.frame.plain
             and modal.correct_center
-            and (control.path.open or self._followed is not None)
+            and control.path.hands_over
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)
             and not (control.axis_limits or control.axis_accelerations)
@@ -165,8 +164,10 @@ class PlainRunner:
             planes=_PLANES,
             tools=self._tools,
             longer=self._longer,
+            radii=self._radii,
             hole=_NO_HOLE if self._hole is None else _as_columns(self._hole),
-            compensates=self._followed is not None,
+            square_corners=control.modal.square_corners,
+            indirect_leads=control.modal.indirect_leads,
             over=np.zeros(len(control.part)),
             room=np.zeros((3, len(control.part))),
         )
@@ -232,23 +233,10 @@ class PlainRunner:
         control.frame.set_shifts(state.shifts.tolist())
         happened = int(state.happened[0])
         events = EventRows(rows.events[:happened], rows.amounts[:happened])
-        control.came_to(state.programmed.tolist(), state.part.tolist(), self._add(rows, events))
-
-    def _add(self, rows: Rows, events: EventRows) -> Segment | None:
-        """Add moves and events to the path; the last programmed move, if any."""
-        path, moves = self._control.path, (rows.codes, rows.values, rows.positions)
-        if self._followed is None:
-            last = segment(Row(*(each[-1] for each in moves))) if len(rows.codes) else None
-            path.add_rows(*moves, events, last)
-            return last
-        placed = int((events.before >= 0).sum())
-        held_back = list(events.part(placed, len(events)))
-        gone_on = gone(self._contour, self._followed, held_back)
-        path.add_rows(*moves, events.part(0, placed), gone_on.latest, gone_on)
-        return gone_on.latest
-
-    def _followed_plane(self) -> tuple[int, int, int]:
-        return (0, 1, 2) if self._followed is None else self._control.path.compensation_plane
+        moves = Row(rows.codes, rows.values, rows.positions)
+        gone_on, placed = gone(self._contour, moves, events)
+        control.path.add_rows(moves, placed, gone_on)
+        control.came_to(state.programmed.tolist(), state.part.tolist(), gone_on.latest)
 
 
 def _as_columns(drilling: Drilling) -> Hole:

@@ -7,7 +7,7 @@ from numba.extending import register_jitable
 
 from twin.nc import arcs
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.kernel import inlined_kernel, kernel
+from twin.nc.compile_kernels import inlined_kernel, kernel
 from twin.nc.plain_state import (
     CENTER_ABSOLUTE,
     INTERPOLATION,

@@ -9,11 +9,11 @@ import numpy as np
 
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.column_kernels import copy
+from twin.nc.compile_kernels import inlined_kernel, kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import FUNCTION_ALONE
 from twin.nc.event_kernels import report
 from twin.nc.hole_kernels import write_hole
-from twin.nc.kernel import inlined_kernel, kernel
 from twin.nc.line_reader import LARGEST_LABEL
 from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
 from twin.nc.plain_state import (

@@ -111,8 +111,10 @@ class Constants(NamedTuple):
         planes: Columns of abscissa, ordinate and normal of each plane, shape (3, 3).
         tools: Numbers of the tools that the job lists, shape (t,).
         longer: How much longer each is than the first, shape (t,) [mm].
+        radii: Of each, shape (t,) [mm].
         hole: What a block drills while a cycle is in force.
-        compensates: Radius compensation is in force.
+        square_corners: Compensation that begins extends outside corners between lines.
+        indirect_leads: It goes around the contour's first and last point.
         over: Room for where the hole lies, shape (k,).
         room: Room for the way there, shape (3, k).
     """
@@ -126,8 +128,10 @@ class Constants(NamedTuple):
     planes: IntArray
     tools: FloatArray
     longer: FloatArray
+    radii: FloatArray
     hole: Hole
-    compensates: bool
+    square_corners: bool
+    indirect_leads: bool
     over: FloatArray
     room: FloatArray
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.kernel import kernel
+from twin.nc.compile_kernels import kernel
 from twin.nc.plain_state import MOST_WORDS
 
 ByteArray = npt.NDArray[np.uint8]

@@ -1,7 +1,7 @@
 """Points in a plane along the axes, compiled: the bits of ``Plane.local`` and ``Plane.world``."""
 
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.kernel import kernel
+from twin.nc.compile_kernels import kernel
 
 
 @kernel

@@ -11,13 +11,11 @@ import numpy.typing as npt
 from twin.nc.bench_kernels import Bench, copy_state
 from twin.nc.call_kernels import end_parts
 from twin.nc.canonical import IntArray
-from twin.nc.contour_kernels import DOUBTFUL, follow
-from twin.nc.contour_state import ACTIVE, ROOM
+from twin.nc.compile_kernels import kernel
+from twin.nc.contour_state import OFF, ROOM, STAGE
 from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
-from twin.nc.kernel import kernel
 from twin.nc.lexer import LONGEST_LINE
-from twin.nc.plain_kernels import run_words
 from twin.nc.plain_state import MOST_EVENTS, MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import (
     NOT_PLAIN,
@@ -41,6 +39,7 @@ from twin.nc.routine_state import (
     UNREAD,
     Routine,
 )
+from twin.nc.run_kernels import run_times
 from twin.nc.steps_kernels import DONE, run_steps
 
 _BLOCK = int(Step.BLOCK)
@@ -84,14 +83,16 @@ def run_program(
     progress, calls = routine.progress, routine.calls
     lines = len(table.first) - 1
     contour = routine.contour
-    compensates = contour.counts[ACTIVE] != 0
-    most_rows = len(rows.codes) - (ROOM if compensates else 1)
     for _ in range(most):
         end_parts(progress, calls)
         line = int(progress[LINE])
         if line >= lines:
             return ENDED
-        if progress[MADE] > most_rows or state.happened[0] + MOST_EVENTS > len(rows.events):
+        compensates = contour.counts[STAGE] != OFF
+        room = ROOM if compensates else 1
+        if progress[MADE] + room > len(rows.codes) or state.happened[0] + MOST_EVENTS > len(
+            rows.events
+        ):
             return FULL
         row = int(table.first[line])
         if row == GENERAL:
@@ -114,31 +115,26 @@ def run_program(
             steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
             if steps_left < 0:
                 return LEFT
-            first_event = state.happened[0]
             if compensates:
                 copy_state(state, bench.kept)
-            made = run_words(
+            made = run_times(
+                1,
                 line + 1,
-                bench.roles[:words],
-                bench.values[:words],
+                words,
+                False,
+                progress[MADE],
+                state.happened[0],
                 tables,
                 constants,
                 state,
-                bench.modal,
                 rows,
-                progress[MADE],
-                False,
+                contour,
+                bench,
             )
-            if made == NOT_PLAIN:
-                return UNREAD
-            if made == NO_ROOM:
-                return FULL
-            if compensates:
-                behind = state.happened[0]
-                made = follow(progress[MADE], made, first_event, behind, contour, rows)
-                if made == DOUBTFUL:
+            if made < 0:
+                if compensates:
                     copy_state(bench.kept, state)
-                    return LEFT
+                return FULL if made == NO_ROOM else UNREAD if made == NOT_PLAIN else LEFT
             progress[FURTHEST] = max(progress[FURTHEST], place)
             progress[STEPS_LEFT], progress[MADE] = steps_left, made
             progress[BLOCKS] += 1

@@ -5,18 +5,19 @@ Each step is what ``instructions.Step`` says of it.
 
 import numpy as np
 
+from twin.nc import steps
 from twin.nc.bench_kernels import Bench, copy_force, copy_state
 from twin.nc.call_kernels import innermost
-from twin.nc.contour_kernels import follow, hold_events
-from twin.nc.contour_state import ACTIVE
+from twin.nc.compile_kernels import kernel
+from twin.nc.contour_state import OFF, STAGE
 from twin.nc.deed_kernels import DOUBTFUL, polar_target, run_deed
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
+from twin.nc.held_kernels import hold_events
 from twin.nc.hole_kernels import NO_ROOM
-from twin.nc.instructions import PART_BITS, Step, Table
-from twin.nc.kernel import kernel
+from twin.nc.instructions import PART_BITS, Table
+from twin.nc.lead_kernels import begin_compensation, end_compensation
 from twin.nc.memory_kernels import NO_SLOT, load, own_value, slot_of_number, store
-from twin.nc.plain_kernels import run_words
 from twin.nc.plain_state import CYCLE, BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import NUMBER
 from twin.nc.routine_state import (
@@ -42,52 +43,11 @@ from twin.nc.routine_state import (
     STEPS_LEFT,
     Routine,
 )
+from twin.nc.run_kernels import run_times
 
 DONE = -1
 """The block was run."""
 
-(
-    _BLOCK,
-    _NEXT,
-    _LEAVE,
-    _NUMBER,
-    _LOAD,
-    _LOAD_NUMBERED,
-    _LOAD_BELOW,
-    _LOAD_NUMBERED_BELOW,
-    _DEFINED,
-    _NEGATE,
-    _ONE,
-    _TWO,
-    _THREE,
-    _DROP,
-    _STORE,
-    _STORE_DECLARED,
-    _STORE_NUMBERED,
-    _WORD,
-    _WORD_NUMBER,
-    _RUN,
-    _RUN_OFTEN,
-    _JUMP,
-    _JUMP_IF,
-    _JUMP_UNLESS,
-    _JUMP_CASE,
-    _BEGIN_FOR,
-    _STEP_FOR,
-    _COUNT_DOWN,
-    _MAY_CALL,
-    _OWN_VARIABLES,
-    _RESTORING,
-    _CALL,
-    _RANGE,
-    _REPEAT,
-    _MAY_RETURN,
-    _RETURN,
-    _KEEP,
-    _RUN_CODES,
-    _RUN_POLAR,
-    _FIRST_DEED,
-) = range(int(Step.IN_FORCE) + 1)  # plain integers compile faster than members
 _PART_MASK = (1 << PART_BITS) - 1
 
 
@@ -123,49 +83,49 @@ def run_steps(
     going, range_end, restores = behind, NO_PLACE, NOTHING_RESTORED
     top, words, stores, own, why = 0, 0, 0, 0, LEFT
     contour, first_event = routine.contour, state.happened[0]
-    kept = compensates = contour.counts[ACTIVE] != 0
+    kept = compensates = contour.counts[STAGE] != OFF
     if compensates:
         copy_state(state, bench.kept)
     while steps_left >= 0:
         row += 1
         step, argument = table.step[row], table.argument[row]
-        if step == _NUMBER:
+        if step == steps.NUMBER:
             stack[top] = table.number[row]
             top += 1
-        elif step == _LOAD:
+        elif step == steps.LOAD:
             value = load(memory, depth, argument)
             if np.isnan(value):
                 break
             stack[top] = value
             top += 1
-        elif step == _TWO:
+        elif step == steps.TWO:
             top -= 1
             value = of_two(argument, stack[top - 1], stack[top])
             if not abs(value) <= LARGEST_NUMBER:
                 break
             stack[top - 1] = value
-        elif step == _ONE:
+        elif step == steps.ONE:
             value = of_one(argument, stack[top - 1])
             if not abs(value) <= LARGEST_NUMBER:
                 break
             stack[top - 1] = value
-        elif step == _THREE:
+        elif step == steps.THREE:
             top -= 2
             value = of_three(argument, stack[top - 1], stack[top], stack[top + 1])
             if not abs(value) <= LARGEST_NUMBER:
                 break
             stack[top - 1] = value
-        elif step == _NEGATE:
+        elif step == steps.NEGATE:
             stack[top - 1] = -stack[top - 1]
-        elif step == _LOAD_NUMBERED:
+        elif step == steps.LOAD_NUMBERED:
             slot = slot_of_number(table.numbered, stack[top - 1])
             value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
             if np.isnan(value):
                 break
             stack[top - 1] = value
-        elif step in (_LOAD_BELOW, _LOAD_NUMBERED_BELOW):
+        elif step in (steps.LOAD_BELOW, steps.LOAD_NUMBERED_BELOW):
             slot = argument
-            if step == _LOAD_NUMBERED_BELOW:
+            if step == steps.LOAD_NUMBERED_BELOW:
                 slot = slot_of_number(table.numbered, stack[top - 2])
             value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
             if np.isnan(value):
@@ -173,110 +133,122 @@ def run_steps(
             stack[top] = stack[top - 1]
             stack[top - 1] = value
             top += 1
-        elif step == _DEFINED:
+        elif step == steps.DEFINED:
             stack[top] = 0.0 if np.isnan(load(memory, depth, argument)) else 1.0
             top += 1
-        elif step == _DROP:
+        elif step == steps.DROP:
             top -= 1
-        elif step in (_STORE, _STORE_DECLARED, _STORE_NUMBERED):
+        elif step in (steps.STORE, steps.STORE_DECLARED, steps.STORE_NUMBERED):
             top -= 1
             slot = argument
-            if step == _STORE_NUMBERED:
+            if step == steps.STORE_NUMBERED:
                 slot = slot_of_number(table.numbered, stack[top - 1])
                 if slot == NO_SLOT:
                     break
             before = own_value(memory, depth, slot)
-            if step == _STORE_DECLARED and np.isnan(before):
+            if step == steps.STORE_DECLARED and np.isnan(before):
                 break
             bench.slots[stores], bench.before[stores] = slot, before
             stores += 1
             store(memory, depth, slot, stack[top])
-        elif step in (_WORD, _WORD_NUMBER):
+        elif step in (steps.WORD, steps.WORD_NUMBER):
             bench.roles[words] = argument
-            if step == _WORD:
+            if step == steps.WORD:
                 top -= 1
                 bench.values[words] = stack[top]
             else:
                 bench.values[words] = table.number[row]
             words += 1
-        elif step == _KEEP and not kept:
+        elif step == steps.KEEP and not kept:
             copy_state(state, bench.kept)
             kept = True
-        elif step >= _FIRST_DEED:
+        elif step == steps.COMPENSATE:
+            top -= 1
+            if not begin_compensation(argument, stack[top], constants, state, contour):
+                break
+        elif step == steps.END_COMPENSATION:
+            after = end_compensation(made, state.happened[0], contour, rows)
+            if after < 0:
+                break
+            made = progress[MADE] = after  # not undone: to end it twice is to end it once
+        elif step >= steps.IN_FORCE:
             top = run_deed(
-                step, argument, stack, top, line + 1, made, tables, constants, state, rows
+                step,
+                argument,
+                stack,
+                top,
+                line + 1,
+                made,
+                tables,
+                constants,
+                state,
+                rows,
+                contour.counts[STAGE] != OFF,
             )
             if top == DOUBTFUL:
                 break
-        elif step in (_RUN, _RUN_OFTEN, _RUN_CODES, _RUN_POLAR):
-            polar = step == _RUN_POLAR
+        elif step in (steps.RUN, steps.RUN_OFTEN, steps.RUN_CODES, steps.RUN_POLAR):
+            polar = step == steps.RUN_POLAR
             if polar:
                 radius = stack[top - 2 if argument == 3 else top - 1]
                 angle = stack[top - 1]
                 if not polar_target(argument, radius, angle, constants, state):
                     break
             count = 1.0
-            if step == _RUN_OFTEN:
+            if step == steps.RUN_OFTEN:
                 top -= 1
                 count = stack[top]
                 if not 1.0 <= count <= table.number[row] or count != np.floor(count):
                     break
-                if state.modal[CYCLE] != 0.0 or compensates:
+                if state.modal[CYCLE] != 0.0 or contour.counts[STAGE] != OFF:
                     break
                 if made + count > len(rows.codes):
                     why = FULL
                     break
                 copy_state(state, bench.kept)
-            after = made
-            for _ in range(int(count)):
-                after = run_words(
-                    line + 1,
-                    bench.roles[:words],
-                    bench.values[:words],
-                    tables,
-                    constants,
-                    state,
-                    bench.modal,
-                    rows,
-                    after,
-                    polar,
-                )
-                if after < 0:
-                    break
+            after = run_times(
+                int(count),
+                line + 1,
+                words,
+                polar,
+                made,
+                first_event,
+                tables,
+                constants,
+                state,
+                rows,
+                contour,
+                bench,
+            )
             if after < 0:
                 why = FULL if after == NO_ROOM else LEFT
-                if step == _RUN_OFTEN:
+                if step == steps.RUN_OFTEN:
                     copy_state(bench.kept, state)
                 break
-            if compensates:
-                behind = state.happened[0]
-                after = follow(made, after, first_event, behind, contour, rows)
-                if after == DOUBTFUL:
-                    break
-                first_event = behind
+            first_event = state.happened[0]
             made = after
-            if step == _RUN_CODES:
+            if step == steps.RUN_CODES:
                 words = 1 if words > 0 and bench.roles[0] == NUMBER else 0
-        elif step == _JUMP:
+        elif step == steps.JUMP:
             going = argument
-        elif step in (_JUMP_IF, _JUMP_UNLESS):
+        elif step in (steps.JUMP_IF, steps.JUMP_UNLESS):
             top -= 1
-            if (stack[top] != 0.0) == (step == _JUMP_IF):
+            if (stack[top] != 0.0) == (step == steps.JUMP_IF):
                 going = argument
-                step = _NEXT
-        elif step == _JUMP_CASE:
+                step = steps.NEXT
+        elif step == steps.JUMP_CASE:
             top -= 1
             if stack[top] == stack[top - 1]:
                 going = argument
-                step = _NEXT
-        elif step == _BEGIN_FOR:
+                step = steps.NEXT
+        elif step == steps.BEGIN_FOR:
             first, last, width = stack[top - 3], stack[top - 2], stack[top - 1]
             if width == 0.0:
                 break
             stack[top - 3] = 1.0 if (first - last) * width > 0.0 else 0.0
             stack[top - 2] = first
             top -= 1
-        elif step == _STEP_FOR:
+        elif step == steps.STEP_FOR:
             last, width = stack[top - 3], stack[top - 2]
             if width == 0.0:
                 break
@@ -284,25 +256,25 @@ def run_steps(
             stack[top - 4] = 1.0 if (value - last) * width <= 0.0 else 0.0
             stack[top - 3] = value
             top -= 2
-        elif step == _COUNT_DOWN:
+        elif step == steps.COUNT_DOWN:
             left = own_value(memory, depth, argument)
             if np.isnan(left):
                 left = table.number[row]
             store(memory, depth, argument, np.nan if left == 0.0 else left - 1.0)
             stack[top] = 0.0 if left == 0.0 else 1.0
             top += 1
-        elif step == _MAY_CALL:
+        elif step == steps.MAY_CALL:
             if called >= argument or called >= len(calls) or depth + 1 >= len(memory.local):
                 break
-        elif step == _OWN_VARIABLES:
+        elif step == steps.OWN_VARIABLES:
             depth += 1
             own = 1
             memory.local[depth, :] = np.nan
-        elif step == _RESTORING:
+        elif step == steps.RESTORING:
             restores = RESTORED_HERE
-        elif step in (_CALL, _REPEAT):
+        elif step in (steps.CALL, steps.REPEAT):
             again = 0.0
-            if step == _REPEAT:
+            if step == steps.REPEAT:
                 top -= 1
                 again = stack[top] - 1.0
                 if not again >= 0.0 or again != np.floor(again):
@@ -314,31 +286,33 @@ def run_steps(
                 copy_force(state.modal, state.in_force, saved.modal[called], saved.in_force[called])
             called += 1
             going = argument
-        elif step == _RANGE:
+        elif step == steps.RANGE:
             range_end = argument
-        elif step == _MAY_RETURN:
+        elif step == steps.MAY_RETURN:
             from_part = innermost(calls, called)
             if from_part == 0 or calls[from_part - 1, RESTORES] == RESTORED_BY_CONTROL:
                 break
-        elif step == _RETURN:
+        elif step == steps.RETURN:
             called = innermost(calls, called) - 1
             depth -= calls[called, OWN]
             going = calls[called, BACK]
             if calls[called, RESTORES] == RESTORED_HERE:
                 copy_force(saved.modal[called], saved.in_force[called], state.modal, state.in_force)
-        elif step == _LEAVE:
+        elif step == steps.LEAVE:
             break
-        if step == _NEXT:
+        if step == steps.NEXT:
             progress[LINE], progress[PART] = going >> PART_BITS, going & _PART_MASK
             progress[FURTHEST] = max(progress[FURTHEST], place)
             progress[STEPS_LEFT], progress[DEPTH], progress[CALLS] = steps_left, depth, called
             progress[MADE] = made
-            if compensates:
+            if contour.counts[STAGE] != OFF:
                 hold_events(contour, rows, first_event, state.happened[0])
             progress[BLOCKS] += 1
             return DONE
     if kept:
         copy_state(bench.kept, state)
+    if not compensates:
+        contour.counts[STAGE] = OFF
     while stores > 0:
         stores -= 1
         store(memory, progress[DEPTH], bench.slots[stores], bench.before[stores])

@@ -7,6 +7,7 @@ from twin.nc.block_words import BlockWords
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.canonical import Corner
+from twin.nc.compensation_words import write_compensation_by_tool, write_end_of_compensation
 from twin.nc.control import Control
 from twin.nc.dialect import (
     Action,
@@ -198,9 +199,24 @@ CODES: dict[int, GCode] = {
     36: _decided("corner rounded by the radius I", corners.round_corner),
     **_refused("tangential entry, tangential exit", _LEAD, range(37, 39)),
     39: _decided("corner chamfered at the distance I", corners.chamfer_corner),
-    40: _do("radius compensation off", offsets.end_compensation, group="compensation"),
-    41: _do("compensation, tool left", _compensate(offsets.LEFT), group="compensation"),
-    42: _do("compensation, tool right", _compensate(offsets.RIGHT), group="compensation"),
+    40: _do(
+        "radius compensation off",
+        offsets.end_compensation,
+        group="compensation",
+        translate=write_end_of_compensation,
+    ),
+    41: _do(
+        "compensation, tool left",
+        _compensate(offsets.LEFT),
+        group="compensation",
+        translate=write_compensation_by_tool(offsets.LEFT),
+    ),
+    42: _do(
+        "compensation, tool right",
+        _compensate(offsets.RIGHT),
+        group="compensation",
+        translate=write_compensation_by_tool(offsets.RIGHT),
+    ),
     **_refused("tangential control", "the twin has no axis that turns the tool", range(45, 46)),
     50: _g("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
     53: _do("offsets cancelled", forget_polar_values(offsets.cancel_offset), group="offset"),

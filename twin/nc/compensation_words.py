@@ -1,0 +1,40 @@
+"""G40, G41 and G42 for the fast way: what the actions of ``offsets`` do, as steps."""
+
+from twin.nc.block_words import BlockWords
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
+from twin.nc.dialect import Translation
+from twin.nc.expressions import Expression
+from twin.nc.instructions import Step
+
+
+def write_compensation(side: float) -> Translation:
+    """Compensation by the corrector D, else by the tool in the spindle."""
+
+    def write(block: BlockWords, writer: BlockWriter) -> None:
+        word, table = block.take("D"), block.control.tools.table
+        if word is None:
+            writer.step(Step.TOOL_RADIUS)
+        elif isinstance(word.value, Expression) or word.value not in table:
+            raise NotTranslatableError
+        else:
+            writer.number(table[int(word.value)].radius)
+        writer.step(Step.COMPENSATE, int(side))
+
+    return write
+
+
+def write_compensation_by_tool(side: float) -> Translation:
+    """Compensation by the tool in the spindle, where it has its offset."""
+
+    def write(block: BlockWords, writer: BlockWriter) -> None:
+        del block
+        writer.step(Step.TOOL_RADIUS, 1)
+        writer.step(Step.COMPENSATE, int(side))
+
+    return write
+
+
+def write_end_of_compensation(block: BlockWords, writer: BlockWriter) -> None:
+    """The next line leads out."""
+    del block
+    writer.step(Step.END_COMPENSATION)
