@@ -26,9 +26,10 @@ _ON_ITS_WAY_S = 0.010
 """How long what the gate has passed on mostly takes through Studio's server [s]. A frame that begins
 before it has come costs the press a whole frame more: Studio begins none sooner than a 60th of a
 second after the last."""
-_LOOKS_AFTER_S = (_ON_ITS_WAY_S, 0.025, 0.045, 0.080, 0.140)
+_LOOKS_AFTER_S = (_ON_ITS_WAY_S, 0.025, 0.045, 0.065, 0.090, 0.140)
 """When the panel has a frame after each word of the page, for what takes longer [s]: a press and its
-answer need three, and Studio's server can be late."""
+answer need three, those of the first 40 ms do not count in the page's script, and Studio's server
+can be late."""
 _POLL_S = 0.001
 
 
