@@ -45,6 +45,24 @@ def test_a_changed_kernel_is_seen_through_the_one_that_calls_it(tmp_path: Path) 
     assert outcome(tmp_path) == ["31", "0"]
 
 
+def test_a_changed_constant_is_seen_and_a_neighbour_without_a_part_in_it_is_not(
+    tmp_path: Path,
+) -> None:
+    room = tmp_path / "shop" / "room"
+    room.mkdir(parents=True)
+    (room / "outer_kernels.py").write_text(
+        OUTER.replace("room.inner_kernels", "room.shared").replace("inner(x)", "FACTOR * x")
+        .replace("inner", "FACTOR")
+    )  # fmt: skip
+    (room / "shared.py").write_text("FACTOR = 2\n")
+    assert outcome(tmp_path) == ["21", "0"]
+    (room / "neighbour.py").write_text("FACTOR = 4\n")
+    assert outcome(tmp_path) == ["21", "1"]
+    assert outcome(tmp_path) == ["21", "1"]
+    (room / "shared.py").write_text("FACTOR = 3\n")
+    assert outcome(tmp_path) == ["31", "0"]
+
+
 def test_where_nothing_can_be_noted_nothing_is_said(tmp_path: Path) -> None:
     (tmp_path / "room").mkdir()
     (tmp_path / "__pycache__").write_text("no folder")
