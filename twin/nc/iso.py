@@ -21,8 +21,10 @@ CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True))
 COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=plain_arc(clockwise=False))
 
 
+# Nothing is given back once it is taken (``++``): else dots could be shared out in endless ways.
 _ELLIPSIS = re.compile(
-    r"[ \t]*(?:N[ \t]*[0-9]+)?(?:[ \t]*[A-Z]?[ \t]*\.{3,})+[ \t]*(?:[$\"].*)?", re.IGNORECASE
+    r"[ \t]*+(?:N[ \t]*+[0-9]++)?(?:[ \t]*+(?:[A-Z][ \t]*+)?\.{3,}+)+[ \t]*+(?:[$\"].*)?",
+    re.IGNORECASE,
 )
 
 
