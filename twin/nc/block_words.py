@@ -107,15 +107,17 @@ def write_words(control: "Control", words: Iterable[Word], writer: BlockWriter) 
         return
     block = sorted_words(control, words)
     acting = [(word, code) for word, code in block.codes if code.translate is not None]
-    plain = [word for word, code in block.codes if code.translate is None]
+    plain = [word for word, code in block.codes if code.translate is None or code.begins_cycle]
     if any(code.after is not None or code.once or code.alone for _, code in acting):
         raise NotTranslatableError
     performing = [code for _, code in block.codes if code.perform is not None]
     if len(performing) > 1 or (performing and performing[0].translate is None):
         raise NotTranslatableError
+    if performing and any(code.begins_cycle for _, code in acting):
+        raise NotTranslatableError
     for word, code in acting:
         assert not isinstance(word.value, Expression)
-        if code.group:
+        if code.group and not code.begins_cycle:
             writer.step(Step.IN_FORCE, int(word.value))
         if code.perform is None:
             _translate(code, block, writer)

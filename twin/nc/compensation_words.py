@@ -34,6 +34,19 @@ def write_compensation_by_tool(side: float) -> Translation:
     return write
 
 
+def write_compensation_by_radius(side: float) -> Translation:
+    """Compensation by the radius D, else by the one that was given last."""
+
+    def write(block: BlockWords, writer: BlockWriter) -> None:
+        word = block.take("D")
+        if word is not None:
+            writer.word_value(word)
+        writer.step(Step.PROGRAMMED_RADIUS, int(word is not None))
+        writer.step(Step.COMPENSATE, int(side))
+
+    return write
+
+
 def write_end_of_compensation(block: BlockWords, writer: BlockWriter) -> None:
     """The next line leads out."""
     del block

@@ -37,9 +37,9 @@ from twin.nc.held_kernels import (
     set_curve,
     take_move,
 )
-from twin.nc.lead_kernels import DOUBTFUL, lead_in, lead_out, take_lead
+from twin.nc.lead_kernels import lead_in, lead_out, take_lead
 from twin.nc.passed_kernels import crosses_passed, gouges, pass_by
-from twin.nc.plain_state import Rows
+from twin.nc.plain_state import DOUBTFUL, Rows
 from twin.nc.plane_kernels import along_axis
 
 for _shared in (

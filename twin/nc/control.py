@@ -229,7 +229,7 @@ class Control(ControlMotion):
 
     def _move(self) -> None:
         words = self.words
-        starts_cycle = any(code.sets.get("cycle") is not None for _, code in self.codes)
+        starts_cycle = any(code.begins_cycle for _, code in self.codes)
         motion_words = self.dialect.motion_words
         if not starts_cycle and not any(address in motion_words for address in words):
             return

@@ -1,6 +1,7 @@
 """What a control remembers while it runs a program, and how it refuses."""
 
 import dataclasses
+import math
 import re
 from typing import NoReturn
 
@@ -8,6 +9,7 @@ from twin.nc.blocks import Block, Word
 from twin.nc.dialect import Dialect, GCode, Modal
 from twin.nc.flow import Flow, Return
 from twin.nc.frame import Frame
+from twin.nc.holes import START, no_values
 from twin.nc.lexer import Lexer
 from twin.nc.move_columns import NAN, Segment
 from twin.nc.path import Path
@@ -37,7 +39,8 @@ class ControlState:
         path: Where moves and events go.
         flow: Which block comes next.
         variables: What the program computes with.
-        cycle_values: What the words of a canned cycle were last, by address.
+        cycle_values: What the words of a milling cycle were last, by address.
+        hole_values: What a drilling cycle remembers, as ``holes`` counts it.
         block: The block that is being run.
         words: Its words that nothing has taken yet.
         codes: Its G codes.
@@ -79,6 +82,7 @@ class ControlState:
             dialect.is_local, lambda name: dialect.given_variable(settings.variables, name)
         )
         self.cycle_values: dict[str, float] = {}
+        self.hole_values = no_values()
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
         self.codes: list[tuple[Word, GCode]] = []
@@ -95,10 +99,16 @@ class ControlState:
         """Apply a modal code."""
         for name, value in code.sets.items():
             setattr(self.modal, name, value)
-        if self.modal.cycle is None and self.cycle_values:
-            self.cycle_values = {}
+        if self.modal.cycle is None:
+            self._forget_cycle()
         if code.group:
             self.active[code.group] = number
+
+    def _forget_cycle(self) -> None:
+        if self.cycle_values:
+            self.cycle_values = {}
+        if not math.isnan(self.hole_values[START]):
+            self.hole_values = no_values()
 
     def saved_modal(self) -> tuple[Modal, dict[str, int]]:
         """What is in force, to be restored later."""

@@ -13,8 +13,10 @@ from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import AUXILIARY, DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED, SPEED, TOOL
 from twin.nc.event_kernels import report
 from twin.nc.frame import SHIFTS
+from twin.nc.holes import Cycle
 from twin.nc.plain_state import (
     CYCLE,
+    DOUBTFUL,
     IN_SPINDLE,
     INCREMENTAL,
     OFFSET_ON,
@@ -23,6 +25,7 @@ from twin.nc.plain_state import (
     POLAR_ANGLE,
     POLAR_ORDINATE,
     POLAR_RADIUS,
+    RADIUS_GIVEN,
     SELECTED,
     SPINDLE,
     UNIT,
@@ -35,8 +38,8 @@ from twin.nc.plain_state import (
 register_jitable(arcs.direction)
 register_jitable(arcs.angle_of)
 
-DOUBTFUL = -1
 _NO_EVENT = -1
+_PECKING = Cycle._fields.index("pecking")
 _LENGTH = SHIFTS.index("length")
 _LARGEST_NUMBER = 1e6
 """Numbers of tools and of auxiliary functions above this are left to the general way."""
@@ -80,7 +83,7 @@ def run_deed(
     if step == steps.IN_FORCE:
         state.in_force[tables.group[argument]] = argument
     elif step == steps.PLANE:
-        if state.modal[CYCLE] != 0.0 or compensates:
+        if compensates:
             return DOUBTFUL
         state.modal[PLANE] = argument
         if not np.isnan(registers[POLAR_ABSCISSA]):
@@ -153,8 +156,8 @@ def run_deed(
         top -= argument
     elif step == steps.TO_MILLIMETRES:
         stack[top - 1] = value * (state.modal[UNIT] if tables.linear[argument] else 1.0)
-    elif step == steps.NO_CYCLE:
-        if state.modal[CYCLE] != 0.0:
+    elif step == steps.NO_PECKS:
+        if tables.cycles[int(state.modal[CYCLE]), _PECKING] != 0.0:
             return DOUBTFUL
     elif step == steps.TOOL_RADIUS:
         tool = _tool(constants, registers[IN_SPINDLE])
@@ -165,6 +168,15 @@ def run_deed(
         top += 1
     elif step == steps.FORGET_POLAR:
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
+    elif step == steps.CYCLE_WORD:
+        state.cycle[1, argument] = value
+        top -= 1
+    elif step == steps.PROGRAMMED_RADIUS and argument:
+        registers[RADIUS_GIVEN] = value * state.modal[UNIT]
+        stack[top - 1] = registers[RADIUS_GIVEN]
+    elif step == steps.PROGRAMMED_RADIUS:
+        stack[top] = registers[RADIUS_GIVEN]
+        top += 1
     if kind != _NO_EVENT:
         report(rows, state, made, line, kind, number, amount)
     return top

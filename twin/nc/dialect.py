@@ -94,6 +94,11 @@ class GCode:
     translate: Translation | None = None
     ground: Ground = "decision"
 
+    @property
+    def begins_cycle(self) -> bool:
+        """It calls a canned cycle."""
+        return self.sets.get("cycle") is not None
+
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class MCode:

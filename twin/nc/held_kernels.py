@@ -105,11 +105,8 @@ def let_go(
             value[6] = part[4]
         place(plane, at, along_axis(position[1], plane[2]), position[1])
         copy(contour.here, position[0])
-        stands = not is_arc
-        for axis in range(len(contour.here)):
-            stands = stands and position[0, axis] == position[1, axis]
-            contour.here[axis] = position[1, axis]
-        after += 0 if stands else 1
+        copy(position[1], contour.here)
+        after += 0 if not is_arc and stands(position) else 1
         contour.rows_after[number] = after
     event = events - 1
     while event >= 0 and rows.events[event, 0] < 0:
@@ -117,6 +114,15 @@ def let_go(
         event -= 1
     counts[PLACED], counts[MOVED_ROWS] = 1, after
     return after
+
+
+@kernel
+def stands(position: FloatArray) -> bool:
+    """Whether a straight move with these positions goes nowhere."""
+    still = True
+    for axis in range(position.shape[1]):
+        still = still and position[0, axis] == position[1, axis]
+    return still
 
 
 @kernel

@@ -1,29 +1,48 @@
-"""Holes of drilling cycles, compiled: ``drilling.drill`` for a block that names a hole by plain words."""
+"""Drilling cycles, compiled: what ``drilling`` does for a block of plain words, with the same ``holes``."""
 
 import numpy as np
+from numba.extending import register_jitable
 
-from twin.nc.canonical import Corner, FloatArray, Motion, Shape
-from twin.nc.column_kernels import copy
+from twin.nc import holes
+from twin.nc.canonical import Corner, FloatArray, IntArray, Motion, Shape
+from twin.nc.column_kernels import copy, copy_rows
 from twin.nc.compile_kernels import kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
-from twin.nc.drilling import Act
 from twin.nc.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
 from twin.nc.event_kernels import report
+from twin.nc.holes import Act, Cycle, Hole
 from twin.nc.plain_arc_kernels import SHORTEST
 from twin.nc.plain_state import (
     CORNER,
+    CYCLE,
     FEED_FACTOR,
+    INCREMENTAL,
     PLANE,
     SPINDLE,
+    TO_REFERENCE,
     UNIT,
+    BlockTables,
     Constants,
     Rows,
     State,
 )
-from twin.nc.plain_words_kernels import NOT_PLAIN
+from twin.nc.plain_words_kernels import AXIS, NOT_PLAIN
+
+for _shared in (
+    holes.begin,
+    holes.remember,
+    holes.either,
+    holes.count_stops,
+    holes.hole_of,
+    holes.most_acts,
+    holes.write_acts,
+):
+    register_jitable(_shared)
 
 NO_ROOM = -2
 """The rows are full."""
+MOST_STOPS = 500
+"""Stops of a hole: its moves must fit into a chunk."""
 _UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
 _LINE = int(Shape.LINE)
@@ -31,10 +50,68 @@ _STOP = int(Corner.EXACT_STOP)
 
 
 @kernel
+def read_cycle(
+    roles: IntArray,
+    values: FloatArray,
+    begins: bool,
+    anew: bool,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    modal: FloatArray,
+) -> tuple[int, Hole]:
+    """Take the words of a block that belong to its drilling cycle.
+
+    Args:
+        roles: What each word's letter is, shape (w,).
+        values: The words' values, shape (w,).
+        begins: The block calls the cycle.
+        anew: No cycle was in force before.
+        tables: What blocks mean.
+        constants: Its ``cycle`` becomes what the cycle remembers.
+        state: Where the block begins.
+        modal: The modal state with this block's codes.
+
+    Returns:
+        The roles of those words as bits, and what is done at the hole.
+    """
+    number = int(modal[CYCLE])
+    row = tables.cycles[number]
+    cycle = Cycle(
+        row[0] != 0.0, int(row[1]), int(row[2]), int(row[3]), row[4] != 0.0, row[5], int(row[6])
+    )
+    across = int(constants.planes[int(modal[PLANE])][2])
+    copy_rows(state.cycle, constants.cycle)
+    remembered, given = constants.cycle[0], constants.cycle[1]
+    if anew:
+        remembered[holes.START] = np.nan
+    if begins:
+        holes.begin(remembered, across, state.programmed[across], cycle.lasting)
+    taken = 0
+    if begins or cycle.lasting:
+        for word in range(len(roles)):
+            role = roles[word]
+            value = tables.cycle_words[number, role]
+            if role == AXIS + across:
+                value = cycle.across
+            if value >= 0:
+                given[value] = values[word]
+                taken |= 1 << role
+    for value in range(holes.VALUES):
+        if (holes.LENGTHS >> value) & 1:
+            given[value] *= modal[UNIT]
+    relative = modal[INCREMENTAL] != 0.0
+    if begins or taken:
+        holes.remember(remembered, given, relative, relative, cycle.lasting)
+    return taken, holes.hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
+
+
+@kernel
 def write_hole(
     line: int,
     number: int,
     target: FloatArray,
+    hole: Hole,
     constants: Constants,
     state: State,
     modal: FloatArray,
@@ -49,7 +126,8 @@ def write_hole(
         number: Its N number.
         target: Programmed position of the hole, shape (k,); its height is not used. It becomes
             where the tool stands.
-        constants: What stays, the cycle among it.
+        hole: What is done there.
+        constants: What stays.
         state: Where the block begins.
         modal: The modal state with this block's codes.
         feed: F.
@@ -59,8 +137,7 @@ def write_hole(
     Returns:
         The number of rows after it, ``NO_ROOM``, or ``NOT_PLAIN``.
     """
-    hole = constants.hole
-    if row + len(hole.acts) + 2 > len(rows.codes):
+    if row + holes.most_acts(hole.stops) + 2 > len(rows.codes):
         return NO_ROOM
     if np.isnan(feed) and not constants.feed_may_lack:
         return NOT_PLAIN
@@ -71,13 +148,13 @@ def write_hole(
     copy(state.part, part)
     copy(state.programmed, goal)
     over = max(here[axis], hole.reference)
-    after = row
-    for step in range(-2, len(hole.acts)):
-        act = _UP if step < 0 else hole.acts[step]
+    acts, amounts, after = constants.acts, constants.amounts, row
+    for step in range(-2, holes.write_acts(hole, acts, amounts)):
+        act = _UP if step < 0 else acts[step]
         if act <= _DOWN:
             if step == -1:
                 copy(target, goal)
-            goal[axis] = over if step < 0 else hole.values[step]
+            goal[axis] = over if step < 0 else amounts[step]
             rapid = act == _UP
             speed = constants.rapid_feed if rapid else pace
             corner = _STOP if rapid else int(modal[CORNER])
@@ -87,7 +164,7 @@ def write_hole(
         else:
             kind, amount = FUNCTION_WITH_SPEED, state.registers[SPINDLE]
             if act == _DWELL:
-                kind, amount = DWELL, hole.values[step]
+                kind, amount = DWELL, amounts[step]
             elif act == _M5:
                 kind, amount = FUNCTION_ALONE, np.nan
             report(rows, state, after, line, kind, act, amount)

@@ -147,8 +147,8 @@ class Step(enum.IntEnum):
     """The two topmost values (``argument`` 2) are the polar origin; 0: it is where the tool stands."""
     TO_MILLIMETRES = 56
     """The topmost value is in the unit in force, of the axis ``argument``."""
-    NO_CYCLE = 57
-    """No drilling cycle may be in force."""
+    NO_PECKS = 57
+    """No drilling cycle with pecks may be in force."""
     FORGET_POLAR = 58
     """The last R and Q hold no longer."""
     TOOL_RADIUS = 59
@@ -157,6 +157,11 @@ class Step(enum.IntEnum):
     """Radius compensation begins, of the topmost value, left (``argument`` 1) or right (-1)."""
     END_COMPENSATION = 61
     """It ends."""
+    CYCLE_WORD = 62
+    """The topmost value is that of the drilling cycle's word for ``argument``."""
+    PROGRAMMED_RADIUS = 63
+    """The topmost value is the radius that the program gives the tool; ``argument`` 0: put on the
+    stack what it gave last."""
 
 
 class Table(NamedTuple):

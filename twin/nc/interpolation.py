@@ -2,12 +2,13 @@
 
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
+
+from twin.nc.holes import Cycle
 
 if TYPE_CHECKING:
     from twin.nc.control import Control
-    from twin.nc.drilling import Drilling
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -47,13 +48,17 @@ class PlainArc:
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class PlainHole:
-    """A block of plain words for axes of the plane drills.
+    """A block of plain words drills.
 
     Attributes:
-        drilling: What it drills; raises ``ProgramError`` where something is wrong.
+        name: The cycle's code.
+        cycle: What is peculiar to it.
+        words: Which of its values each word gives, besides that of the axis across the plane.
     """
 
-    drilling: Callable[["Control"], "Drilling"]
+    name: str
+    cycle: Cycle
+    words: Mapping[str, int]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

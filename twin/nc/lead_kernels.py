@@ -7,7 +7,7 @@ from numba.extending import register_jitable
 
 from twin.nc import arcs, curves, lead_curves
 from twin.nc.arcs import SAME_POINT, Point, distance
-from twin.nc.canonical import FloatArray, Shape
+from twin.nc.canonical import Shape
 from twin.nc.column_kernels import copy, copy_rows
 from twin.nc.compile_kernels import kernel
 from twin.nc.contour_state import (
@@ -33,10 +33,11 @@ from twin.nc.held_kernels import (
     let_go,
     level_arc,
     set_curve,
+    stands,
     take_move,
 )
 from twin.nc.passed_kernels import gouges
-from twin.nc.plain_state import PLANE, Constants, Rows, State
+from twin.nc.plain_state import DOUBTFUL, PLANE, Constants, Rows, State
 from twin.nc.plane_kernels import along_axis, place
 
 for _shared in (
@@ -49,8 +50,6 @@ for _shared in (
 ):
     register_jitable(_shared)
 
-DOUBTFUL = -3
-"""Left to the general way, and neither ``NOT_PLAIN`` nor ``NO_ROOM``."""
 _OFF, _STARTED, _LEADING_IN = int(Stage.OFF), int(Stage.STARTED), int(Stage.LEADING_IN)
 _FOLLOWING, _LEADING_OUT = int(Stage.FOLLOWING), int(Stage.LEADING_OUT)
 _ARC = int(Shape.ARC)
@@ -223,17 +222,8 @@ def lead_out(row: int, early: int, behind: int, contour: Contour, rows: Rows) ->
     else:
         height = along_axis(rows.positions[last, 1], plane[2])
         place(plane, here, height, rows.positions[last, 1])
-    after = last if _stands(rows.positions[last]) else last + 1
+    after = last if stands(rows.positions[last]) else last + 1
     contour.counts[MOVED_ROWS] = after
     for event in range(early, behind):
         rows.events[event, 0] = after
     return after
-
-
-@kernel
-def _stands(position: FloatArray) -> bool:
-    """Whether a move goes nowhere."""
-    stands = True
-    for axis in range(position.shape[1]):
-        stands = stands and position[0, axis] == position[1, axis]
-    return stands

@@ -74,7 +74,7 @@ def pass_by(contour: Contour, element: Curve, box: Box, held: Curve, has_contour
     if counts[PASSED] == len(passed):
         counts[OLDEST] = (counts[OLDEST] + 1) % len(passed)
         counts[PASSED] -= 1
-    latest = passed[(counts[OLDEST] + counts[PASSED]) % len(passed)]
+    latest = passed[_place(contour, counts[PASSED])]
     counts[PASSED] += 1
     set_curve(latest[:CURVE], element)
     set_curve(latest[CURVE : 2 * CURVE], held)

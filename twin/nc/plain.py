@@ -14,20 +14,19 @@ from twin.nc.canonical import FloatArray
 from twin.nc.contour_columns import fill, gone, new_contour
 from twin.nc.contour_state import Row
 from twin.nc.control import Control
-from twin.nc.diagnostics import ProgramError
-from twin.nc.drilling import Drilling, acts
 from twin.nc.event_columns import EventRows
 from twin.nc.hand_over import HandOver, put_into_force
-from twin.nc.interpolation import PlainHole
+from twin.nc.hole_kernels import MOST_STOPS
+from twin.nc.holes import VALUES, most_acts, no_values
 from twin.nc.lines import Page
 from twin.nc.move_columns import CHUNK
 from twin.nc.plain_state import (
+    CYCLE,
     IN_SPINDLE,
     REGISTERS,
     SELECTED,
     SPINDLE,
     Constants,
-    Hole,
     Rows,
     State,
 )
@@ -39,8 +38,6 @@ from twin.nc.routine_state import FULL, LEFT, OFF_PAGE, PAUSED, UNREAD
 from twin.nc.translator import Translator
 
 _PLANES = np.array([plane.axes for plane in PLANE_ORDER])
-_MOST_STOPS = 500
-"""Stops of a hole: its moves must fit into a chunk."""
 _WORTHWHILE = 4
 """Blocks that a run must have to pay for handing the state over and back."""
 _LONGEST_PAUSE = 256
@@ -74,7 +71,8 @@ class PlainRunner:
         self._tools = np.array([float(number) for number in table])
         self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
         self._radii = np.array([tool.radius for tool in table.values()])
-        self._hole: Drilling | None = None
+        self._acts = np.zeros(most_acts(MOST_STOPS), np.int64)
+        self._amounts = np.zeros(most_acts(MOST_STOPS))
         self._contour = new_contour(axes)
         self._bench = new_bench(self._state())
         self._pause = 1
@@ -89,7 +87,6 @@ class PlainRunner:
             return False
         control = self._control
         room = CHUNK - len(control.path)
-        self._hole = self._drilled()
         if room <= 0 or not self._may_run():
             return False
         state, rows = self._state(), self._rows.first(room)
@@ -138,7 +135,7 @@ class PlainRunner:
         control = self._control
         modal, disturbed = control.modal, control.dialect.disturbed
         return (
-            (modal.cycle is None or self._hole is not None)
+            self._tables.knows_cycle(modal.cycle)
             and modal.plane in PLANE_ORDER
             and modal.feed_mode in FEED_FACTORS
             and control.frame.plain
@@ -165,24 +162,14 @@ class PlainRunner:
             tools=self._tools,
             longer=self._longer,
             radii=self._radii,
-            hole=_NO_HOLE if self._hole is None else _as_columns(self._hole),
             square_corners=control.modal.square_corners,
             indirect_leads=control.modal.indirect_leads,
             over=np.zeros(len(control.part)),
             room=np.zeros((3, len(control.part))),
+            cycle=np.zeros((2, VALUES)),
+            acts=self._acts,
+            amounts=self._amounts,
         )
-
-    def _drilled(self) -> Drilling | None:
-        """What plain words drill; None where they do not, or the general way must say what is wrong."""
-        control = self._control
-        cycle = control.modal.cycle
-        if cycle is None or not isinstance(cycle.plain, PlainHole):
-            return None
-        try:
-            drilling = cycle.plain.drilling(control)
-        except ProgramError:
-            return None
-        return drilling if len(drilling.stops) <= _MOST_STOPS else None
 
     def _state(self) -> State:
         control = self._control
@@ -197,6 +184,7 @@ class PlainRunner:
             shifts=np.array(control.frame.shifts),
             total=np.array(control.frame.total),
             label=np.zeros(len(control.part)),
+            cycle=np.array([control.hole_values, no_values()]),
         )
 
     def _registers(self) -> FloatArray:
@@ -224,9 +212,15 @@ class PlainRunner:
         control.tools.spindle = None if in_spindle is None else int(in_spindle)
         control.dialect.take_registers(control, registers)
 
+    def _give_cycle_back(self, state: State) -> None:
+        cycle = self._tables.cycle(state.modal[CYCLE])
+        self._control.modal.cycle = cycle
+        self._control.hole_values = no_values() if cycle is None else state.cycle[0].tolist()
+
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control
         put_into_force(control, state.in_force)
+        self._give_cycle_back(state)
         feed = float(state.feed[0])
         control.feed = None if math.isnan(feed) else feed
         self._take_registers(state.registers.tolist())
@@ -237,12 +231,3 @@ class PlainRunner:
         gone_on, placed = gone(self._contour, moves, events)
         control.path.add_rows(moves, placed, gone_on)
         control.came_to(state.programmed.tolist(), state.part.tolist(), gone_on.latest)
-
-
-def _as_columns(drilling: Drilling) -> Hole:
-    done = acts(drilling)
-    kinds, values = [int(act) for act, _ in done], [value for _, value in done]
-    return Hole(float(drilling.reference), np.array(kinds), np.array(values, np.float64))
-
-
-_NO_HOLE = _as_columns(Drilling(reference=0.0, bottom=0.0, back=0.0))

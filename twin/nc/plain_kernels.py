@@ -13,7 +13,7 @@ from twin.nc.compile_kernels import inlined_kernel, kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import FUNCTION_ALONE
 from twin.nc.event_kernels import report
-from twin.nc.hole_kernels import write_hole
+from twin.nc.hole_kernels import MOST_STOPS, read_cycle, write_hole
 from twin.nc.line_reader import LARGEST_LABEL
 from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
 from twin.nc.plain_state import (
@@ -84,7 +84,7 @@ def run_words(
     """
     copy(state.modal, modal)
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
-    function = NOT_PLAIN
+    function, begins = NOT_PLAIN, 0
     feed = state.feed[0]
     for word in range(len(roles)):
         role, value = roles[word], values[word]
@@ -101,8 +101,11 @@ def run_words(
                 return NOT_PLAIN
             groups |= group
             modal[tables.field[code]] = tables.value[code]
-            if tables.ends_cycle[code]:
+            cycle = tables.cycle[code]
+            if cycle == 0:
                 modal[CYCLE] = 0.0
+            elif cycle > 0:
+                begins = cycle
         else:
             if seen & (1 << role) or not abs(value) <= LARGEST_COORDINATE:
                 return NOT_PLAIN
@@ -118,18 +121,24 @@ def run_words(
                 if tables.function[function] == NOT_PLAIN:
                     return NOT_PLAIN
     after, happened = row, state.happened[0]
+    anew = modal[CYCLE] == 0.0
+    if begins:
+        modal[CYCLE] = begins
     drills = modal[CYCLE] != 0.0
+    moves = begins != 0 or polar or seen >> RADIUS != 0
     plane = constants.planes[int(modal[PLANE])]
     in_plane = seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))) != 0
     if polar and in_plane:
         return NOT_PLAIN
-    if drills and (polar or seen >> RADIUS):
+    if drills and moves:
         after = _drill(
             line,
             number,
             roles,
             values,
             seen,
+            begins != 0,
+            anew,
             tables,
             constants,
             state,
@@ -142,7 +151,7 @@ def run_words(
         if after < 0:
             state.happened[0] = happened
             return after
-    elif polar or seen >> RADIUS:
+    elif moves:
         after = _move(
             line,
             number,
@@ -169,7 +178,7 @@ def run_words(
             state.in_force[tables.group[code]] = code
     copy(modal, state.modal)
     state.feed[0] = feed
-    if polar or seen >> RADIUS:
+    if moves:
         if drills:
             copy(state.label, state.part)
             copy(constants.over, state.programmed)
@@ -188,6 +197,8 @@ def _drill(
     roles: IntArray,
     values: FloatArray,
     seen: int,
+    begins: bool,
+    anew: bool,
     tables: BlockTables,
     constants: Constants,
     state: State,
@@ -198,20 +209,26 @@ def _drill(
     polar: bool,
 ) -> int:
     """Drill the hole that the block names; the number of rows after it, or why not."""
-    across = constants.planes[int(modal[PLANE])][2]
     axes = len(state.part)
-    if (seen >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or seen & (1 << (AXIS + across)):
+    plane = constants.planes[int(modal[PLANE])]
+    taken, hole = read_cycle(roles, values, begins, anew, tables, constants, state, modal)
+    if hole.fault != 0 or hole.stops > MOST_STOPS:
+        return NOT_PLAIN
+    rest = seen & ~taken
+    if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
         return NOT_PLAIN
     if polar:
-        _aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
-    elif not seen >> AXIS:
-        return NOT_PLAIN
+        _aim(plane, roles, values, rest, state, modal)
     target = constants.over
     for axis in range(axes):
-        target[axis] = _goal(axis, roles, values, seen, tables, state, modal, polar)
+        target[axis] = _goal(axis, roles, values, rest, tables, state, modal, polar)
         if not abs(target[axis]) <= LARGEST_COORDINATE:
             return NOT_PLAIN
-    return write_hole(line, number, target, constants, state, modal, feed, rows, row)
+    after = write_hole(line, number, target, hole, constants, state, modal, feed, rows, row)
+    if after >= 0:
+        copy(constants.cycle[0], state.cycle[0])
+        state.cycle[1, :] = np.nan
+    return after
 
 
 @inlined_kernel

@@ -16,10 +16,11 @@ from twin.nc.canonical import FloatArray, IntArray
     FEED_FACTOR,
     PLANE,
     CYCLE,
+    TO_REFERENCE,
     NOTHING,
-) = range(9)
+) = range(10)
 """Places in the modal state; ``NOTHING`` takes what codes without effect set."""
-MODAL = 9
+MODAL = 10
 (
     SPINDLE,
     SELECTED,
@@ -29,10 +30,13 @@ MODAL = 9
     POLAR_ORDINATE,
     POLAR_RADIUS,
     POLAR_ANGLE,
-) = range(8)
+    RADIUS_GIVEN,
+) = range(9)
 """Places in the registers: S; the tool that comes next and the one that is in use; whether it has
-its offset; the polar origin, the last R and Q. NaN: none."""
-REGISTERS = 8
+its offset; the polar origin, the last R and Q; the tool's radius that the program gave. NaN: none."""
+REGISTERS = 9
+DOUBTFUL = -3
+"""A step or a move is left to the general way; neither ``NOT_PLAIN`` nor ``NO_ROOM``."""
 MOST_EVENTS = 16
 """Events of a block."""
 
@@ -55,7 +59,11 @@ class BlockTables(NamedTuple):
             for codes that do more.
         value: To what it sets it, shape (``CODES``,).
         group: Its modal group, shape (``CODES``,).
-        ends_cycle: Whether each G code ends a drilling cycle, shape (``CODES``,).
+        cycle: Which drilling cycle each G code begins, 0 where it ends one, ``NOT_PLAIN`` where it
+            does neither, shape (``CODES``,).
+        cycles: What is peculiar to each, as ``holes.Cycle`` has it; 0 is none, shape (c, 7).
+        cycle_words: Which of its values a word with a plain role gives, ``NOT_PLAIN`` for none, shape
+            (c, roles).
         function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
             shape (``CODES``,); ``NOT_PLAIN`` for codes that do more than that.
         kind: Kind of each interpolation, shape (i,).
@@ -71,7 +79,9 @@ class BlockTables(NamedTuple):
     field: IntArray
     value: FloatArray
     group: IntArray
-    ends_cycle: npt.NDArray[np.bool_]
+    cycle: IntArray
+    cycles: FloatArray
+    cycle_words: IntArray
     function: IntArray
     kind: IntArray
     clockwise: npt.NDArray[np.bool_]
@@ -81,20 +91,6 @@ class BlockTables(NamedTuple):
     signed_radius: npt.NDArray[np.bool_]
     fits_radius: npt.NDArray[np.bool_]
     linear: npt.NDArray[np.bool_]
-
-
-class Hole(NamedTuple):
-    """A drilling cycle in force.
-
-    Attributes:
-        reference: Height of the reference plane [mm].
-        acts: What happens over the hole, as ``drilling.acts`` has it, shape (n,).
-        values: Heights [mm] and seconds, shape (n,).
-    """
-
-    reference: float
-    acts: IntArray
-    values: FloatArray
 
 
 class Constants(NamedTuple):
@@ -112,11 +108,13 @@ class Constants(NamedTuple):
         tools: Numbers of the tools that the job lists, shape (t,).
         longer: How much longer each is than the first, shape (t,) [mm].
         radii: Of each, shape (t,) [mm].
-        hole: What a block drills while a cycle is in force.
         square_corners: Compensation that begins extends outside corners between lines.
         indirect_leads: It goes around the contour's first and last point.
         over: Room for where the hole lies, shape (k,).
         room: Room for the way there, shape (3, k).
+        cycle: Room for what the cycle remembers, and for the block's words, shape (2, v).
+        acts: Room for what happens at a hole, shape (a,).
+        amounts: The same for its heights and seconds, shape (a,).
     """
 
     default_feed: float
@@ -129,11 +127,13 @@ class Constants(NamedTuple):
     tools: FloatArray
     longer: FloatArray
     radii: FloatArray
-    hole: Hole
     square_corners: bool
     indirect_leads: bool
     over: FloatArray
     room: FloatArray
+    cycle: FloatArray
+    acts: IntArray
+    amounts: FloatArray
 
 
 class State(NamedTuple):
@@ -150,6 +150,8 @@ class State(NamedTuple):
         shifts: In the order of ``frame.SHIFTS``, shape (s, k) [mm or deg].
         total: Their sum, from programmed to part coordinates, shape (k,) [mm or deg].
         label: The coordinates that a block gives to the place where it stands, shape (k,).
+        cycle: What the drilling cycle in force remembers, as ``holes`` counts it, and below that words
+            of the block, NaN for none, shape (2, v).
     """
 
     modal: FloatArray
@@ -162,6 +164,7 @@ class State(NamedTuple):
     shifts: FloatArray
     total: FloatArray
     label: FloatArray
+    cycle: FloatArray
 
 
 class Rows(NamedTuple):

@@ -13,7 +13,8 @@ from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.control import Control
 from twin.nc.dialect import Comment, Dialect, FeedMode, GCode, Modal
 from twin.nc.functions import SPINDLE_STARTS
-from twin.nc.interpolation import Interpolation, PlainArc, PlainLine
+from twin.nc.holes import Cycle
+from twin.nc.interpolation import Interpolation, PlainArc, PlainHole, PlainLine
 from twin.nc.plain_state import (
     ARC,
     CENTER_ABSOLUTE,
@@ -31,6 +32,7 @@ from twin.nc.plain_state import (
     NOTHING,
     PLANE,
     RAPID_LINE,
+    TO_REFERENCE,
     UNIT,
     BlockTables,
 )
@@ -59,6 +61,7 @@ _FIELDS: Mapping[str, int] = {
     "unit": UNIT,
     "corner": CORNER,
     "feed_mode": FEED_FACTOR,
+    "return_to_reference": TO_REFERENCE,
 }
 """The fields of ``Modal`` that plain codes may set, and their places."""
 
@@ -78,6 +81,7 @@ class PlainTables:
         self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
         self._interpolations = _interpolations(dialect)
         self._places = {id(each): float(at) for at, each in enumerate(self._interpolations)}
+        self._cycles = _cycles(dialect)
         self.rapid_feed = _rapid_feed(self._interpolations)
         self.roles = _roles(dialect, settings)
         self.lines = _line_tables(dialect, self.roles)
@@ -88,11 +92,23 @@ class PlainTables:
         state = np.zeros(MODAL)
         if modal.plane in PLANE_ORDER:
             state[PLANE] = PLANE_ORDER.index(modal.plane)
-        state[CYCLE] = float(modal.cycle is not None)
+        state[CYCLE] = float(self._number_of_cycle(modal.cycle))
         for name, place in _FIELDS.items():
             value = self._number(name, getattr(modal, name))
             state[place] = 0.0 if value is None else value
         return state
+
+    def cycle(self, number: float) -> Interpolation | None:
+        """The drilling cycle with a number."""
+        return self._cycles[int(number)]
+
+    def knows_cycle(self, cycle: Interpolation | None) -> bool:
+        """Whether the kernel can drill it."""
+        return any(each is cycle for each in self._cycles)
+
+    def _number_of_cycle(self, cycle: object) -> int:
+        """Its number; 0 where the kernel knows none."""
+        return next((at for at, each in enumerate(self._cycles) if each is cycle), 0)
 
     def _number(self, name: str, value: object) -> float | None:
         """A value of the modal state as a number; None where the kernel has none for it."""
@@ -107,10 +123,11 @@ class PlainTables:
         field = np.full(CODES, NOT_PLAIN, np.int64)
         value = np.zeros(CODES)
         group = np.zeros(CODES, np.int64)
-        ends_cycle = np.zeros(CODES, np.bool_)
+        cycle = np.full(CODES, NOT_PLAIN, np.int64)
         for number, code in dialect.g.items():
             group[number] = self.groups.index(code.group)
-            ends_cycle[number] = "cycle" in code.sets and code.sets["cycle"] is None
+            if "cycle" in code.sets:
+                cycle[number] = self._number_of_cycle(code.sets["cycle"])
             meant = self._meaning(code)
             if meant is not None:
                 field[number], value[number] = meant
@@ -120,7 +137,9 @@ class PlainTables:
             field=field,
             value=value,
             group=group,
-            ends_cycle=ends_cycle,
+            cycle=cycle,
+            cycles=_cycle_rows(self._cycles),
+            cycle_words=_cycle_words(self._cycles, self.roles),
             function=_functions(dialect),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
@@ -134,11 +153,13 @@ class PlainTables:
 
     def _meaning(self, code: GCode) -> tuple[int, float] | None:
         """Which place a code sets, and to what; None for a code that does more than that."""
+        if code.begins_cycle:
+            return (NOTHING, 0.0) if self._number_of_cycle(code.sets["cycle"]) else None
         does = (code.action, code.perform, code.after)
         if any(does) or code.once or code.alone or code.refused or not code.group:
             return None
         sets = {name: value for name, value in code.sets.items() if name != "cycle"}
-        if len(sets) > 1 or code.sets.get("cycle") is not None:
+        if len(sets) > 1:
             return None
         for name, value in sets.items():
             number = self._number(name, value) if name in _FIELDS else None
@@ -158,6 +179,34 @@ def _interpolations(dialect: Dialect) -> list[Interpolation | None]:
         ):
             found.append(value)
     return found
+
+
+def _cycles(dialect: Dialect) -> list[Interpolation | None]:
+    """None, then the drilling cycles of the dialect."""
+    begun = (code.sets.get("cycle") for code in dialect.g.values())
+    return [None, *(each for each in begun if isinstance(each, Interpolation) and _drills(each))]
+
+
+def _drills(interpolation: Interpolation) -> bool:
+    return isinstance(interpolation.plain, PlainHole)
+
+
+def _cycle_rows(cycles: list[Interpolation | None]) -> FloatArray:
+    rows = np.zeros((len(cycles), len(Cycle._fields)))
+    for row, each in zip(rows, cycles, strict=True):
+        if each is not None and isinstance(each.plain, PlainHole):
+            row[:] = each.plain.cycle
+    return rows
+
+
+def _cycle_words(cycles: list[Interpolation | None], roles: Mapping[str, int]) -> IntArray:
+    words = np.full((len(cycles), 1 + max(roles.values())), NOT_PLAIN, np.int64)
+    for row, each in zip(words, cycles, strict=True):
+        if each is not None and isinstance(each.plain, PlainHole):
+            for letter, value in each.plain.words.items():
+                if letter in roles:
+                    row[roles[letter]] = value
+    return words
 
 
 def _rapid_feed(

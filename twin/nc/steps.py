@@ -60,9 +60,11 @@ from twin.nc.instructions import Step
     RELABEL,
     POLAR_ORIGIN,
     TO_MILLIMETRES,
-    NO_CYCLE,
+    NO_PECKS,
     FORGET_POLAR,
     TOOL_RADIUS,
     COMPENSATE,
     END_COMPENSATION,
+    CYCLE_WORD,
+    PROGRAMMED_RADIUS,
 ) = range(len(Step))

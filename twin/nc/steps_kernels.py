@@ -10,7 +10,7 @@ from twin.nc.bench_kernels import Bench, copy_force, copy_state
 from twin.nc.call_kernels import innermost
 from twin.nc.compile_kernels import kernel
 from twin.nc.contour_state import OFF, STAGE
-from twin.nc.deed_kernels import DOUBTFUL, polar_target, run_deed
+from twin.nc.deed_kernels import polar_target, run_deed
 from twin.nc.expression_kernels import of_one, of_three, of_two
 from twin.nc.expressions import LARGEST_NUMBER
 from twin.nc.held_kernels import hold_events
@@ -18,7 +18,7 @@ from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import PART_BITS, Table
 from twin.nc.lead_kernels import begin_compensation, end_compensation
 from twin.nc.memory_kernels import NO_SLOT, load, own_value, slot_of_number, store
-from twin.nc.plain_state import CYCLE, BlockTables, Constants, Rows, State
+from twin.nc.plain_state import CYCLE, DOUBTFUL, BlockTables, Constants, Rows, State
 from twin.nc.plain_words_kernels import NUMBER
 from twin.nc.routine_state import (
     AGAIN,

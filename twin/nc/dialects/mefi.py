@@ -4,6 +4,7 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 """
 
 import dataclasses
+from collections.abc import Iterator
 
 from twin.nc import iso, iso_decisions
 from twin.nc.arcs import sweep_between
@@ -110,8 +111,10 @@ def translate(control: Control, block: Block, writer: BlockWriter) -> None:
     targets = [word for word in block.words if jumps and word.address == "L"]
     counts = [word for word in block.words if jumps and word.address == "Q"]
     taken = (*jumps[:1], *targets[:1], *counts[:1])
-    if counts:
-        writer.step(Step.NO_CYCLE)  # a cycle would take Q as its own
+    if counts:  # a cycle with pecks would take Q as its own
+        if any(code.begins_cycle for code in _codes(control, block)):
+            raise NotTranslatableError
+        writer.step(Step.NO_PECKS)
     write_words(control, [word for word in block.words if word not in taken], writer)
     if jumps:
         times = control.number(counts[0]) if counts else 1.0
@@ -122,6 +125,15 @@ def translate(control: Control, block: Block, writer: BlockWriter) -> None:
             raise NotTranslatableError
         place = control.flow.find_label(int(number), span, "L")
         writer.jump_counted(place, repeat_counter(block), times)
+
+
+def _codes(control: Control, block: Block) -> Iterator[GCode]:
+    """The block's G codes, as far as they are known."""
+    for word in block.words:
+        if word.address == "G" and isinstance(word.value, float):
+            code = control.dialect.g.get(int(word.value))
+            if code is not None:
+                yield code
 
 
 def _arc(control: Control, *, clockwise: bool) -> None:

@@ -129,4 +129,6 @@ CODESYS = Dialect(
     library=subprograms.with_files,
     translate=translation.translate,
     disturbed=lambda control: bool(program.variables(control).periods),
+    registers=program.registers,
+    take_registers=program.take_registers,
 )

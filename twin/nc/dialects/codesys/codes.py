@@ -2,6 +2,7 @@
 
 from twin.nc import iso, offsets
 from twin.nc.blends import BlendKind
+from twin.nc.compensation_words import write_compensation_by_radius, write_end_of_compensation
 from twin.nc.dialect import GCode
 from twin.nc.dialects.codesys import actions, jumps, program, words
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
@@ -93,18 +94,21 @@ CODES: dict[int, GCode] = {
         meaning="radius compensation off",
         group="compensation",
         action=offsets.end_compensation,
+        translate=write_end_of_compensation,
         ground="manual",
     ),
     41: GCode(
         meaning="radius compensation left, radius D",
         group="compensation",
         action=actions.left_of_contour,
+        translate=write_compensation_by_radius(offsets.LEFT),
         ground="manual",
     ),
     42: GCode(
         meaning="radius compensation right, radius D",
         group="compensation",
         action=actions.right_of_contour,
+        translate=write_compensation_by_radius(offsets.RIGHT),
         ground="manual",
     ),
     43: GCode(

@@ -18,6 +18,7 @@ from twin.nc.expressions import (
     FunctionOf,
     Operator,
 )
+from twin.nc.plain_state import RADIUS_GIVEN
 
 COUNTER = "$"
 """The decoder's internal variable among the others, as no program writes it."""
@@ -127,6 +128,16 @@ def read_variable(control: Control, name: str, _index: float | None) -> float:
         None,
         f"give it one in the job: [variables] {name.strip('$')} = 0.0",
     )
+
+
+def registers(control: Control) -> dict[int, float]:
+    """What the fast way is given of the memory."""
+    return {RADIUS_GIVEN: variables(control).tool_radius}
+
+
+def take_registers(control: Control, values: list[float]) -> None:
+    """Take it back."""
+    variables(control).tool_radius = values[RADIUS_GIVEN]
 
 
 def is_local(name: str) -> bool:

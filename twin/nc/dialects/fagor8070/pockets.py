@@ -76,6 +76,38 @@ class Passes:
     plunge: float | None
 
 
+def call_pocket(control: Control, words: str, lengths: str) -> None:
+    """Take the words of a pocket where it is called; ``lengths`` are those that count lengths."""
+    axis = control.modal.plane.axes[2]
+    control.cycle_values = values = {"start": control.programmed[axis]}
+    _refuse_corner_type(control, words)
+    for address in words:
+        if (word := control.take(address)) is not None:
+            in_mm = address in lengths
+            values[address] = control.length(word) if in_mm else control.number(word)
+    incremental = control.modal.incremental
+    reference = control.take(control.settings.axes.names[axis])
+    if reference is not None:
+        base = control.programmed[axis] if incremental or reference.incremental else 0.0
+        values["Z"] = control.length(reference) + base
+    values.setdefault("Z", values["start"])
+    depth = control.take("I")
+    if depth is not None:
+        relative = incremental or depth.incremental
+        values["I"] = control.length(depth)
+        values["bottom"] = control.length(depth) + (values["Z"] if relative else 0.0)
+
+
+def _refuse_corner_type(control: Control, words: str) -> None:
+    """M and Q in a block of G87: rounded and chamfered corners."""
+    if "A" not in words:
+        return
+    for word in control.block.words:
+        if word.address == "Q" or (word.address == "M" and word.value in (0.0, 1.0, 2.0)):
+            message = "corners of a pocket are as round as the tool; M and Q are not followed"
+            control.fail("unsupported-word", message, word, "leave it out of the cycle's block")
+
+
 def mill_pocket(control: Control, name: str, *, circular: bool) -> None:
     """Mill a pocket about the point that the block names."""
     values = control.cycle_values

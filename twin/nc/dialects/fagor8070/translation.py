@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from twin.nc.block_words import write_words
+from twin.nc.block_words import sorted_words, write_words
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Block, Statement
 from twin.nc.control import Control
@@ -48,6 +48,8 @@ def _words(control: Control, block: Block, writer: BlockWriter) -> None:
         else:
             writer.number(count)
         if any(word.address in control.dialect.word_translations for word in rest):
+            raise NotTranslatableError
+        if any(code.begins_cycle for _, code in sorted_words(control, rest).codes):
             raise NotTranslatableError
         writer.words(rest, often=control.settings.step_limit)
     elif returns:

@@ -1,0 +1,325 @@
+"""Drilling cycles as numbers: what they remember of their words, and what they do at a hole.
+
+Both ways share these functions: the general way gives them lists, the compiled one columns. What is
+not given is NaN.
+"""
+
+import enum
+import math
+from typing import NamedTuple
+
+from twin.nc.canonical import FloatArray, IntArray
+
+Values = list[float] | FloatArray
+Acts = list[int] | IntArray
+
+(
+    START,
+    AXIS,
+    REFERENCE,
+    BOTTOM,
+    DEPTH,
+    DWELL,
+    SURFACE,
+    PECK,
+    FACTOR,
+    LEAST,
+    LIFT,
+    EVERY,
+    COUNT,
+    CLEARANCE,
+) = range(14)
+"""What a cycle remembers: the height at which it was called; the axis across its plane; the heights
+of the reference plane and of the bottom; the latter as it was written; seconds at the bottom; how
+far the surface lies below the reference plane; the first peck, the factor of each next one, the
+least; how far the tool lifts, and after how many pecks it clears; how many pecks there are; how far
+above its last height a rapid return ends."""
+VALUES = 14
+LENGTHS = (
+    1 << REFERENCE
+    | 1 << BOTTOM
+    | 1 << SURFACE
+    | 1 << PECK
+    | 1 << LEAST
+    | 1 << LIFT
+    | 1 << CLEARANCE
+)
+"""Those whose words count in the unit in force, as bits."""
+CHIP_CLEARANCE = 0.5
+"""Deep drilling stops its rapid return this far above where it was [mm]."""
+MOST_PECKS = 10_000
+"""Pecks of one hole: more is a slip of the pen."""
+
+
+class Retract(enum.IntEnum):
+    """How a cycle leaves the hole."""
+
+    RAPID = 0
+    FEED = 1
+    REVERSED = 2
+    """With the feed, the spindle reversed."""
+    STOPPED = 3
+    """Rapidly, the spindle stopped."""
+
+
+class Pecking(enum.IntEnum):
+    """How a cycle goes down."""
+
+    NONE = 0
+    TO_BOTTOM = 1
+    """By pecks, from the first on, as far as the bottom."""
+    COUNTED = 2
+    """By so many equal pecks."""
+
+
+class Act(enum.IntEnum):
+    """What happens at a hole: moves to a height, a dwell, the spindle."""
+
+    RAPID = 0
+    FEED = 1
+    DWELL = 2
+    M3 = 3
+    M4 = 4
+    M5 = 5
+
+
+class Fault(enum.IntEnum):
+    """What is wrong with the values of a cycle."""
+
+    NONE = 0
+    MISSING = 1
+    PLANE = 2
+    """It was called in another plane."""
+    PECKS = 3
+    MANY_PECKS = 4
+    DEPTH = 5
+    """It does not go down, or returns from below."""
+    DWELL = 6
+
+
+_FEED, _REVERSED, _STOPPED = int(Retract.FEED), int(Retract.REVERSED), int(Retract.STOPPED)
+_STRAIGHT, _COUNTED = int(Pecking.NONE), int(Pecking.COUNTED)
+_MISSING, _PLANE, _PECKS = int(Fault.MISSING), int(Fault.PLANE), int(Fault.PECKS)
+_MANY_PECKS, _DEPTH, _DWELL = int(Fault.MANY_PECKS), int(Fault.DEPTH), int(Fault.DWELL)
+_UP, _DOWN, _WAIT = int(Act.RAPID), int(Act.FEED), int(Act.DWELL)
+_M3, _M4, _M5 = int(Act.M3), int(Act.M4), int(Act.M5)
+
+
+class Cycle(NamedTuple):
+    """What is peculiar to one drilling cycle.
+
+    Attributes:
+        lasting: Its words stay in force from cycle to cycle, and every hole may change them; else
+            its first block says all.
+        across: Which value the word of the axis across the plane gives.
+        needed: Values that must be there, as bits.
+        pecking: A ``Pecking``.
+        dwells: It waits at the bottom.
+        clearance: Where its words give none [mm].
+        retract: A ``Retract``.
+    """
+
+    lasting: bool
+    across: int
+    needed: int
+    pecking: int = int(Pecking.NONE)
+    dwells: bool = True
+    clearance: float = CHIP_CLEARANCE
+    retract: int = int(Retract.RAPID)
+
+
+class Hole(NamedTuple):
+    """What a cycle in force does at every hole.
+
+    Attributes:
+        fault: A ``Fault``; unless it is none, nothing else counts.
+        reference: Height at which the feed begins, programmed coordinates [mm].
+        bottom: Height of the hole's bottom [mm].
+        back: Height to which the tool returns [mm].
+        dwell: At the bottom [s].
+        surface: Height at which the first peck begins [mm].
+        stops: How often it withdraws to break or clear chips.
+        peck: Depth of the first peck [mm].
+        factor: By which each is deeper than the one before.
+        least: No peck is less deep, except the last [mm].
+        lift: How far it withdraws [mm].
+        full_every: After how many stops it withdraws to the reference plane; 0: after none.
+        clearance: It returns with rapid to this far above where it was [mm].
+        retract: A ``Retract``.
+    """
+
+    fault: int
+    reference: float
+    bottom: float
+    back: float
+    dwell: float
+    surface: float
+    stops: int
+    peck: float
+    factor: float
+    least: float
+    lift: float
+    full_every: int
+    clearance: float
+    retract: int
+
+
+def no_values() -> list[float]:
+    """What a cycle remembers that has not begun."""
+    return [math.nan] * VALUES
+
+
+def begin(values: Values, axis: int, height: float, lasting: bool) -> None:
+    """A cycle begins at a height [mm] of the axis across its plane."""
+    if lasting and values[START] == values[START]:
+        return
+    for value in range(VALUES):
+        values[value] = math.nan
+    values[START], values[AXIS] = height, float(axis)
+
+
+def remember(
+    values: Values,
+    given: Values,
+    from_start: bool,
+    from_reference: bool,
+    lasting: bool,
+) -> None:
+    """Take the words of a block.
+
+    Args:
+        values: What the cycle remembers.
+        given: The block's words in millimetres and seconds, in the same places.
+        from_start: The reference plane counts from the height of the call.
+        from_reference: The bottom counts from the reference plane.
+        lasting: As in ``Cycle``; else the reference plane is the height of the call where it is
+            not given.
+    """
+    if given[REFERENCE] == given[REFERENCE]:
+        values[REFERENCE] = given[REFERENCE] + (values[START] if from_start else 0.0)
+    elif not lasting:
+        values[REFERENCE] = values[START]
+    if given[BOTTOM] == given[BOTTOM]:
+        above = either(values[REFERENCE], 0.0) if from_reference else 0.0
+        values[BOTTOM], values[DEPTH] = given[BOTTOM] + above, given[BOTTOM]
+    for value in range(DWELL, VALUES):
+        if given[value] == given[value]:
+            values[value] = given[value]
+
+
+def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole:
+    """What a cycle does at a hole.
+
+    Args:
+        cycle: The cycle.
+        values: What it remembers.
+        axis: The axis across the plane in force.
+        to_reference: It returns to the reference plane, not to the height of its call.
+    """
+    fault = 0
+    for value in range(VALUES):
+        if (cycle.needed >> value) & 1 and values[value] != values[value]:
+            fault = _MISSING
+    if values[AXIS] != axis:
+        fault = _PLANE
+    reference, bottom = values[REFERENCE], values[BOTTOM]
+    surface = reference - either(values[SURFACE], 0.0)
+    peck, factor = values[PECK], either(values[FACTOR], 1.0)
+    least, lift = either(values[LEAST], 0.0), either(values[LIFT], 0.0)
+    every, stops, full_every = either(values[EVERY], 0.0), 0, 1
+    if cycle.pecking == _COUNTED:
+        peck = abs(values[DEPTH])
+        bottom = surface - peck * values[COUNT]
+    if fault == 0 and cycle.pecking != _STRAIGHT:
+        if peck <= 0.0 or factor <= 0.0 or lift < 0.0 or every < 0.0 or every % 1.0 != 0.0:
+            fault = _PECKS
+        else:
+            stops = count_stops(surface, bottom, peck, factor, least)
+            full_every = 1 if lift == 0.0 else int(every)
+            if stops > MOST_PECKS:
+                fault = _MANY_PECKS
+    clearance = either(values[CLEARANCE], cycle.clearance)
+    dwell = either(values[DWELL], 0.0) if cycle.dwells else 0.0
+    if fault == 0 and (bottom >= reference or clearance < 0.0):
+        fault = _DEPTH
+    if fault == 0 and dwell < 0.0:
+        fault = _DWELL
+    back = reference if to_reference else max(values[START], reference)
+    return Hole(
+        fault,
+        reference,
+        bottom,
+        back,
+        dwell,
+        surface,
+        stops,
+        peck,
+        factor,
+        least,
+        lift,
+        full_every,
+        clearance,
+        cycle.retract,
+    )
+
+
+def either(value: float, default: float) -> float:
+    """A value, or where there is none another one."""
+    return value if value == value else default
+
+
+def count_stops(surface: float, bottom: float, peck: float, factor: float, least: float) -> int:
+    """How often deep drilling stops above the bottom; more than ``MOST_PECKS`` are not counted."""
+    depth, stops = surface, 0
+    while depth - peck > bottom and stops <= MOST_PECKS:
+        depth -= peck
+        peck = max(peck * factor, least)
+        stops += 1
+    return stops
+
+
+def most_acts(stops: int) -> int:
+    """Room that ``write_acts`` needs."""
+    return 3 * stops + 7
+
+
+def write_acts(hole: Hole, acts: Acts, amounts: Values) -> int:
+    """Write what happens when the tool stands over the hole; how many acts there are.
+
+    Args:
+        hole: The hole.
+        acts: Filled with ``Act``.
+        amounts: Filled with heights [mm] and seconds.
+    """
+    acts[0], amounts[0], at = _UP, hole.reference, 1
+    depth, peck = hole.surface, hole.peck
+    for number in range(1, hole.stops + 1):
+        depth -= peck
+        peck = max(peck * hole.factor, hole.least)
+        full = hole.full_every > 0 and number % hole.full_every == 0
+        up = hole.reference if full else min(depth + hole.lift, hole.reference)
+        acts[at], amounts[at] = _DOWN, depth
+        acts[at + 1], amounts[at + 1] = _UP, up
+        acts[at + 2], amounts[at + 2] = _UP, min(depth + hole.clearance, up)
+        at += 3
+    acts[at], amounts[at] = _DOWN, hole.bottom
+    at += 1
+    if hole.dwell > 0.0:
+        acts[at], amounts[at] = _WAIT, hole.dwell
+        at += 1
+    if hole.retract in (_REVERSED, _STOPPED):
+        acts[at], amounts[at] = _M4 if hole.retract == _REVERSED else _M5, 0.0
+        at += 1
+    if hole.retract in (_REVERSED, _FEED):
+        acts[at], amounts[at] = _DOWN, hole.reference
+        at += 1
+    if hole.retract == _REVERSED:
+        acts[at], amounts[at] = _M3, 0.0
+        at += 1
+    acts[at], amounts[at] = _UP, hole.back
+    at += 1
+    if hole.retract == _STOPPED:
+        acts[at], amounts[at] = _M3, 0.0
+        acts[at + 1], amounts[at + 1] = _UP, hole.back
+        at += 2
+    return at
