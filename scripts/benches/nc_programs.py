@@ -39,6 +39,9 @@ def programs() -> Iterator[Computing]:
     yield Computing("a loop over holes of G83", "fagor8070", *holes, 4 * ROUNDS)
     contour = (text.replace("ROUNDS", str(ROUNDS)) for text in _CONTOUR)
     yield Computing("a contour under G41 in a loop", "fagor8070", *contour, 10 * ROUNDS)
+    for task, dialect, ours, theirs, blocks in _CYCLES:
+        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
+        yield Computing(task, dialect, *filled, blocks * ROUNDS)
     for task, dialect, start, ours, theirs in _NOW_AND_THEN:
         every = f"{LINES:,} lines, every tenth {task}"
         texts = (_long(start, ours), _long("#101=1\n", theirs).replace("M30", "M2"))
@@ -208,6 +211,61 @@ _CONTOUR = (
     (
         "#101=0\nG90 G1 F1000 X-20 Y-20\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\nG41.1 D4\n"
         "X0 Y-5\nY30\nX[40+#101*0.001]\nY0\nX-5\nG40 X-20 Y-20\no110 endwhile\nM2\n"
+    ),
+)
+
+_CYCLES = (
+    (
+        "G81 called and ended in a loop",
+        "fagor8070",
+        (
+            "P1=0\nG90 G0 Z9 F1000\n$WHILE P1<ROUNDS\nP1=P1+1\nG99 G81 X[P1*0.01] Y5 Z2 I-4\nG80\n"
+            "$ENDWHILE\nM30\n"
+        ),
+        (
+            "#101=0\nG90 G0 Z9 F1000\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\n"
+            "G99 G81 X[#101*0.01] Y5 Z-4 R2\nG80\no110 endwhile\nM2\n"
+        ),
+        5,
+    ),
+    (
+        "G83 called and ended in a loop",
+        "fagor8070",
+        (
+            "P1=0\nG90 G0 Z9 F1000\n$WHILE P1<ROUNDS\nP1=P1+1\nG99 G83 X[P1*0.01] Y5 Z2 I2 J3\nG80\n"
+            "$ENDWHILE\nM30\n"
+        ),
+        (
+            "#101=0\nG90 G0 Z9 F1000\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\n"
+            "G99 G83 X[#101*0.01] Y5 Z-4 R2 Q2\nG80\no110 endwhile\nM2\n"
+        ),
+        5,
+    ),
+    (
+        "G81, G83 called and ended in a loop",
+        "mefi",
+        (
+            "N5 G90 G0 Z9 F1000\nN10 G81 X1 Y5 Z-4 R2\nN20 X7\nN30 G83 Y9 Z-4 R2 Q2\nN40 G80\n"
+            "N50 G0 X0 Y0 G73 L10 QROUNDS\nM30\n"
+        ),
+        (
+            "G90 G0 Z9 F1000\no110 repeat [ROUNDS]\nG81 X1 Y5 Z-4 R2\nX7\nG83 Y9 Z-4 R2 Q2\nG80\n"
+            "G0 X0 Y0\no110 endrepeat\nM2\n"
+        ),
+        5,
+    ),
+    (
+        "a contour under G41 in a loop",
+        "codesys",
+        (
+            "LET #i := 0\nN5 G90 G1 F100 X-20 Y-20\nN10 #i := #i + 1\nG41 D2\nX0 Y-5\nY30\n"
+            "X(40+#i*0.001)\nY0\nX-5\nG40 X-20 Y-20\nN90 G20 L10 K(#i < ROUNDS)\nM30\n"
+        ),
+        (
+            "#101=0\nG90 G1 F1000 X-20 Y-20\no110 do\n#101=[#101+1]\nG41.1 D4\nX0 Y-5\nY30\n"
+            "X[40+#101*0.001]\nY0\nX-5\nG40 X-20 Y-20\no110 while [#101 lt ROUNDS]\nM2\n"
+        ),
+        9,
     ),
 )
 

@@ -53,6 +53,8 @@ def switched(dialect: str, random_: Random) -> str:
         width, height = random_.uniform(15.0, 40.0), random_.uniform(15.0, 40.0)
         over = random_.uniform(-1.0, 8.0)
         begin = random_.choice(["G41", "G42", "G41 D1", "G42 D2", "G41 M8", "G41 X-5 Y-5"])
+        if dialect == "codesys" and random_.random() < 0.5:
+            begin = random_.choice(["G41 D2.5", "G42 D(#i+1)", "G41 D0", "G42 D-1", "G41 D1 F50"])
         end = random_.choice(["G40 X-20 Y-20", "G40\nX-20 Y-20", "G40 Z5\nM9\nX-9", "G40 M9", ""])
         way = ["X0", f"Y{-over:.2f}", f"Y{height:.2f}", f"X{width:.2f}", "Y0", f"X{-over:.2f}"]
         for block in (begin, *way, end):
@@ -62,6 +64,10 @@ def switched(dialect: str, random_: Random) -> str:
                 lines += text.format(*numbers, dwell=dwell).split("\n")
             lines += block.split("\n")
     first = ["G90 G1 F100 X-20 Y-20"]
+    if dialect == "codesys":
+        passes = random_.choice([1, 2, 40])
+        head = ["LET #i := 0", *first, "G41 D2", "G40", "N10 #i := #i + 1"]
+        return "\n".join([*head, *lines, f"N20 G20 L10 K(#i < {passes})", "M30"])
     if dialect != "fagor8070":
         return "\n".join([*first, *lines, "M30"])
     first.append(random_.choice(["G136", "G137", "G138"]))

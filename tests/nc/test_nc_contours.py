@@ -8,10 +8,8 @@ import pytest
 
 from tests.nc.nc_contours import program, switched
 from tests.nc.nc_running import WITH_TABLES
-from tests.nc.test_nc_plain import ALWAYS, assert_same, seen
-from twin.nc.blocks import Block
+from tests.nc.test_nc_plain import ALWAYS, assert_same, general_blocks, seen
 from twin.nc.canonical import Function
-from twin.nc.control import Control
 from twin.nc.dialects import DIALECTS
 from twin.nc.source import source_from_text
 
@@ -81,16 +79,21 @@ def test_a_contour_in_a_loop_never_leaves_the_compiled_run(
     )
     job = dataclasses.replace(JOB, step_limit=100_000)
     assert assert_same(source_from_text(text), "fagor8070", job).error is None
-    lines: list[int] = []
-    general = Control.run
+    assert general_blocks(text, "fagor8070", job, monkeypatch) < 10
 
-    def counted(control: Control, block: Block) -> None:
-        lines.append(block.line)
-        general(control, block)
 
-    monkeypatch.setattr(Control, "run", counted)
-    seen(source_from_text(text), "fagor8070", job, ALWAYS)
-    assert len(lines) < 10
+@pytest.mark.parametrize("radius", [" D2", " D(#i*0.001+1)", ""])
+def test_a_contour_with_a_radius_of_its_own_never_leaves_it_either(
+    radius: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    contour = f"G41{radius}\nX0 Y-5\nY30\nX(40+#i*0.001)\nY0\nX-5\nG40 X-20 Y-20"
+    head = "LET #i := 0\nG90 G1 F100 X-20 Y-20\nG42 D3\nX-25\nG40 X-20\nN10 #i := #i + 1"
+    text = f"{head}\n{contour}\nN20 G20 L10 K(#i < 300)\nM30"
+    job = dataclasses.replace(JOB, step_limit=100_000)
+    result = assert_same(source_from_text(text), "codesys", job)
+    assert result.error is None
+    assert len(result.moves) > 2000
+    assert general_blocks(text, "codesys", job, monkeypatch) < 10
 
 
 def test_an_error_in_a_later_pass_is_told_where_it_stands() -> None:

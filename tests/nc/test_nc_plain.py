@@ -8,7 +8,9 @@ import pytest
 
 from tests.nc.nc_fuzz import REAL, mutated
 from tests.nc.nc_running import ROOT, SETTINGS, WITH_TABLES
+from twin.nc.blocks import Block
 from twin.nc.canonical import Chunk, Event, Moves, concatenate
+from twin.nc.control import Control
 from twin.nc.diagnostics import Diagnostic, ProgramError
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.interpreter import Interpretation
@@ -93,6 +95,22 @@ def assert_same(source: Source, dialect: str, settings: ControlSettings = WITH_T
             assert ours.tobytes() == theirs.tobytes(), field.name
     assert fast.place == general.place
     return fast
+
+
+def general_blocks(
+    text: str, dialect: str, job: ControlSettings, monkeypatch: pytest.MonkeyPatch
+) -> int:
+    """How many blocks the general way runs where the fast way is taken from the start."""
+    lines: list[int] = []
+    general = Control.run
+
+    def counted(control: Control, block: Block) -> None:
+        lines.append(block.line)
+        general(control, block)
+
+    monkeypatch.setattr(Control, "run", counted)
+    seen(source_from_text(text), dialect, job, ALWAYS)
+    return len(lines)
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: f"{path.parts[-2]}/{path.stem}")

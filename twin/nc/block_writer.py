@@ -32,7 +32,11 @@ class NotTranslatableError(Exception):
 
 
 class BlockWriter:
-    """Appends the rows of one block."""
+    """Appends the rows of one block.
+
+    Attributes:
+        columns: Where the word stands that each row belongs to.
+    """
 
     def __init__(
         self,
@@ -62,20 +66,31 @@ class BlockWriter:
         self._stores = 0
         self._begin = 0
         self._keeps = False
+        self._column = 0
+        self.columns: list[int] = []
 
     def begin(self, block: Block) -> None:
         """A block begins, with its N number."""
         self._stores = 0
         self._keeps = False
+        self._column, self.columns = -1, []
         self._begin = self._instructions.rows
         self._add(Step.BLOCK)
         if block.number != NO_BLOCK_NUMBER:
             self._add(Step.WORD_NUMBER, self._number_role, float(block.number))
 
+    def end(self) -> None:
+        """The block ends."""
+        self._append(Step.NEXT)
+
     def _add(self, step: Step, argument: int = 0, number: float = 0.0) -> None:
         if self._instructions.rows - self._begin > MOST_ROWS:
             raise NotTranslatableError
+        self._append(step, argument, number)
+
+    def _append(self, step: Step, argument: int = 0, number: float = 0.0) -> None:
         self._instructions.add(step, argument, number)
+        self.columns.append(self._column)
 
     def step(self, step: Step, argument: int = 0) -> None:
         """Append one of the steps that do more than compute, move and jump."""
@@ -119,6 +134,7 @@ class BlockWriter:
             role = self._roles.get(word.address)
             if role is None or word.incremental:
                 raise NotTranslatableError
+            self._column = word.column
             if isinstance(word.value, Expression):
                 self.value(word.value)
                 self._add(Step.WORD, role)
@@ -129,6 +145,7 @@ class BlockWriter:
 
     def word_value(self, word: Word) -> None:
         """Put the value of a word on the stack."""
+        self._column = word.column
         if isinstance(word.value, Expression):
             self.value(word.value)
         else:

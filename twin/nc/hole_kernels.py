@@ -4,6 +4,7 @@ import numpy as np
 from numba.extending import register_jitable
 
 from twin.nc import holes
+from twin.nc.aim_kernels import aim, goal_of
 from twin.nc.canonical import Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.column_kernels import copy, copy_rows
 from twin.nc.compile_kernels import kernel
@@ -26,7 +27,7 @@ from twin.nc.plain_state import (
     Rows,
     State,
 )
-from twin.nc.plain_words_kernels import AXIS, NOT_PLAIN
+from twin.nc.plain_words_kernels import AXIS, NOT_PLAIN, RADIUS
 
 for _shared in (
     holes.begin,
@@ -50,7 +51,69 @@ _STOP = int(Corner.EXACT_STOP)
 
 
 @kernel
-def read_cycle(
+def drill(
+    line: int,
+    number: int,
+    roles: IntArray,
+    values: FloatArray,
+    seen: int,
+    begins: bool,
+    anew: bool,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    modal: FloatArray,
+    feed: float,
+    rows: Rows,
+    row: int,
+    polar: bool,
+) -> int:
+    """Drill the hole that a block names.
+
+    Args:
+        line: The block's line, from 1.
+        number: Its N number.
+        roles: What each word's letter is, shape (w,).
+        values: The words' values, shape (w,).
+        seen: Which roles there are, as bits.
+        begins: The block calls the cycle.
+        anew: No cycle was in force before.
+        tables: What blocks mean.
+        constants: What stays; its ``over`` becomes where the tool stands.
+        state: Where the block begins; its label becomes where the path ends.
+        modal: The modal state with this block's codes.
+        feed: F.
+        rows: Room for moves and events.
+        row: The next row.
+        polar: The label of ``state`` holds where the hole lies in the plane.
+
+    Returns:
+        The number of rows after it, ``NO_ROOM``, or ``NOT_PLAIN`` with the cycle untouched.
+    """
+    axes = len(state.part)
+    plane = constants.planes[int(modal[PLANE])]
+    taken, hole = _read_cycle(roles, values, begins, anew, tables, constants, state, modal)
+    if hole.fault != 0 or hole.stops > MOST_STOPS:
+        return NOT_PLAIN
+    rest = seen & ~taken
+    if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
+        return NOT_PLAIN
+    if polar:
+        aim(plane, roles, values, rest, state, modal)
+    target = constants.over
+    for axis in range(axes):
+        target[axis] = goal_of(axis, roles, values, rest, tables, state, modal, polar)
+        if not abs(target[axis]) <= LARGEST_COORDINATE:
+            return NOT_PLAIN
+    after = _write_hole(line, number, target, hole, constants, state, modal, feed, rows, row)
+    if after >= 0:
+        copy(constants.cycle[0], state.cycle[0])
+        state.cycle[1, :] = np.nan
+    return after
+
+
+@kernel
+def _read_cycle(
     roles: IntArray,
     values: FloatArray,
     begins: bool,
@@ -60,17 +123,9 @@ def read_cycle(
     state: State,
     modal: FloatArray,
 ) -> tuple[int, Hole]:
-    """Take the words of a block that belong to its drilling cycle.
+    """Take the words of a block that belong to its drilling cycle: ``drilling`` does the same.
 
-    Args:
-        roles: What each word's letter is, shape (w,).
-        values: The words' values, shape (w,).
-        begins: The block calls the cycle.
-        anew: No cycle was in force before.
-        tables: What blocks mean.
-        constants: Its ``cycle`` becomes what the cycle remembers.
-        state: Where the block begins.
-        modal: The modal state with this block's codes.
+    The ``cycle`` of the constants becomes what the cycle remembers.
 
     Returns:
         The roles of those words as bits, and what is done at the hole.
@@ -107,7 +162,7 @@ def read_cycle(
 
 
 @kernel
-def write_hole(
+def _write_hole(
     line: int,
     number: int,
     target: FloatArray,
@@ -119,24 +174,7 @@ def write_hole(
     rows: Rows,
     row: int,
 ) -> int:
-    """Go over the hole, drill it, return.
-
-    Args:
-        line: The block's line, from 1.
-        number: Its N number.
-        target: Programmed position of the hole, shape (k,); its height is not used. It becomes
-            where the tool stands.
-        hole: What is done there.
-        constants: What stays.
-        state: Where the block begins.
-        modal: The modal state with this block's codes.
-        feed: F.
-        rows: Room for moves and events.
-        row: The next row.
-
-    Returns:
-        The number of rows after it, ``NO_ROOM``, or ``NOT_PLAIN``.
-    """
+    """Go over the hole, drill it, return: ``drilling.drill``; the arguments are those of ``drill``."""
     if row + holes.most_acts(hole.stops) + 2 > len(rows.codes):
         return NO_ROOM
     if np.isnan(feed) and not constants.feed_may_lack:

@@ -4,7 +4,7 @@ X and Y name the hole, Z its bottom, R the reference plane, P the seconds at the
 of one peck. All but X and Y stay in force, and every block that names a hole drills it, until G80
 or a motion code. Decisions: with G91, R counts from where the tool stands and Z from R; a cycle
 block without a hole drills where the tool stands; the tool returns to the height at which the cycle
-was called, or with G99 to the reference plane.
+was called, or with G99 to the reference plane; the plane cannot change before the cycle has ended.
 """
 
 from twin.nc.dialect import GCode

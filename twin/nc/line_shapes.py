@@ -16,6 +16,8 @@ from twin.nc.instructions import Step, Table
 from twin.nc.plain_words_kernels import CODE, FUNCTION
 
 _LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)
+_SHARED = (Step.KEEP, Step.CYCLE_WORD)
+"""Steps of lines that may share a shape, besides those that compute and move."""
 _MOST_SHAPES = 1000
 """Shapes that are kept: a program that has more gains nothing by them."""
 
@@ -74,17 +76,35 @@ class LineShapes:
             return None
         return shape
 
-    def keep(self, key: tuple[str, ...], numbers: list[float], table: Table, rows: slice) -> None:
-        """Remember what a line does, where its numbers are all that it does not share."""
+    def keep(
+        self,
+        key: tuple[str, ...],
+        numbers: list[float],
+        table: Table,
+        rows: slice,
+        columns: list[int],
+    ) -> None:
+        """Remember what a line does, where its numbers are all that it does not share.
+
+        Args:
+            key: The line without its numbers.
+            numbers: They.
+            table: The instructions.
+            rows: Those of the line.
+            columns: Where the word stands that each of the rows of a line of one block belongs to.
+        """
         steps, arguments = table.step[rows].copy(), table.argument[rows].copy()
         own = np.flatnonzero(
             (steps == Step.NUMBER)
             | ((steps == Step.WORD_NUMBER) & ~np.isin(arguments, (CODE, FUNCTION)))
         )
-        shared = (
-            (steps <= Step.RUN).all()
+        shared = len(columns) == len(steps) and (
+            ((steps <= Step.RUN) | np.isin(steps, _SHARED)).all()
             and (steps[1:] != Step.BLOCK).all()
             and len(self._shapes) < _MOST_SHAPES
         )
-        if shared and table.number[rows][own].tolist() == numbers:
+        if not shared:
+            return
+        own = own[np.argsort(np.array(columns)[own], kind="stable")]
+        if table.number[rows][own].tolist() == numbers:
             self._shapes[key] = Shape(steps, arguments, table.number[rows].copy(), own)

@@ -7,15 +7,16 @@ left untouched; the control runs it and makes its diagnostics.
 
 import numpy as np
 
+from twin.nc.aim_kernels import aim, goal_of
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.column_kernels import copy
-from twin.nc.compile_kernels import inlined_kernel, kernel
+from twin.nc.compile_kernels import inlined_kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import FUNCTION_ALONE
 from twin.nc.event_kernels import report
-from twin.nc.hole_kernels import MOST_STOPS, read_cycle, write_hole
+from twin.nc.hole_kernels import drill
 from twin.nc.line_reader import LARGEST_LABEL
-from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
+from twin.nc.plain_arc_kernels import SHORTEST, write_arc
 from twin.nc.plain_state import (
     ARC,
     CODES,
@@ -23,7 +24,6 @@ from twin.nc.plain_state import (
     CYCLE,
     EARLY,
     FEED_FACTOR,
-    INCREMENTAL,
     INTERPOLATION,
     NO_MOTION,
     PLANE,
@@ -45,7 +45,6 @@ from twin.nc.plain_words_kernels import (
     NUMBER,
     RADIUS,
 )
-from twin.nc.plane_kernels import one, place
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
 _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
@@ -130,8 +129,11 @@ def run_words(
     in_plane = seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))) != 0
     if polar and in_plane:
         return NOT_PLAIN
+    early = function != NOT_PLAIN and tables.function[function] == EARLY
+    if early:
+        report(rows, state, row, line, FUNCTION_ALONE, function, np.nan)
     if drills and moves:
-        after = _drill(
+        after = drill(
             line,
             number,
             roles,
@@ -148,9 +150,6 @@ def run_words(
             row,
             polar,
         )
-        if after < 0:
-            state.happened[0] = happened
-            return after
     elif moves:
         after = _move(
             line,
@@ -167,11 +166,11 @@ def run_words(
             row,
             polar,
         )
-        if after == NOT_PLAIN:
-            return NOT_PLAIN
-    if function != NOT_PLAIN:
-        before = row if tables.function[function] == EARLY else after
-        report(rows, state, before, line, FUNCTION_ALONE, function, np.nan)
+    if after < 0:
+        state.happened[0] = happened
+        return after
+    if function != NOT_PLAIN and not early:
+        report(rows, state, after, line, FUNCTION_ALONE, function, np.nan)
     for word in range(len(roles)):
         if roles[word] == CODE:
             code = int(values[word])
@@ -188,68 +187,6 @@ def run_words(
         if in_plane:
             state.registers[POLAR_RADIUS] = state.registers[POLAR_ANGLE] = np.nan
     return after
-
-
-@kernel
-def _drill(
-    line: int,
-    number: int,
-    roles: IntArray,
-    values: FloatArray,
-    seen: int,
-    begins: bool,
-    anew: bool,
-    tables: BlockTables,
-    constants: Constants,
-    state: State,
-    modal: FloatArray,
-    feed: float,
-    rows: Rows,
-    row: int,
-    polar: bool,
-) -> int:
-    """Drill the hole that the block names; the number of rows after it, or why not."""
-    axes = len(state.part)
-    plane = constants.planes[int(modal[PLANE])]
-    taken, hole = read_cycle(roles, values, begins, anew, tables, constants, state, modal)
-    if hole.fault != 0 or hole.stops > MOST_STOPS:
-        return NOT_PLAIN
-    rest = seen & ~taken
-    if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
-        return NOT_PLAIN
-    if polar:
-        _aim(plane, roles, values, rest, state, modal)
-    target = constants.over
-    for axis in range(axes):
-        target[axis] = _goal(axis, roles, values, rest, tables, state, modal, polar)
-        if not abs(target[axis]) <= LARGEST_COORDINATE:
-            return NOT_PLAIN
-    after = write_hole(line, number, target, hole, constants, state, modal, feed, rows, row)
-    if after >= 0:
-        copy(constants.cycle[0], state.cycle[0])
-        state.cycle[1, :] = np.nan
-    return after
-
-
-@inlined_kernel
-def _goal(
-    axis: int,
-    roles: IntArray,
-    values: FloatArray,
-    seen: int,
-    tables: BlockTables,
-    state: State,
-    modal: FloatArray,
-    polar: bool,
-) -> float:
-    """Where the block wants an axis, as programmed; a polar block has aimed already."""
-    if polar and axis < 3:
-        return state.label[axis]
-    if not seen & (1 << (AXIS + axis)):
-        return state.programmed[axis]
-    value = value_of(AXIS + axis, roles, values)
-    value *= modal[UNIT] if tables.linear[axis] else 1.0
-    return value + state.programmed[axis] if modal[INCREMENTAL] != 0.0 else value
 
 
 @inlined_kernel
@@ -281,9 +218,9 @@ def _move(
     position = rows.positions[row]
     turning, spatial, other = not is_arc, 0.0, 0.0
     if polar:
-        _aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
+        aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
     for axis in range(axes):
-        target = _goal(axis, roles, values, seen, tables, state, modal, polar)
+        target = goal_of(axis, roles, values, seen, tables, state, modal, polar)
         if not abs(target) <= LARGEST_COORDINATE:
             return NOT_PLAIN
         end = target + state.total[axis]
@@ -327,26 +264,3 @@ def _move(
     rows.codes[row, 3] = number
     rows.codes[row, 4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
     return row + 1
-
-
-@kernel
-def _aim(
-    plane: IntArray,
-    roles: IntArray,
-    values: FloatArray,
-    seen: int,
-    state: State,
-    modal: FloatArray,
-) -> None:
-    """Abscissa and ordinate of the label and the height of the block, as ``Plane.world`` has them."""
-    abscissa, ordinate = state.label[0], state.label[1]
-    x, y, z = state.programmed[0], state.programmed[1], state.programmed[2]
-    across = plane[2]
-    if seen & (1 << (AXIS + across)):
-        value = value_of(AXIS + across, roles, values) * modal[UNIT]
-        height = value + state.programmed[across] if modal[INCREMENTAL] != 0.0 else value
-        x = height if across == 0 else x
-        y = height if across == 1 else y
-        z = height if across == 2 else z
-    height = one(across, 0) * x + one(across, 1) * y + one(across, 2) * z
-    place(plane, (abscissa, ordinate), height, state.label)

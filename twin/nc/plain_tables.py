@@ -102,6 +102,12 @@ class PlainTables:
         """The drilling cycle with a number."""
         return self._cycles[int(number)]
 
+    @property
+    def cycle_letters(self) -> set[str]:
+        """Letters of the words of drilling cycles."""
+        plain = [each.plain for each in self._cycles if each is not None]
+        return {letter for each in plain if isinstance(each, PlainHole) for letter in each.words}
+
     def knows_cycle(self, cycle: Interpolation | None) -> bool:
         """Whether the kernel can drill it."""
         return any(each is cycle for each in self._cycles)

@@ -31,7 +31,7 @@ class Translator:
         self._lines = tables.lines
         self.instructions = Instructions(len(control.flow.lines))
         letters = [letter for letter, role in tables.roles.items() if role not in _MEANINGS]
-        self._shapes = LineShapes(letters)
+        self._shapes = LineShapes({*letters, *tables.cycle_letters})
         self._writer = BlockWriter(
             self.instructions,
             control.variables,
@@ -67,7 +67,7 @@ class Translator:
         known = self._translate_line(line)
         if known:
             rows = slice(first, instructions.rows)
-            self._shapes.keep(key, numbers, instructions.table, rows)
+            self._shapes.keep(key, numbers, instructions.table, rows, self._writer.columns)
         return known
 
     def _copy(self, line: int, key: tuple[str, ...], numbers: list[float]) -> bool:
@@ -119,5 +119,5 @@ class Translator:
             return False
         finally:
             control.block, control.report.line = before
-        self.instructions.add(Step.NEXT)
+        self._writer.end()
         return True

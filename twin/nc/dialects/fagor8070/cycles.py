@@ -108,7 +108,6 @@ CYCLES = {
         {"J": COUNT, "D": SURFACE, "K": DWELL},
         needed=1 << COUNT,
         pecking=Pecking.COUNTED,
-        ground="manual",
     ),
     84: _drilling(84, "tapping", _DWELL, retract=Retract.REVERSED),
     85: _drilling(85, "reaming, back with the feed", _DWELL, retract=Retract.FEED),

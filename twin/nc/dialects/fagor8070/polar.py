@@ -14,7 +14,9 @@ from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.expressions import Expression
 from twin.nc.instructions import Step
+from twin.nc.interpolation import Interpolation, PlainHole
 
 HELIX_ANGLE = 0.1
 """A helix whose pitch misses its end point by more than this earns a warning [deg]."""
@@ -81,10 +83,22 @@ def write_polar_origin(block: BlockWords, writer: BlockWriter) -> None:
 
 def is_polar(control: Control, words: Iterable[Word]) -> bool:
     """A block with R or Q goes there, unless it names a coordinate of the plane in force."""
-    addresses = {word.address for word in words}
+    addresses = {word.address for word in words} - _words_of_cycle(control, words)
     names = control.settings.axes.names
     abscissa, ordinate, _ = (names[index] for index in control.modal.plane.axes)
     return not addresses.isdisjoint("RQ") and addresses.isdisjoint((abscissa, ordinate, *"IJK"))
+
+
+def _words_of_cycle(control: Control, words: Iterable[Word]) -> set[str]:
+    """Letters that belong to the drilling cycle which a block calls."""
+    letters: set[str] = set()
+    for word in words:
+        if word.address == "G" and not isinstance(word.value, Expression):
+            code = control.dialect.g.get(int(word.value))
+            cycle = None if code is None else code.sets.get("cycle")
+            if isinstance(cycle, Interpolation) and isinstance(cycle.plain, PlainHole):
+                letters.update(cycle.plain.words)
+    return letters
 
 
 def write_polar(control: Control, words: Iterable[Word], writer: BlockWriter) -> None:
@@ -94,6 +108,12 @@ def write_polar(control: Control, words: Iterable[Word], writer: BlockWriter) ->
         NotTranslatableError: It does more than that.
     """
     block = sorted_words(control, words)
+    cycles = [(word, code) for word, code in block.codes if code.begins_cycle]
+    block.codes = [pair for pair in block.codes if pair not in cycles]
+    for _, code in cycles:
+        if code.translate is None:
+            raise NotTranslatableError
+        code.translate(block, writer)
     radius, angle, feed = block.take("R"), block.take("Q"), block.take("F")
     addresses = control.dialect.axis_letters
     if (
@@ -105,7 +125,7 @@ def write_polar(control: Control, words: Iterable[Word], writer: BlockWriter) ->
         raise NotTranslatableError
     codes = [word for word, _ in block.codes]
     writer.codes(codes if feed is None else [*codes, feed])
-    writer.polar(radius, angle, block.words.values())
+    writer.polar(radius, angle, [*(word for word, _ in cycles), *block.words.values()])
 
 
 def refuse_origin_by_g93(control: Control) -> None:
