@@ -1,7 +1,6 @@
-"""One program run for its verdict alone: no pictures, no files left behind."""
+"""One program run for its verdict alone: no pictures, no recording, no part."""
 
 import dataclasses
-import tempfile
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -61,8 +60,7 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     run = Run(preparation)
     try:
         survey = run.survey()
-        with tempfile.TemporaryDirectory(prefix="twin-check-") as folder:
-            outcome = run.execute(survey, Path(folder), no_progress)
+        outcome = run.execute(survey, None, no_progress)
     except ProgramError as error:
         differing = _baseline_reasons(preparation, None, settings)
         return _not_run(path, error, _findings(preparation, differing))
