@@ -46,7 +46,6 @@ def new_bench(state: State) -> Bench:
         np.zeros_like(state.shifts),
         np.zeros_like(state.total),
         np.zeros_like(state.label),
-        np.zeros_like(state.cycle),
     )
     return Bench(
         np.zeros(MOST_WORDS, np.int64),
@@ -78,5 +77,4 @@ def copy_state(source: State, target: State) -> None:
     copy(source.registers, target.registers)
     copy(source.total, target.total)
     copy_rows(source.shifts, target.shifts)
-    copy_rows(source.cycle, target.cycle)
     target.happened[0] = source.happened[0]

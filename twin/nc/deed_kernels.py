@@ -17,6 +17,7 @@ from twin.nc.holes import Cycle
 from twin.nc.plain_state import (
     CYCLE,
     DOUBTFUL,
+    GIVEN,
     IN_SPINDLE,
     INCREMENTAL,
     OFFSET_ON,
@@ -169,7 +170,7 @@ def run_deed(
     elif step == steps.FORGET_POLAR:
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
     elif step == steps.CYCLE_WORD:
-        state.cycle[1, argument] = value
+        registers[GIVEN + argument] = value
         top -= 1
     elif step == steps.PROGRAMMED_RADIUS and argument:
         registers[RADIUS_GIVEN] = value * state.modal[UNIT]

@@ -168,10 +168,10 @@ def drill(control: Control, hole: Hole, target: list[float]) -> None:
         control.line_to(up, rapid=True)
     control.line_to(over, rapid=True)
     room = most_acts(hole.stops)
-    acts, amounts = [0] * room, [0.0] * room
+    acts, amounts = [0.0] * room, [0.0] * room
     turning = {} if control.spindle is None else {"S": control.spindle}
     for number in range(write_acts(hole, acts, amounts)):
-        act, amount = Act(acts[number]), amounts[number]
+        act, amount = Act(int(acts[number])), amounts[number]
         if act in (Act.RAPID, Act.FEED):
             there = list(control.programmed)
             there[axis] = amount

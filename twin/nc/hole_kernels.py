@@ -6,7 +6,7 @@ from numba.extending import register_jitable
 from twin.nc import holes
 from twin.nc.aim_kernels import aim, goal_of
 from twin.nc.canonical import Corner, FloatArray, IntArray, Motion, Shape
-from twin.nc.column_kernels import copy, copy_rows
+from twin.nc.column_kernels import copy
 from twin.nc.compile_kernels import kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
@@ -17,8 +17,10 @@ from twin.nc.plain_state import (
     CORNER,
     CYCLE,
     FEED_FACTOR,
+    GIVEN,
     INCREMENTAL,
     PLANE,
+    REMEMBERED,
     SPINDLE,
     TO_REFERENCE,
     UNIT,
@@ -42,6 +44,7 @@ for _shared in (
 
 NO_ROOM = -2
 """The rows are full."""
+_WORDS = len(Cycle._fields)
 MOST_STOPS = 500
 """Stops of a hole: its moves must fit into a chunk."""
 _UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
@@ -107,8 +110,9 @@ def drill(
             return NOT_PLAIN
     after = _write_hole(line, number, target, hole, constants, state, modal, feed, rows, row)
     if after >= 0:
-        copy(constants.cycle[0], state.cycle[0])
-        state.cycle[1, :] = np.nan
+        for value in range(holes.VALUES):
+            state.registers[REMEMBERED + value] = constants.hole[0, value]
+            state.registers[GIVEN + value] = np.nan
     return after
 
 
@@ -125,7 +129,7 @@ def _read_cycle(
 ) -> tuple[int, Hole]:
     """Take the words of a block that belong to its drilling cycle: ``drilling`` does the same.
 
-    The ``cycle`` of the constants becomes what the cycle remembers.
+    The first row of ``constants.hole`` becomes what the cycle remembers.
 
     Returns:
         The roles of those words as bits, and what is done at the hole.
@@ -136,8 +140,10 @@ def _read_cycle(
         row[0] != 0.0, int(row[1]), int(row[2]), int(row[3]), row[4] != 0.0, row[5], int(row[6])
     )
     across = int(constants.planes[int(modal[PLANE])][2])
-    copy_rows(state.cycle, constants.cycle)
-    remembered, given = constants.cycle[0], constants.cycle[1]
+    remembered, given = constants.hole[0], constants.hole[1]
+    for value in range(holes.VALUES):
+        remembered[value] = state.registers[REMEMBERED + value]
+        given[value] = state.registers[GIVEN + value]
     if anew:
         remembered[holes.START] = np.nan
     if begins:
@@ -146,7 +152,7 @@ def _read_cycle(
     if begins or cycle.lasting:
         for word in range(len(roles)):
             role = roles[word]
-            value = tables.cycle_words[number, role]
+            value = int(row[_WORDS + role])
             if role == AXIS + across:
                 value = cycle.across
             if value >= 0:
@@ -186,9 +192,9 @@ def _write_hole(
     copy(state.part, part)
     copy(state.programmed, goal)
     over = max(here[axis], hole.reference)
-    acts, amounts, after = constants.acts, constants.amounts, row
+    acts, amounts, after = constants.hole[2], constants.hole[3], row
     for step in range(-2, holes.write_acts(hole, acts, amounts)):
-        act = _UP if step < 0 else acts[step]
+        act = _UP if step < 0 else int(acts[step])
         if act <= _DOWN:
             if step == -1:
                 copy(target, goal)

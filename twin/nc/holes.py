@@ -8,10 +8,9 @@ import enum
 import math
 from typing import NamedTuple
 
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import FloatArray
 
 Values = list[float] | FloatArray
-Acts = list[int] | IntArray
 
 (
     START,
@@ -101,8 +100,8 @@ _FEED, _REVERSED, _STOPPED = int(Retract.FEED), int(Retract.REVERSED), int(Retra
 _STRAIGHT, _COUNTED = int(Pecking.NONE), int(Pecking.COUNTED)
 _MISSING, _PLANE, _PECKS = int(Fault.MISSING), int(Fault.PLANE), int(Fault.PECKS)
 _MANY_PECKS, _DEPTH, _DWELL = int(Fault.MANY_PECKS), int(Fault.DEPTH), int(Fault.DWELL)
-_UP, _DOWN, _WAIT = int(Act.RAPID), int(Act.FEED), int(Act.DWELL)
-_M3, _M4, _M5 = int(Act.M3), int(Act.M4), int(Act.M5)
+_UP, _DOWN, _WAIT = float(Act.RAPID), float(Act.FEED), float(Act.DWELL)
+_M3, _M4, _M5 = float(Act.M3), float(Act.M4), float(Act.M5)
 
 
 class Cycle(NamedTuple):
@@ -283,7 +282,7 @@ def most_acts(stops: int) -> int:
     return 3 * stops + 7
 
 
-def write_acts(hole: Hole, acts: Acts, amounts: Values) -> int:
+def write_acts(hole: Hole, acts: Values, amounts: Values) -> int:
     """Write what happens when the tool stands over the hole; how many acts there are.
 
     Args:

@@ -17,13 +17,15 @@ from twin.nc.control import Control
 from twin.nc.event_columns import EventRows
 from twin.nc.hand_over import HandOver, put_into_force
 from twin.nc.hole_kernels import MOST_STOPS
-from twin.nc.holes import VALUES, most_acts, no_values
+from twin.nc.holes import most_acts, no_values
 from twin.nc.lines import Page
 from twin.nc.move_columns import CHUNK
 from twin.nc.plain_state import (
     CYCLE,
+    GIVEN,
     IN_SPINDLE,
     REGISTERS,
+    REMEMBERED,
     SELECTED,
     SPINDLE,
     Constants,
@@ -71,8 +73,7 @@ class PlainRunner:
         self._tools = np.array([float(number) for number in table])
         self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
         self._radii = np.array([tool.radius for tool in table.values()])
-        self._acts = np.zeros(most_acts(MOST_STOPS), np.int64)
-        self._amounts = np.zeros(most_acts(MOST_STOPS))
+        self._hole = np.zeros((4, most_acts(MOST_STOPS)))
         self._contour = new_contour(axes)
         self._bench = new_bench(self._state())
         self._pause = 1
@@ -166,9 +167,7 @@ class PlainRunner:
             indirect_leads=control.modal.indirect_leads,
             over=np.zeros(len(control.part)),
             room=np.zeros((3, len(control.part))),
-            cycle=np.zeros((2, VALUES)),
-            acts=self._acts,
-            amounts=self._amounts,
+            hole=self._hole,
         )
 
     def _state(self) -> State:
@@ -184,12 +183,12 @@ class PlainRunner:
             shifts=np.array(control.frame.shifts),
             total=np.array(control.frame.total),
             label=np.zeros(len(control.part)),
-            cycle=np.array([control.hole_values, no_values()]),
         )
 
     def _registers(self) -> FloatArray:
         control = self._control
         registers = np.zeros(REGISTERS)
+        registers[REMEMBERED:GIVEN], registers[GIVEN:] = control.hole_values, math.nan
         tools = control.tools
         for place, value in (
             (SPINDLE, control.spindle),
@@ -214,8 +213,9 @@ class PlainRunner:
 
     def _give_cycle_back(self, state: State) -> None:
         cycle = self._tables.cycle(state.modal[CYCLE])
+        values = state.registers[REMEMBERED:GIVEN].tolist()
         self._control.modal.cycle = cycle
-        self._control.hole_values = no_values() if cycle is None else state.cycle[0].tolist()
+        self._control.hole_values = no_values() if cycle is None else values
 
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control

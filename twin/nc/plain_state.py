@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.holes import VALUES
 
 (
     INTERPOLATION,
@@ -34,7 +35,11 @@ MODAL = 10
 ) = range(9)
 """Places in the registers: S; the tool that comes next and the one that is in use; whether it has
 its offset; the polar origin, the last R and Q; the tool's radius that the program gave. NaN: none."""
-REGISTERS = 9
+REMEMBERED = 9
+GIVEN = REMEMBERED + VALUES
+"""Behind them what the drilling cycle in force remembers, as ``holes`` counts it, and the same of the
+words of the block."""
+REGISTERS = GIVEN + VALUES
 DOUBTFUL = -3
 """A step or a move is left to the general way; neither ``NOT_PLAIN`` nor ``NO_ROOM``."""
 MOST_EVENTS = 16
@@ -61,9 +66,9 @@ class BlockTables(NamedTuple):
         group: Its modal group, shape (``CODES``,).
         cycle: Which drilling cycle each G code begins, 0 where it ends one, ``NOT_PLAIN`` where it
             does neither, shape (``CODES``,).
-        cycles: What is peculiar to each, as ``holes.Cycle`` has it; 0 is none, shape (c, 7).
-        cycle_words: Which of its values a word with a plain role gives, ``NOT_PLAIN`` for none, shape
-            (c, roles).
+        cycles: What is peculiar to each, as ``holes.Cycle`` has it, and behind that which of its
+            values a word with each plain role gives, ``NOT_PLAIN`` for none; 0 is no cycle, shape
+            (c, 7 + roles).
         function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
             shape (``CODES``,); ``NOT_PLAIN`` for codes that do more than that.
         kind: Kind of each interpolation, shape (i,).
@@ -81,7 +86,6 @@ class BlockTables(NamedTuple):
     group: IntArray
     cycle: IntArray
     cycles: FloatArray
-    cycle_words: IntArray
     function: IntArray
     kind: IntArray
     clockwise: npt.NDArray[np.bool_]
@@ -112,9 +116,8 @@ class Constants(NamedTuple):
         indirect_leads: It goes around the contour's first and last point.
         over: Room for where the hole lies, shape (k,).
         room: Room for the way there, shape (3, k).
-        cycle: Room for what the cycle remembers, and for the block's words, shape (2, v).
-        acts: Room for what happens at a hole, shape (a,).
-        amounts: The same for its heights and seconds, shape (a,).
+        hole: Room for what the cycle remembers, for the block's words, for what happens at a hole,
+            and for its heights and seconds, shape (4, a).
     """
 
     default_feed: float
@@ -131,9 +134,7 @@ class Constants(NamedTuple):
     indirect_leads: bool
     over: FloatArray
     room: FloatArray
-    cycle: FloatArray
-    acts: IntArray
-    amounts: FloatArray
+    hole: FloatArray
 
 
 class State(NamedTuple):
@@ -150,8 +151,6 @@ class State(NamedTuple):
         shifts: In the order of ``frame.SHIFTS``, shape (s, k) [mm or deg].
         total: Their sum, from programmed to part coordinates, shape (k,) [mm or deg].
         label: The coordinates that a block gives to the place where it stands, shape (k,).
-        cycle: What the drilling cycle in force remembers, as ``holes`` counts it, and below that words
-            of the block, NaN for none, shape (2, v).
     """
 
     modal: FloatArray
@@ -164,7 +163,6 @@ class State(NamedTuple):
     shifts: FloatArray
     total: FloatArray
     label: FloatArray
-    cycle: FloatArray
 
 
 class Rows(NamedTuple):

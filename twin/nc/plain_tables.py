@@ -144,8 +144,7 @@ class PlainTables:
             value=value,
             group=group,
             cycle=cycle,
-            cycles=_cycle_rows(self._cycles),
-            cycle_words=_cycle_words(self._cycles, self.roles),
+            cycles=_cycle_rows(self._cycles, self.roles),
             function=_functions(dialect),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
@@ -197,22 +196,16 @@ def _drills(interpolation: Interpolation) -> bool:
     return isinstance(interpolation.plain, PlainHole)
 
 
-def _cycle_rows(cycles: list[Interpolation | None]) -> FloatArray:
-    rows = np.zeros((len(cycles), len(Cycle._fields)))
+def _cycle_rows(cycles: list[Interpolation | None], roles: Mapping[str, int]) -> FloatArray:
+    parts = len(Cycle._fields)
+    rows = np.full((len(cycles), parts + 1 + max(roles.values())), float(NOT_PLAIN))
+    rows[:, :parts] = 0.0
     for row, each in zip(rows, cycles, strict=True):
         if each is not None and isinstance(each.plain, PlainHole):
-            row[:] = each.plain.cycle
+            row[:parts] = each.plain.cycle
+            for letter in each.plain.words.keys() & roles.keys():
+                row[parts + roles[letter]] = each.plain.words[letter]
     return rows
-
-
-def _cycle_words(cycles: list[Interpolation | None], roles: Mapping[str, int]) -> IntArray:
-    words = np.full((len(cycles), 1 + max(roles.values())), NOT_PLAIN, np.int64)
-    for row, each in zip(words, cycles, strict=True):
-        if each is not None and isinstance(each.plain, PlainHole):
-            for letter, value in each.plain.words.items():
-                if letter in roles:
-                    row[roles[letter]] = value
-    return words
 
 
 def _rapid_feed(
