@@ -13,6 +13,8 @@ from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import AUXILIARY, DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED, SPEED, TOOL
 from twin.nc.event_kernels import report
 from twin.nc.frame import SHIFTS
+from twin.nc.frame_kernels import add_up, reframe, to_part, transform
+from twin.nc.matrices import LARGEST_SCALE, SMALLEST_SCALE
 from twin.nc.plain_state import (
     CYCLE,
     IN_SPINDLE,
@@ -23,7 +25,12 @@ from twin.nc.plain_state import (
     POLAR_ANGLE,
     POLAR_ORDINATE,
     POLAR_RADIUS,
+    ROTATION,
+    ROTATION_ABSCISSA,
+    ROTATION_ORDINATE,
+    SCALE,
     SELECTED,
+    SIGNS,
     SPINDLE,
     UNIT,
     BlockTables,
@@ -32,7 +39,6 @@ from twin.nc.plain_state import (
     State,
 )
 
-register_jitable(arcs.direction)
 register_jitable(arcs.angle_of)
 
 DOUBTFUL = -1
@@ -80,7 +86,7 @@ def run_deed(
     if step == steps.IN_FORCE:
         state.in_force[tables.group[argument]] = argument
     elif step == steps.PLANE:
-        if state.modal[CYCLE] != 0.0 or compensates:
+        if state.modal[CYCLE] != 0.0 or compensates or not np.isnan(registers[ROTATION]):
             return DOUBTFUL
         state.modal[PLANE] = argument
         if not np.isnan(registers[POLAR_ABSCISSA]):
@@ -142,12 +148,13 @@ def run_deed(
         state.label[argument] = value
         top -= 1
     elif step == steps.RELABEL:
+        here = constants.over
+        to_part(state.label, state, here)
         for axis in range(len(state.part)):
-            here = state.label[axis] + state.total[axis]
             shift = state.shifts[argument, axis]
-            state.shifts[argument, axis] = shift + state.part[axis] - here
+            state.shifts[argument, axis] = shift + state.part[axis] - here[axis]
             state.programmed[axis] = state.label[axis]
-        _add_up(state)
+        add_up(state)
     elif step == steps.POLAR_ORIGIN:
         _set_polar_origin(stack, top, argument, constants, state)
         top -= argument
@@ -165,6 +172,29 @@ def run_deed(
         top += 1
     elif step == steps.FORGET_POLAR:
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
+    elif step == steps.MIRROR:
+        if abs(value) != 1.0:
+            return DOUBTFUL
+        registers[SIGNS + argument] = value
+        top -= 1
+    elif step == steps.SCALE:
+        if not SMALLEST_SCALE <= value <= LARGEST_SCALE:
+            return DOUBTFUL
+        registers[SCALE] = value
+        top -= 1
+    elif step == steps.ROTATE:
+        if not np.isnan(registers[ROTATION]):
+            return DOUBTFUL
+        registers[ROTATION] = stack[top - 3]
+        registers[ROTATION_ABSCISSA] = stack[top - 2] * state.modal[UNIT]
+        registers[ROTATION_ORDINATE] = stack[top - 1] * state.modal[UNIT]
+        top -= 3
+    elif step == steps.END_ROTATION:
+        registers[ROTATION] = np.nan
+    elif step == steps.TRANSFORM:
+        if compensates:
+            return DOUBTFUL
+        transform(constants, state)
     if kind != _NO_EVENT:
         report(rows, state, made, line, kind, number, amount)
     return top
@@ -177,24 +207,6 @@ def _tool(constants: Constants, number: float) -> int:
         if constants.tools[tool] == number:
             return tool
     return DOUBTFUL
-
-
-@kernel
-def _add_up(state: State) -> None:
-    """The shifts have changed: their sum."""
-    for axis in range(len(state.total)):
-        total = 0.0
-        for shift in range(len(state.shifts)):
-            total += state.shifts[shift, axis]
-        state.total[axis] = total
-
-
-@kernel
-def reframe(state: State) -> None:
-    """The shifts have changed: see where the control stands now."""
-    _add_up(state)
-    for axis in range(len(state.total)):
-        state.programmed[axis] = state.part[axis] - state.total[axis]
 
 
 @kernel

@@ -9,6 +9,7 @@ from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.drilling import Act
 from twin.nc.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
 from twin.nc.event_kernels import report
+from twin.nc.frame_kernels import to_part
 from twin.nc.plain_arc_kernels import SHORTEST
 from twin.nc.plain_state import (
     CORNER,
@@ -115,10 +116,13 @@ def _go(
     position = rows.positions[row]
     spatial, other = 0.0, 0.0
     for axis in range(len(goal)):
-        end = goal[axis] + state.total[axis]
         if not abs(goal[axis]) <= LARGEST_COORDINATE:
             return NOT_PLAIN
-        position[0, axis], position[1, axis], position[2, axis] = part[axis], end, goal[axis]
+        position[2, axis] = goal[axis]
+    to_part(goal, state, position[1])
+    for axis in range(len(goal)):
+        end = position[1, axis]
+        position[0, axis] = part[axis]
         way = abs(end - part[axis])
         if axis < 3:
             spatial = max(spatial, way)

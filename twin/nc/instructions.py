@@ -157,6 +157,16 @@ class Step(enum.IntEnum):
     """Radius compensation begins, of the topmost value, left (``argument`` 1) or right (-1)."""
     END_COMPENSATION = 61
     """It ends."""
+    MIRROR = 62
+    """The topmost value, -1 or 1, is the sign of the axis ``argument``."""
+    SCALE = 63
+    """It is the scale."""
+    ROTATE = 64
+    """The topmost values are angle, abscissa and ordinate of the rotation, which must be the only one."""
+    END_ROTATION = 65
+    """It ends."""
+    TRANSFORM = 66
+    """Mirror, scale and rotation have changed."""
 
 
 class Table(NamedTuple):

@@ -13,6 +13,7 @@ from twin.nc.compile_kernels import inlined_kernel, kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import FUNCTION_ALONE
 from twin.nc.event_kernels import report
+from twin.nc.frame_kernels import to_part
 from twin.nc.hole_kernels import write_hole
 from twin.nc.line_reader import LARGEST_LABEL
 from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
@@ -29,6 +30,7 @@ from twin.nc.plain_state import (
     PLANE,
     POLAR_ANGLE,
     POLAR_RADIUS,
+    PROGRAMMED_FEED,
     RAPID_LINE,
     UNIT,
     BlockTables,
@@ -85,7 +87,7 @@ def run_words(
     copy(state.modal, modal)
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
     function = NOT_PLAIN
-    feed = state.feed[0]
+    feed = state.registers[PROGRAMMED_FEED]
     for word in range(len(roles)):
         role, value = roles[word], values[word]
         if role == NUMBER:
@@ -168,7 +170,7 @@ def run_words(
             code = int(values[word])
             state.in_force[tables.group[code]] = code
     copy(modal, state.modal)
-    state.feed[0] = feed
+    state.registers[PROGRAMMED_FEED] = feed
     if polar or seen >> RADIUS:
         if drills:
             copy(state.label, state.part)
@@ -269,10 +271,11 @@ def _move(
         target = _goal(axis, roles, values, seen, tables, state, modal, polar)
         if not abs(target) <= LARGEST_COORDINATE:
             return NOT_PLAIN
-        end = target + state.total[axis]
-        position[0, axis] = state.part[axis]
-        position[1, axis] = end
         position[2, axis] = target
+    to_part(position[2], state, position[1])
+    for axis in range(axes):
+        end = position[1, axis]
+        position[0, axis] = state.part[axis]
         if end != state.part[axis]:
             turning = turning and not tables.linear[axis]
             way = abs(end - state.part[axis])

@@ -21,6 +21,7 @@ from twin.nc.canonical import FloatArray, IntArray
 """Places in the modal state; ``NOTHING`` takes what codes without effect set."""
 MODAL = 9
 (
+    PROGRAMMED_FEED,
     SPINDLE,
     SELECTED,
     IN_SPINDLE,
@@ -29,10 +30,19 @@ MODAL = 9
     POLAR_ORDINATE,
     POLAR_RADIUS,
     POLAR_ANGLE,
-) = range(8)
-"""Places in the registers: S; the tool that comes next and the one that is in use; whether it has
-its offset; the polar origin, the last R and Q. NaN: none."""
-REGISTERS = 8
+    SCALE,
+    ROTATION,
+    ROTATION_ABSCISSA,
+    ROTATION_ORDINATE,
+    TURNED,
+) = range(14)
+SIGNS = 14
+MATRIX = 17
+"""Places in the registers: F; S; the tool that comes next and the one that is in use; whether it has
+its offset; the polar origin, the last R and Q; the scale; angle and centre of the rotation in the
+plane; whether the frame's matrix is not the identity; the signs of X, Y and Z, -1 where they are
+mirrored; the matrix, row by row. NaN: none."""
+REGISTERS = 26
 MOST_EVENTS = 16
 """Events of a block."""
 
@@ -142,7 +152,6 @@ class State(NamedTuple):
     Attributes:
         modal: The modal state, shape (``MODAL``,).
         in_force: G code set in each group during the run, ``NOT_PLAIN`` for none, shape (g,).
-        feed: F as programmed, NaN for none, shape (1,).
         programmed: Programmed position, shape (k,) [mm or deg].
         part: Part position, shape (k,) [mm or deg].
         happened: Events that were reported, shape (1,).
@@ -154,7 +163,6 @@ class State(NamedTuple):
 
     modal: FloatArray
     in_force: IntArray
-    feed: FloatArray
     programmed: FloatArray
     part: FloatArray
     happened: IntArray

@@ -37,6 +37,11 @@ class Plane:
         columns = (_column(self.abscissa), _column(self.ordinate), _column(self.normal))
         object.__setattr__(self, "axes", columns)
 
+    @property
+    def directions(self) -> tuple[Vector, Vector, Vector]:
+        """Abscissa, ordinate and normal."""
+        return (self.abscissa, self.ordinate, self.normal)
+
     def local(self, point: Vector | list[float]) -> Local:
         """A point of X, Y, Z (further axes are ignored) seen from the plane."""
         x, y, z = point[0], point[1], point[2]

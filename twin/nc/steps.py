@@ -65,4 +65,9 @@ from twin.nc.instructions import Step
     TOOL_RADIUS,
     COMPENSATE,
     END_COMPENSATION,
+    MIRROR,
+    SCALE,
+    ROTATE,
+    END_ROTATION,
+    TRANSFORM,
 ) = range(len(Step))

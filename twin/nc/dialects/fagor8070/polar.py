@@ -13,7 +13,9 @@ from twin.nc.block_words import BlockWords, sorted_words
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.control import Control
+from twin.nc.control_state import integer_of
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.expressions import Expression
 from twin.nc.instructions import Step
 
 HELIX_ANGLE = 0.1
@@ -80,11 +82,24 @@ def write_polar_origin(block: BlockWords, writer: BlockWriter) -> None:
 
 
 def is_polar(control: Control, words: Iterable[Word]) -> bool:
-    """A block with R or Q goes there, unless it names a coordinate of the plane in force."""
+    """A block with R or Q goes there, unless it names a coordinate of the plane or makes no move."""
+    words = list(words)
     addresses = {word.address for word in words}
     names = control.settings.axes.names
     abscissa, ordinate, _ = (names[index] for index in control.modal.plane.axes)
-    return not addresses.isdisjoint("RQ") and addresses.isdisjoint((abscissa, ordinate, *"IJK"))
+    return (
+        not addresses.isdisjoint("RQ")
+        and addresses.isdisjoint((abscissa, ordinate, *"IJK"))
+        and not any(_performs(control, word) for word in words)
+    )
+
+
+def _performs(control: Control, word: Word) -> bool:
+    """A G code that does something in place of a move: G73 Q."""
+    if word.address != "G" or isinstance(word.value, Expression):
+        return False
+    code = control.dialect.g.get(integer_of(word.value))
+    return code is not None and code.perform is not None
 
 
 def write_polar(control: Control, words: Iterable[Word], writer: BlockWriter) -> None:
