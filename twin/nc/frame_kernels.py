@@ -128,6 +128,28 @@ def transform(constants: Constants, state: State) -> None:
     reframe(state)
 
 
+@kernel
+def handed(state: State) -> float:
+    """-1 where the matrix mirrors, else 1."""
+    if state.registers[TURNED] == 0.0:
+        return 1.0
+    return matrices.handedness(matrix_of(state))
+
+
+@kernel
+def put_part_plane(plane: IntArray, state: State, target: FloatArray) -> None:
+    """Directions of the working plane as the part sees it: ``ControlMotion.part_plane``."""
+    abscissa, ordinate, normal = directions(plane)
+    if state.registers[TURNED] != 0.0:
+        normal = matrices.turned_unit(matrix_of(state), normal)
+        abscissa = matrices.turned_unit(matrix_of(state), abscissa)
+        ordinate = planes.cross(normal, abscissa)
+    for axis in range(3):
+        target[0, axis] = abscissa[axis]
+        target[1, axis] = ordinate[axis]
+        target[2, axis] = normal[axis]
+
+
 @inlined_kernel
 def directions(plane: IntArray) -> Matrix:
     """Abscissa, ordinate and normal of a plane along the axes: ``Plane.directions``."""

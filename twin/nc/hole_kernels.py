@@ -10,7 +10,6 @@ from twin.nc.drilling import Act
 from twin.nc.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
 from twin.nc.event_kernels import report
 from twin.nc.frame_kernels import to_part
-from twin.nc.plain_arc_kernels import SHORTEST
 from twin.nc.plain_state import (
     CORNER,
     FEED_FACTOR,
@@ -22,6 +21,7 @@ from twin.nc.plain_state import (
     State,
 )
 from twin.nc.plain_words_kernels import NOT_PLAIN
+from twin.nc.way_kernels import straight_way
 
 NO_ROOM = -2
 """The rows are full."""
@@ -114,26 +114,15 @@ def _go(
 ) -> int:
     """Write a straight move; ``here`` and ``part`` become its end."""
     position = rows.positions[row]
-    spatial, other = 0.0, 0.0
     for axis in range(len(goal)):
         if not abs(goal[axis]) <= LARGEST_COORDINATE:
             return NOT_PLAIN
-        position[2, axis] = goal[axis]
+        position[0, axis], position[2, axis] = part[axis], goal[axis]
     to_part(goal, state, position[1])
-    for axis in range(len(goal)):
-        end = position[1, axis]
-        position[0, axis] = part[axis]
-        way = abs(end - part[axis])
-        if axis < 3:
-            spatial = max(spatial, way)
-        else:
-            other = max(other, way)
-    way = spatial if spatial > 0.0 else other
-    if 0.0 < way < SHORTEST:
-        return NOT_PLAIN
+    way = straight_way(position)
     copy(goal, here)
-    if way == 0.0:
-        return row
+    if way <= 0.0:
+        return row if way == 0.0 else NOT_PLAIN
     copy(position[1], part)
     value, code = rows.values[row], rows.codes[row]
     value[:6] = np.nan

@@ -22,6 +22,7 @@ from twin.nc.plain_state import (
     State,
 )
 from twin.nc.plain_words_kernels import AXIS, CENTER, RADIUS
+from twin.nc.way_kernels import SHORTEST
 
 for _shared in (
     arcs.distance,
@@ -31,9 +32,6 @@ for _shared in (
     arcs.equidistant,
 ):
     register_jitable(_shared)
-
-SHORTEST = 1e-7
-"""A move that goes less far [mm or deg], but does go, is left to the control to measure."""
 
 
 @kernel

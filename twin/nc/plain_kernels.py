@@ -13,10 +13,10 @@ from twin.nc.compile_kernels import inlined_kernel, kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import FUNCTION_ALONE
 from twin.nc.event_kernels import report
-from twin.nc.frame_kernels import to_part
+from twin.nc.frame_kernels import directions, to_part
 from twin.nc.hole_kernels import write_hole
 from twin.nc.line_reader import LARGEST_LABEL
-from twin.nc.plain_arc_kernels import SHORTEST, value_of, write_arc
+from twin.nc.plain_arc_kernels import value_of, write_arc
 from twin.nc.plain_state import (
     ARC,
     CODES,
@@ -47,7 +47,8 @@ from twin.nc.plain_words_kernels import (
     NUMBER,
     RADIUS,
 )
-from twin.nc.plane_kernels import one, place
+from twin.nc.plane_kernels import place
+from twin.nc.way_kernels import straight_way
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
 _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
@@ -264,34 +265,21 @@ def _move(
         return NOT_PLAIN
     axes = len(state.part)
     position = rows.positions[row]
-    turning, spatial, other = not is_arc, 0.0, 0.0
     if polar:
         _aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
     for axis in range(axes):
         target = _goal(axis, roles, values, seen, tables, state, modal, polar)
         if not abs(target) <= LARGEST_COORDINATE:
             return NOT_PLAIN
-        position[2, axis] = target
+        position[0, axis], position[2, axis] = state.part[axis], target
     to_part(position[2], state, position[1])
-    for axis in range(axes):
-        end = position[1, axis]
-        position[0, axis] = state.part[axis]
-        if end != state.part[axis]:
-            turning = turning and not tables.linear[axis]
-            way = abs(end - state.part[axis])
-            if axis < 3:
-                spatial = max(spatial, way)
-            else:
-                other = max(other, way)
     if is_arc:
         if not write_arc(roles, values, seen, tables, constants, state, modal, rows, row):
             return NOT_PLAIN
     else:
-        way = spatial if spatial > 0.0 else other
-        if way == 0.0:
-            return row
-        if way < SHORTEST:
-            return NOT_PLAIN
+        way = straight_way(position)
+        if way <= 0.0:
+            return row if way == 0.0 else NOT_PLAIN
         rows.values[row, :6] = np.nan
         rows.values[row, 6] = 0.0
     pace = constants.rapid_feed
@@ -299,6 +287,10 @@ def _move(
     if kind == RAPID_LINE and not np.isnan(own):
         pace = (own if own != 0.0 else feed) * 60.0
     elif kind != RAPID_LINE:
+        turning = not is_arc
+        for axis in range(axes):
+            moves = position[0, axis] != position[1, axis]
+            turning = turning and not (moves and tables.linear[axis])
         if np.isnan(feed):
             if not constants.feed_may_lack:
                 return NOT_PLAIN
@@ -334,5 +326,6 @@ def _aim(
         x = height if across == 0 else x
         y = height if across == 1 else y
         z = height if across == 2 else z
-    height = one(across, 0) * x + one(across, 1) * y + one(across, 2) * z
-    place(plane, (abscissa, ordinate), height, state.label)
+    axes = directions(plane)
+    height = axes[2][0] * x + axes[2][1] * y + axes[2][2] * z
+    place(axes, (abscissa, ordinate), height, state.label)
