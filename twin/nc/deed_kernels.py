@@ -88,9 +88,10 @@ def run_deed(
     elif step == steps.PLANE:
         if state.modal[CYCLE] != 0.0 or compensates or not np.isnan(registers[ROTATION]):
             return DOUBTFUL
+        if np.isnan(registers[POLAR_ABSCISSA]):
+            return DOUBTFUL
         state.modal[PLANE] = argument
-        if not np.isnan(registers[POLAR_ABSCISSA]):
-            registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
+        registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
     elif step == steps.FUNCTION:
         kind = FUNCTION_ALONE
@@ -156,6 +157,8 @@ def run_deed(
             state.programmed[axis] = state.label[axis]
         add_up(state)
     elif step == steps.POLAR_ORIGIN:
+        if np.isnan(registers[POLAR_ABSCISSA]):
+            return DOUBTFUL
         _set_polar_origin(stack, top, argument, constants, state)
         top -= argument
     elif step == steps.TO_MILLIMETRES:
@@ -219,8 +222,7 @@ def _set_polar_origin(
     if given:
         abscissa, ordinate = stack[top - 2] * state.modal[UNIT], stack[top - 1] * state.modal[UNIT]
     registers = state.registers
-    if not np.isnan(registers[POLAR_ABSCISSA]):
-        registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE] = abscissa, ordinate
+    registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE] = abscissa, ordinate
     registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
 
 

@@ -24,6 +24,7 @@ from twin.nc.plain_state import (
     State,
 )
 from twin.nc.plane_kernels import one
+from twin.nc.planes import Vector
 
 for _shared in (
     arcs.direction,
@@ -118,13 +119,12 @@ def transform(constants: Constants, state: State) -> None:
         axes = directions(constants.planes[int(state.modal[PLANE])])
         center = (registers[ROTATION_ABSCISSA], registers[ROTATION_ORDINATE])
         matrix, shift = matrices.rotated(matrix, axes, registers[ROTATION], center)
-    for row in range(3):
-        for column in range(3):
-            registers[MATRIX + 3 * row + column] = matrix[row][column]
+    put(matrix[0], registers[MATRIX:])
+    put(matrix[1], registers[MATRIX + 3 :])
+    put(matrix[2], registers[MATRIX + 6 :])
     registers[TURNED] = 1.0 if matrix != IDENTITY else 0.0
     state.shifts[_ROTATION_SHIFT, :] = 0.0
-    for axis in range(3):
-        state.shifts[_ROTATION_SHIFT, axis] = shift[axis]
+    put(shift, state.shifts[_ROTATION_SHIFT])
     reframe(state)
 
 
@@ -144,10 +144,15 @@ def put_part_plane(plane: IntArray, state: State, target: FloatArray) -> None:
         normal = matrices.turned_unit(matrix_of(state), normal)
         abscissa = matrices.turned_unit(matrix_of(state), abscissa)
         ordinate = planes.cross(normal, abscissa)
-    for axis in range(3):
-        target[0, axis] = abscissa[axis]
-        target[1, axis] = ordinate[axis]
-        target[2, axis] = normal[axis]
+    put(abscissa, target[0])
+    put(ordinate, target[1])
+    put(normal, target[2])
+
+
+@inlined_kernel
+def put(vector: Vector, target: FloatArray) -> None:
+    """Keep a vector in the first places of a column."""
+    target[0], target[1], target[2] = vector
 
 
 @inlined_kernel

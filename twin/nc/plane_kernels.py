@@ -24,7 +24,7 @@ def place(
     plane: Matrix | FloatArray, point: tuple[float, float], height: float, target: FloatArray
 ) -> None:
     """Put X, Y and Z of a point of the plane into the first places of a column."""
-    for axis in range(3):
-        target[axis] = (
-            plane[0][axis] * point[0] + plane[1][axis] * point[1] + plane[2][axis] * height
-        )
+    a, o, n = plane[0], plane[1], plane[2]
+    target[0] = a[0] * point[0] + o[0] * point[1] + n[0] * height
+    target[1] = a[1] * point[0] + o[1] * point[1] + n[1] * height
+    target[2] = a[2] * point[0] + o[2] * point[1] + n[2] * height
