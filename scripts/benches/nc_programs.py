@@ -42,6 +42,9 @@ def programs() -> Iterator[Computing]:
     for task, dialect, ours, theirs, blocks in _CYCLES:
         filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
         yield Computing(task, dialect, *filled, blocks * ROUNDS)
+    for task, ours, theirs, blocks in _TURNED:
+        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
+        yield Computing(task, "fagor8070", *filled, blocks * ROUNDS)
     for task, dialect, start, ours, theirs in _NOW_AND_THEN:
         every = f"{LINES:,} lines, every tenth {task}"
         texts = (_long(start, ours), _long("#101=1\n", theirs).replace("M30", "M2"))
@@ -190,6 +193,24 @@ _IN_LOOPS = (
         "G54\nX[#101*0.01]\nG92 X0\nZ1",
         7,
     ),
+    (
+        "G11 and G10, a mirror in a loop",
+        "G11\nG1 X[P1*0.01] Y5\nG2 X[P1*0.01+10] Y5 I5 J0\nG10",
+        "G1 X[-#101*0.01] Y5\nG3 X[-#101*0.01-10] Y5 I-5 J0",
+        7,
+    ),
+    (
+        "G72, a scale in a loop",
+        "G72 S[1+P1*0.001]\nX[P1*0.01] Y5\nZ1\nG72",
+        "#102=[1+#101*0.001]\nX[#101*0.01*#102] Y[5*#102]\nZ#102",
+        7,
+    ),
+    (
+        "G73, a rotation in a loop",
+        "G73 Q[P1]\nX[P1*0.01] Y5\nX10 Y3\nG73",
+        "G10 L2 P1 R#101\nX[#101*0.01] Y5\nX10 Y3\nG10 L2 P1 R0",
+        7,
+    ),
     ("polar moves in a loop", "R10 Q[P1]\nR11 Q[P1+1]", "@10 ^[#101]\n@11 ^[#101+1]", 5),
 )
 """Ours, theirs and our blocks a round."""
@@ -211,6 +232,29 @@ _CONTOUR = (
     (
         "#101=0\nG90 G1 F1000 X-20 Y-20\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\nG41.1 D4\n"
         "X0 Y-5\nY30\nX[40+#101*0.001]\nY0\nX-5\nG40 X-20 Y-20\no110 endwhile\nM2\n"
+    ),
+)
+_TURNED = (
+    (
+        "a loop under mirror and rotation",
+        (
+            "P1=0\nG90 G1 F1000\nG73 Q30\nG11\n$WHILE P1<ROUNDS\nP1=P1+1\nG1 X[P1*0.01] Y5\nZ1\n"
+            "G2 X[P1*0.01+10] Y5 I5 J0\nG1 Z0\n$ENDWHILE\nM30\n"
+        ),
+        (
+            "#101=0\nG90 G1 F1000\nG10 L2 P1 R30\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\n"
+            "G1 X[-#101*0.01] Y5\nZ1\nG3 X[-#101*0.01-10] Y5 I-5 J0\nG1 Z0\no110 endwhile\nM2\n"
+        ),
+        7,
+    ),
+    (
+        "a mirrored contour under G41 in a loop",
+        _CONTOUR[0].replace("G90 G1", "G11\nG90 G1", 1),
+        (
+            "#101=0\nG90 G1 F1000 X20 Y-20\no110 while [#101 lt ROUNDS]\n#101=[#101+1]\nG42.1 D4\n"
+            "X0 Y-5\nY30\nX[-40-#101*0.001]\nY0\nX5\nG40 X20 Y-20\no110 endwhile\nM2\n"
+        ),
+        10,
     ),
 )
 

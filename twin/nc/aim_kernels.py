@@ -2,10 +2,11 @@
 
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compile_kernels import inlined_kernel, kernel
+from twin.nc.frame_kernels import directions
 from twin.nc.plain_arc_kernels import value_of
 from twin.nc.plain_state import INCREMENTAL, UNIT, BlockTables, State
 from twin.nc.plain_words_kernels import AXIS
-from twin.nc.plane_kernels import one, place
+from twin.nc.plane_kernels import place
 
 
 @inlined_kernel
@@ -48,5 +49,6 @@ def aim(
         x = height if across == 0 else x
         y = height if across == 1 else y
         z = height if across == 2 else z
-    height = one(across, 0) * x + one(across, 1) * y + one(across, 2) * z
-    place(plane, (abscissa, ordinate), height, state.label)
+    axes = directions(plane)
+    height = axes[2][0] * x + axes[2][1] * y + axes[2][2] * z
+    place(axes, (abscissa, ordinate), height, state.label)

@@ -1,5 +1,6 @@
 """Room in which the compiled run works on one block."""
 
+from copy import deepcopy
 from typing import NamedTuple
 
 import numpy as np
@@ -35,23 +36,11 @@ class Bench(NamedTuple):
 
 def new_bench(state: State) -> Bench:
     """Room to work in, for a state of this size."""
-    kept = State(
-        np.zeros_like(state.modal),
-        np.zeros_like(state.in_force),
-        np.zeros_like(state.feed),
-        np.zeros_like(state.programmed),
-        np.zeros_like(state.part),
-        np.zeros_like(state.happened),
-        np.zeros_like(state.registers),
-        np.zeros_like(state.shifts),
-        np.zeros_like(state.total),
-        np.zeros_like(state.label),
-    )
     return Bench(
         np.zeros(MOST_WORDS, np.int64),
         np.zeros(MOST_WORDS),
         np.zeros_like(state.modal),
-        kept,
+        deepcopy(state),
         np.zeros(MOST_VALUES),
         np.zeros(MOST_STORES, np.int64),
         np.zeros(MOST_STORES),
@@ -71,7 +60,6 @@ def copy_force(
 def copy_state(source: State, target: State) -> None:
     """Copy every column of a state."""
     copy_force(source.modal, source.in_force, target.modal, target.in_force)
-    copy(source.feed, target.feed)
     copy(source.programmed, target.programmed)
     copy(source.part, target.part)
     copy(source.registers, target.registers)

@@ -24,6 +24,7 @@ from twin.nc.contour_state import (
     PASSED,
     PASSED_COLUMNS,
     PLACED,
+    PLANE_NUMBER,
     SQUARE,
     STAGE,
     WAITING,
@@ -34,7 +35,7 @@ from twin.nc.curves import Curve
 from twin.nc.event_columns import EventRows
 from twin.nc.followed import NECK, Followed, Passed, Stage
 from twin.nc.move_columns import Segment
-from twin.nc.planes import PLANE_ORDER
+from twin.nc.planes import PLANE_NAMES, Plane
 
 
 def new_contour(axes: int) -> Contour:
@@ -46,7 +47,7 @@ def new_contour(axes: int) -> Contour:
     )
     return Contour(
         counts=np.zeros(COUNTS, np.int64),
-        plane=np.zeros(3, np.int64),
+        plane=np.zeros((3, 3)),
         aside=np.zeros(1),
         held=_empty_row(axes),
         latest=_empty_row(axes),
@@ -73,7 +74,8 @@ def fill(contour: Contour, followed: Followed | None, position: list[float]) -> 
         return
     counts[STAGE], counts[SQUARE] = followed.stage, followed.square
     counts[INDIRECT], counts[PLACED] = followed.indirect, bool(followed.here)
-    contour.plane[:], contour.aside[0] = followed.plane.axes, followed.aside
+    counts[PLANE_NUMBER] = PLANE_NAMES.index(followed.plane.name)
+    contour.plane[:], contour.aside[0] = followed.plane.directions, followed.aside
     if followed.move is not None:
         _fill_row(contour.held, followed.move)
         contour.here[:] = followed.move.start
@@ -155,9 +157,11 @@ def _followed(contour: Contour) -> Followed | None:
         return None
     held = stage in (Stage.LEADING_IN, Stage.FOLLOWING)
     x, y = contour.start.tolist()
+    abscissa, ordinate, normal = contour.plane.tolist()
+    name = PLANE_NAMES[counts[PLANE_NUMBER]]
     return Followed(
         stage,
-        PLANE_ORDER[[plane.axes for plane in PLANE_ORDER].index((*contour.plane.tolist(),))],
+        Plane(name, (*abscissa,), (*ordinate,), (*normal,)),
         float(contour.aside[0]),
         bool(counts[SQUARE]),
         bool(counts[INDIRECT]),

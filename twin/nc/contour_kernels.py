@@ -38,9 +38,11 @@ from twin.nc.held_kernels import (
     take_move,
 )
 from twin.nc.lead_kernels import lead_in, lead_out, take_lead
+from twin.nc.matrices import dot
 from twin.nc.passed_kernels import crosses_passed, gouges, pass_by
 from twin.nc.plain_state import DOUBTFUL, Rows
 from twin.nc.plane_kernels import along_axis
+from twin.nc.segments import IN_PLANE
 
 for _shared in (
     curves.radius_of,
@@ -114,7 +116,10 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
     if is_arc:
         value = rows.values[row]
         center = (along_axis(value[:3], plane[0]), along_axis(value[:3], plane[1]))
-        curve = (True, start, end, center, value[6])
+        sense = dot((value[3], value[4], value[5]), (plane[2, 0], plane[2, 1], plane[2, 2]))
+        if sense < IN_PLANE:
+            return DOUBTFUL
+        curve = (True, start, end, center, value[6] * sense)
     aside = contour.aside[0]
     if not curves.leaves_room(curve, aside):
         return DOUBTFUL

@@ -16,12 +16,13 @@ from twin.nc.followed import Stage
     MOVED,
     MOVED_ROWS,
     MOVED_EVENTS,
-) = range(10)
+    PLANE_NUMBER,
+) = range(11)
 """Places in the counts: a ``followed.Stage``; moves along the normal that wait for the end of the
 held one; elements that were passed; the place of the oldest; square corners; indirect leads; it is
 known where the path has come to; whether compensation was given a move in this run, the rows that
-were there behind it, and the events before it."""
-COUNTS = 10
+were there behind it, and the events before it; the number of the working plane."""
+COUNTS = 11
 OFF = int(Stage.OFF)
 MOST_WAITING = 16
 ROOM = MOST_WAITING + 4
@@ -54,7 +55,7 @@ class Contour(NamedTuple):
 
     Attributes:
         counts: Shape (``COUNTS``,).
-        plane: Columns of abscissa, ordinate and normal, shape (3,).
+        plane: Abscissa, ordinate and normal in part coordinates, shape (3, 3).
         aside: The tool's radius, signed as the side of the contour, shape (1,) [mm].
         held: The move that waits for its successor, as programmed.
         latest: The last move that compensation was given in this run, as programmed.
@@ -68,7 +69,7 @@ class Contour(NamedTuple):
     """
 
     counts: IntArray
-    plane: IntArray
+    plane: FloatArray
     aside: FloatArray
     held: Row
     latest: Row

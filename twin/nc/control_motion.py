@@ -69,6 +69,8 @@ class ControlMotion(ControlWords):
         spline: tuple[bool] | None = None,
     ) -> None:
         end = self.frame.to_part(target)
+        if center is None and math.dist(self.part[:3], end[:3]) < _SMALLEST_MOVE:
+            end[:3] = self.part[:3]  # what a frame has rounded is no way
         length = self._length(end, center, normal, sweep)
         if length < _SMALLEST_MOVE:
             self.programmed = target

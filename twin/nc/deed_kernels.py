@@ -13,7 +13,9 @@ from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import AUXILIARY, DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED, SPEED, TOOL
 from twin.nc.event_kernels import report
 from twin.nc.frame import SHIFTS
+from twin.nc.frame_kernels import add_up, reframe, to_part, transform
 from twin.nc.holes import Cycle
+from twin.nc.matrices import LARGEST_SCALE, SMALLEST_SCALE
 from twin.nc.plain_state import (
     CYCLE,
     DOUBTFUL,
@@ -27,7 +29,12 @@ from twin.nc.plain_state import (
     POLAR_ORDINATE,
     POLAR_RADIUS,
     RADIUS_GIVEN,
+    ROTATION,
+    ROTATION_ABSCISSA,
+    ROTATION_ORDINATE,
+    SCALE,
     SELECTED,
+    SIGNS,
     SPINDLE,
     UNIT,
     BlockTables,
@@ -36,7 +43,6 @@ from twin.nc.plain_state import (
     State,
 )
 
-register_jitable(arcs.direction)
 register_jitable(arcs.angle_of)
 
 _NO_EVENT = -1
@@ -84,11 +90,11 @@ def run_deed(
     if step == steps.IN_FORCE:
         state.in_force[tables.group[argument]] = argument
     elif step == steps.PLANE:
-        if compensates:
+        doubtful = np.isnan(registers[POLAR_ABSCISSA]) or not np.isnan(registers[ROTATION])
+        if compensates or doubtful:
             return DOUBTFUL
         state.modal[PLANE] = argument
-        if not np.isnan(registers[POLAR_ABSCISSA]):
-            registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
+        registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
     elif step == steps.FUNCTION:
         kind = FUNCTION_ALONE
@@ -146,13 +152,16 @@ def run_deed(
         state.label[argument] = value
         top -= 1
     elif step == steps.RELABEL:
+        here = constants.over
+        to_part(state.label, state, here)
         for axis in range(len(state.part)):
-            here = state.label[axis] + state.total[axis]
             shift = state.shifts[argument, axis]
-            state.shifts[argument, axis] = shift + state.part[axis] - here
+            state.shifts[argument, axis] = shift + state.part[axis] - here[axis]
             state.programmed[axis] = state.label[axis]
-        _add_up(state)
+        add_up(state)
     elif step == steps.POLAR_ORIGIN:
+        if np.isnan(registers[POLAR_ABSCISSA]):
+            return DOUBTFUL
         _set_polar_origin(stack, top, argument, constants, state)
         top -= argument
     elif step == steps.TO_MILLIMETRES:
@@ -178,6 +187,29 @@ def run_deed(
     elif step == steps.PROGRAMMED_RADIUS:
         stack[top] = registers[RADIUS_GIVEN]
         top += 1
+    elif step == steps.MIRROR:
+        if abs(value) != 1.0:
+            return DOUBTFUL
+        registers[SIGNS + argument] = value
+        top -= 1
+    elif step == steps.SCALE:
+        if not SMALLEST_SCALE <= value <= LARGEST_SCALE:
+            return DOUBTFUL
+        registers[SCALE] = value
+        top -= 1
+    elif step == steps.ROTATE:
+        if not np.isnan(registers[ROTATION]):
+            return DOUBTFUL
+        registers[ROTATION] = stack[top - 3]
+        registers[ROTATION_ABSCISSA] = stack[top - 2] * state.modal[UNIT]
+        registers[ROTATION_ORDINATE] = stack[top - 1] * state.modal[UNIT]
+        top -= 3
+    elif step == steps.END_ROTATION:
+        registers[ROTATION] = np.nan
+    elif step == steps.TRANSFORM:
+        if compensates:
+            return DOUBTFUL
+        transform(constants, state)
     if kind != _NO_EVENT:
         report(rows, state, made, line, kind, number, amount)
     return top
@@ -193,24 +225,6 @@ def _tool(constants: Constants, number: float) -> int:
 
 
 @kernel
-def _add_up(state: State) -> None:
-    """The shifts have changed: their sum."""
-    for axis in range(len(state.total)):
-        total = 0.0
-        for shift in range(len(state.shifts)):
-            total += state.shifts[shift, axis]
-        state.total[axis] = total
-
-
-@kernel
-def reframe(state: State) -> None:
-    """The shifts have changed: see where the control stands now."""
-    _add_up(state)
-    for axis in range(len(state.total)):
-        state.programmed[axis] = state.part[axis] - state.total[axis]
-
-
-@kernel
 def _set_polar_origin(
     stack: FloatArray, top: int, given: int, constants: Constants, state: State
 ) -> None:
@@ -220,8 +234,7 @@ def _set_polar_origin(
     if given:
         abscissa, ordinate = stack[top - 2] * state.modal[UNIT], stack[top - 1] * state.modal[UNIT]
     registers = state.registers
-    if not np.isnan(registers[POLAR_ABSCISSA]):
-        registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE] = abscissa, ordinate
+    registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE] = abscissa, ordinate
     registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
 
 

@@ -1,13 +1,16 @@
 """From programmed coordinates to the part's: offsets, presets, turns, mirror, rotation, scale."""
 
-import math
 from collections.abc import Iterable
 
+from twin.nc.matrices import (
+    IDENTITY,
+    Matrix,
+    applied,
+    handedness,
+    inverse,
+    turned_unit,
+)
 from twin.nc.planes import Vector
-
-Matrix = tuple[Vector, Vector, Vector]
-IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
 
 SHIFTS = ("offset", "preset", "length", "increment", "rotation", "turns")
 """Every shift, in the order in which they are added."""
@@ -65,7 +68,7 @@ class Frame:
         values = [value - shift for value, shift in zip(part, self.total, strict=True)]
         if self.plain:
             return values
-        return [*_apply(_inverse(self.matrix), (values[0], values[1], values[2])), *values[3:]]
+        return [*applied(inverse(self.matrix), (values[0], values[1], values[2])), *values[3:]]
 
     def point(self, programmed: Vector) -> Vector:
         """Part coordinates of a point of X, Y, Z."""
@@ -74,24 +77,22 @@ class Frame:
 
     def turn(self, vector: Vector) -> Vector:
         """A direction of X, Y, Z as the part sees it."""
-        return _apply(self.matrix, vector)
+        return applied(self.matrix, vector)
 
     def unturn(self, vector: Vector) -> Vector:
         """The inverse of ``turn``."""
-        return vector if self.plain else _apply(_inverse(self.matrix), vector)
+        return vector if self.plain else applied(inverse(self.matrix), vector)
 
     @property
     def handedness(self) -> float:
         """-1 where the matrix mirrors, else 1."""
-        return 1.0 if self.plain else math.copysign(1.0, _determinant(self.matrix))
+        return 1.0 if self.plain else handedness(self.matrix)
 
     def arc(self, normal: Vector, sweep: float) -> tuple[Vector, float]:
         """Normal and sweep of an arc as the part sees them; a mirror reverses the sense."""
         if self.plain:
             return normal, sweep
-        x, y, z = self.turn(normal)
-        length = math.sqrt(x * x + y * y + z * z)
-        return (x / length, y / length, z / length), sweep * self.handedness
+        return turned_unit(self.matrix, normal), sweep * self.handedness
 
 
 def added(values: Iterable[float]) -> float:
@@ -100,54 +101,3 @@ def added(values: Iterable[float]) -> float:
     for value in values:
         total += value
     return total
-
-
-def multiply(left: Matrix, right: Matrix) -> Matrix:
-    """The matrix product."""
-    columns = list(zip(*right, strict=True))
-    rows = [
-        tuple(sum(a * b for a, b in zip(row, column, strict=True)) for column in columns)
-        for row in left
-    ]
-    return ((*rows[0],), (*rows[1],), (*rows[2],))  # pyright: ignore[reportReturnType]
-
-
-def _apply(matrix: Matrix, vector: Vector) -> Vector:
-    x, y, z = vector
-    a, b, c = matrix
-    return (
-        a[0] * x + a[1] * y + a[2] * z,
-        b[0] * x + b[1] * y + b[2] * z,
-        c[0] * x + c[1] * y + c[2] * z,
-    )
-
-
-def _determinant(matrix: Matrix) -> float:
-    a, b, c = matrix
-    return (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        - a[1] * (b[0] * c[2] - b[2] * c[0])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
-    )
-
-
-def _inverse(matrix: Matrix) -> Matrix:
-    a, b, c = matrix
-    d = _determinant(matrix)
-    return (
-        (
-            (b[1] * c[2] - b[2] * c[1]) / d,
-            (a[2] * c[1] - a[1] * c[2]) / d,
-            (a[1] * b[2] - a[2] * b[1]) / d,
-        ),
-        (
-            (b[2] * c[0] - b[0] * c[2]) / d,
-            (a[0] * c[2] - a[2] * c[0]) / d,
-            (a[2] * b[0] - a[0] * b[2]) / d,
-        ),
-        (
-            (b[0] * c[1] - b[1] * c[0]) / d,
-            (a[1] * c[0] - a[0] * c[1]) / d,
-            (a[0] * b[1] - a[1] * b[0]) / d,
-        ),
-    )

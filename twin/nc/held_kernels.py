@@ -4,7 +4,7 @@ Each step is the one of ``Compensation``.
 """
 
 from twin.nc.arcs import Point
-from twin.nc.canonical import Corner, FloatArray, IntArray, Shape
+from twin.nc.canonical import Corner, FloatArray, Shape
 from twin.nc.column_kernels import copy, copy_rows
 from twin.nc.compile_kernels import kernel
 from twin.nc.contour_state import (
@@ -21,7 +21,7 @@ from twin.nc.contour_state import (
 from twin.nc.curves import Curve
 from twin.nc.followed import Stage
 from twin.nc.plain_state import Rows
-from twin.nc.plane_kernels import along_axis, one, place
+from twin.nc.plane_kernels import along_axis, place
 
 _LEADING_IN, _FOLLOWING = int(Stage.LEADING_IN), int(Stage.FOLLOWING)
 _ARC = int(Shape.ARC)
@@ -101,7 +101,7 @@ def let_go(
         if is_arc:
             place(plane, before[3], along_axis(position[0], plane[2]), value)
             for axis in range(3):
-                value[3 + axis] = one(plane[2], axis)
+                value[3 + axis] = plane[2, axis]
             value[6] = part[4]
         place(plane, at, along_axis(position[1], plane[2]), position[1])
         copy(contour.here, position[0])
@@ -127,7 +127,7 @@ def stands(position: FloatArray) -> bool:
 
 @kernel
 def level_arc(
-    move: Row, plane: IntArray, arc: Curve, start: FloatArray, rows: Rows, row: int
+    move: Row, plane: FloatArray, arc: Curve, start: FloatArray, rows: Rows, row: int
 ) -> None:
     """An arc at one height with all else of a move, as ``segments.level_arc`` has it."""
     code, value, position = rows.codes[row], rows.values[row], rows.positions[row]
@@ -137,7 +137,7 @@ def level_arc(
     height = along_axis(start, plane[2])
     place(plane, arc[3], height, value)
     for axis in range(3):
-        value[3 + axis] = one(plane[2], axis)
+        value[3 + axis] = plane[2, axis]
     value[6] = arc[4]
     copy(start, position[0])
     copy(start, position[1])

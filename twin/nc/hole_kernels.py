@@ -11,8 +11,8 @@ from twin.nc.compile_kernels import kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
 from twin.nc.event_kernels import report
+from twin.nc.frame_kernels import to_part
 from twin.nc.holes import Act, Cycle, Hole
-from twin.nc.plain_arc_kernels import SHORTEST
 from twin.nc.plain_state import (
     CORNER,
     CYCLE,
@@ -30,6 +30,7 @@ from twin.nc.plain_state import (
     State,
 )
 from twin.nc.plain_words_kernels import AXIS, NOT_PLAIN, RADIUS
+from twin.nc.way_kernels import straight_way
 
 for _shared in (
     holes.begin,
@@ -234,23 +235,15 @@ def _go(
 ) -> int:
     """Write a straight move; ``here`` and ``part`` become its end."""
     position = rows.positions[row]
-    spatial, other = 0.0, 0.0
     for axis in range(len(goal)):
-        end = goal[axis] + state.total[axis]
         if not abs(goal[axis]) <= LARGEST_COORDINATE:
             return NOT_PLAIN
-        position[0, axis], position[1, axis], position[2, axis] = part[axis], end, goal[axis]
-        way = abs(end - part[axis])
-        if axis < 3:
-            spatial = max(spatial, way)
-        else:
-            other = max(other, way)
-    way = spatial if spatial > 0.0 else other
-    if 0.0 < way < SHORTEST:
-        return NOT_PLAIN
+        position[0, axis], position[2, axis] = part[axis], goal[axis]
+    to_part(goal, state, position[1])
+    way = straight_way(position)
     copy(goal, here)
-    if way == 0.0:
-        return row
+    if way <= 0.0:
+        return row if way == 0.0 else NOT_PLAIN
     copy(position[1], part)
     value, code = rows.values[row], rows.codes[row]
     value[:6] = np.nan

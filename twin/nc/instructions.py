@@ -162,6 +162,16 @@ class Step(enum.IntEnum):
     PROGRAMMED_RADIUS = 63
     """The topmost value is the radius that the program gives the tool; ``argument`` 0: put on the
     stack what it gave last."""
+    MIRROR = 64
+    """The topmost value, -1 or 1, is the sign of the axis ``argument``."""
+    SCALE = 65
+    """It is the scale."""
+    ROTATE = 66
+    """The topmost values are angle, abscissa and ordinate of the rotation, which must be the only one."""
+    END_ROTATION = 67
+    """It ends."""
+    TRANSFORM = 68
+    """Mirror, scale and rotation have changed."""
 
 
 class Table(NamedTuple):

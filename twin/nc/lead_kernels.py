@@ -18,6 +18,7 @@ from twin.nc.contour_state import (
     OLDEST,
     PASSED,
     PLACED,
+    PLANE_NUMBER,
     SQUARE,
     STAGE,
     WAITING,
@@ -25,6 +26,7 @@ from twin.nc.contour_state import (
 )
 from twin.nc.curves import Curve
 from twin.nc.followed import Stage
+from twin.nc.frame_kernels import handed, put_part_plane
 from twin.nc.held_kernels import (
     curve_of,
     go_around,
@@ -65,7 +67,7 @@ def begin_compensation(
         side: +1 left of the contour, -1 right of it.
         radius: Of the tool [mm].
         constants: What stays.
-        state: Its plane is compensated.
+        state: Its plane, as the part sees it, is compensated.
         contour: Is made to wait for the move that leads in.
     """
     counts = contour.counts
@@ -73,10 +75,9 @@ def begin_compensation(
         return False
     if radius == 0.0:
         return True
-    plane = constants.planes[int(state.modal[PLANE])]
-    for axis in range(3):
-        contour.plane[axis] = plane[axis]
-    contour.aside[0] = side * radius
+    counts[PLANE_NUMBER] = int(state.modal[PLANE])
+    put_part_plane(constants.planes[counts[PLANE_NUMBER]], state, contour.plane)
+    contour.aside[0] = side * handed(state) * radius
     counts[STAGE], counts[PLACED], counts[PASSED], counts[OLDEST] = _STARTED, 0, 0, 0
     counts[SQUARE] = 1 if constants.square_corners else 0
     counts[INDIRECT] = 1 if constants.indirect_leads else 0

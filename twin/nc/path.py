@@ -19,7 +19,7 @@ from twin.nc.lead_out import lead_out
 from twin.nc.leads import LeadOut
 from twin.nc.loops import Loops
 from twin.nc.move_columns import MoveColumns, Segment
-from twin.nc.planes import PLANE_ORDER, Plane
+from twin.nc.planes import PLANE_NAMES, Plane
 from twin.nc.rounding import Rounding
 from twin.nc.splines import Spline
 
@@ -89,8 +89,8 @@ class Path:
             return False
         compensation, leading = self._compensation, self._leading_out
         if compensation is not None:
-            return not compensation.waits and compensation.plane in PLANE_ORDER
-        return leading is None or leading.plane in PLANE_ORDER
+            return not compensation.waits and compensation.plane.name in PLANE_NAMES
+        return leading is None or leading.plane.name in PLANE_NAMES
 
     @property
     def followed(self) -> Followed | None:

@@ -24,10 +24,16 @@ from twin.nc.plain_state import (
     CYCLE,
     GIVEN,
     IN_SPINDLE,
+    MATRIX,
+    PROGRAMMED_FEED,
     REGISTERS,
     REMEMBERED,
+    ROTATION,
+    SCALE,
     SELECTED,
+    SIGNS,
     SPINDLE,
+    TURNED,
     Constants,
     Rows,
     State,
@@ -139,7 +145,6 @@ class PlainRunner:
             self._tables.knows_cycle(modal.cycle)
             and modal.plane in PLANE_ORDER
             and modal.feed_mode in FEED_FACTORS
-            and control.frame.plain
             and modal.correct_center
             and control.path.hands_over
             and math.isnan(control.rapid_acceleration)
@@ -175,7 +180,6 @@ class PlainRunner:
         return State(
             modal=self._tables.modal(control.modal),
             in_force=np.full(len(self._tables.groups), NOT_PLAIN, np.int64),
-            feed=np.array([math.nan if control.feed is None else control.feed]),
             programmed=np.array(control.programmed),
             part=np.array(control.part),
             happened=np.zeros(1, np.int64),
@@ -188,9 +192,13 @@ class PlainRunner:
     def _registers(self) -> FloatArray:
         control = self._control
         registers = np.zeros(REGISTERS)
-        registers[REMEMBERED:GIVEN], registers[GIVEN:] = control.hole_values, math.nan
+        registers[REMEMBERED:GIVEN], registers[GIVEN:MATRIX] = control.hole_values, math.nan
+        registers[SCALE], registers[ROTATION], registers[SIGNS:REMEMBERED] = 1.0, math.nan, 1.0
+        registers[TURNED] = not control.frame.plain
+        registers[MATRIX:] = np.ravel(control.frame.matrix)
         tools = control.tools
         for place, value in (
+            (PROGRAMMED_FEED, control.feed),
             (SPINDLE, control.spindle),
             (SELECTED, tools.selected),
             (IN_SPINDLE, tools.spindle),
@@ -202,9 +210,9 @@ class PlainRunner:
 
     def _take_registers(self, registers: list[float]) -> None:
         control = self._control
-        speed, selected, in_spindle = (
+        control.feed, speed, selected, in_spindle = (
             None if math.isnan(registers[place]) else registers[place]
-            for place in (SPINDLE, SELECTED, IN_SPINDLE)
+            for place in (PROGRAMMED_FEED, SPINDLE, SELECTED, IN_SPINDLE)
         )
         control.spindle = speed
         control.tools.selected = None if selected is None else int(selected)
@@ -221,10 +229,10 @@ class PlainRunner:
         control = self._control
         put_into_force(control, state.in_force)
         self._give_cycle_back(state)
-        feed = float(state.feed[0])
-        control.feed = None if math.isnan(feed) else feed
         self._take_registers(state.registers.tolist())
         control.frame.set_shifts(state.shifts.tolist())
+        a, b, c, d, e, f, g, h, i = state.registers[MATRIX:].tolist()
+        control.frame.set_matrix(((a, b, c), (d, e, f), (g, h, i)))
         happened = int(state.happened[0])
         events = EventRows(rows.events[:happened], rows.amounts[:happened])
         moves = Row(rows.codes, rows.values, rows.positions)

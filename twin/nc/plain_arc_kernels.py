@@ -8,10 +8,13 @@ from numba.extending import register_jitable
 from twin.nc import arcs
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compile_kernels import inlined_kernel, kernel
+from twin.nc.frame_kernels import turn_arc
 from twin.nc.plain_state import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
     PLANE,
+    SCALE,
+    TURNED,
     UNIT,
     BlockTables,
     Constants,
@@ -19,6 +22,7 @@ from twin.nc.plain_state import (
     State,
 )
 from twin.nc.plain_words_kernels import AXIS, CENTER, RADIUS
+from twin.nc.way_kernels import SHORTEST
 
 for _shared in (
     arcs.distance,
@@ -28,9 +32,6 @@ for _shared in (
     arcs.equidistant,
 ):
     register_jitable(_shared)
-
-SHORTEST = 1e-7
-"""A move that goes less far [mm or deg], but does go, is left to the control to measure."""
 
 
 @kernel
@@ -119,13 +120,18 @@ def write_arc(
         if not arcs.distance(given, center) <= tables.shift[interpolation]:
             return False
     sweep = arcs.sweep_between(start, end, center, clockwise)
-    if not arcs.distance(start, center) * abs(sweep) > SHORTEST * arcs.TURN:
+    length = arcs.distance(start, center) * abs(sweep) * state.registers[SCALE]
+    if not length > SHORTEST * arcs.TURN:
         return False
     value = rows.values[row]
-    value[first_axis] = center[0] + state.total[first_axis]
-    value[second_axis] = center[1] + state.total[second_axis]
-    value[across] = state.programmed[across] + state.total[across]
+    value[first_axis], value[second_axis] = center
+    value[across] = state.programmed[across]
     value[3:6] = 0.0
     value[3 + across] = 1.0
     value[6] = sweep
+    if state.registers[TURNED] != 0.0:
+        turn_arc(value, state)
+    else:
+        for axis in range(3):
+            value[axis] += state.total[axis]
     return True

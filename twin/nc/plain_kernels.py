@@ -14,9 +14,10 @@ from twin.nc.compile_kernels import inlined_kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import FUNCTION_ALONE
 from twin.nc.event_kernels import report
+from twin.nc.frame_kernels import to_part
 from twin.nc.hole_kernels import drill
 from twin.nc.line_reader import LARGEST_LABEL
-from twin.nc.plain_arc_kernels import SHORTEST, write_arc
+from twin.nc.plain_arc_kernels import write_arc
 from twin.nc.plain_state import (
     ARC,
     CODES,
@@ -29,6 +30,7 @@ from twin.nc.plain_state import (
     PLANE,
     POLAR_ANGLE,
     POLAR_RADIUS,
+    PROGRAMMED_FEED,
     RAPID_LINE,
     UNIT,
     BlockTables,
@@ -45,6 +47,7 @@ from twin.nc.plain_words_kernels import (
     NUMBER,
     RADIUS,
 )
+from twin.nc.way_kernels import straight_way
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
 _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
@@ -84,7 +87,7 @@ def run_words(
     copy(state.modal, modal)
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
     function, begins = NOT_PLAIN, 0
-    feed = state.feed[0]
+    feed = state.registers[PROGRAMMED_FEED]
     for word in range(len(roles)):
         role, value = roles[word], values[word]
         if role == NUMBER:
@@ -176,7 +179,7 @@ def run_words(
             code = int(values[word])
             state.in_force[tables.group[code]] = code
     copy(modal, state.modal)
-    state.feed[0] = feed
+    state.registers[PROGRAMMED_FEED] = feed
     if moves:
         if drills:
             copy(state.label, state.part)
@@ -216,33 +219,21 @@ def _move(
         return NOT_PLAIN
     axes = len(state.part)
     position = rows.positions[row]
-    turning, spatial, other = not is_arc, 0.0, 0.0
     if polar:
         aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
     for axis in range(axes):
         target = goal_of(axis, roles, values, seen, tables, state, modal, polar)
         if not abs(target) <= LARGEST_COORDINATE:
             return NOT_PLAIN
-        end = target + state.total[axis]
-        position[0, axis] = state.part[axis]
-        position[1, axis] = end
-        position[2, axis] = target
-        if end != state.part[axis]:
-            turning = turning and not tables.linear[axis]
-            way = abs(end - state.part[axis])
-            if axis < 3:
-                spatial = max(spatial, way)
-            else:
-                other = max(other, way)
+        position[0, axis], position[2, axis] = state.part[axis], target
+    to_part(position[2], state, position[1])
     if is_arc:
         if not write_arc(roles, values, seen, tables, constants, state, modal, rows, row):
             return NOT_PLAIN
     else:
-        way = spatial if spatial > 0.0 else other
-        if way == 0.0:
-            return row
-        if way < SHORTEST:
-            return NOT_PLAIN
+        way = straight_way(position)
+        if way <= 0.0:
+            return row if way == 0.0 else NOT_PLAIN
         rows.values[row, :6] = np.nan
         rows.values[row, 6] = 0.0
     pace = constants.rapid_feed
@@ -250,6 +241,10 @@ def _move(
     if kind == RAPID_LINE and not np.isnan(own):
         pace = (own if own != 0.0 else feed) * 60.0
     elif kind != RAPID_LINE:
+        turning = not is_arc
+        for axis in range(axes):
+            moves = position[0, axis] != position[1, axis]
+            turning = turning and not (moves and tables.linear[axis])
         if np.isnan(feed):
             if not constants.feed_may_lack:
                 return NOT_PLAIN

@@ -23,6 +23,7 @@ from twin.nc.holes import VALUES
 """Places in the modal state; ``NOTHING`` takes what codes without effect set."""
 MODAL = 10
 (
+    PROGRAMMED_FEED,
     SPINDLE,
     SELECTED,
     IN_SPINDLE,
@@ -31,15 +32,23 @@ MODAL = 10
     POLAR_ORDINATE,
     POLAR_RADIUS,
     POLAR_ANGLE,
+    SCALE,
+    ROTATION,
+    ROTATION_ABSCISSA,
+    ROTATION_ORDINATE,
+    TURNED,
     RADIUS_GIVEN,
-) = range(9)
-"""Places in the registers: S; the tool that comes next and the one that is in use; whether it has
-its offset; the polar origin, the last R and Q; the tool's radius that the program gave. NaN: none."""
-REMEMBERED = 9
+) = range(15)
+SIGNS = 15
+REMEMBERED = 18
 GIVEN = REMEMBERED + VALUES
-"""Behind them what the drilling cycle in force remembers, as ``holes`` counts it, and the same of the
-words of the block."""
-REGISTERS = GIVEN + VALUES
+MATRIX = GIVEN + VALUES
+REGISTERS = MATRIX + 9
+"""Places in the registers: F; S; the tool that comes next and the one that is in use; whether it has
+its offset; the polar origin, the last R and Q; the scale; angle and centre of the rotation in the
+plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; the
+signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
+``holes`` counts it, and the same of the words of the block; the matrix, row by row. NaN: none."""
 DOUBTFUL = -3
 """A step or a move is left to the general way; neither ``NOT_PLAIN`` nor ``NO_ROOM``."""
 MOST_EVENTS = 16
@@ -143,7 +152,6 @@ class State(NamedTuple):
     Attributes:
         modal: The modal state, shape (``MODAL``,).
         in_force: G code set in each group during the run, ``NOT_PLAIN`` for none, shape (g,).
-        feed: F as programmed, NaN for none, shape (1,).
         programmed: Programmed position, shape (k,) [mm or deg].
         part: Part position, shape (k,) [mm or deg].
         happened: Events that were reported, shape (1,).
@@ -155,7 +163,6 @@ class State(NamedTuple):
 
     modal: FloatArray
     in_force: IntArray
-    feed: FloatArray
     programmed: FloatArray
     part: FloatArray
     happened: IntArray

@@ -37,6 +37,11 @@ class Plane:
         columns = (_column(self.abscissa), _column(self.ordinate), _column(self.normal))
         object.__setattr__(self, "axes", columns)
 
+    @property
+    def directions(self) -> tuple[Vector, Vector, Vector]:
+        """Abscissa, ordinate and normal."""
+        return (self.abscissa, self.ordinate, self.normal)
+
     def local(self, point: Vector | list[float]) -> Local:
         """A point of X, Y, Z (further axes are ignored) seen from the plane."""
         x, y, z = point[0], point[1], point[2]
@@ -68,6 +73,8 @@ ZX = Plane("ZX (G18)", _Z, _X, _Y)
 YZ = Plane("YZ (G19)", _Y, _Z, _X)
 PLANE_ORDER = (XY, ZX, YZ)
 """Those along the axes, as the fast way numbers them."""
+PLANE_NAMES = tuple(plane.name for plane in PLANE_ORDER)
+"""Their names, which they keep where a mirror or a rotation turns them."""
 
 
 def plane_with_normal(normal: Vector) -> Plane:

@@ -5,8 +5,12 @@ import math
 
 from twin.nc.arcs import SAME_POINT, Point, distance
 from twin.nc.contour import Element
+from twin.nc.matrices import dot
 from twin.nc.move_columns import Segment
 from twin.nc.planes import Plane, Vector, cross
+
+IN_PLANE = 1.0 - 1e-9
+"""Cosine between an arc's normal and a plane's from which the arc lies in the plane."""
 
 
 def direction_of(move: Segment, *, at_end: bool) -> Vector:
@@ -44,8 +48,8 @@ def element_of(move: Segment, plane: Plane) -> Element | None:
     start, end = plane.local(move.start)[:2], plane.local(move.end)[:2]
     if move.center is None:
         return Element(start, end) if distance(start, end) >= SAME_POINT else None
-    sense = sum(a * b for a, b in zip(move.normal, plane.normal, strict=True))
-    if abs(sense) < 1.0 - 1e-9:
+    sense = dot(move.normal, plane.normal)
+    if abs(sense) < IN_PLANE:
         return None
     return Element(start, end, plane.local(move.center)[:2], move.sweep * sense)
 

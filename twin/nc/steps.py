@@ -67,4 +67,9 @@ from twin.nc.instructions import Step
     END_COMPENSATION,
     CYCLE_WORD,
     PROGRAMMED_RADIUS,
+    MIRROR,
+    SCALE,
+    ROTATE,
+    END_ROTATION,
+    TRANSFORM,
 ) = range(len(Step))

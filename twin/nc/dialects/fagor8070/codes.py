@@ -15,7 +15,7 @@ from twin.nc.dialect import (
     GCode,
     Translation,
 )
-from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar
+from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
 from twin.nc.dialects.fagor8070.cycles import CYCLES
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.instructions import Step
@@ -134,12 +134,19 @@ def _do(
     translate: Translation | None = None,
 ) -> GCode:
     if takes:
-        return GCode(meaning=meaning, group=group, perform=action, takes=takes, ground="manual")
+        return GCode(
+            meaning=meaning,
+            group=group,
+            perform=action,
+            takes=takes,
+            translate=translate,
+            ground="manual",
+        )
     return GCode(meaning=meaning, group=group, action=action, translate=translate, ground="manual")
 
 
-def _decided(meaning: str, action: Action) -> GCode:
-    return GCode(meaning=meaning, perform=action)
+def _decided(meaning: str, action: Action, *, translate: Translation | None = None) -> GCode:
+    return GCode(meaning=meaning, perform=action, translate=translate)
 
 
 def _refused(meaning: str, reason: str, numbers: Mapping[int, None] | range) -> dict[int, GCode]:
@@ -180,11 +187,19 @@ CODES: dict[int, GCode] = {
     7: _g("square corner", "corner", corner=Corner.EXACT_STOP),
     8: _once("arc tangent to the last move, this block", interpolation=arcs.TANGENT, cycle=None),
     9: _once("arc through the point I J, this block", interpolation=arcs.THREE_POINTS, cycle=None),
-    10: _do("mirror off", frames.mirror_off),
-    11: _do("mirror X", frames.mirror_x),
-    12: _do("mirror Y", frames.mirror_y),
-    13: _do("mirror Z", frames.mirror_z),
-    14: _decided("mirror the given axes: X-1", frames.mirror_axes),
+    10: _do(
+        "mirror off",
+        transformations.mirror_off,
+        translate=transformations.write_mirror_off,
+    ),
+    11: _do("mirror X", transformations.mirror_x, translate=transformations.write_mirror(0)),
+    12: _do("mirror Y", transformations.mirror_y, translate=transformations.write_mirror(1)),
+    13: _do("mirror Z", transformations.mirror_z, translate=transformations.write_mirror(2)),
+    14: _decided(
+        "mirror the given axes: X-1",
+        transformations.mirror_axes,
+        translate=transformations.write_mirror_axes,
+    ),
     17: _plane("plane X Y", XY),
     18: _plane("plane Z X", ZX),
     19: _plane("plane Y Z", YZ),
@@ -234,9 +249,17 @@ CODES: dict[int, GCode] = {
     63: GCode(meaning="rigid tapping", refused="the twin's spindle has no angle", ground="manual"),
     70: _g("inches", "units", unit=25.4),
     71: _g("millimetres", "units", unit=1.0),
-    72: _do("scale S, about part zero", frames.scale, takes="S"),
+    72: _do(
+        "scale S, about part zero",
+        transformations.scale,
+        takes="S",
+        translate=transformations.write_scale,
+    ),
     73: GCode(
-        meaning="rotation by Q about I J; alone: off", perform=frames.rotate, ground="manual"
+        meaning="rotation by Q about I J; alone: off",
+        perform=transformations.rotate,
+        translate=transformations.write_rotation,
+        ground="manual",
     ),
     74: GCode(meaning="home search", refused="the twin starts homed", ground="manual"),
     **CYCLES,

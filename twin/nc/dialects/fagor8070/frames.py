@@ -1,13 +1,11 @@
-"""Planes, offsets, mirror, scale and rotation of the Fagor CNC 8070."""
+"""Planes, offsets and tools of the Fagor CNC 8070."""
 
-from twin.nc.arcs import direction
 from twin.nc.block_words import BlockWords
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar, reset_polar_origin
-from twin.nc.frame import IDENTITY, Matrix, multiply
 from twin.nc.instructions import Step
 from twin.nc.offsets import (
     refuse_plane_change,
@@ -69,115 +67,6 @@ def numbered_offset(control: Control, word: Word) -> None:
     name = f"G{53 + int(number)}" if number <= 6 else f"G159={int(number)}"
     select_offset(control, name, word)
     forget_polar(control)
-
-
-# --- mirror, scale, rotation
-
-
-def mirror_off(control: Control) -> None:
-    """G10."""
-    memory_of(control).mirrored = frozenset()
-    _update(control)
-
-
-def mirror_x(control: Control) -> None:
-    """G11."""
-    _mirror(control, 0, on=True)
-
-
-def mirror_y(control: Control) -> None:
-    """G12."""
-    _mirror(control, 1, on=True)
-
-
-def mirror_z(control: Control) -> None:
-    """G13."""
-    _mirror(control, 2, on=True)
-
-
-def mirror_axes(control: Control) -> None:
-    """G14 X-1 Y1: -1 mirrors an axis, 1 ends it."""
-    words = control.take_axis_words()
-    for index, word in words:
-        if abs(control.number(word)) != 1.0 or index > 2:
-            control.fail("mirror", "G14 takes -1 or 1 for X, Y and Z", word)
-        _mirror(control, index, on=control.number(word) < 0.0)
-    if not words:
-        control.fail("mirror", "G14 needs the axes to mirror", hint="write G14 X-1")
-
-
-def _mirror(control: Control, index: int, *, on: bool) -> None:
-    memory = memory_of(control)
-    memory.mirrored = memory.mirrored | {index} if on else memory.mirrored - {index}
-    _update(control)
-
-
-def scale(control: Control) -> None:
-    """G72 S2: lengths are multiplied; G72 alone or S1 ends it."""
-    word = control.take("S")
-    factor = 1.0 if word is None else control.number(word)
-    if not 1e-3 <= factor <= 1e3:
-        control.fail("scale", "a scale lies between 0.001 and 1000", word)
-    memory_of(control).scale = factor
-    _update(control)
-
-
-def rotate(control: Control) -> None:
-    """G73 Q I J: turn by Q about I J, missing ones part zero; G73 alone ends it.
-
-    Decision: a rotation must end before another begins, since adding and replacing are both known.
-    """
-    angle = control.take("Q")
-    center = [control.length(control.take(letter)) for letter in "IJ"]
-    memory = memory_of(control)
-    if angle is None:
-        memory.rotation = None
-    else:
-        if memory.rotation is not None:
-            control.fail("rotation-active", "a rotation is in force", angle, "end it by G73 alone")
-        memory.rotation = (control.number(angle), (center[0], center[1]))
-    _update(control)
-
-
-def _update(control: Control) -> None:
-    """Compose scale, then mirror, then rotation about its centre in the working plane."""
-    memory, frame = memory_of(control), control.frame
-    if control.path.compensating:
-        message = "mirror, scale and rotation cannot change while compensation is in force"
-        control.fail("compensation-change", message, hint="end it by G40 first")
-    rows = [
-        tuple(
-            (-memory.scale if row in memory.mirrored else memory.scale) if row == column else 0.0
-            for column in range(3)
-        )
-        for row in range(3)
-    ]
-    matrix: Matrix = ((*rows[0],), (*rows[1],), (*rows[2],))  # pyright: ignore[reportAssignmentType]
-    shift: Vector = (0.0, 0.0, 0.0)
-    if memory.rotation is not None:
-        angle, center = memory.rotation
-        turning = _about_normal(control.modal.plane, angle)
-        matrix = multiply(turning, matrix)
-        middle = control.modal.plane.world(*center, 0.0)
-        moved = [sum(a * b for a, b in zip(row, middle, strict=True)) for row in turning]
-        shift = (middle[0] - moved[0], middle[1] - moved[1], middle[2] - moved[2])
-    frame.set_matrix(IDENTITY if matrix == IDENTITY else matrix)
-    frame.set_shift("rotation", [*shift, *([0.0] * (len(control.settings.axes) - 3))])
-    control.reframed()
-    forget_polar(control)
-
-
-def _about_normal(plane: Plane, angle: float) -> Matrix:
-    """The rotation about a plane's normal, in X, Y, Z."""
-    cosine, sine = direction(angle)
-    to_world: Matrix = _transposed((plane.abscissa, plane.ordinate, plane.normal))
-    turn: Matrix = ((cosine, -sine, 0.0), (sine, cosine, 0.0), (0.0, 0.0, 1.0))
-    return multiply(multiply(to_world, turn), (plane.abscissa, plane.ordinate, plane.normal))
-
-
-def _transposed(matrix: Matrix) -> Matrix:
-    a, b, c = matrix
-    return ((a[0], b[0], c[0]), (a[1], b[1], c[1]), (a[2], b[2], c[2]))
 
 
 # --- tools and the rotary axis

@@ -13,7 +13,13 @@ from twin.nc.plain_state import (
     POLAR_ANGLE,
     POLAR_ORDINATE,
     POLAR_RADIUS,
+    ROTATION,
+    ROTATION_ABSCISSA,
+    ROTATION_ORDINATE,
+    SCALE,
+    SIGNS,
 )
+from twin.nc.planes import Vector
 
 ModalCall = tuple[str, dict[str, float], Statement]
 
@@ -35,7 +41,7 @@ class FagorMemory:
         main: Line of the program's heading, from 0, or None.
         structure: Which $ keywords belong together; None before it was asked for.
         modal_call: #MCALL in force.
-        mirrored: Columns of the mirrored axes.
+        signs: -1 for each of X, Y and Z that is mirrored, else 1.
         scale: General scale factor.
         offset_on: D1 is in force, not D0.
         rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
@@ -53,7 +59,7 @@ class FagorMemory:
     main: int | None = None
     structure: Structure | None = None
     modal_call: ModalCall | None = None
-    mirrored: frozenset[int] = frozenset()
+    signs: Vector = (1.0, 1.0, 1.0)
     scale: float = 1.0
     offset_on: bool = True
     rotation: tuple[float, Point] | None = None
@@ -66,13 +72,12 @@ def memory_of(control: Control) -> FagorMemory:
 
 
 def acts_on_plain_blocks(control: Control) -> bool:
-    """A radius in force, a rotation, a modal call or module axes: plain blocks heed them."""
+    """A radius in force, a modal call or module axes: plain blocks heed them."""
     memory = memory_of(control)
     return (
         memory.temporary
         or memory.modal_call is not None
         or memory.circle_radius is not None
-        or memory.rotation is not None
         or control.settings.module_rotary
     )
 
@@ -81,12 +86,18 @@ def registers(control: Control) -> dict[int, float]:
     """What the fast way is given of it; no polar origin while G53 is in force (E1530)."""
     memory = memory_of(control)
     abscissa, ordinate = memory.origin
+    angle, center = (math.nan, (0.0, 0.0)) if memory.rotation is None else memory.rotation
     return {
         OFFSET_ON: float(memory.offset_on),
         POLAR_ABSCISSA: math.nan if control.active.get("offset") == 53 else abscissa,
         POLAR_ORDINATE: ordinate,
         POLAR_RADIUS: math.nan if memory.radius is None else memory.radius,
         POLAR_ANGLE: math.nan if memory.angle is None else memory.angle,
+        **{SIGNS + axis: sign for axis, sign in enumerate(memory.signs)},
+        SCALE: memory.scale,
+        ROTATION: angle,
+        ROTATION_ABSCISSA: center[0],
+        ROTATION_ORDINATE: center[1],
     }
 
 
@@ -99,3 +110,7 @@ def take_registers(control: Control, values: list[float]) -> None:
     radius, angle = values[POLAR_RADIUS], values[POLAR_ANGLE]
     memory.radius = None if math.isnan(radius) else radius
     memory.angle = None if math.isnan(angle) else angle
+    memory.signs = (values[SIGNS], values[SIGNS + 1], values[SIGNS + 2])
+    memory.scale = values[SCALE]
+    center = (values[ROTATION_ABSCISSA], values[ROTATION_ORDINATE])
+    memory.rotation = None if math.isnan(values[ROTATION]) else (values[ROTATION], center)

@@ -13,6 +13,7 @@ from twin.nc.block_words import BlockWords, sorted_words
 from twin.nc.block_writer import BlockWriter, NotTranslatableError
 from twin.nc.blocks import Word
 from twin.nc.control import Control
+from twin.nc.control_state import integer_of
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.expressions import Expression
 from twin.nc.instructions import Step
@@ -82,11 +83,24 @@ def write_polar_origin(block: BlockWords, writer: BlockWriter) -> None:
 
 
 def is_polar(control: Control, words: Iterable[Word]) -> bool:
-    """A block with R or Q goes there, unless it names a coordinate of the plane in force."""
+    """A block with R or Q goes there, unless it names a coordinate of the plane or makes no move."""
+    words = list(words)
     addresses = {word.address for word in words} - _words_of_cycle(control, words)
     names = control.settings.axes.names
     abscissa, ordinate, _ = (names[index] for index in control.modal.plane.axes)
-    return not addresses.isdisjoint("RQ") and addresses.isdisjoint((abscissa, ordinate, *"IJK"))
+    return (
+        not addresses.isdisjoint("RQ")
+        and addresses.isdisjoint((abscissa, ordinate, *"IJK"))
+        and not any(_performs(control, word) for word in words)
+    )
+
+
+def _performs(control: Control, word: Word) -> bool:
+    """A G code that does something in place of a move: G73 Q."""
+    if word.address != "G" or isinstance(word.value, Expression):
+        return False
+    code = control.dialect.g.get(integer_of(word.value))
+    return code is not None and code.perform is not None
 
 
 def _words_of_cycle(control: Control, words: Iterable[Word]) -> set[str]:
@@ -94,7 +108,7 @@ def _words_of_cycle(control: Control, words: Iterable[Word]) -> set[str]:
     letters: set[str] = set()
     for word in words:
         if word.address == "G" and not isinstance(word.value, Expression):
-            code = control.dialect.g.get(int(word.value))
+            code = control.dialect.g.get(integer_of(word.value))
             cycle = None if code is None else code.sets.get("cycle")
             if isinstance(cycle, Interpolation) and isinstance(cycle.plain, PlainHole):
                 letters.update(cycle.plain.words)

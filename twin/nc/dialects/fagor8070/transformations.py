@@ -1,0 +1,167 @@
+"""Mirror, scale and rotation of the Fagor CNC 8070, and the same for the fast way."""
+
+from twin.nc.block_words import BlockWords
+from twin.nc.block_writer import BlockWriter, NotTranslatableError
+from twin.nc.control import Control
+from twin.nc.dialect import Translation
+from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.polar import forget_polar
+from twin.nc.instructions import Step
+from twin.nc.matrices import LARGEST_SCALE, SMALLEST_SCALE, rotated, stretched
+from twin.nc.planes import Vector
+
+
+def mirror_off(control: Control) -> None:
+    """G10."""
+    memory_of(control).signs = (1.0, 1.0, 1.0)
+    _update(control)
+
+
+def mirror_x(control: Control) -> None:
+    """G11."""
+    _mirror(control, 0, -1.0)
+
+
+def mirror_y(control: Control) -> None:
+    """G12."""
+    _mirror(control, 1, -1.0)
+
+
+def mirror_z(control: Control) -> None:
+    """G13."""
+    _mirror(control, 2, -1.0)
+
+
+def mirror_axes(control: Control) -> None:
+    """G14 X-1 Y1: -1 mirrors an axis, 1 ends it."""
+    words = control.take_axis_words()
+    for index, word in words:
+        if abs(control.number(word)) != 1.0 or index > 2:
+            control.fail("mirror", "G14 takes -1 or 1 for X, Y and Z", word)
+        _mirror(control, index, control.number(word))
+    if not words:
+        control.fail("mirror", "G14 needs the axes to mirror", hint="write G14 X-1")
+
+
+def _mirror(control: Control, index: int, sign: float) -> None:
+    memory = memory_of(control)
+    x, y, z = (sign if each == index else old for each, old in enumerate(memory.signs))
+    memory.signs = (x, y, z)
+    _update(control)
+
+
+def scale(control: Control) -> None:
+    """G72 S2: lengths are multiplied; G72 alone or S1 ends it."""
+    word = control.take("S")
+    factor = 1.0 if word is None else control.number(word)
+    if not SMALLEST_SCALE <= factor <= LARGEST_SCALE:
+        control.fail("scale", "a scale lies between 0.001 and 1000", word)
+    memory_of(control).scale = factor
+    _update(control)
+
+
+def rotate(control: Control) -> None:
+    """G73 Q I J: turn by Q about I J, missing ones part zero; G73 alone ends it.
+
+    Decision: a rotation must end before another begins, since adding and replacing are both known.
+    """
+    angle = control.take("Q")
+    center = [control.length(control.take(letter)) for letter in "IJ"]
+    memory = memory_of(control)
+    if angle is None:
+        memory.rotation = None
+    else:
+        if memory.rotation is not None:
+            control.fail("rotation-active", "a rotation is in force", angle, "end it by G73 alone")
+        memory.rotation = (control.number(angle), (center[0], center[1]))
+    _update(control)
+
+
+def _update(control: Control) -> None:
+    """Compose scale, then mirror, then rotation about its centre in the working plane."""
+    memory, frame = memory_of(control), control.frame
+    if control.path.compensating:
+        message = "mirror, scale and rotation cannot change while compensation is in force"
+        control.fail("compensation-change", message, hint="end it by G40 first")
+    matrix = stretched(memory.signs, memory.scale)
+    shift: Vector = (0.0, 0.0, 0.0)
+    if memory.rotation is not None:
+        matrix, shift = rotated(matrix, control.modal.plane.directions, *memory.rotation)
+    frame.set_matrix(matrix)
+    frame.set_shift("rotation", [*shift, *([0.0] * (len(control.settings.axes) - 3))])
+    control.reframed()
+    forget_polar(control)
+
+
+# --- for the fast way
+
+
+def write_mirror_off(_block: BlockWords, writer: BlockWriter) -> None:
+    """G10."""
+    for index in range(3):
+        writer.number(1.0)
+        writer.step(Step.MIRROR, index)
+    _write_update(writer)
+
+
+def write_mirror(index: int) -> Translation:
+    """G11, G12, G13."""
+
+    def write(_block: BlockWords, writer: BlockWriter) -> None:
+        writer.number(-1.0)
+        writer.step(Step.MIRROR, index)
+        _write_update(writer)
+
+    return write
+
+
+def write_mirror_axes(block: BlockWords, writer: BlockWriter) -> None:
+    """G14.
+
+    Raises:
+        NotTranslatableError: It names no axis, or one that no mirror turns.
+    """
+    words = block.take_axes()
+    if not words or any(index > 2 for index, _ in words):
+        raise NotTranslatableError
+    for index, word in words:
+        writer.word_value(word)
+        writer.step(Step.MIRROR, index)
+    _write_update(writer)
+
+
+def write_scale(block: BlockWords, writer: BlockWriter) -> None:
+    """G72."""
+    word = block.take("S")
+    if word is None:
+        writer.number(1.0)
+    else:
+        writer.word_value(word)
+    writer.step(Step.SCALE)
+    _write_update(writer)
+
+
+def write_rotation(block: BlockWords, writer: BlockWriter) -> None:
+    """G73.
+
+    Raises:
+        NotTranslatableError: It has a centre without an angle.
+    """
+    angle, center = block.take("Q"), [block.take("I"), block.take("J")]
+    if angle is None:
+        if center != [None, None]:
+            raise NotTranslatableError
+        writer.step(Step.END_ROTATION)
+    else:
+        for word in (angle, *center):
+            if word is None:
+                writer.number(0.0)
+            else:
+                writer.word_value(word)
+        writer.step(Step.ROTATE)
+    _write_update(writer)
+
+
+def _write_update(writer: BlockWriter) -> None:
+    writer.step(Step.TRANSFORM)
+    writer.step(Step.FORGET_POLAR)

@@ -1,0 +1,36 @@
+"""How far a move goes, compiled: whether it goes at all, as ``ControlMotion`` measures it."""
+
+from twin.nc.canonical import FloatArray
+from twin.nc.compile_kernels import inlined_kernel
+
+SHORTEST = 1e-7
+"""A move that goes less far [mm or deg], but does go, is left to the control to measure."""
+_RESTING = 1e-10
+"""An axis that goes less far rests; a few of them are still below what moves the control."""
+DOUBTFUL_WAY = -1.0
+
+
+@inlined_kernel
+def straight_way(position: FloatArray) -> float:
+    """How far the axis goes that goes farthest: one of X, Y, Z, or where these rest another.
+
+    Args:
+        position: Start and end of the move, shape (3, k); what rests ends where it starts.
+
+    Returns:
+        0 where nothing moves, or ``DOUBTFUL_WAY``.
+    """
+    way = 0.0
+    for axis in range(3):
+        way = max(way, abs(position[1, axis] - position[0, axis]))
+    if way <= _RESTING:
+        way = 0.0
+        for axis in range(3):
+            position[1, axis] = position[0, axis]
+        for axis in range(3, position.shape[1]):
+            way = max(way, abs(position[1, axis] - position[0, axis]))
+        if way <= _RESTING:
+            way = 0.0
+            for axis in range(3, position.shape[1]):
+                position[1, axis] = position[0, axis]
+    return DOUBTFUL_WAY if 0.0 < way < SHORTEST else way
