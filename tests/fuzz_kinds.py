@@ -116,6 +116,7 @@ def changed_bytes(chance: random.Random, data: bytes) -> bytes:
 _DIALECTS = list(DIALECTS.values())
 
 
+@functools.cache
 def _programs() -> list[bytes]:
     """Real programs behind the number of their dialect, a byte."""
     return [
@@ -152,6 +153,7 @@ def _read_job(data: bytes, folder: Path) -> None:
     prepare(path)
 
 
+@functools.cache
 def _machines() -> list[bytes]:
     """The shipped machines, which name their models and bases by their whole paths."""
     found = []
@@ -235,7 +237,7 @@ def _read_scene(data: bytes, folder: Path) -> None:
 
 
 def _contents(paths: Callable[[], Sequence[Path]]) -> Callable[[], Sequence[bytes]]:
-    return lambda: [path.read_bytes() for path in paths()]
+    return functools.cache(lambda: [path.read_bytes() for path in paths()])
 
 
 KINDS: Mapping[str, Kind] = {

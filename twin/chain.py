@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Iterator
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 import mujoco
@@ -33,7 +34,7 @@ from twin.placement import part_zero
 from twin.preparation import Preparation
 from twin.program_notes import NoteTaker, ProgramNotes
 from twin.progress import Progress
-from twin.recording import LONGEST_TEXT, RecordingHeader, Samples, record
+from twin.recording import LONGEST_TEXT, RecordingHeader, RecordingWriter, Samples, record
 from twin.stages import StageClock
 from twin.stock_alarm import fixture_alarm, stock_alarm
 from twin.toolpath.part_frame import PartFrame
@@ -91,14 +92,14 @@ class Run:
         self._planned_s = 0.0
         self._spindle = Spindle(held_to_program=False)
 
-    def execute(self, survey: Survey, out: Path, progress: Progress) -> Outcome:
+    def execute(self, survey: Survey, out: Path | None, progress: Progress) -> Outcome:
         """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
 
         A program that would leave the travel moves nothing and writes nothing.
 
         Args:
             survey: What the first pass found.
-            out: The folder.
+            out: The folder; None writes neither, for who wants the verdict alone.
             progress: Told how far the simulation is.
 
         Raises:
@@ -117,7 +118,7 @@ class Run:
         self._spindle = Spindle(held_to_program=survey.speaks_of_spindle)
         alarm, near_miss = survey.alarm, None
         if alarm is None:
-            with record(out / "recording.h5", self.header()) as writer:
+            with self._recording(out) as writer:
                 simulation = self._simulation(comparison, survey.notes)
                 for simulated in self.clock.watch("simulate", simulation):
                     with self.clock.stage("cut"):
@@ -128,13 +129,14 @@ class Run:
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
                         self.trace.add(samples, contour_um)
-                    with self.clock.stage("record"):
-                        writer.append(samples, contour_um)
+                    if writer is not None:
+                        with self.clock.stage("record"):
+                            writer.append(samples, contour_um)
                     progress("simulate", track.progress(survey.moves))
                     if alarm is not None:
                         break
                 alarm, near_miss = alarm or simulation.alarm, simulation.near_miss
-                if alarm is not None:
+                if alarm is not None and writer is not None:
                     writer.note_alarms([(alarm.time_s, alarm.message)])
         cut = self._finish_part(cutter, out) if cutter is not None and len(track) else None
         figures = comparison.result()
@@ -238,9 +240,13 @@ class Run:
         height = notes.tools.tools[0].length - spindle_over_table_mm(machine)
         return FixtureGuard(machine.file.fixtures, notes.tools, self.part_frame, height)
 
-    def _finish_part(self, cutter: Cutter, out: Path) -> CutResult:
+    def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:
+        return nullcontext() if out is None else record(out / "recording.h5", self.header())
+
+    def _finish_part(self, cutter: Cutter, out: Path | None) -> CutResult:
         with self.clock.stage("cut"):
-            write_stl(cutter.map, out / "part.stl")
+            if out is not None:
+                write_stl(cutter.map, out / "part.stl")
             return cutter.result()
 
     def header(self) -> RecordingHeader:

@@ -76,7 +76,7 @@ class JobItem(pytest.Item):
             JobError: It does not pass.
         """
         from twin.check.forms import figures
-        from twin.check.program import CheckSettings, check_program
+        from twin.check.task import CheckSettings, check_program
 
         option = self.config.getoption
         baseline = option("--twin-baseline")

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from twin.check.outcome import CheckOutcome
-from twin.check.program import CheckSettings, check_program, file_of
+from twin.check.program import file_of
 from twin.check.runner import check_all
+from twin.check.task import CheckSettings, check_program
 from twin.commands.check import CODE_QUALITY_FILE, check_and_print
 from twin.errors import ExitCode, UsageError
 from twin.job import Job, JobFile, read_job

@@ -9,8 +9,8 @@ import pytest
 
 from twin.changes import changed
 from twin.check.outcome import CheckOutcome
-from twin.check.program import CheckSettings, check_variant
 from twin.check.runner import run_tasks
+from twin.check.task import CheckSettings, check_variant
 from twin.check.variation import Variant, variants
 from twin.errors import ExitCode, UsageError
 from twin.preparation import prepare

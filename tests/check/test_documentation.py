@@ -12,7 +12,8 @@ import yaml
 from typer.main import get_command
 
 from tests.check.test_check_runs import PROGRAM, write_job
-from twin.check.program import CheckSettings, check_program
+from twin import __version__
+from twin.check.task import CheckSettings, check_program
 from twin.cli import app
 from twin.commands.export import export_and_print
 from twin.job import BaselineTable, ToleranceTable
@@ -30,12 +31,15 @@ def blocks(document: Path, language: str) -> list[str]:
 
 @pytest.fixture
 def shop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository with a program, and a ``pip`` that has nothing to do, for all is installed."""
+    """A repository with a program, a ``.venv`` that a build server has kept, and the same tools outside.
+
+    ``pip`` has nothing to do, for all is installed.
+    """
     (tmp_path / "programs").mkdir()
     write_job(tmp_path / "programs", "part")
     write_job(tmp_path, "part")
-    tools = tmp_path / "tools"
-    tools.mkdir()
+    tools = tmp_path / ".venv" / "bin"
+    tools.mkdir(parents=True)
     runs = {
         "twin": "-m twin",
         "pytest": "-m pytest -p no:cacheprovider -c /dev/null",
@@ -131,7 +135,7 @@ def test_a_build_server_runs_its_example(shop: Path, monkeypatch: pytest.MonkeyP
     store_baselines(Path("programs/part.toml"))
     write_job(shop / "programs", "part", PROGRAM.replace("G02", "G03"))
     install, check = steps(example)
-    assert install.split()[0] == "pip"
+    assert f"pip install mill-twin=={__version__}" in install
     shell(install)
     told = shell(check, code=1)
     assert "part.nc:3:1: error baseline-path: arc of 180 degrees, baseline -180" in told

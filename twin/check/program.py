@@ -1,13 +1,14 @@
-"""One program run for its verdict alone: no pictures, no files left behind."""
+"""One program run for its verdict alone: no pictures, no recording, no part."""
 
 import dataclasses
-import tempfile
 import time
 from collections.abc import Iterable
 from pathlib import Path
 
 from twin.alarm_text import alarm_diagnostic
+from twin.chain import Run
 from twin.check.outcome import CheckOutcome, Finding
+from twin.check.task import CheckSettings
 from twin.check.variation import Variant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
@@ -21,34 +22,8 @@ from twin.progress import no_progress
 from twin.reason_text import reason_text
 
 
-@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class CheckSettings:
-    """How programs are checked.
-
-    Attributes:
-        machine: Overrides the jobs' machines.
-        dialect: Overrides the jobs' dialects.
-        strict: Warnings of the interpreter are errors.
-        baseline: Folder of the baselines that runs are held to, or None.
-        update_baseline: Store baselines there instead of holding runs to them.
-        reports: Folder for a report on every program that was run, or None.
-    """
-
-    machine: str | None = None
-    dialect: str | None = None
-    strict: bool = False
-    baseline: Path | None = None
-    update_baseline: bool = False
-    reports: Path | None = None
-
-
-def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
-    """Run a job or a program and say how it came out; what is wrong with it becomes a finding."""
-    return check_variant(Variant(path, ()), settings)
-
-
-def check_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
-    """The same with some values of the job or the machine changed."""
+def run_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
+    """Run a program and say how it came out; what is wrong with it becomes a finding."""
     began, path = time.perf_counter(), variant.path
     try:
         outcome = _run(variant, settings)
@@ -74,10 +49,6 @@ def file_of(folder: Path, job: Job, suffix: str) -> Path:
 
 
 def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
-    from twin.chain import Run
-    from twin.compare.report import write_report
-    from twin.results import report_of, result_of
-
     path = variant.path
     preparation = prepare(
         path,
@@ -89,12 +60,14 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     run = Run(preparation)
     try:
         survey = run.survey()
-        with tempfile.TemporaryDirectory(prefix="twin-check-") as folder:
-            outcome = run.execute(survey, Path(folder), no_progress)
+        outcome = run.execute(survey, None, no_progress)
     except ProgramError as error:
         differing = _baseline_reasons(preparation, None, settings)
         return _not_run(path, error, _findings(preparation, differing))
     if settings.reports is not None:
+        from twin.compare.report import write_report
+        from twin.results import report_of, result_of
+
         page = report_of(run, outcome, result_of(run, outcome))
         write_report(file_of(settings.reports, preparation.job, ".html"), page)
     contour = outcome.figures.contour

@@ -10,7 +10,6 @@ from multiprocessing.synchronize import Lock
 from typing import TypeVar
 
 from twin.check.outcome import CheckOutcome, died
-from twin.first_compilation import announce_compilation
 
 TaskT = TypeVar("TaskT")
 """A program or a variant of one."""
@@ -31,7 +30,7 @@ def check_all(
     """
     workers = min(jobs or available_cores(), len(programs))
     if workers <= 1:
-        announce_compilation()
+        _tell_of_compilation()
         yield from map(check, programs)
         return
     # Fresh processes: a fork of one that has run threads or OpenGL may hang.
@@ -77,7 +76,14 @@ def _pool(workers: int, context: SpawnContext) -> concurrent.futures.ProcessPool
 def _begin(telling: Lock) -> None:
     """An interrupt from the keyboard ends a process at once; one process tells of compilation."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    announce_compilation(lambda: telling.acquire(block=False))
+    _tell_of_compilation(lambda: telling.acquire(block=False))
+
+
+def _tell_of_compilation(is_first: Callable[[], bool] = lambda: True) -> None:
+    """Only processes that run programs load the compiler."""
+    from twin.first_compilation import announce_compilation
+
+    announce_compilation(is_first)
 
 
 def available_cores() -> int:

@@ -13,8 +13,8 @@ from rich.table import Table
 from twin.check import forms
 from twin.check.discovery import find_programs
 from twin.check.outcome import CheckOutcome
-from twin.check.program import CheckSettings, check_program
 from twin.check.runner import run_tasks
+from twin.check.task import CheckSettings, check_program
 from twin.errors import ExitCode, UsageError
 from twin.files import write_text
 from twin.progress import shown_progress

@@ -11,8 +11,8 @@ from rich.table import Table
 
 from twin.check import forms
 from twin.check.outcome import CheckOutcome
-from twin.check.program import CheckSettings, check_variant
 from twin.check.runner import run_tasks
+from twin.check.task import CheckSettings, check_variant
 from twin.check.variation import variants
 from twin.errors import ExitCode, UsageError
 from twin.files import write_text

@@ -1,9 +1,9 @@
 """The machined part as a closed mesh."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import trimesh
 
 from twin.cutting.colours import RAW_RGB, Colours, surface_colours
 from twin.cutting.height_map import HeightMap
@@ -12,6 +12,9 @@ from twin.cutting.outline import BoolArray
 from twin.files import complete_or_absent
 from twin.units import MM
 
+if TYPE_CHECKING:
+    import trimesh
+
 _TO_GLTF = MM * np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1 / MM]])
 """From mm with Z up to m with Y up."""
 
@@ -19,7 +22,7 @@ MESH_CELLS = 400_000
 """Cells of the finest mesh that is written; a finer map is thinned to it."""
 
 
-def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> trimesh.Trimesh:
+def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> "trimesh.Trimesh":
     """The cut stock as a closed mesh: its surface, walls down to the underside, the underside.
 
     Steps between cells become faces one cell wide; where the cut went through, there is a hole.
@@ -29,6 +32,8 @@ def part_mesh(height_map: HeightMap, colours: Colours | None = None) -> trimesh.
         height_map: The cut stock.
         colours: One for each cell, shape (ny, nx, 3); the underside is raw. None: no colours.
     """
+    import trimesh  # As long to load as the rest of a run, and most runs cut no part.
+
     step = 1
     while height_map.heights[::step, ::step].size > MESH_CELLS:
         step += 1

@@ -5,17 +5,11 @@ zero; when neither is safe any more, the brake that made the state safe is carri
 this gives the well-known seven phases of minimum time.
 """
 
-import math
-
 import numba
 import numpy as np
 
-from twin.motion.brake_kernels import after_jerk, brake_distance, brake_limits, time_to
-from twin.motion.last_chance_kernels import (
-    last_chance,
-    time_between,
-    time_to_border,
-)
+from twin.motion.brake_kernels import after_jerk, brake_distance, brake_limits
+from twin.motion.onward_kernels import SAME, ease_off, go_on
 from twin.motion.phase_kernels import put_brake, put_phase
 from twin.motion.reach_kernels import ROUNDING, SLOWEST, find_brake
 from twin.nc.canonical import FloatArray, IntArray
@@ -24,111 +18,8 @@ STATE_AT_REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0])
 """Stretch, x within it, v, a, time; the border to which the state can brake, -1: to be found, and
 the velocity there."""
 
-SHORTEST_PHASE = 1e-10
-"""Phases below this are rounding [s]."""
-
-SAME = 1e-12
-"""Relative difference of velocities that rounding makes: the brake between them would be longer
-than what is left of the way."""
-
-MOST_BRAKES = 64
-"""That are looked at in turn for one phase."""
-
-BRIEF = 1e-11
-"""How far beyond the last chance of a brake another is looked for, relative to the time looked at."""
-
-LATER = 1.02
-"""Of two brakes the one to the farther border is preferred if it takes no longer, by this factor, than
-the nearer one and the way on from there at ``reach``."""
-
-STRIDE = 8.0
-"""By which the search goes on where a brake is possible for longer, but for its rounding."""
-
 MOST_PHASES = 256
 """Of one stretch; where rounding asks for more, the brake that is known is carried out."""
-
-SHORTEST_HOLD = 1e-7
-"""Of an acceleration that is held: shorter ones only creep up to a limit [s]."""
-
-
-@numba.njit(cache=True)
-def _brake_after(
-    limits: FloatArray, entry: FloatArray, reach: FloatArray,
-    i: int, x: float, v: float, a: float, j: float, t: float, to_border: bool,
-) -> int:  # fmt: skip
-    """Border to which the state after t of jerk j can brake, -1: none.
-
-    Args:
-        limits: As in ``find_brake``, and so on to ``a``.
-        entry: See above.
-        reach: See above.
-        i: See above.
-        x: See above.
-        v: See above.
-        a: See above.
-        j: Jerk.
-        t: Time [s].
-        to_border: Whether t ends at the stretch's end.
-    """
-    new_x, new_v, new_a = after_jerk(x, v, a, j, t)
-    if not to_border:
-        return find_brake(limits, entry, reach, i, new_x, new_v, new_a, SAME, 0)
-    if new_v > min(limits[1, i], entry[i + 1]) * (1.0 + SAME) or i + 1 >= limits.shape[1]:
-        return -1
-    if limits[0, i + 1] == 0.0:
-        return -1
-    return find_brake(limits, entry, reach, i + 1, 0.0, new_v, new_a, SAME, 0)
-
-
-@numba.njit(cache=True)
-def _longest(
-    limits: FloatArray, entry: FloatArray, reach: FloatArray,
-    i: int, x: float, v: float, a: float, j: float, latest: float, brake: int,
-) -> tuple[float, bool, int]:  # fmt: skip
-    """How long jerk j may last, at most ``latest`` or to the stretch's end.
-
-    Args:
-        limits: As in ``_brake_after``, and so on to ``j``.
-        entry: See above.
-        reach: See above.
-        i: See above.
-        x: See above.
-        v: See above.
-        a: See above.
-        j: See above.
-        latest: [s]
-        brake: Border to which the state can brake.
-
-    Returns:
-        Time [s], whether it ends at the border, border to which the state can brake then.
-    """
-    rest = limits[0, i] - x
-    at_border = ((j / 6.0 * latest + 0.5 * a) * latest + v) * latest >= rest
-    if at_border:
-        latest = time_to(rest, v, a, j, latest)
-    found = _brake_after(limits, entry, reach, i, x, v, a, j, latest, at_border)
-    if found >= 0:
-        return latest, at_border, found
-    low, brief = 0.0, BRIEF * latest
-    step = brief
-    best, to, least = 0.0, brake, math.inf
-    for _ in range(MOST_BRAKES):
-        if step == brief:
-            low = last_chance(limits, entry, reach, i, x, v, a, j, brake, low, latest)
-            cost = time_to_border(limits, reach, i, x, v, a, j, low, brake)
-            between = time_between(limits, reach, to, brake)
-            if cost == math.inf or cost <= least + LATER * between:
-                best, to, least = low, brake, cost
-        # Another brake may be possible for longer.
-        t = low + step
-        if t >= latest:
-            break
-        found = _brake_after(limits, entry, reach, i, x, v, a, j, t, False)
-        if found < 0:
-            break
-        step = STRIDE * step if found == brake else brief
-        low, brake = t, found
-    return best, False, to
 
 
 @numba.njit(cache=True)
@@ -193,25 +84,11 @@ def find_phases(
         if k <= i:
             k, w = _known_brake(limits, entry, ways, i, x, v, a)
 
-        highest_v, highest_a, jerk = limits[1, i], limits[2, i], limits[4, i]
-        j, duration, latest, at_border, then = 0.0, 0.0, 0.0, False, k
-        gap = highest_v - (v + a * a / (2.0 * jerk))
         extend = v <= 0.0 or phases_here < MOST_PHASES
-        if extend and a < highest_a * (1.0 - ROUNDING) and gap > ROUNDING * highest_v:
-            j = jerk
-            latest = (highest_a - a) / jerk
-            duration, at_border, then = _longest(limits, entry, reach, i, x, v, a, j, latest, k)
-        holds = a == 0.0 or gap > ROUNDING * highest_v
-        # With a huge jerk even the whole of a phase may be shorter than any that counts.
-        short = duration < SHORTEST_PHASE and not 0.0 < latest <= duration
-        if extend and holds and short and v > 0.0:
-            j = 0.0
-            latest = 2.0 * rest / v
-            duration, at_border, then = _longest(limits, entry, reach, i, x, v, a, j, latest, k)
-            if a > 0.0 and duration < SHORTEST_HOLD and not at_border:
-                duration = 0.0
-        whole = at_border or duration >= latest or v <= 0.0
-        if duration > 0.0 and (duration >= SHORTEST_PHASE or whole):
+        j, duration, at_border, then = 0.0, 0.0, False, k
+        if extend:
+            j, duration, at_border, then = go_on(limits, entry, reach, i, x, v, a, k)
+        if duration > 0.0:
             put_phase(phases, stretches, used, i, i, now, duration, x, v, a, j)
             used += 1
             now += duration
@@ -226,26 +103,15 @@ def find_phases(
         deceleration, jerk, behind = brake_limits(limits, i, k)
         distance = rest + behind
         if a > 0.0:
-            # Only down to a = 0, or to the next border: there may be something better to do then.
-            duration = a / jerk
-            length = (v + a * duration / 3.0) * duration
-            at_border = length >= rest
-            if at_border:
-                duration = time_to(rest, v, a, -jerk, duration)
+            duration, at_border, x_then, v_then, a_then = ease_off(limits, i, x, v, a, jerk)
             put_phase(phases, stretches, used, i, i, now, duration, x, v, a, -jerk)
             used += 1
             now += duration
-            v += (a - 0.5 * jerk * duration) * duration
-            a -= jerk * duration
+            x, v, a = x_then, v_then, a_then
             if at_border:
-                i, x = i + 1, 0.0
+                i += 1
                 if i == k or a <= 0.0:
                     a = 0.0
-            else:
-                x, a = x + length, 0.0
-                if v <= highest_v * (1.0 + ROUNDING):
-                    # Above the limit by rounding alone, it would never be held.
-                    v = min(v, highest_v)
             continue
         if v <= w * (1.0 + SAME):
             # Only rounding has kept the state from going on as it is.
