@@ -59,12 +59,20 @@ def matrix_of(state: State) -> Matrix:
 @inlined_kernel
 def to_part(programmed: FloatArray, state: State, part: FloatArray) -> None:
     """Fill in the part coordinates of a programmed position, shape (k,)."""
-    total = state.total
+    for axis in range(len(part)):
+        part[axis] = programmed[axis] + state.total[axis]
+    turn_place(programmed, state, part)
+
+
+@inlined_kernel
+def turn_place(programmed: FloatArray, state: State, part: FloatArray) -> None:
+    """Let a sum of programmed position and shifts, shape (k,), heed the matrix.
+
+    Such sums are made in loops over the axes that do other things as well: a loop of its own would
+    cost every block a part of its time.
+    """
     if state.registers[TURNED] != 0.0:
         _turn(programmed, state, part)
-    else:
-        for axis in range(len(part)):
-            part[axis] = programmed[axis] + total[axis]
 
 
 @kernel
@@ -72,8 +80,6 @@ def _turn(programmed: FloatArray, state: State, part: FloatArray) -> None:
     place = (programmed[0], programmed[1], programmed[2])
     x, y, z = matrices.applied(matrix_of(state), place)
     part[0], part[1], part[2] = x + state.total[0], y + state.total[1], z + state.total[2]
-    for axis in range(3, len(part)):
-        part[axis] = programmed[axis] + state.total[axis]
 
 
 @kernel

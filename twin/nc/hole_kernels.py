@@ -11,7 +11,7 @@ from twin.nc.compile_kernels import kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
 from twin.nc.event_kernels import report
-from twin.nc.frame_kernels import to_part
+from twin.nc.frame_kernels import turn_place
 from twin.nc.holes import Act, Cycle, Hole
 from twin.nc.plain_state import (
     CORNER,
@@ -238,8 +238,9 @@ def _go(
     for axis in range(len(goal)):
         if not abs(goal[axis]) <= LARGEST_COORDINATE:
             return NOT_PLAIN
-        position[0, axis], position[2, axis] = part[axis], goal[axis]
-    to_part(goal, state, position[1])
+        end = goal[axis] + state.total[axis]
+        position[0, axis], position[1, axis], position[2, axis] = part[axis], end, goal[axis]
+    turn_place(goal, state, position[1])
     way = straight_way(position)
     copy(goal, here)
     if way <= 0.0:

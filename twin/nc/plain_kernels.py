@@ -14,7 +14,7 @@ from twin.nc.compile_kernels import inlined_kernel
 from twin.nc.control_motion import LARGEST_COORDINATE
 from twin.nc.event_columns import FUNCTION_ALONE
 from twin.nc.event_kernels import report
-from twin.nc.frame_kernels import to_part
+from twin.nc.frame_kernels import turn_place
 from twin.nc.hole_kernels import drill
 from twin.nc.line_reader import LARGEST_LABEL
 from twin.nc.plain_arc_kernels import write_arc
@@ -225,8 +225,10 @@ def _move(
         target = goal_of(axis, roles, values, seen, tables, state, modal, polar)
         if not abs(target) <= LARGEST_COORDINATE:
             return NOT_PLAIN
-        position[0, axis], position[2, axis] = state.part[axis], target
-    to_part(position[2], state, position[1])
+        position[0, axis] = state.part[axis]
+        position[1, axis] = target + state.total[axis]
+        position[2, axis] = target
+    turn_place(position[2], state, position[1])
     if is_arc:
         if not write_arc(roles, values, seen, tables, constants, state, modal, rows, row):
             return NOT_PLAIN

@@ -20,17 +20,17 @@ def straight_way(position: FloatArray) -> float:
     Returns:
         0 where nothing moves, or ``DOUBTFUL_WAY``.
     """
-    way = 0.0
-    for axis in range(3):
-        way = max(way, abs(position[1, axis] - position[0, axis]))
-    if way <= _RESTING:
-        way = 0.0
-        for axis in range(3):
-            position[1, axis] = position[0, axis]
-        for axis in range(3, position.shape[1]):
-            way = max(way, abs(position[1, axis] - position[0, axis]))
-        if way <= _RESTING:
-            way = 0.0
-            for axis in range(3, position.shape[1]):
+    spatial, other = 0.0, 0.0
+    for axis in range(position.shape[1]):
+        way = abs(position[1, axis] - position[0, axis])
+        if axis < 3:
+            spatial = max(spatial, way)
+        else:
+            other = max(other, way)
+    way = spatial
+    if spatial <= _RESTING:
+        way = other if other > _RESTING else 0.0
+        for axis in range(position.shape[1]):
+            if axis < 3 or way == 0.0:
                 position[1, axis] = position[0, axis]
     return DOUBTFUL_WAY if 0.0 < way < SHORTEST else way
