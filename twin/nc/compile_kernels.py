@@ -7,9 +7,18 @@ they are compiled without the counting (``_nrt``, Numba's run time of references
 """
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
+
+NONE_YET, ONCE, NO = (
+    cast("int", np.int64(0)),
+    cast("int", np.int64(1)),
+    cast("bool", np.bool_(False)),
+)
+"""For what is given to other kernels: to Numba a plain 0, 1 or False is a type of its own, for which
+it compiles a kernel once more."""
 
 Kernel = TypeVar("Kernel", bound=Callable[..., object])
 
@@ -20,7 +29,11 @@ def kernel(function: Kernel) -> Kernel:
 
 
 def inlined_kernel(function: Kernel) -> Kernel:
-    """The same, as a part of each function that calls it."""
+    """The same, as a part of each function that calls it.
+
+    A call hands over hundreds of values, one for each size and step of a column, which may take
+    longer than the block that is run.
+    """
     return _compiled(function, forceinline=True)
 
 

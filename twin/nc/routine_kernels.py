@@ -11,7 +11,7 @@ import numpy.typing as npt
 from twin.nc.bench_kernels import Bench, copy_state
 from twin.nc.call_kernels import end_parts
 from twin.nc.canonical import IntArray
-from twin.nc.compile_kernels import kernel
+from twin.nc.compile_kernels import NO, ONCE, kernel
 from twin.nc.contour_state import OFF, ROOM, STAGE
 from twin.nc.hole_kernels import NO_ROOM
 from twin.nc.instructions import GENERAL, PART_BITS, UNKNOWN, Step, Table
@@ -94,7 +94,7 @@ def run_program(
             rows.events
         ):
             return FULL
-        row = int(table.first[line])
+        row = int(np.int64(table.first[line]))
         if row == GENERAL:
             return LEFT
         if row == UNKNOWN:
@@ -118,10 +118,10 @@ def run_program(
             if compensates:
                 copy_state(state, bench.kept)
             made = run_times(
-                1,
+                ONCE,
                 line + 1,
                 words,
-                False,
+                NO,
                 progress[MADE],
                 state.happened[0],
                 tables,
@@ -141,7 +141,7 @@ def run_program(
             progress[LINE] = line + 1
             continue
         for _part in range(progress[PART]):
-            row = int(table.argument[row]) if table.step[row] == _BLOCK else 0
+            row = int(np.int64(table.argument[row])) if table.step[row] == _BLOCK else 0
         if table.step[row] != _BLOCK:
             progress[LINE], progress[PART] = line + 1, 0
             continue

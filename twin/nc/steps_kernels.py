@@ -8,7 +8,7 @@ import numpy as np
 from twin.nc import steps
 from twin.nc.bench_kernels import Bench, copy_force, copy_state
 from twin.nc.call_kernels import innermost
-from twin.nc.compile_kernels import kernel
+from twin.nc.compile_kernels import NONE_YET, inlined_kernel
 from twin.nc.contour_state import OFF, STAGE
 from twin.nc.deed_kernels import polar_target, run_deed
 from twin.nc.expression_kernels import of_one, of_three, of_two
@@ -51,7 +51,7 @@ DONE = -1
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@kernel
+@inlined_kernel
 def run_steps(
     row: int,
     table: Table,
@@ -81,7 +81,7 @@ def run_steps(
     steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
     behind = (line + 1) << PART_BITS if table.argument[row] == 0 else place + 1
     going, range_end, restores = behind, NO_PLACE, NOTHING_RESTORED
-    top, words, stores, own, why = 0, 0, 0, 0, LEFT
+    top, words, stores, own, why = NONE_YET, NONE_YET, 0, 0, LEFT
     contour, first_event = routine.contour, state.happened[0]
     kept = compensates = contour.counts[STAGE] != OFF
     if compensates:
