@@ -3,6 +3,7 @@
 ``scripts/fuzz KIND`` tries as many as there is time for; what it found stands here by name.
 """
 
+import logging
 from pathlib import Path
 
 import h5py
@@ -79,6 +80,16 @@ def test_a_corner_that_lies_nowhere_is_refused(tmp_path: Path, number: str) -> N
     path.write_text(f"solid a\n{facet}endloop\nendfacet\nendsolid a\n")
     with pytest.raises(ConfigError, match=r"beyond|not a readable|no solid"):
         read_stl(path)
+
+
+def test_reading_many_solids_leaves_nothing_behind(tmp_path: Path) -> None:
+    before = list(logging.getLogger("trimesh").handlers)
+    for number in range(3):
+        path = tmp_path / f"part{number}.stl"
+        path.write_text("solid a\nendsolid a\n")
+        with pytest.raises(ConfigError):
+            read_stl(path)
+    assert logging.getLogger("trimesh").handlers == before
 
 
 def test_a_motor_without_inertia_behind_a_backlash_is_refused(tmp_path: Path) -> None:

@@ -15,6 +15,9 @@ LARGEST_MM = 1e6
 if TYPE_CHECKING:
     import trimesh
 
+# It logs tracebacks of what it gets over; what it does not is told of here.
+logging.getLogger("trimesh").addHandler(logging.NullHandler())
+
 
 @functools.cache
 def read_stl(path: Path) -> "trimesh.Trimesh":
@@ -25,8 +28,6 @@ def read_stl(path: Path) -> "trimesh.Trimesh":
     """
     import trimesh
 
-    # It logs tracebacks of what it gets over; what it does not is told of here.
-    logging.getLogger("trimesh").addHandler(logging.NullHandler())
     try:
         # Corners that are no numbers are told of below.
         with path.open("rb") as file, np.errstate(all="ignore"):
