@@ -9,10 +9,8 @@ import pytest
 
 from tests.nc.nc_running import SETTINGS, WITH_TABLES, good
 from tests.nc.nc_transformations import program
-from tests.nc.test_nc_plain import ALWAYS, assert_same, seen
-from twin.nc.blocks import Block
+from tests.nc.test_nc_plain import assert_same, general_blocks
 from twin.nc.canonical import FloatArray, Shape
-from twin.nc.control import Control
 from twin.nc.matrices import IDENTITY, applied, inverse, product, rotated, stretched
 from twin.nc.planes import PLANE_ORDER
 from twin.nc.settings import ToolData
@@ -62,16 +60,7 @@ def test_the_compiled_run_takes_every_form(form: str, monkeypatch: pytest.Monkey
     text = f"G90 G1 F100 X-20 Y-20\n{before}{loop}\nM30"
     job = dataclasses.replace(WITH_TABLES, step_limit=100_000)
     assert assert_same(source_from_text(text), "fagor8070", job).error is None
-    lines: list[int] = []
-    general = Control.run
-
-    def counted(control: Control, block: Block) -> None:
-        lines.append(block.line)
-        general(control, block)
-
-    monkeypatch.setattr(Control, "run", counted)
-    seen(source_from_text(text), "fagor8070", job, ALWAYS)
-    assert len(lines) < 10
+    assert general_blocks(text, "fagor8070", job, monkeypatch) < 10
 
 
 def test_holes_under_a_rotation_go_the_compiled_way() -> None:

@@ -143,8 +143,11 @@ class BlockWriter:
 
     # --- values
 
-    def word_value(self, word: Word) -> None:
-        """Put the value of a word on the stack."""
+    def word_value(self, word: Word | None, default: float = 0.0) -> None:
+        """Put the value of a word on the stack, or of a missing one a default."""
+        if word is None:
+            self.number(default)
+            return
         self._column = word.column
         if isinstance(word.value, Expression):
             self.value(word.value)

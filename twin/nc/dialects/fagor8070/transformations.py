@@ -132,11 +132,7 @@ def write_mirror_axes(block: BlockWords, writer: BlockWriter) -> None:
 
 def write_scale(block: BlockWords, writer: BlockWriter) -> None:
     """G72."""
-    word = block.take("S")
-    if word is None:
-        writer.number(1.0)
-    else:
-        writer.word_value(word)
+    writer.word_value(block.take("S"), 1.0)
     writer.step(Step.SCALE)
     _write_update(writer)
 
@@ -154,10 +150,7 @@ def write_rotation(block: BlockWords, writer: BlockWriter) -> None:
         writer.step(Step.END_ROTATION)
     else:
         for word in (angle, *center):
-            if word is None:
-                writer.number(0.0)
-            else:
-                writer.word_value(word)
+            writer.word_value(word)
         writer.step(Step.ROTATE)
     _write_update(writer)
 
