@@ -12,15 +12,15 @@ from pathlib import Path
 from panel_picture import take_panel
 from PIL import Image
 
-from twin.chain import Run
-from twin.job import VideoTable
-from twin.preparation import prepare
-from twin.progress import no_progress
-from twin.recording import open_recording
+from twin.files.shipped import resource_root
+from twin.job.job_file import VideoTable
+from twin.recording.reader import open_recording
 from twin.render.film import film
 from twin.render.still import Shot, stills
-from twin.replay import scene_of
-from twin.resources import resource_root
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.replay import scene_of
+from twin.run.run import Run
 
 RENDERS = Path(__file__).resolve().parent.parent / "renders"
 LARGEST_BYTES = 300_000

@@ -7,11 +7,11 @@ from pathlib import Path
 
 from chromium import CHROMIUM, QUIET
 
-from twin.training.launch import open_room
 from twin.training.panel.request import do
-from twin.training.scene import read_scene, scene_path
-from twin.training.studio import RequestEvent
-from twin.training.texts import Language
+from twin.training.panel.studio import RequestEvent
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.scene.texts import Language
+from twin.training.server.launch import open_room
 
 SCENE = "fagor_first_steps"
 LINE = 5

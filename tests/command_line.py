@@ -5,8 +5,8 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+from twin.files.shipped import machine_file
 from twin.machine.config import read_machine
-from twin.resources import machine_file
 
 
 @dataclasses.dataclass(frozen=True)

@@ -12,17 +12,17 @@ import numpy as np
 import trimesh
 
 from tests.nc import nc_fuzz
+from twin.files.shipped import machine_file, machine_names
+from twin.files.stl import read_stl
 from twin.machine.config import Machine, read_machine
 from twin.machine.model import build_spec, physics_model
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes
 from twin.nc.dialects import DIALECTS
-from twin.preparation import prepare
-from twin.recording import RecordingHeader, Samples, open_recording, record
-from twin.resources import machine_file, machine_names
-from twin.stl_file import read_stl
+from twin.recording.reader import RecordingHeader, Samples, open_recording, record
+from twin.run.preparation import prepare
 from twin.toolpath.part_frame import PartFrame
-from twin.training.scene import read_scene
+from twin.training.scene.scene_file import read_scene
 
 SAMPLES = 300
 

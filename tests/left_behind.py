@@ -4,7 +4,7 @@ import json
 import struct
 from pathlib import Path
 
-from twin.recording import open_recording
+from twin.recording.reader import open_recording
 
 STL_HEADER, STL_TRIANGLE = 84, 50
 

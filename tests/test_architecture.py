@@ -46,7 +46,7 @@ def test_imports_point_left(room: str):
             parts = module.split(".")
             if parts[0] == "twin" and len(parts) > 1 and parts[1] in ROOMS:
                 assert parts[1] in allowed, f"{path.name} imports {module}"
-            assert module not in ("twin.cli", "twin.chain"), f"{path.name} imports {module}"
+            assert module not in ("twin.cli", "twin.run.run"), f"{path.name} imports {module}"
 
 
 @pytest.mark.parametrize("room", sorted(NO_MUJOCO))

@@ -9,7 +9,7 @@ import pytest
 import trimesh
 from command_line import Twin, machine_with_gain
 
-from twin.resources import resource_root
+from twin.files.shipped import resource_root
 
 PROGRAMS = resource_root("programs")
 

@@ -13,7 +13,7 @@ import pytest
 
 from tests.left_behind import complaints
 from twin.errors import UsageError
-from twin.run_folder import run_folder
+from twin.run.run_folder import run_folder
 
 JOB = Path(__file__).parents[1] / "programs" / "fagor8070" / "bolt_hole_ring.toml"
 

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.files import complete_or_absent, write_text
+from twin.files.atomic import complete_or_absent, write_text
 
 
 def test_a_file_appears_complete(tmp_path: Path):

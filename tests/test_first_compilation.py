@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from twin.first_compilation import MESSAGE
+from twin.compilation.announcement import MESSAGE
 
 KERNELS = """
 import numba
@@ -19,7 +19,7 @@ def triple(x):
     return 3 * x
 """
 CALLS = """
-from twin.first_compilation import announce_compilation
+from twin.compilation.announcement import announce_compilation
 announce_compilation()
 import kernels
 kernels.double(1), kernels.triple(1)

@@ -2,11 +2,11 @@ import numpy as np
 import pytest
 
 from twin.errors import ConfigError
-from twin.job import JobFile, StockTable, ToolTable
+from twin.files.shipped import machine_file
+from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.machine.config import Machine, read_machine
 from twin.machine.model import spindle_over_table_mm
-from twin.placement import WORK_HOLDING_HEIGHT, part_zero, start_position
-from twin.resources import machine_file
+from twin.run.placement import WORK_HOLDING_HEIGHT, part_zero, start_position
 
 
 @pytest.fixture(scope="module")

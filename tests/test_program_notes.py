@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
+from twin.cutting.program_notes import NoteTaker, ProgramNotes
 from twin.errors import ConfigError
-from twin.job import JobFile, StockTable, ToolTable
+from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.nc.canonical import Axes
+from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
-from twin.nc.settings import ControlSettings, ToolData
-from twin.nc.source import source_from_text
-from twin.program_notes import NoteTaker, ProgramNotes
+from twin.nc.text.source import source_from_text
 
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 TOOLS = (ToolTable(number=1), ToolTable(number=4, diameter=6.0, length=75.0, speed=500.0))

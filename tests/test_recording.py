@@ -7,9 +7,16 @@ import numpy as np
 import pytest
 
 from twin.errors import RecordingError
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes
-from twin.recording import Recording, RecordingHeader, Samples, open_growing, open_recording, record
+from twin.recording.reader import (
+    Recording,
+    RecordingHeader,
+    Samples,
+    open_growing,
+    open_recording,
+    record,
+)
 from twin.toolpath.part_frame import PartFrame
 
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
@@ -82,7 +89,7 @@ def test_the_file_follows_the_contract(tmp_path: Path):
 READER = """
 import sys
 from pathlib import Path
-from twin.recording import open_growing
+from twin.recording.reader import open_growing
 
 with open_growing(Path(sys.argv[1])) as recording:
     print(len(recording), flush=True)

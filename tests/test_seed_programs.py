@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from command_line import Twin, machine_with_gain
 
-from twin.resources import resource_root
+from twin.files.shipped import resource_root
 
 PROGRAMS = resource_root("programs")
 JOBS = sorted(job for job in PROGRAMS.glob("*/*.toml") if job.parent.name != "alarms")

@@ -3,8 +3,8 @@ from pathlib import Path
 import pytest
 
 from twin.errors import ConfigError, ExitCode
-from twin.job import JobFile, read_job
-from twin.toml_file import read_toml
+from twin.files.toml import read_toml
+from twin.job.job_file import JobFile, read_job
 
 
 def job_text(tmp_path: Path, text: str) -> Path:

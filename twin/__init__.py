@@ -6,18 +6,14 @@ watch. ``twin.interpret``, ``twin.plan``, ``twin.run`` and ``twin.compare`` are 
 (``twin.api``).
 """
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-from twin.kernel_cache import forget_stale
 
 if TYPE_CHECKING:
     from twin.api import compare, interpret, plan, run
 
-__version__ = "0.1.0"
-__all__ = ["__version__", "compare", "interpret", "plan", "run"]
+from twin.version import __version__
 
-forget_stale(Path(__file__).parent)
+__all__ = ["__version__", "compare", "interpret", "plan", "run"]
 
 
 def __getattr__(name: str) -> Any:

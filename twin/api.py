@@ -17,20 +17,20 @@ from typing import Any
 
 import numpy.typing as npt
 
-from twin.chain import Run
 from twin.columns import join
 from twin.compare.track_comparison import compare_files
 from twin.errors import RecordingError
+from twin.machine.motion_limits import motion_limits
 from twin.motion.planner import plan as plan_chunks
-from twin.motion.setpoints import Setpoints
-from twin.motion_limits import motion_limits
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Moves, concatenate
-from twin.outcome import Outcome
-from twin.preparation import prepare
-from twin.progress import no_progress
-from twin.recording import open_recording
-from twin.results import RESULT_FILES, write_results
-from twin.run_folder import run_folder
+from twin.recording.reader import open_recording
+from twin.run.outcome import Outcome
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.results import RESULT_FILES, write_results
+from twin.run.run import Run
+from twin.run.run_folder import run_folder
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +39,7 @@ class FinishedRun:
 
     Attributes:
         outcome: Verdict, figures, alarms, final positions.
-        recording: The recording, for ``twin.recording.open_recording``; None when nothing moved.
+        recording: The recording, for ``twin.recording.reader.open_recording``; None when nothing moved.
     """
 
     outcome: Outcome

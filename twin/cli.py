@@ -5,7 +5,6 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from twin import __version__
 from twin.command_line.knowledge import dialects, doctor, explain
 from twin.command_line.machines import machine_app
 from twin.command_line.pictures import render
@@ -13,6 +12,7 @@ from twin.command_line.programs import interpret, plan, run
 from twin.command_line.training import train
 from twin.command_line.verdicts import check, compare, export, sweep
 from twin.errors import ExitCode, TwinError
+from twin.version import __version__
 
 app = typer.Typer(
     name="twin",

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from benches.row import Row
 
-from twin.chain import Run
-from twin.preparation import prepare
-from twin.progress import no_progress
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.run import Run
 
 ROUNDS = 100
 """Of the program below: ten minutes of machine time at the default feeds."""

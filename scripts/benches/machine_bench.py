@@ -10,6 +10,7 @@ from benches.row import REPEATS, Row, median_seconds
 from mujoco.rollout import Rollout
 
 from twin.columns import join
+from twin.files.shipped import machine_file, machine_names
 from twin.machine.circle_path import CirclePath
 from twin.machine.config import read_machine
 from twin.machine.drives import feedforward_name
@@ -17,8 +18,7 @@ from twin.machine.live import LiveMachine
 from twin.machine.model import build_spec, physics_model
 from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.simulate import simulate
-from twin.motion.setpoints import Setpoints
-from twin.resources import machine_file, machine_names
+from twin.motion.setpoints.setpoints import Setpoints
 
 CHUNK = 16384
 """Setpoints per chunk, as the planner gives them."""

@@ -15,13 +15,13 @@ from benches import linuxcnc_simulator
 from benches.row import Row, median_cpu_seconds
 
 from twin.columns import join
+from twin.machine.motion_limits import motion_limits
 from twin.motion.limits import MotionLimits
-from twin.motion.phases import plan_phases
 from twin.motion.planner import plan
-from twin.motion.setpoints import Setpoints
-from twin.motion_limits import motion_limits
+from twin.motion.profile.phases import plan_phases
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray
-from twin.preparation import Preparation, prepare
+from twin.run.preparation import Preparation, prepare
 
 NO_JERK_LIMIT = 1e9
 """In the place of every jerk limit, for peers that know none."""

@@ -20,10 +20,10 @@ from benches.nc_programs import LINES, ROUNDS, programs
 from benches.row import REPEATS, Row, median_cpu_seconds
 
 from twin.nc.canonical import Axes
+from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
-from twin.nc.settings import ControlSettings, ToolData
-from twin.nc.source import read_source
+from twin.nc.text.source import read_source
 
 PEERS = Path(__file__).resolve().parents[2] / ".peers"
 """Where ``scripts/bench --peers`` puts them."""

@@ -12,22 +12,22 @@ from unittest import mock
 import numpy as np
 from benches.row import REPEATS, Row, median_seconds
 
-from twin.chain import Run
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import blank
 from twin.cutting.sweep_kernels import sweep
 from twin.cutting.tools import profile
-from twin.job import StockTable, ToolTable, VideoTable
-from twin.motion.setpoints import Setpoints
+from twin.files.shipped import resource_root
+from twin.job.job_file import StockTable, ToolTable, VideoTable
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.preparation import prepare
-from twin.progress import no_progress
-from twin.recording import Samples, open_recording
+from twin.recording.reader import Samples, open_recording
 from twin.render.canvas import Canvas, Pixels
 from twin.render.film import film
 from twin.render.stage import Scene
-from twin.replay import scene_of
-from twin.resources import resource_root
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.replay import scene_of
+from twin.run.run import Run
 from twin.toolpath.part_frame import PartFrame
 
 FREECAD = "FreeCAD height map, published"

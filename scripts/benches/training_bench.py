@@ -16,8 +16,8 @@ from benches.row import REPEATS, Row
 from benches.training_room import SCENE, RoomProcess, room_process, wait_until
 from chromium import CHROMIUM, QUIET
 
-from twin.training.scene import read_scene, scene_path
-from twin.training.session import Session
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.session.session import Session
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -11,10 +11,10 @@ from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
 from typing import Any
 
-from twin.training.launch import OpenRoom, open_room
 from twin.training.panel.request import do
-from twin.training.scene import read_scene, scene_path
-from twin.training.studio import RequestEvent
+from twin.training.panel.studio import RequestEvent
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.server.launch import OpenRoom, open_room
 
 SCENE = "mefi_helix_hold"
 OVERRIDE = 20

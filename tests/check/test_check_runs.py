@@ -13,7 +13,7 @@ from twin.check.runner import check_all
 from twin.check.task import CheckSettings, check_program
 from twin.commands.check import CODE_QUALITY_FILE, check_and_print
 from twin.errors import ExitCode, UsageError
-from twin.job import Job, JobFile, read_job
+from twin.job.job_file import Job, JobFile, read_job
 
 PROGRAM = """N10 X0 Y0 Z0 G00
 N20 G01 X10.5 F3000

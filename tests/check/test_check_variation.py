@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from twin.changes import changed
 from twin.check.outcome import CheckOutcome
 from twin.check.runner import run_tasks
 from twin.check.task import CheckSettings, check_variant
 from twin.check.variation import Variant, variants
 from twin.errors import ExitCode, UsageError
-from twin.preparation import prepare
+from twin.files.overrides import changed
+from twin.run.preparation import prepare
 
 JOB = Path(__file__).parents[2] / "programs" / "mefi" / "helix.toml"
 

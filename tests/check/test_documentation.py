@@ -12,12 +12,12 @@ import yaml
 from typer.main import get_command
 
 from tests.check.test_check_runs import PROGRAM, write_job
-from twin import __version__
 from twin.check.task import CheckSettings, check_program
 from twin.cli import app
 from twin.commands.export import export_and_print
-from twin.job import BaselineTable, ToleranceTable
-from twin.toml_file import read_toml
+from twin.files.toml import read_toml
+from twin.job.job_file import BaselineTable, ToleranceTable
+from twin.version import __version__
 
 ROOT = Path(__file__).parents[2]
 CHECK, COMPARE = ROOT / "twin" / "check" / "README.md", ROOT / "twin" / "compare" / "README.md"

@@ -8,7 +8,7 @@ from twin import api
 from twin.commands.compare import compare_and_print
 from twin.commands.export import export_and_print
 from twin.errors import ExitCode, UsageError
-from twin.nc.diagnostics import ProgramError
+from twin.nc.text.diagnostics import ProgramError
 
 
 def test_a_program_from_text_to_difference(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

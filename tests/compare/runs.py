@@ -5,9 +5,9 @@ import numpy as np
 from tests.compare.paths import AXES
 from twin.compare.comparison import Comparison
 from twin.compare.figures import Figures
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Moves, Shape
-from twin.recording import Samples
+from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 
 FRAME = PartFrame(rotary=3, center=(40.0, -30.0), turn_zero=15.0)

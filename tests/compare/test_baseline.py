@@ -13,9 +13,9 @@ from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
-from twin.job import BaselineTable
+from twin.job.job_file import BaselineTable
 from twin.nc.canonical import Axes, Chunk, Dwell, Function, Moves
-from twin.nc.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
 
 CORNER = np.array([50.0, 0, 0, 0])
 ROWS = [

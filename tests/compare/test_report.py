@@ -14,10 +14,10 @@ from twin.compare.report import Report, render_report, write_report
 from twin.compare.result import RunSummary, result
 from twin.compare.trace import Trace
 from twin.compare.verdict import judge
-from twin.job import ToleranceTable
+from twin.job.job_file import ToleranceTable
 from twin.nc.canonical import Moves
-from twin.nc.lines import Lines
-from twin.recording import RecordingHeader
+from twin.nc.text.lines import Lines
+from twin.recording.reader import RecordingHeader
 
 CORNER = np.array([50.0, 0, 0, 0])
 MOVES = moves_of(

@@ -11,7 +11,7 @@ from twin.compare.export import csv_header, export_csv
 from twin.compare.track_comparison import compare_tracks
 from twin.compare.tracks import read_track
 from twin.errors import RecordingError, UsageError
-from twin.recording import RecordingHeader, open_recording, record
+from twin.recording.reader import RecordingHeader, open_recording, record
 
 CORNER = np.array([50.0, 0, 0, 0])
 MOVES = moves_of(

@@ -11,7 +11,7 @@ from twin.compare.figures import ArcFigures, AxisTracking, ContourFigures, Figur
 from twin.compare.result import RunSummary, result, write_result
 from twin.compare.verdict import judge
 from twin.errors import ExitCode
-from twin.job import BlocksToleranceTable, ToleranceTable
+from twin.job.job_file import BlocksToleranceTable, ToleranceTable
 
 
 @dataclasses.dataclass(frozen=True)

@@ -8,10 +8,10 @@ import pytest
 from tests.cutting.conftest import Motion
 from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import Cutter
+from twin.cutting.program_notes import ProgramNotes
 from twin.cutting.tools import ToolPlan
 from twin.errors import ConfigError
-from twin.job import StockTable, ToolTable
-from twin.program_notes import ProgramNotes
+from twin.job.job_file import StockTable, ToolTable
 from twin.toolpath.part_frame import PartFrame
 
 FRAME = PartFrame(rotary=3, center=(5.0, -3.0), turn_zero=20.0)

@@ -7,7 +7,7 @@ import pytest
 from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
 from twin.errors import ConfigError
-from twin.job import StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 

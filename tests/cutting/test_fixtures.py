@@ -8,8 +8,8 @@ import pytest
 from tests.cutting.conftest import Motion
 from twin.cutting.fixtures import FixtureGuard
 from twin.cutting.tools import ToolPlan
-from twin.fixture import FixtureTable
-from twin.job import ToolTable
+from twin.job.fixture import FixtureTable
+from twin.job.job_file import ToolTable
 from twin.toolpath.part_frame import PartFrame
 
 TOOL = ToolTable(number=1, diameter=10.0)

@@ -8,7 +8,7 @@ from twin.cutting.cut import Cutter
 from twin.cutting.force import MATERIALS
 from twin.cutting.force_direction import RADIAL_SHARE
 from twin.cutting.ledger import BINS
-from twin.job import StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
 

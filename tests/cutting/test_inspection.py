@@ -14,7 +14,7 @@ from twin.cutting.height_map import blank
 from twin.cutting.inspection import inspect
 from twin.cutting.part import part_mesh, write_glb, write_stl
 from twin.errors import ConfigError
-from twin.job import Job, JobFile, StockTable, ToolTable
+from twin.job.job_file import Job, JobFile, StockTable, ToolTable
 from twin.toolpath.part_frame import PartFrame
 
 FRAME = PartFrame(rotary=None, center=(0.0, 0.0))

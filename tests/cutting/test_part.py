@@ -11,7 +11,7 @@ from tests.cutting.conftest import samples
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import HeightMap, blank
 from twin.cutting.part import part_mesh, write_stl
-from twin.job import StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
 from twin.toolpath.part_frame import PartFrame
 
 ORIGIN = np.zeros(3)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.cutting.spindle import Spindle, speaks_of_spindle
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes, Chunk, Dwell, Event, Function, Moves
 
 AXES = Axes(("X", "Y", "Z"), ("linear", "linear", "linear"))

@@ -7,7 +7,7 @@ from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
 from twin.cutting.tools import ToolPlan, default_cell, profile
 from twin.errors import ConfigError
-from twin.job import StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
 from twin.toolpath.part_frame import PartFrame
 
 FRAME = PartFrame(rotary=None, center=(0.0, 0.0))

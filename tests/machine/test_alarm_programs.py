@@ -7,7 +7,7 @@ import h5py
 import pytest
 from command_line import Twin
 
-from twin.resources import resource_root
+from twin.files.shipped import resource_root
 
 FOLDER = resource_root("programs") / "alarms" / "fagor8070"
 EXPECTED = {

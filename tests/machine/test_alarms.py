@@ -11,8 +11,8 @@ from twin.machine.config import FixtureTable, Machine, MachineFile
 from twin.machine.model import build_spec, clearance_model
 from twin.machine.simulate import simulate
 from twin.machine.tool_shape import DefaultTool
-from twin.motion.setpoints import Setpoints
-from twin.recording import Samples
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.recording.reader import Samples
 
 
 def with_fixture(machine: Machine, size, position) -> Machine:

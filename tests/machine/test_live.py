@@ -8,16 +8,16 @@ from machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 
 import twin.machine.live
 from twin.errors import ConfigError
+from twin.files.shipped import machine_file, machine_names
 from twin.machine.alarms import AlarmStandsError
 from twin.machine.config import FixtureTable, Machine, read_machine
 from twin.machine.live import LiveMachine
 from twin.machine.model import build_spec, drives
 from twin.machine.simulate import simulate
 from twin.machine.tool_shape import DefaultTool
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.recording import Samples
-from twin.resources import machine_file, machine_names
+from twin.recording.reader import Samples
 from twin.units import MM
 
 

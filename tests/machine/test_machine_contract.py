@@ -4,11 +4,11 @@ import shutil
 
 import pytest
 
+from twin.files.shipped import machine_file, machine_names, variant_names
 from twin.machine.check import check_machine
 from twin.machine.circular_test import circular_test
 from twin.machine.config import read_machine
 from twin.machine.describe import describe, shipped_machines
-from twin.resources import machine_file, machine_names, variant_names
 from twin.units import MM, UM_PER_MM
 
 POINTS = (

@@ -7,9 +7,9 @@ from machine_fixtures import line, shipped_machine
 from twin.machine.drives import Drive
 from twin.machine.model import build_spec, drives, physics_model
 from twin.machine.simulate import Load, simulate
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.recording import Samples
+from twin.recording.reader import Samples
 
 LOAD = np.array([400.0, -300.0, 200.0, 25.0])
 

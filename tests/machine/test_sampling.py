@@ -8,8 +8,8 @@ from twin.machine.config import Machine
 from twin.machine.model import build_spec
 from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.simulate import simulate
-from twin.motion.setpoints import Setpoints
-from twin.recording import Samples
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.recording.reader import Samples
 
 PERFECT = {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0}
 F3000, F10000 = 3000.0, 10000.0

@@ -9,8 +9,8 @@ from twin.errors import ConfigError
 from twin.machine.config import Machine
 from twin.machine.model import build_spec, drives, physics_model
 from twin.machine.simulate import simulate
-from twin.motion.setpoints import Setpoints
-from twin.recording import Samples
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.recording.reader import Samples
 from twin.units import MM
 
 PERFECT = {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0}

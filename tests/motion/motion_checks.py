@@ -3,8 +3,8 @@
 import numpy as np
 
 from twin.motion.limits import MotionLimits
-from twin.motion.phases import Phases
-from twin.motion.setpoints import Setpoints
+from twin.motion.profile.phases import Phases
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Motion, Moves, Shape
 from twin.units import SECONDS_PER_MINUTE
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from twin.columns import join
 from twin.motion.limits import MotionLimits
-from twin.motion.phases import plan_phases
 from twin.motion.planner import plan
-from twin.motion.setpoints import Setpoints
+from twin.motion.profile.phases import plan_phases
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import (
     NO_BLOCK_NUMBER,
     Axes,

@@ -3,9 +3,9 @@ from hypothesis import given
 from motion_programs import SETTINGS, Program, programs
 
 from twin.columns import join
-from twin.motion.block_kernels import largest_travels
-from twin.motion.blocks import Blocks, blocks_of_chunks
-from twin.motion.border_kernels import (
+from twin.motion.blocks.block_kernels import largest_travels
+from twin.motion.blocks.blocks import Blocks, blocks_of_chunks
+from twin.motion.blocks.border_kernels import (
     KNEE_NOISE,
     border_steps,
     border_velocities,

@@ -4,7 +4,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from motion_programs import SETTINGS
 
-from twin.motion.bound_kernels import bound_derivatives
+from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.nc.canonical import FloatArray
 
 

@@ -10,17 +10,17 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from motion_programs import SETTINGS
 
-from twin.motion.brake_kernels import (
+from twin.motion.live.transition_kernels import find_transition
+from twin.motion.profile.brake_kernels import (
     brake_distance,
     brake_need,
     brake_time,
     time_to,
 )
-from twin.motion.phase_kernels import put_brake
-from twin.motion.reach_kernels import find_brake, find_reach
-from twin.motion.stretch_kernels import find_stretches, merge_limits, place_phases
-from twin.motion.transition_kernels import find_transition
-from twin.motion.way_kernels import room_for_brake
+from twin.motion.profile.phase_kernels import put_brake
+from twin.motion.profile.reach_kernels import find_brake, find_reach
+from twin.motion.profile.stretch_kernels import find_stretches, merge_limits, place_phases
+from twin.motion.profile.way_kernels import room_for_brake
 from twin.nc.canonical import FloatArray
 
 FEWER = hypothesis.settings(SETTINGS, max_examples=40)

@@ -11,9 +11,9 @@ from motion_programs import PERIOD, SETTINGS, ZERO, Program, duration, limits, m
 
 from twin.columns import join
 from twin.motion.limits import MotionLimits
-from twin.motion.pieces import pieces_of_chunks
-from twin.motion.rounding_kernels import add_rounding
-from twin.motion.setpoints import Setpoints
+from twin.motion.pieces.pieces import pieces_of_chunks
+from twin.motion.pieces.rounding_kernels import add_rounding
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Corner, FloatArray
 
 FEWER = hypothesis.settings(SETTINGS, max_examples=40)

@@ -8,10 +8,10 @@ import pytest
 from motion_programs import mill
 
 from twin.columns import join
-from twin.motion.phases import plan_phases
 from twin.motion.planner import plan
-from twin.motion.setpoints import Setpoints
-from twin.preparation import Preparation, prepare
+from twin.motion.profile.phases import plan_phases
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.run.preparation import Preparation, prepare
 
 NIMBLE = mill(
     velocity=np.full(4, 1e4), acceleration=np.full(4, 1e7), jerk=np.full(4, 1e13),

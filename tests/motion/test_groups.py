@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_programs import Program, mill, run
 
-from twin.motion import pieces
-from twin.motion.blocks import blocks_of_chunks, with_neighbours
+from twin.motion.blocks.blocks import blocks_of_chunks, with_neighbours
+from twin.motion.pieces import pieces
 from twin.nc.canonical import Corner
 
 

@@ -10,8 +10,8 @@ from motion_programs import AXES, PERIOD, SETTINGS, ZERO, Program, limits, mill,
 
 from twin.columns import join
 from twin.motion.limits import MotionLimits
-from twin.motion.live_motion import LiveMotion
-from twin.motion.setpoints import Setpoints
+from twin.motion.live.live_motion import LiveMotion
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Corner, Moves
 
 FEWER = hypothesis.settings(SETTINGS, max_examples=40)

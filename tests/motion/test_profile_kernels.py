@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from motion_programs import SETTINGS
 
-from twin.motion.profile_kernels import STATE_AT_REST, find_phases
-from twin.motion.reach_kernels import find_reach
+from twin.motion.profile.profile_kernels import STATE_AT_REST, find_phases
+from twin.motion.profile.reach_kernels import find_reach
 from twin.nc.canonical import FloatArray
 
 

@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 from motion_programs import SETTINGS
 from numpy.polynomial import Polynomial
 
-from twin.motion.rounding_kernels import add_at_end, add_rounding, shift_polynomials
+from twin.motion.pieces.rounding_kernels import add_at_end, add_rounding, shift_polynomials
 
 STEPS = st.lists(st.floats(-2.0, 2.0), min_size=4, max_size=4).map(np.array)
 

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from motion_programs import AXES, SETTINGS, Program, duration, limits, mill, programs, run
 
-from twin.motion.drawing import draw_plan
 from twin.motion.limits import MotionLimits
-from twin.motion.reasons import FEED, SHORT, STOP
-from twin.motion.summary import Cause, Summary, summarize
+from twin.motion.report.drawing import draw_plan
+from twin.motion.report.reasons import FEED, SHORT, STOP
+from twin.motion.report.summary import Cause, Summary, summarize
 from twin.nc.canonical import Corner
 
 

@@ -13,12 +13,12 @@ import numpy as np
 
 from tests.nc.nc_running import ROOT, SETTINGS
 from twin.nc.canonical import Chunk, Moves, Shape
-from twin.nc.diagnostics import ProgramError
-from twin.nc.dialect import Dialect
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.settings import ToolData
 from twin.nc.dialects import DIALECTS
 from twin.nc.interpreter import Interpretation
-from twin.nc.settings import ToolData
-from twin.nc.source import source_from_bytes
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.source import source_from_bytes
 
 FUZZ_SETTINGS = dataclasses.replace(
     SETTINGS,

@@ -4,14 +4,14 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from twin.job import read_job
+from twin.job.job_file import read_job
 from twin.nc.canonical import Axes, Chunk, Event, Moves, concatenate
-from twin.nc.diagnostics import Diagnostic, ProgramError
+from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.jsonl import records
-from twin.nc.settings import ControlSettings, ToolData
-from twin.nc.source import read_source, source_from_text
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.source import read_source, source_from_text
 
 ROOT = Path(__file__).resolve().parents[2]
 MILL = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 
 from tests.nc.nc_running import ROOT, SETTINGS
-from twin.nc.diagnostics import ProgramError
+from twin.nc.control.settings import ToolData
 from twin.nc.dialects import dialect_named
-from twin.nc.explain import findings
 from twin.nc.interpreter import Interpretation
-from twin.nc.settings import ToolData
-from twin.nc.source import source_from_bytes
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.explain import findings
+from twin.nc.text.source import source_from_bytes
 
 WITH_TOOL = dataclasses.replace(SETTINGS, tools={1: ToolData(5.0, 60.0)})
 BAD = sorted((ROOT / "tests" / "bad").rglob("*.nc"))

@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.nc.nc_running import bad, good
-from twin.nc.arcs import distance
 from twin.nc.canonical import FloatArray, Moves, Shape
-from twin.nc.contour import Element
-from twin.nc.loops import crossing
+from twin.nc.geometry.arcs import distance
+from twin.nc.geometry.elements import Element
+from twin.nc.path.loops import crossing
 
 SPLINE_ERROR = 5e-4
 

@@ -6,12 +6,12 @@ import pytest
 
 from tests.nc.nc_running import SETTINGS, bad, good
 from twin.nc.canonical import Motion, concatenate
-from twin.nc.diagnostics import ProgramError
 from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.codesys.subprograms import with_files
 from twin.nc.interpreter import Interpretation
-from twin.nc.source import read_source
-from twin.preparation import prepare
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.source import read_source
+from twin.run.preparation import prepare
 
 COUNTED = """
 N00 G36 D10          (set counter to 10)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tests.nc.nc_running import Outcome, bad, good
 from tests.nc.test_nc_same_part import sampled
 from twin.nc.canonical import FloatArray
-from twin.nc.settings import ToolData
+from twin.nc.control.settings import ToolData
 
 RADIUS = 3.0
 TOOLS = {1: ToolData(RADIUS, 60.0)}

@@ -11,7 +11,7 @@ from tests.nc.nc_running import WITH_TABLES
 from tests.nc.test_nc_plain import ALWAYS, assert_same, general_blocks, seen
 from twin.nc.canonical import Function
 from twin.nc.dialects import DIALECTS
-from twin.nc.source import source_from_text
+from twin.nc.text.source import source_from_text
 
 JOB = dataclasses.replace(WITH_TABLES, step_limit=2000)
 

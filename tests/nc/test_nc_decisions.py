@@ -8,7 +8,7 @@ import pytest
 
 from tests.nc.nc_running import MILL, Outcome, bad, good
 from twin.nc.canonical import Axes, Corner, Dwell, Function, Shape
-from twin.nc.settings import ToolData
+from twin.nc.control.settings import ToolData
 
 # --- gost
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from twin.nc.canonical import Dwell, Function
-from twin.nc.event_columns import (
+from twin.nc.path.event_columns import (
     AUXILIARY,
     DWELL,
     FUNCTION_ALONE,

@@ -9,8 +9,8 @@ import pytest
 
 from tests.nc.nc_running import ROOT, run
 from twin.errors import UsageError
-from twin.nc.explain import explain, findings, overview
-from twin.nc.settings import ToolData
+from twin.nc.control.settings import ToolData
+from twin.nc.text.explain import explain, findings, overview
 
 _CODE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 _MAKERS = {"fail", "warn", "warn_once", "_warn", "_fail", "_refuse", "refuse", "ExpressionError"}

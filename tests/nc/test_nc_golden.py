@@ -14,7 +14,7 @@ import pytest
 from tests.nc.nc_running import ROOT, WITH_TABLES, all_records, shipped
 from twin.nc.dialects import DIALECTS, dialect_named, recognise
 from twin.nc.interpreter import Interpretation
-from twin.nc.source import read_source
+from twin.nc.text.source import read_source
 
 GOLDEN = ROOT / "tests" / "golden"
 PROGRAMS = sorted((ROOT / "programs").glob("*/*.nc"))

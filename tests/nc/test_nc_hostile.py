@@ -8,10 +8,10 @@ import pytest
 
 from tests.nc import nc_fuzz
 from tests.nc.nc_running import SETTINGS, bad
-from twin.nc.diagnostics import ProgramError
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.interpreter import Interpretation
-from twin.nc.source import read_source, source_from_bytes
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.source import read_source, source_from_bytes
 
 MEBIBYTE = 2**20
 

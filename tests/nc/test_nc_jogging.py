@@ -4,7 +4,7 @@ import pytest
 from nc_running import run
 
 from twin.nc.dialects import DIALECTS, dialect_named
-from twin.nc.jogging import jog_block
+from twin.nc.iso.jogging import jog_block
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)

@@ -6,11 +6,11 @@ import pytest
 
 from tests.nc.nc_running import SETTINGS
 from twin.nc.canonical import Moves, concatenate
-from twin.nc.diagnostics import ProgramError
 from twin.nc.dialects.fagor8070 import FAGOR8070
 from twin.nc.dialects.fagor8070.library import with_globals
 from twin.nc.interpreter import Interpretation
-from twin.nc.source import read_source
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.source import read_source
 
 
 def run_files(folder: Path, **files: str) -> Moves:

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from twin.nc import lines as room
 from twin.nc.dialects import dialect_named
-from twin.nc.lines import Lines
-from twin.nc.source import read_source, source_from_bytes, source_from_text
+from twin.nc.text import lines as room
+from twin.nc.text.lines import Lines
+from twin.nc.text.source import read_source, source_from_bytes, source_from_text
 
 CUTS = st.lists(st.integers(1, 40), max_size=8)
 TEXTS = st.text("GX1 .Ж\r\n\n", max_size=200)

@@ -6,11 +6,11 @@ import time
 import pytest
 
 from tests.nc.nc_running import SETTINGS
-from twin.nc.diagnostics import ProgramError
 from twin.nc.dialects import DIALECTS
 from twin.nc.interpreter import Interpretation
-from twin.nc.iso import is_ellipsis
-from twin.nc.source import source_from_bytes
+from twin.nc.iso.codes import is_ellipsis
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.source import source_from_bytes
 
 PIECES = [
     ".",

@@ -15,7 +15,7 @@ import pytest
 
 from tests.nc.nc_running import good
 from twin.nc.canonical import Moves, Shape
-from twin.nc.settings import ToolData
+from twin.nc.control.settings import ToolData
 
 RS274 = shutil.which("rs274")
 pytestmark = pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed")

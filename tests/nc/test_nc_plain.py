@@ -8,14 +8,14 @@ import pytest
 
 from tests.nc.nc_fuzz import REAL, mutated
 from tests.nc.nc_running import ROOT, SETTINGS, WITH_TABLES
-from twin.nc.blocks import Block
 from twin.nc.canonical import Chunk, Event, Moves, concatenate
-from twin.nc.control import Control
-from twin.nc.diagnostics import Diagnostic, ProgramError
+from twin.nc.control.control import Control
+from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.interpreter import Interpretation
-from twin.nc.settings import ControlSettings
-from twin.nc.source import Source, read_source, source_from_bytes, source_from_text
+from twin.nc.text.blocks import Block
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.source import Source, read_source, source_from_bytes, source_from_text
 
 NEVER, ALWAYS = 10**9, 0
 GOLDEN = sorted((ROOT / "tests").glob("*/*/**/*.nc")) + sorted((ROOT / "programs").glob("*/*.nc"))
@@ -200,7 +200,7 @@ def test_pages_may_end_at_any_line(dialect: str, monkeypatch: pytest.MonkeyPatch
     for _ in range(40):
         text = program(random_, dialect)
         with monkeypatch.context() as patch:
-            patch.setattr("twin.nc.lines.PAGE", random_.randrange(20, 200))
+            patch.setattr("twin.nc.text.lines.PAGE", random_.randrange(20, 200))
             in_pages = source_from_text(text)
         assert_same(in_pages, dialect)
 
@@ -230,7 +230,7 @@ def test_long_runs_cross_the_border_of_chunks(dialect: str) -> None:
 
 def test_the_fast_way_is_taken() -> None:
     """Otherwise the tests above compare the general way with itself."""
-    from twin.nc.plain import PlainRunner
+    from twin.nc.compiled.runner import PlainRunner
 
     text = "G90 G1 X0 F100\n" + "G1 X1 Y2 (a)\n\nG2 X11 Y2 I5 J0\n" * 50
     for dialect in ("gost", "codesys", "fagor8070"):

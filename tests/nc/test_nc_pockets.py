@@ -7,7 +7,7 @@ import pytest
 
 from tests.nc.nc_running import bad, good
 from twin.nc.canonical import FloatArray, Moves, Shape
-from twin.nc.settings import ToolData
+from twin.nc.control.settings import ToolData
 
 TOOLS = {1: ToolData(5.0, 60.0)}
 

@@ -5,7 +5,7 @@ import pytest
 from tests.nc.nc_running import ROOT
 from twin.errors import UsageError
 from twin.nc.dialects import DIALECTS, dialect_named, recognise
-from twin.nc.source import read_source, source_from_text
+from twin.nc.text.source import read_source, source_from_text
 
 OWN = {
     "gost": ["G102 C360", "G0 X1 $ подход", "G0 X1 $ approach", "G1 C5 F100 $"],

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from tests.nc.nc_routines import MAKERS, program
 from tests.nc.nc_running import SETTINGS, WITH_TABLES, bad
 from tests.nc.test_nc_plain import ALWAYS, assert_same, seen
-from twin.nc.control import Control
+from twin.nc.control.control import Control
 from twin.nc.dialects import DIALECTS
-from twin.nc.expressions import LARGEST_NUMBER
-from twin.nc.source import source_from_text
+from twin.nc.text.expressions import LARGEST_NUMBER
+from twin.nc.text.source import source_from_text
 
 JOB = dataclasses.replace(
     WITH_TABLES, step_limit=2000, variables={"P3": 1.5, "P9": 2.0, "$v$": 3.0, "w": 1.0}
@@ -31,7 +31,7 @@ JOB = dataclasses.replace(
 def test_both_ways_agree_on_programs_that_compute(dialect: str, data: st.DataObject) -> None:
     random_ = data.draw(st.randoms(use_true_random=False))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("twin.nc.lines.PAGE", random_.choice([20, 60, 200, 2000]))
+        patch.setattr("twin.nc.text.lines.PAGE", random_.choice([20, 60, 200, 2000]))
         in_pages = source_from_text(program(dialect, random_))
     assert_same(in_pages, dialect, JOB)
 
@@ -69,7 +69,7 @@ OPERAND = st.sampled_from(SPECIAL) | st.floats(-1e12, 1e12) | st.floats(-1.0, 1.
 @settings(max_examples=400, derandomize=True, deadline=None)
 @given(operands=st.lists(OPERAND, min_size=3, max_size=3))
 def test_operators_and_functions_give_the_same_bits(operands: list[float]) -> None:
-    from twin.nc import expression_kernels as kernels
+    from twin.nc.compiled.kernels import expression as kernels
 
     functions: list[tuple[Mapping[Callable[..., float], int], Callable[..., float]]] = [
         (kernels.ONE, kernels.of_one),
@@ -88,7 +88,7 @@ def test_operators_and_functions_give_the_same_bits(operands: list[float]) -> No
 
 @pytest.mark.parametrize("dialect", DIALECTS)
 def test_every_operator_and_function_is_compiled(dialect: str) -> None:
-    from twin.nc import expression_kernels as kernels
+    from twin.nc.compiled.kernels import expression as kernels
 
     syntax = DIALECTS[dialect].syntax.expressions
     if syntax is None:
@@ -260,9 +260,7 @@ def test_nothing_of_a_block_that_fails_remains() -> None:
 
 
 def test_memory_of_translated_lines_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    from twin.nc import instructions
-
-    monkeypatch.setattr(instructions, "MOST_INSTRUCTIONS", 50)
+    monkeypatch.setattr("twin.nc.bytecode.opcodes.MOST_INSTRUCTIONS", 50)
     lines = ["P1=0", "G1 F100", "$WHILE P1<3", "P1=P1+1"]
     lines += [f"X[P1+{number}] Y[P1*{number}]" for number in range(60)]
     text = "\n".join([*lines, "$ENDWHILE", "M30"])

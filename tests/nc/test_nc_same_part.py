@@ -7,7 +7,7 @@ import pytest
 
 from tests.nc.nc_running import good
 from twin.nc.canonical import Moves, Shape
-from twin.nc.settings import ToolData
+from twin.nc.control.settings import ToolData
 
 TOOLS = {1: ToolData(3.0, 60.0)}
 SAMPLES = 997

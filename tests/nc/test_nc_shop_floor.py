@@ -12,7 +12,7 @@ import pytest
 
 from tests.nc.nc_running import good
 from twin.nc.canonical import Function, Shape
-from twin.nc.settings import ToolData
+from twin.nc.control.settings import ToolData
 
 PI, ROOT2 = math.pi, math.sqrt(2.0)
 TOOLS = {1: ToolData(5.0, 60.0), 2: ToolData(3.0, 75.0)}

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twin.nc.canonical import Function
-from twin.nc.spindle import SpindleState
+from twin.nc.functions import SpindleState
 
 
 def said(word: str, speed: float | None = None) -> Function:

@@ -11,10 +11,10 @@ from tests.nc.nc_running import SETTINGS, WITH_TABLES, good
 from tests.nc.nc_transformations import program
 from tests.nc.test_nc_plain import assert_same, general_blocks
 from twin.nc.canonical import FloatArray, Shape
-from twin.nc.matrices import IDENTITY, applied, inverse, product, rotated, stretched
-from twin.nc.planes import PLANE_ORDER
-from twin.nc.settings import ToolData
-from twin.nc.source import source_from_text
+from twin.nc.control.settings import ToolData
+from twin.nc.geometry.matrices import IDENTITY, applied, inverse, product, rotated, stretched
+from twin.nc.geometry.planes import PLANE_ORDER
+from twin.nc.text.source import source_from_text
 
 JOB = dataclasses.replace(WITH_TABLES, step_limit=3000)
 TOOLS = {1: ToolData(2.0, 60.0)}

@@ -8,13 +8,13 @@ import mujoco
 import numpy as np
 import pytest
 
+from twin.cutting.program_notes import ProgramNotes
 from twin.cutting.tools import ToolPlan
-from twin.job import StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
 from twin.machine.config import Machine, read_machine
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.program_notes import ProgramNotes
-from twin.recording import Recording, RecordingHeader, Samples, open_recording, record
+from twin.recording.reader import Recording, RecordingHeader, Samples, open_recording, record
 from twin.render.gl import BACKENDS, probe
 from twin.render.stage import Scene
 

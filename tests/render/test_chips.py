@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from twin.job import StockTable
+from twin.job.job_file import StockTable
 from twin.render.canvas import DRAFT
 from twin.render.chips import FLIGHT_S, GRAVITY, MOST, RISE, SPEED, chips
 from twin.render.stage import Scene, stage

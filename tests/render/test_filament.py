@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from twin.errors import RenderError
-from twin.recording import open_recording
+from twin.recording.reader import open_recording
 from twin.render import filament, gl
 from twin.render.canvas import DRAFT, Canvas, Pixels, Quality
 from twin.render.filament_mesh import mesh_corners, tangent_frames

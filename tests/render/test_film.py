@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from twin.errors import RenderError
-from twin.job import VideoTable
+from twin.job.job_file import VideoTable
 from twin.render.film import film
 from twin.render.stage import Scene
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from command_line import Twin
 
-from twin.resources import resource_root
+from twin.files.shipped import resource_root
 
 JOB = resource_root("programs") / "gallery" / "fagor8070" / "rosette.toml"
 

@@ -7,7 +7,7 @@ from PIL import Image
 from tests.render.conftest import NOTES, STOCK
 from twin.cutting.recut import COMMANDED, inspect_recorded
 from twin.errors import RenderError
-from twin.recording_form import STEPS
+from twin.recording.form import STEPS
 from twin.render.inspection_still import inspection_still
 from twin.render.stage import Scene
 

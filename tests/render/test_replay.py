@@ -3,7 +3,7 @@ import hypothesis.strategies as st
 import numpy as np
 import pytest
 
-from twin.recording import Recording
+from twin.recording.reader import Recording
 from twin.render.replay import deal, frame_ends
 
 

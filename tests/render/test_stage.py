@@ -9,10 +9,10 @@ import trimesh
 
 from tests.render.conftest import NOTES, TOOL, Record
 from twin.cutting.tools import ToolPlan, profile
-from twin.job import StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
-from twin.recording import Recording, open_recording
+from twin.recording.reader import Recording, open_recording
 from twin.render.canvas import DRAFT, FINAL, Pixels
 from twin.render.placement import tip_position
 from twin.render.replay import deal

@@ -9,11 +9,11 @@ import pytest
 from PIL import Image
 
 from tests.render.conftest import NOTES, SOURCE, STOCK, Record
+from twin.cutting.program_notes import Steps
 from twin.errors import RenderError
 from twin.machine.config import Machine
-from twin.program_notes import Steps
-from twin.recording import open_recording
-from twin.recording_form import STEPS
+from twin.recording.form import STEPS
+from twin.recording.reader import open_recording
 from twin.render.gauge import Gauge
 from twin.render.replay import deal
 from twin.render.stage import Scene

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from twin.cli import app
 from twin.errors import TwinError
-from twin.training.scene import scene_names
+from twin.training.scene.scene_file import scene_names
 
 PATIENCE_S = 120.0
 

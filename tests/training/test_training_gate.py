@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from twin.errors import UsageError
-from twin.training.gate import Gate
+from twin.training.server.gate import Gate
 
 
 class Inside(socketserver.BaseRequestHandler):

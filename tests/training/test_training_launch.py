@@ -5,8 +5,8 @@ import threading
 
 import pytest
 
-from twin.training.launch import OpenRoom, open_room
-from twin.training.scene import read_scene, scene_path
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.server.launch import OpenRoom, open_room
 
 PATIENCE_S = 30.0
 

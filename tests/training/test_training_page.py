@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING
 import pytest
 from chromium import CHROMIUM, QUIET
 
-from twin.training.gate import Gate
-from twin.training.launch import OpenRoom, open_room
 from twin.training.panel.request import do
-from twin.training.scene import read_scene, scene_path
-from twin.training.snapshot import Snapshot
-from twin.training.studio import RequestEvent
+from twin.training.panel.studio import RequestEvent
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.server.gate import Gate
+from twin.training.server.launch import OpenRoom, open_room
+from twin.training.session.snapshot import Snapshot
 
 if TYPE_CHECKING:
     from playwright.sync_api import BrowserContext, Page

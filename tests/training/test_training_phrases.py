@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from twin.toml_file import read_toml
-from twin.training import phrases
-from twin.training.phrases import PhrasesFile, translated
-from twin.training.scene import read_scene, scene_names, scene_path
-from twin.training.script import play
-from twin.training.session import Session
-from twin.training.texts import LANGUAGES, Language
+from twin.files.toml import read_toml
+from twin.training.scene import phrases
+from twin.training.scene.phrases import PhrasesFile, translated
+from twin.training.scene.scene_file import read_scene, scene_names, scene_path
+from twin.training.scene.texts import LANGUAGES, Language
+from twin.training.session.script import play
+from twin.training.session.session import Session
 
 ROOM = Path(phrases.__file__).parent
 SPEAKERS = ("actions.py", "room.py", "session.py", "tables.py")

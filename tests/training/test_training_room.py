@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 
 from twin.errors import UsageError
-from twin.nc.spindle import SpindleState
-from twin.training.commands import command_from
-from twin.training.log import relive
-from twin.training.scene import read_scene, scene_path
-from twin.training.session import Session
+from twin.nc.functions import SpindleState
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.session.commands import command_from
+from twin.training.session.log import relive
+from twin.training.session.session import Session
 
 
 @pytest.fixture

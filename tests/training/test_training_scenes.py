@@ -5,10 +5,10 @@ import re
 import pytest
 
 from twin.errors import ConfigError
-from twin.training.scene import Scene, read_scene, scene_names, scene_path
-from twin.training.script import ScriptError, play, rehearse
-from twin.training.session import Session
-from twin.training.texts import LANGUAGES
+from twin.training.scene.scene_file import Scene, read_scene, scene_names, scene_path
+from twin.training.scene.texts import LANGUAGES
+from twin.training.session.script import ScriptError, play, rehearse
+from twin.training.session.session import Session
 
 CONTROLS = ("gost", "codesys", "fagor8070", "mefi")
 

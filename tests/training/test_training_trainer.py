@@ -7,11 +7,11 @@ import pytest
 from mujoco.studio import messages
 
 from twin.training.panel.request import Request, do
-from twin.training.scene import read_scene, scene_path
-from twin.training.score import score_sheet
-from twin.training.session import Session
-from twin.training.studio import RequestEvent, RoomPlugin, RoomSnapshot
-from twin.training.vocabulary import Words
+from twin.training.panel.studio import RequestEvent, RoomPlugin, RoomSnapshot
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.scene.vocabulary import Words
+from twin.training.session.score import score_sheet
+from twin.training.session.session import Session
 
 
 class Handle:

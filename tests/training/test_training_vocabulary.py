@@ -6,8 +6,8 @@ import pytest
 
 from twin.machine.alarms import AlarmCode
 from twin.nc.dialects import DIALECTS
-from twin.training.texts import LANGUAGES
-from twin.training.vocabulary import Words, vocabulary
+from twin.training.scene.texts import LANGUAGES
+from twin.training.scene.vocabulary import Words, vocabulary
 
 OWN_ALARMS = ("program", "external")
 

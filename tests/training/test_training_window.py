@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from twin.errors import UsageError
-from twin.training.window import find_browser, open_window
+from twin.training.server.window import find_browser, open_window
 
 ADDRESS = "http://127.0.0.1:8080/"
 PATIENCE_S = 20.0

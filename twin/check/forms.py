@@ -9,7 +9,7 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 from twin.check.outcome import CheckOutcome, Finding
-from twin.files import write_text
+from twin.files.atomic import write_text
 
 _HEADINGS = ("program", "verdict", "contour error", "line", "cycle time")
 

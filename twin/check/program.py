@@ -5,8 +5,6 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
-from twin.alarm_text import alarm_diagnostic
-from twin.chain import Run
 from twin.check.outcome import CheckOutcome, Finding
 from twin.check.task import CheckSettings
 from twin.check.variation import Variant
@@ -14,12 +12,13 @@ from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import ExitCode, TwinError
-from twin.job import Job
+from twin.job.job_file import Job
 from twin.machine.alarms import Alarm
-from twin.nc.diagnostics import Diagnostic, ProgramError
-from twin.preparation import Preparation, prepare
-from twin.progress import no_progress
-from twin.reason_text import reason_text
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.run.messages import alarm_diagnostic, reason_text
+from twin.run.preparation import Preparation, prepare
+from twin.run.progress import no_progress
+from twin.run.run import Run
 
 
 def run_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
@@ -66,7 +65,7 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         return _not_run(path, error, _findings(preparation, differing))
     if settings.reports is not None:
         from twin.compare.report import write_report
-        from twin.results import report_of, result_of
+        from twin.run.results import report_of, result_of
 
         page = report_of(run, outcome, result_of(run, outcome))
         write_report(file_of(settings.reports, preparation.job, ".html"), page)

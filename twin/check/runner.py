@@ -81,7 +81,7 @@ def _begin(telling: Lock) -> None:
 
 def _tell_of_compilation(is_first: Callable[[], bool] = lambda: True) -> None:
     """Only processes that run programs load the compiler."""
-    from twin.first_compilation import announce_compilation
+    from twin.compilation.announcement import announce_compilation
 
     announce_compilation(is_first)
 

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from twin.changes import Change
 from twin.errors import UsageError
+from twin.files.overrides import Change
 
 MOST_VARIANTS = 10_000
 """Combinations that one sweep may have; more is a slip of the pen."""

@@ -21,7 +21,7 @@ def explain(
     ] = None,
 ) -> None:
     """Explain a diagnostic's code, with an example; without a code list them all."""
-    from twin.nc import explain as explanations
+    from twin.nc.text import explain as explanations
 
     typer.echo(explanations.overview() if code is None else explanations.explain(code))
 

@@ -16,8 +16,8 @@ from twin.check.outcome import CheckOutcome
 from twin.check.runner import run_tasks
 from twin.check.task import CheckSettings, check_program
 from twin.errors import ExitCode, UsageError
-from twin.files import write_text
-from twin.progress import shown_progress
+from twin.files.atomic import write_text
+from twin.run.progress import shown_progress
 
 _STYLES = {"pass": "", "fail": "bold yellow", "alarm": "bold magenta", "error": "bold red"}
 _LOG_WIDTH = 160

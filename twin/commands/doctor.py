@@ -7,7 +7,7 @@ import sys
 import typer
 
 from twin.errors import ExitCode
-from twin.resources import machine_names
+from twin.files.shipped import machine_names
 
 LIBRARIES = ("mujoco", "numpy", "numba", "h5py", "trimesh", "av", "pillow", "matplotlib", "typer")
 

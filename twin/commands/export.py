@@ -6,7 +6,7 @@ import typer
 
 from twin.compare.export import export_csv
 from twin.errors import ExitCode, UsageError
-from twin.recording import open_recording
+from twin.recording.reader import open_recording
 
 
 def export_and_print(recording: Path, out: Path | None, *, every: int = 1) -> ExitCode:

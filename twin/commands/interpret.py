@@ -5,7 +5,7 @@ from pathlib import Path
 
 from twin.errors import UsageError
 from twin.nc.jsonl import json_lines, text_lines
-from twin.preparation import prepare
+from twin.run.preparation import prepare
 
 FORMATS = {"text": text_lines, "jsonl": json_lines}
 
@@ -34,6 +34,6 @@ def print_interpretation(
 
 
 def _announce() -> None:
-    from twin.first_compilation import announce_compilation
+    from twin.compilation.announcement import announce_compilation
 
     announce_compilation()

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from twin.chain import Run, Survey
-from twin.progress import Progress
-from twin.recording import open_recording
+from twin.recording.reader import open_recording
+from twin.run.progress import Progress
+from twin.run.run import Run, Survey
 
 STILL_NAME = "still.png"
 FILM_STEM = "video"
@@ -24,7 +24,7 @@ def film_run(run: Run, survey: Survey, folder: Path, progress: Progress) -> None
     """
     from twin.render.film import film
     from twin.render.still import Shot, stills
-    from twin.replay import scene_of
+    from twin.run.replay import scene_of
 
     video = run.preparation.job.file.video
     with open_recording(folder / "recording.h5") as recording:

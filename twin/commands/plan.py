@@ -10,13 +10,13 @@ from rich.console import Console
 from rich.table import Table
 
 from twin import api
-from twin.chain import Run
+from twin.compilation.announcement import announce_compilation
 from twin.errors import UsageError
-from twin.first_compilation import announce_compilation
-from twin.motion.drawing import draw_plan
-from twin.motion.summary import Summary, summarize
-from twin.motion_limits import motion_limits
-from twin.preparation import prepare
+from twin.machine.motion_limits import motion_limits
+from twin.motion.report.drawing import draw_plan
+from twin.motion.report.summary import Summary, summarize
+from twin.run.preparation import prepare
+from twin.run.run import Run
 
 MOST_ROWS = 20
 """Blocks in the table for people: those that lose most."""

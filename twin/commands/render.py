@@ -11,21 +11,21 @@ import typer
 
 from twin.commands.pictures import FILM_STEM
 from twin.commands.run import run_and_print
+from twin.compilation.announcement import announce_compilation
 from twin.cutting.colours import deviation_colours
 from twin.cutting.inspection import Inspection
 from twin.cutting.part import write_glb
 from twin.cutting.recut import COMMANDED, inspect_recorded, recut
 from twin.errors import ExitCode, UsageError
-from twin.files import write_text
-from twin.first_compilation import announce_compilation
-from twin.job import VideoTable
-from twin.progress import shown_progress
+from twin.files.atomic import write_text
+from twin.job.job_file import VideoTable
 from twin.render.encoder import FORMATS
 from twin.render.film import film
 from twin.render.inspection_still import inspection_still
 from twin.render.stage import Scene
 from twin.render.still import Shot, moment, stills
-from twin.replay import event_time, open_scene
+from twin.run.progress import shown_progress
+from twin.run.replay import event_time, open_scene
 from twin.units import UM_PER_MM
 
 RECORDING_SUFFIX = ".h5"

@@ -4,17 +4,16 @@ from pathlib import Path
 
 import typer
 
-from twin.alarm_text import alarm_diagnostic, near_miss_diagnostic
-from twin.chain import Run
 from twin.commands.pictures import film_run
+from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode
-from twin.first_compilation import announce_compilation
-from twin.outcome import Outcome
-from twin.preparation import prepare
-from twin.progress import shown_progress
-from twin.reason_text import reason_text
-from twin.results import RESULT_FILES, write_results
-from twin.run_folder import run_folder
+from twin.run.messages import alarm_diagnostic, near_miss_diagnostic, reason_text
+from twin.run.outcome import Outcome
+from twin.run.preparation import prepare
+from twin.run.progress import shown_progress
+from twin.run.results import RESULT_FILES, write_results
+from twin.run.run import Run
+from twin.run.run_folder import run_folder
 
 
 def run_and_print(

@@ -15,8 +15,8 @@ from twin.check.runner import run_tasks
 from twin.check.task import CheckSettings, check_variant
 from twin.check.variation import variants
 from twin.errors import ExitCode, UsageError
-from twin.files import write_text
-from twin.progress import shown_progress
+from twin.files.atomic import write_text
+from twin.run.progress import shown_progress
 
 _LOG_WIDTH = 160
 

@@ -8,8 +8,8 @@ import typer
 
 from twin.commands.interruption import let_interruption_stop
 from twin.errors import ExitCode, UsageError
-from twin.training.scene import read_scene, scene_names, scene_path
-from twin.training.texts import LANGUAGES, Language, in_language
+from twin.training.scene.scene_file import read_scene, scene_names, scene_path
+from twin.training.scene.texts import LANGUAGES, Language, in_language
 
 
 def print_scenes(language: str | None) -> None:
@@ -28,8 +28,8 @@ def rehearse_and_print(name: str) -> ExitCode:
     Raises:
         TwinError: The scene is wrong, or a step of a script cannot be done.
     """
-    from twin.first_compilation import announce_compilation
-    from twin.training.script import rehearse
+    from twin.compilation.announcement import announce_compilation
+    from twin.training.session.script import rehearse
 
     announce_compilation()
     scene = read_scene(scene_path(name))
@@ -79,10 +79,10 @@ def train(
     Raises:
         TwinError: The scene, or how it shall be opened, is wrong.
     """
-    from twin.first_compilation import announce_compilation
-    from twin.training.gate import LOOPBACK
-    from twin.training.launch import open_room
-    from twin.training.window import find_browser, open_window
+    from twin.compilation.announcement import announce_compilation
+    from twin.training.server.gate import LOOPBACK
+    from twin.training.server.launch import open_room
+    from twin.training.server.window import find_browser, open_window
 
     browser = find_browser() if window else None
     announce_compilation()

@@ -19,10 +19,10 @@ from twin.compare.baseline_text import (
 )
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
-from twin.files import complete_or_absent
-from twin.job import BaselineTable
+from twin.files.atomic import complete_or_absent
+from twin.job.job_file import BaselineTable
 from twin.nc.canonical import Axes, Chunk
-from twin.nc.diagnostics import ProgramError
+from twin.nc.text.diagnostics import ProgramError
 
 _SMALLEST_TIME = 1e-6
 """A cycle time that differs by no more than this is the same [s]: what the file resolves."""

@@ -7,9 +7,8 @@ the same two.
 
 import math
 
-import numba
-
 from twin.compare.statistics_kernels import BINS, FIRST_CODE, MANTISSA_BITS, bin_of
+from twin.compilation.kernel import array_kernel
 
 COARSER = 3
 """Passages are told apart by bins 2 to this power times wider than those of a whole run: 0.8 %."""
@@ -20,7 +19,7 @@ NOBODY = -1
 """Row of a passage that has not begun."""
 
 
-@numba.njit(cache=True)
+@array_kernel
 def close(passage, bins, greatest, p99):
     """Enter the 99th percentile of a passage (nearest rank) into its row, and empty it.
 
@@ -44,7 +43,7 @@ def close(passage, bins, greatest, p99):
     passage[COUNT] = 0
 
 
-@numba.njit(cache=True)
+@array_kernel
 def collect(
     row, error, bits, time, latest, open_rows, open_bins, samples, squares, greatest, when, p99
 ):

@@ -2,10 +2,10 @@
 
 import math
 
-import numba
+from twin.compilation.kernel import array_kernel
 
 
-@numba.njit(cache=True)
+@array_kernel
 def collect_by_angle(points, radius, count, angle_sum, deviation_sum, least, greatest):
     """Sort points into bins of angle.
 

@@ -12,9 +12,9 @@ from twin.compare.features import FeatureCollector
 from twin.compare.figures import AxisTracking, ContourFigures, Figures, WorstPlace
 from twin.compare.statistics import Distribution
 from twin.errors import RecordingError
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray, IntArray, Moves, concatenate
-from twin.recording import Samples
+from twin.recording.reader import Samples
 from twin.toolpath.nearest import drop_moves, join_paths, path_columns
 from twin.toolpath.part_frame import PartFrame
 from twin.units import MDEG_PER_DEGREE, UM_PER_MM

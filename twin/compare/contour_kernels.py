@@ -2,8 +2,7 @@
 
 import math
 
-import numba
-
+from twin.compilation.kernel import array_kernel
 from twin.toolpath.nearest_kernels import distance_at, nearest_between, walk
 
 _TIE_MM = 1e-7
@@ -17,7 +16,7 @@ _ERRORS = 4.0
 and four times at one of 53 degrees."""
 
 
-@numba.njit(cache=True)
+@array_kernel
 def follow(path, point, command, back, state, distance, place_move, place_fraction):
     """Shortest distance from each simulated point to the path that can be meant.
 

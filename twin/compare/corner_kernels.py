@@ -2,10 +2,10 @@
 
 import math
 
-import numba
+from twin.compilation.kernel import array_kernel
 
 
-@numba.njit(cache=True)
+@array_kernel
 def pass_corners(corner, sharp, before, point, place, time, nearest, when):
     """Keep the shortest distance from each corner to the tool's path.
 

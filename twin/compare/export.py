@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.files import complete_or_absent
+from twin.files.atomic import complete_or_absent
 from twin.nc.canonical import Axes
-from twin.recording import Recording
+from twin.recording.reader import Recording
 from twin.units import AxisKind
 
 _UNITS: dict[AxisKind, tuple[str, str]] = {"linear": ("mm", "N"), "rotary": ("deg", "Nm")}

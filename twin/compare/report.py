@@ -17,10 +17,10 @@ from twin.compare.plot_style import Plot, theme_css
 from twin.compare.plots import error_plot, following_plot, path_plot, polar_plot, speed_plot
 from twin.compare.trace import Trace
 from twin.compare.verdict import Verdict
-from twin.files import write_text
-from twin.job import ToleranceTable
+from twin.files.atomic import write_text
+from twin.job.job_file import ToleranceTable
 from twin.nc.canonical import FloatArray, IntArray
-from twin.recording import RecordingHeader
+from twin.recording.reader import RecordingHeader
 from twin.units import SECONDS_PER_MINUTE
 
 _HEADINGS = {

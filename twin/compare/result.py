@@ -12,8 +12,8 @@ import numpy as np
 from twin.compare.blocks import BlockFigures
 from twin.compare.figures import ArcFigures, AxisTracking, Figures
 from twin.compare.verdict import AlarmLike, Verdict
-from twin.files import write_text
-from twin.job import ToleranceTable
+from twin.files.atomic import write_text
+from twin.job.job_file import ToleranceTable
 from twin.units import AxisKind
 
 SCHEMA = 1

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from twin.nc.canonical import Axes, FloatArray, IntArray
-from twin.recording import Samples
+from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 
 _FIRST_AXIS_COLUMN = 6

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.errors import UsageError
 from twin.nc.canonical import FloatArray, IntArray
-from twin.recording import open_recording
+from twin.recording.reader import open_recording
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -3,12 +3,12 @@
 import numpy as np
 
 from twin.cutting.cut import Cutter
+from twin.cutting.program_notes import ProgramNotes
 from twin.errors import ConfigError
-from twin.job import StockTable
-from twin.motion.setpoints import Setpoints
+from twin.job.job_file import StockTable
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.program_notes import ProgramNotes
-from twin.recording import Samples
+from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 from twin.units import MM
 

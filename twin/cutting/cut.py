@@ -14,9 +14,9 @@ from twin.cutting.ledger import BlockCut, Ledger
 from twin.cutting.sweep_kernels import overlap, sweep
 from twin.cutting.thin_kernels import thin
 from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
-from twin.job import StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray
-from twin.recording import Samples
+from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 
 STRAIGHT_SHARE = 0.01

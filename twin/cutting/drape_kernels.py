@@ -2,12 +2,11 @@
 
 import math
 
-import numba
-
+from twin.compilation.kernel import array_kernel
 from twin.nc.canonical import FloatArray
 
 
-@numba.njit(cache=True)
+@array_kernel
 def drape(
     heights: FloatArray, origin: tuple[float, float], cell: float, triangles: FloatArray
 ) -> None:

@@ -10,9 +10,9 @@ from twin.cutting.outline import Outline
 from twin.cutting.sweep_kernels import sweep
 from twin.cutting.thin_kernels import thin
 from twin.cutting.tools import ToolPlan, profile
-from twin.fixture import FixtureTable
+from twin.job.fixture import FixtureTable
 from twin.nc.canonical import FloatArray
-from twin.recording import Samples
+from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 
 CELL_MM = 0.5

@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.cutting.events import Stretches
 from twin.errors import ConfigError
-from twin.job import StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
 from twin.units import SECONDS_PER_MINUTE
 

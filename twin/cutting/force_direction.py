@@ -7,7 +7,7 @@ import numpy as np
 from twin.cutting.events import Stretches
 from twin.cutting.force import Kienzle, cutting_width
 from twin.cutting.tools import DRILL_POINT
-from twin.job import ToolTable
+from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 
 RADIAL_SHARE = 0.3

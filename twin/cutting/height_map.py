@@ -12,9 +12,9 @@ import numpy as np
 from twin.cutting.drape_kernels import drape
 from twin.cutting.outline import BoolArray, Outline, outline
 from twin.errors import ConfigError
-from twin.job import StockTable
+from twin.files.stl import read_stl
+from twin.job.job_file import StockTable
 from twin.nc.canonical import FloatArray
-from twin.stl_file import read_stl
 
 CELL_LIMIT = 64_000_000
 """Cells that a height map may have: half a gigabyte of heights."""

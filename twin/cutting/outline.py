@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import numpy.typing as npt
 
-from twin.job import StockTable
+from twin.job.job_file import StockTable
 from twin.nc.canonical import FloatArray
 
 BoolArray = npt.NDArray[np.bool_]

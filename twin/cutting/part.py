@@ -9,7 +9,7 @@ from twin.cutting.colours import RAW_RGB, Colours, surface_colours
 from twin.cutting.height_map import HeightMap
 from twin.cutting.net import all_corners, net, open_edges, surface_faces
 from twin.cutting.outline import BoolArray
-from twin.files import complete_or_absent
+from twin.files.atomic import complete_or_absent
 from twin.units import MM
 
 if TYPE_CHECKING:

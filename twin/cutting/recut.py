@@ -9,10 +9,10 @@ from twin.cutting.cut import Cutter
 from twin.cutting.drape_kernels import drape
 from twin.cutting.height_map import HeightMap
 from twin.cutting.inspection import Inspection, inspect
-from twin.job import StockTable
-from twin.program_notes import ProgramNotes
-from twin.recording import Recording
-from twin.stl_file import read_stl
+from twin.cutting.program_notes import ProgramNotes
+from twin.files.stl import read_stl
+from twin.job.job_file import StockTable
+from twin.recording.reader import Recording
 
 Commanded = Literal["commanded"]
 COMMANDED: Commanded = "commanded"

@@ -3,10 +3,9 @@
 import numpy as np
 import numpy.typing as npt
 
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Function
-from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, SPINDLE_STOPS
-from twin.nc.spindle import SpindleState
+from twin.nc.functions import SPINDLE_SPEED, SPINDLE_STARTS, SPINDLE_STOPS, SpindleState
 
 _BEFORE_THE_NEXT = 1.0 - 1e-12
 """The end of a move's path still belongs to it: a function between two moves is not yet heard."""

@@ -2,8 +2,7 @@
 
 import math
 
-import numba
-
+from twin.compilation.kernel import array_kernel
 from twin.nc.canonical import FloatArray
 
 _FAR = 1e9
@@ -13,7 +12,7 @@ _BISECTIONS = 40
 """Halvings of a sweep in search of its lowest point: 1e-12 of its length."""
 
 
-@numba.njit(cache=True)
+@array_kernel
 def sweep(
     heights: FloatArray,
     origin: tuple[float, float],
@@ -102,7 +101,7 @@ def sweep(
     return row_first, row_end, column_first, column_end
 
 
-@numba.njit(cache=True)
+@array_kernel
 def overlap(
     heights: FloatArray,
     origin: tuple[float, float],
@@ -146,7 +145,7 @@ def overlap(
                 depth[i] = max(depth[i], heights[row, column] - lower)
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _chord(
     ax: float, ay: float, bx: float, by: float, radius: float, y: float
 ) -> tuple[float, float]:
@@ -168,7 +167,7 @@ def _chord(
     return left, right
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _done(
     ax: float, ay: float, bx: float, by: float, radius: float, flat: float, y: float
 ) -> tuple[float, float]:
@@ -193,12 +192,12 @@ def _done(
     return 1.0, 0.0
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _within(value: int, low: int, high: int) -> int:
     return min(max(value, low), high)
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _cut_row(
     line: FloatArray,
     x: float,
@@ -242,7 +241,7 @@ def _cut_row(
     return volume, deepest, moment
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _below_capsule(
     x: float, y: float, z: float, a: FloatArray, b: FloatArray, radius: float
 ) -> bool:
@@ -258,7 +257,7 @@ def _below_capsule(
     return px * px + py * py + pz * pz >= radius * radius
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _lowest(
     x: float, y: float, a: FloatArray, b: FloatArray, profile: tuple[float, float, float, float]
 ) -> float:
@@ -298,7 +297,7 @@ def _lowest(
     return a[2] + t * dz + _profile(min(distance, radius), radius, flat, corner, slope)
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _profile(distance: float, radius: float, flat: float, corner: float, slope: float) -> float:
     if distance > radius:
         return math.inf
@@ -308,7 +307,7 @@ def _profile(distance: float, radius: float, flat: float, corner: float, slope: 
     return slope * beyond
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _turning_point(
     first: float,
     last: float,

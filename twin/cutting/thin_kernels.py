@@ -1,12 +1,12 @@
 """Thin samples: choose those between which the tool moved straight."""
 
-import numba
 import numpy as np
 
+from twin.compilation.kernel import array_kernel
 from twin.nc.canonical import FloatArray, IntArray
 
 
-@numba.njit(cache=True)
+@array_kernel
 def thin(
     points: FloatArray, group: IntArray, tolerance: float, longest: float, most: int
 ) -> IntArray:
@@ -45,7 +45,7 @@ def thin(
     return chosen[:kept]
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _straight(points: FloatArray, first: int, last: int, tolerance: float, longest: float) -> bool:
     ax, ay, az = points[first]
     dx, dy, dz = points[last, 0] - ax, points[last, 1] - ay, points[last, 2] - az

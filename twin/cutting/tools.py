@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from twin.job import StockTable, ToolTable
+from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray
 
 FINEST_CELL_MM = 0.1

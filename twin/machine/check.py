@@ -18,7 +18,7 @@ from twin.machine.config import Machine
 from twin.machine.drives import reflected_inertia
 from twin.machine.model import build_spec, compiled, drives, physics_model
 from twin.machine.simulate import simulate
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 
 SECTIONS = ("compiler", "option", "default", "asset", "worldbody", "actuator", "sensor", "keyframe")

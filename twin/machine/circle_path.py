@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.errors import UsageError
 from twin.machine.config import Machine
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.units import DEGREE, SECONDS_PER_MINUTE
 

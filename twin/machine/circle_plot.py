@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from twin.files import complete_or_absent
+from twin.files.atomic import complete_or_absent
 from twin.machine.circular_test import CircularTest
 from twin.nc.canonical import FloatArray
 

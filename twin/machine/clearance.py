@@ -17,7 +17,7 @@ from twin.machine.alarms import Alarm, NearMiss
 from twin.machine.config import Machine
 from twin.machine.tool_shape import COLLISION_GROUP
 from twin.nc.canonical import FloatArray
-from twin.recording import Samples
+from twin.recording.reader import Samples
 from twin.units import MM
 
 RESOLUTION = 0.1

@@ -8,12 +8,12 @@ import numpy as np
 import pydantic
 from pydantic import Field
 
-from twin.changes import Change, changed
 from twin.errors import ConfigError
-from twin.fixture import FixtureTable
+from twin.files.overrides import Change, changed
+from twin.files.toml import Data, Table, checked, read_toml
+from twin.job.fixture import FixtureTable
 from twin.machine.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
-from twin.toml_file import Data, Table, checked, read_toml
 from twin.toolpath.part_frame import PartFrame
 from twin.units import AxisKind, to_si
 

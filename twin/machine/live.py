@@ -12,9 +12,9 @@ from twin.machine.model import build_spec, clearance_model, physics_model
 from twin.machine.servo import Servo
 from twin.machine.tool_shape import ToolShape
 from twin.machine.watch import Watch
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.recording import Samples
+from twin.recording.reader import Samples
 
 _STANDSTILL = 0.01
 """Speed below which an axis counts as standing [mm/s or deg/s]."""
@@ -33,7 +33,7 @@ class LiveMachine:
 
     Example:
         >>> from twin.machine.config import read_machine
-        >>> from twin.resources import machine_file
+        >>> from twin.files.shipped import machine_file
         >>> live = LiveMachine(read_machine(machine_file("mill4")))
         >>> samples = live.hold(100)
         >>> live.change("X", dry_friction=2000.0)

@@ -26,7 +26,7 @@ the loss of holding ((W h)²/24) undone, to the same order. The acceleration tha
 mean of the step, (v1 - v0)/h. ``tests/machine/test_sampling.py`` holds all of this to closed forms.
 """
 
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 
 _POLYLINE_LOSS = 1.0 / 12.0

@@ -14,9 +14,9 @@ from twin.machine.model import drives
 from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.timers import switch_off_timers
 from twin.machine.transmission import give_name, has_give
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.recording import Samples
+from twin.recording.reader import Samples
 from twin.units import kv_per_second
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS

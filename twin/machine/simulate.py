@@ -13,9 +13,9 @@ from twin.machine.servo import Servo
 from twin.machine.tool_changes import ToolClearances
 from twin.machine.tool_shape import ToolSchedule
 from twin.machine.watch import Watch
-from twin.motion.setpoints import Setpoints
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
-from twin.recording import Samples
+from twin.recording.reader import Samples
 
 Load = Callable[[Setpoints], FloatArray]
 

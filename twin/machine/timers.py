@@ -7,6 +7,10 @@ measures stands in ``MjData.timer``, for profilers of interactive viewers.
 import mujoco
 import numba
 
+from twin.compilation.cache import keep_kernels_by_content
+
+keep_kernels_by_content()
+
 
 @numba.cfunc("float64()", cache=True)
 def _no_time() -> float:

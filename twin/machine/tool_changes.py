@@ -5,7 +5,7 @@ from twin.machine.clearance import Clearance
 from twin.machine.config import Machine
 from twin.machine.model import build_spec, clearance_model
 from twin.machine.tool_shape import ToolSchedule, ToolShape, tool_cylinders
-from twin.recording import Samples
+from twin.recording.reader import Samples
 
 
 class ToolClearances:

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from twin.errors import ConfigError
-from twin.resources import machine_file
-from twin.toml_file import Data, load_toml
+from twin.files.shipped import machine_file
+from twin.files.toml import Data, load_toml
 
 _DEEPEST = 8
 """Machine files that may stand on each other; more is a circle."""

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from twin.machine.alarms import Alarm, AlarmCode
 from twin.machine.config import AxisTable, Machine
 from twin.nc.canonical import FloatArray
-from twin.recording import Samples
+from twin.recording.reader import Samples
 
 OVERTRAVEL = 2.0
 """How far beyond its travel an axis meets its limit switch where none is given [mm or deg]."""

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from twin.motion.limits import MotionLimits
-from twin.motion.phases import plan_phases
-from twin.motion.sampling import at_end, sample, standing
-from twin.motion.setpoints import Setpoints
+from twin.motion.profile.phases import plan_phases
+from twin.motion.setpoints.sampling import at_end, sample, standing
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray
 
 

@@ -6,8 +6,8 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from twin.files import write_text
-from twin.nc.dialect import Dialect, GCode
+from twin.files.atomic import write_text
+from twin.nc.control.dialect import Dialect, GCode
 from twin.nc.dialects import DIALECTS
 
 _GROUND = {

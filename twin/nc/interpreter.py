@@ -7,22 +7,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from twin.nc.canonical import Chunk, FloatArray
-from twin.nc.control import Control
-from twin.nc.diagnostics import Diagnostic, ProgramError
-from twin.nc.dialect import Dialect
-from twin.nc.move_columns import CHUNK
-from twin.nc.settings import ControlSettings
-from twin.nc.source import Source
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.settings import ControlSettings
+from twin.nc.path.move_columns import CHUNK
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.source import Source
 
 if TYPE_CHECKING:
-    from twin.nc.plain import PlainRunner
+    from twin.nc.compiled.runner import PlainRunner
 
 PLAIN_FROM = 500
 """Blocks and moves after which a program of more lines takes the fast way, which costs time to load."""
 SHORT_PROGRAM = 100
 """A program of fewer lines, which can only loop, takes it after so many times as many blocks where
 it is not loaded yet."""
-_FAST_WAY = "twin.nc.plain"
+_FAST_WAY = "twin.nc.compiled.runner"
 
 
 class Interpretation:
@@ -106,7 +106,7 @@ class Interpretation:
 
     def _plain_runner(self) -> "PlainRunner":
         self.before_fast_way()
-        from twin.nc.plain import PlainRunner
+        from twin.nc.compiled.runner import PlainRunner
 
         return PlainRunner(self._control)
 

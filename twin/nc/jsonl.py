@@ -18,8 +18,8 @@ from twin.nc.canonical import (
     Moves,
     Shape,
 )
-from twin.nc.diagnostics import Diagnostic, ProgramError
 from twin.nc.interpreter import Interpretation
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
 
 Record = dict[str, Any]
 ItemT = TypeVar("ItemT")

@@ -15,7 +15,7 @@ from av.error import FFmpegError
 from av.filter import Graph
 
 from twin.errors import RenderError
-from twin.files import complete_or_absent
+from twin.files.atomic import complete_or_absent
 from twin.render.canvas import Pixels
 from twin.render.doctor import H264_ENCODER, missing_encoder
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from twin.errors import RenderError
-from twin.job import VideoTable
+from twin.job.job_file import VideoTable
 from twin.render.canvas import quality_named
 from twin.render.encoder import video_writer
 from twin.render.gauge import Gauge

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.recording import Samples
+from twin.recording.reader import Samples
 from twin.render.hud import Display, Reading
 from twin.render.stage import Scene
 from twin.units import SECONDS_PER_MINUTE, UM_PER_MM

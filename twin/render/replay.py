@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from twin.nc.canonical import IntArray
-from twin.recording import Recording, Samples
+from twin.recording.reader import Recording, Samples
 
 
 def frame_ends(count: int, frames: int) -> IntArray:

@@ -10,12 +10,12 @@ import numpy as np
 
 from twin.cutting.colours import Colours
 from twin.cutting.cut import Cutter, Rectangle, union
+from twin.cutting.program_notes import ProgramNotes
 from twin.errors import RenderError
-from twin.job import StockTable
+from twin.job.job_file import StockTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
-from twin.program_notes import ProgramNotes
-from twin.recording import Recording, Samples
+from twin.recording.reader import Recording, Samples
 from twin.render.cameras import PART_CAMERAS, SMALLEST_MM, add_part_cameras, framed
 from twin.render.canvas import Canvas, Focus, Pixels, Quality
 from twin.render.chips import Chips, chips

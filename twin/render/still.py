@@ -8,8 +8,8 @@ import numpy as np
 from PIL import Image
 
 from twin.errors import RenderError
-from twin.files import complete_or_absent
-from twin.recording import Recording
+from twin.files.atomic import complete_or_absent
+from twin.recording.reader import Recording
 from twin.render.canvas import Pixels, quality_named
 from twin.render.gauge import Gauge
 from twin.render.renderer import Renderer

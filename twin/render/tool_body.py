@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 
 from twin.cutting.tools import Profile, ToolPlan, profile
-from twin.job import ToolTable
+from twin.job.job_file import ToolTable
 from twin.machine.tool_shape import tool_cylinders
 from twin.nc.canonical import FloatArray, IntArray
 from twin.render.canvas import HIDDEN_GROUP

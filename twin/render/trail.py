@@ -6,10 +6,10 @@ import mujoco
 import numpy as np
 
 from twin.cutting.outline import BoolArray
+from twin.cutting.program_notes import ProgramNotes
 from twin.cutting.thin_kernels import thin
 from twin.nc.canonical import FloatArray, IntArray
-from twin.program_notes import ProgramNotes
-from twin.recording import Recording
+from twin.recording.reader import Recording
 from twin.render.canvas import Canvas
 from twin.render.live_mesh import LiveMesh, add_live_mesh
 from twin.render.palette import error_palette

@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 
-from twin.job import StockTable
+from twin.job.job_file import StockTable
 from twin.nc.canonical import FloatArray
 from twin.render.placement import ROTARY_TABLE, Placement
 from twin.units import MM

@@ -2,13 +2,13 @@
 
 import math
 
-import numba
 import numpy as np
 
+from twin.compilation.kernel import array_kernel
 from twin.nc.canonical import FloatArray, IntArray
 
 
-@numba.njit(cache=True)
+@array_kernel
 def evaluate(
     base: FloatArray,
     drift: FloatArray,

@@ -7,7 +7,7 @@ helices, and whatever the table turns, by Newton's method kept inside brackets.
 
 import math
 
-import numba
+from twin.compilation.kernel import array_kernel
 
 _LINE, _CIRCLE = 0, 1
 """``twin.toolpath.nearest.LINE`` and ``CIRCLE``."""
@@ -21,7 +21,7 @@ _ITERATIONS = 80
 """More than bisection alone needs to halve a bracket down to rounding."""
 
 
-@numba.njit(cache=True)
+@array_kernel
 def derivatives(path, move, u):
     """Point, first and second derivative by fraction in the part's frame, nine numbers [mm]."""
     angle = u * path.sweep[move]
@@ -50,21 +50,21 @@ def derivatives(path, move, u):
     )  # fmt: skip
 
 
-@numba.njit(cache=True)
+@array_kernel
 def distance_at(path, move, u, x, y, z):
     """Distance from a point to one place of the path [mm]."""
     px, py, pz, _, _, _, _, _, _ = derivatives(path, move, u)
     return math.sqrt((px - x) ** 2 + (py - y) ** 2 + (pz - z) ** 2)
 
 
-@numba.njit(cache=True)
+@array_kernel
 def speed_at(path, move, u):
     """How fast the place moves with the fraction, seen from the part [mm]."""
     _, _, _, dx, dy, dz, _, _, _ = derivatives(path, move, u)
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
-@numba.njit(cache=True)
+@array_kernel
 def walk(path, move, u, distance):
     """The place a signed path length away, or the end of the path.
 
@@ -91,7 +91,7 @@ def walk(path, move, u, distance):
     return move, u
 
 
-@numba.njit(cache=True)
+@array_kernel
 def nearest_on_move(path, move, low, high, x, y, z):
     """Nearest place of one move between two fractions.
 
@@ -111,7 +111,7 @@ def nearest_on_move(path, move, low, high, x, y, z):
     return distance_at(path, move, u, x, y, z), u
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _project_on_line(along, low, high, rx, ry, rz):
     squared = along[0] ** 2 + along[1] ** 2 + along[2] ** 2
     if squared == 0.0:
@@ -120,7 +120,7 @@ def _project_on_line(along, low, high, rx, ry, rz):
     return min(max(u, low), high)
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _project_on_circle(path, move, low, high, rx, ry, rz):
     first, second, sweep = path.first[move], path.second[move], path.sweep[move]
     cosine = rx * first[0] + ry * first[1] + rz * first[2]
@@ -137,7 +137,7 @@ def _project_on_circle(path, move, low, high, rx, ry, rz):
     return high if u + turn - high < low - u else low
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _look(path, move, u, x, y, z):
     """From one place: distance, slope and curvature of half its square, and the place's speed."""
     px, py, pz, dx, dy, dz, wx, wy, wz = derivatives(path, move, u)
@@ -151,7 +151,7 @@ def _look(path, move, u, x, y, z):
     )
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _minimum_between(path, move, low, high, x, y, z):
     """Distance and place of the minimum of a convex piece."""
     u = 0.5 * (low + high)
@@ -172,7 +172,7 @@ def _minimum_between(path, move, low, high, x, y, z):
     return here, u
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _bounds(path, move):
     """Largest second and third derivative of a move in the part's frame [mm]."""
     f, o, a = path.first[move], path.origin[move], path.along[move]
@@ -189,7 +189,7 @@ def _bounds(path, move):
     )
 
 
-@numba.njit(cache=True)
+@array_kernel
 def _nearest_on_curve(path, move, low, high, x, y, z):
     """Nearest place of a curve between two fractions; no minimum is missed, cusps included.
 
@@ -229,7 +229,7 @@ def _nearest_on_curve(path, move, low, high, x, y, z):
     return best, best_u
 
 
-@numba.njit(cache=True)
+@array_kernel
 def nearest_between(path, low_move, low_u, high_move, high_u, x, y, z, tie):
     """Nearest place between two places of the path, ends included.
 

@@ -4,12 +4,12 @@ import re
 from collections.abc import Mapping
 
 from twin.errors import UsageError
-from twin.nc.dialect import Dialect
+from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.fagor8070 import FAGOR8070
 from twin.nc.dialects.gost import GOST
 from twin.nc.dialects.mefi import MEFI
-from twin.nc.source import Source
+from twin.nc.text.source import Source
 
 DIALECTS: Mapping[str, Dialect] = {
     dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI)

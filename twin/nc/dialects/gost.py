@@ -7,13 +7,13 @@ import dataclasses
 import math
 import re
 
-from twin.nc import iso, iso_cycles, iso_decisions
-from twin.nc.block_words import write_words
-from twin.nc.block_writer import BlockWriter
-from twin.nc.blocks import Block
+from twin.nc.bytecode.assembler import BlockWriter
+from twin.nc.bytecode.block_compiler import write_words
 from twin.nc.canonical import Corner
-from twin.nc.control import Control
-from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
+from twin.nc.iso import codes, cycles, decisions
+from twin.nc.text.blocks import Block
 
 RESOLUTION = 9
 """Decimals of a degree that a start point is rounded to before the remainder is taken.
@@ -94,7 +94,7 @@ def excuse(line: str, previous: str) -> str | None:
     with a comment is that comment's tail, as long as it does not begin with a readable word; and
     a line that begins with a Cyrillic word of four letters or more, as no block does, is a heading.
     """
-    if iso.is_ellipsis(line):
+    if codes.is_ellipsis(line):
         return "ellipsis"
     prose = _CYRILLIC_WORD.search(line) and not _READABLE_WORD.match(line)
     if prose and ("$" in previous or _PROSE.match(line)):
@@ -156,7 +156,7 @@ DECISIONS = (
         "1200 degrees per minute is the only sensible reading of the page's G1 C359.999 F1200.",
         example="feed_of_rotary_axes",
     ),
-    *iso_decisions.DECISIONS,
+    *decisions.DECISIONS,
 )
 
 GOST = Dialect(
@@ -164,10 +164,10 @@ GOST = Dialect(
     title="Russian control with G102 (ISO 6983-1, GOST 20999-83)",
     code_page="cp1251",
     syntax=Syntax(comments=(Comment("$"), Comment("(", ")"), HEADING), excused=excuse),
-    groups=iso.GROUPS,
+    groups=codes.GROUPS,
     g={
-        **iso.BASE,
-        **iso_cycles.RETURN,
+        **codes.BASE,
+        **cycles.RETURN,
         9: GCode(
             meaning="exact stop in this block",
             sets={"corner": Corner.EXACT_STOP},
@@ -181,12 +181,12 @@ GOST = Dialect(
             ground="seed",
         ),
     },
-    instead=iso.INSTEAD,
-    start=(*iso.START, 64, 98),
-    m=iso.M_CODES,
-    words=iso.WORDS,
-    word_translations=iso.WORD_TRANSLATIONS,
-    word_meanings=iso.WORD_MEANINGS,
+    instead=codes.INSTEAD,
+    start=(*codes.START, 64, 98),
+    m=codes.M_CODES,
+    words=codes.WORDS,
+    word_translations=codes.WORD_TRANSLATIONS,
+    word_meanings=codes.WORD_MEANINGS,
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(

@@ -6,16 +6,16 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 import dataclasses
 from collections.abc import Iterator
 
-from twin.nc import iso, iso_decisions
-from twin.nc.arcs import sweep_between
-from twin.nc.block_words import write_words
-from twin.nc.block_writer import BlockWriter, NotTranslatableError
-from twin.nc.blocks import Block
-from twin.nc.circular import iso_arc_center, plain_arc, start_and_end
-from twin.nc.control import Control
-from twin.nc.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
-from twin.nc.instructions import Step
-from twin.nc.interpolation import Interpolation, PlainArc
+from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.block_compiler import write_words
+from twin.nc.bytecode.opcodes import Step
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
+from twin.nc.control.interpolation import Interpolation, PlainArc
+from twin.nc.geometry.arcs import sweep_between
+from twin.nc.iso import codes, decisions
+from twin.nc.iso.circular import iso_arc_center, plain_arc, start_and_end
+from twin.nc.text.blocks import Block
 
 
 @dataclasses.dataclass(slots=True)
@@ -239,17 +239,17 @@ DECISIONS = (
         "Nothing in the page allows the tool to leave the programmed path.",
         example="exact_path",
     ),
-    *iso_decisions.DECISIONS,
+    *decisions.DECISIONS,
 )
 
 MEFI = Dialect(
     name="mefi",
     title="MEFI CNC8x6",
     code_page="cp1250",
-    syntax=Syntax(comments=(Comment('"'), HEADING), excused=iso.excuse_ellipsis),
-    groups=(*iso.GROUPS, "helix"),
+    syntax=Syntax(comments=(Comment('"'), HEADING), excused=codes.excuse_ellipsis),
+    groups=(*codes.GROUPS, "helix"),
     g={
-        **iso.BASE,
+        **codes.BASE,
         2: GCode(
             meaning="arc clockwise",
             group="motion",
@@ -267,15 +267,15 @@ MEFI = Dialect(
         98: GCode(meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"),
     },
     instead={
-        **iso.INSTEAD,
+        **codes.INSTEAD,
         99: "cycles return to the height of their call; G98 ends a helix here",
     },
-    start=iso.START,
-    m=iso.M_CODES,
-    words=iso.WORDS,
-    word_translations=iso.WORD_TRANSLATIONS,
+    start=codes.START,
+    m=codes.M_CODES,
+    words=codes.WORDS,
+    word_translations=codes.WORD_TRANSLATIONS,
     word_meanings={
-        **iso.WORD_MEANINGS,
+        **codes.WORD_MEANINGS,
         "R": "radius of an arc below 180 degrees; reference plane of a cycle",
         "L": "block to jump to (G73)",
         "Q": "number of jumps (G73); depth of one peck (G83)",

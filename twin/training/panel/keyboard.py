@@ -2,11 +2,11 @@
 
 from mujoco.studio.dear_imgui import dear_imgui as imgui
 
-from twin.training.commands import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
 from twin.training.panel.desk import JOG_STEPS, DeskState, jog_key
 from twin.training.panel.request import Request, do
 from twin.training.panel.side import SideState, measured_tool, sheets
-from twin.training.snapshot import Snapshot
+from twin.training.session.commands import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
+from twin.training.session.snapshot import Snapshot
 
 _PLAIN = (("Space", "cycle_start"), ("H", "feed_hold"), ("R", "reset"))
 _MODES = ("F1", "F2", "F3", "F4")

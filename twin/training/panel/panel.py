@@ -25,9 +25,9 @@ from twin.training.panel.side import (
     build_zero,
     sheets,
 )
-from twin.training.scene import SceneFile
-from twin.training.snapshot import Snapshot
-from twin.training.vocabulary import Words
+from twin.training.scene.scene_file import SceneFile
+from twin.training.scene.vocabulary import Words
+from twin.training.session.snapshot import Snapshot
 
 HEAD = 88.0
 """Height of the head [px]."""

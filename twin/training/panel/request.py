@@ -3,7 +3,7 @@
 import dataclasses
 from typing import Any, Literal
 
-from twin.training.log import Who
+from twin.training.session.log import Who
 
 Change = Literal["freeze", "go_on", "rewind", "replay"]
 

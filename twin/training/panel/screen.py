@@ -15,9 +15,9 @@ from twin.training.panel.kit import (
     YELLOW,
     Kit,
 )
-from twin.training.phrases import translated
-from twin.training.snapshot import Snapshot
-from twin.training.vocabulary import Words
+from twin.training.scene.phrases import translated
+from twin.training.scene.vocabulary import Words
+from twin.training.session.snapshot import Snapshot
 
 _LAG_SHOWN = 1.0
 """Following error at the end of its bar [mm or deg]."""

@@ -4,13 +4,13 @@ import dataclasses
 
 from mujoco.studio.dear_imgui import dear_imgui as imgui
 
-from twin.training.faults import FAULT_KINDS
 from twin.training.panel.kit import BRIGHT_GREEN, CYAN, QUIET, RED, TEXT, YELLOW, Kit
 from twin.training.panel.request import Request, do
-from twin.training.scene import SceneFile
-from twin.training.snapshot import Snapshot
-from twin.training.texts import in_language
-from twin.training.vocabulary import Words
+from twin.training.scene.scene_file import SceneFile
+from twin.training.scene.texts import in_language
+from twin.training.scene.vocabulary import Words
+from twin.training.session.faults import FAULT_KINDS
+from twin.training.session.snapshot import Snapshot
 
 _MARKS = {"open": ("○", TEXT), "done": ("●", BRIGHT_GREEN), "failed": ("×", RED)}
 _BACK_S = (10.0, 60.0)

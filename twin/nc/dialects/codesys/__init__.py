@@ -1,12 +1,12 @@
 """CODESYS SoftMotion CNC (DIN 66025 with SoftMotion's own codes)."""
 
-from twin.nc import iso
 from twin.nc.canonical import Corner
-from twin.nc.dialect import HEADING, Comment, Dialect, FeedMode, Mark, MCode, Syntax
+from twin.nc.control.dialect import HEADING, Comment, Dialect, FeedMode, Mark, MCode, Syntax
 from twin.nc.dialects.codesys import actions, program, subprograms, translation, words
 from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
+from twin.nc.iso import codes
 
 CODESYS = Dialect(
     name="codesys",
@@ -44,7 +44,7 @@ CODESYS = Dialect(
     signed=("E", "EF"),
     series="HOL",
     words={
-        "F": iso.set_feed,
+        "F": codes.set_feed,
         "E": words.set_acceleration,
         "E-": words.set_acceleration,
         "FF": words.set_rapid_feed,

@@ -2,16 +2,16 @@
 
 import math
 
-from twin.nc.blends import Blend, BlendKind
-from twin.nc.block_words import BlockWords
-from twin.nc.block_writer import BlockWriter, NotTranslatableError
-from twin.nc.blocks import Word
-from twin.nc.control import Control
-from twin.nc.dialect import Action
+from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.block_compiler import BlockWords
+from twin.nc.bytecode.opcodes import Step
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import Action
 from twin.nc.dialects.codesys.program import variables
-from twin.nc.instructions import Step
-from twin.nc.offsets import LEFT, RIGHT, compensate, write_programmed_shift
-from twin.nc.planes import XY, plane_with_normal
+from twin.nc.geometry.planes import XY, plane_with_normal
+from twin.nc.iso.offsets import LEFT, RIGHT, compensate, write_programmed_shift
+from twin.nc.path.blends import Blend, BlendKind
+from twin.nc.text.blocks import Word
 
 ADDITIONAL = "ABCPQUVW"
 """Letters of additional axes, in the order of their numbers."""

@@ -1,6 +1,8 @@
 """Arcs of CODESYS SoftMotion: radius, centre with the 10 % rule, opening angle, any plane."""
 
-from twin.nc.arcs import (
+from twin.nc.control.control import Control
+from twin.nc.control.interpolation import Interpolation, PlainArc
+from twin.nc.geometry.arcs import (
     SAME_POINT,
     Point,
     center_by_radius,
@@ -8,10 +10,8 @@ from twin.nc.arcs import (
     equidistant,
     turned,
 )
-from twin.nc.blocks import Word
-from twin.nc.circular import start_and_end, sweep_arc, take_center
-from twin.nc.control import Control
-from twin.nc.interpolation import Interpolation, PlainArc
+from twin.nc.iso.circular import start_and_end, sweep_arc, take_center
+from twin.nc.text.blocks import Word
 
 CENTER_SHARE = 0.1
 """Share by which start and end radius may differ before the arc becomes a line.

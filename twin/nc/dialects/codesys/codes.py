@@ -1,9 +1,7 @@
 """G codes of CODESYS SoftMotion."""
 
-from twin.nc import iso, offsets
-from twin.nc.blends import BlendKind
-from twin.nc.compensation_words import write_compensation_by_radius, write_end_of_compensation
-from twin.nc.dialect import GCode
+from twin.nc.control.dialect import GCode
+from twin.nc.control.interpolation import Interpolation, PlainLine
 from twin.nc.dialects.codesys import actions, jumps, program, words
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
@@ -13,9 +11,11 @@ from twin.nc.dialects.codesys.curves import (
     PARABOLA,
     SPATIAL_SPLINE,
 )
-from twin.nc.interpolation import Interpolation, PlainLine
-from twin.nc.linear import rapid_line
-from twin.nc.planes import XY, YZ, ZX, Plane
+from twin.nc.geometry.planes import XY, YZ, ZX, Plane
+from twin.nc.iso import codes, offsets
+from twin.nc.iso.circular import rapid_line
+from twin.nc.iso.compensation_words import write_compensation_by_radius, write_end_of_compensation
+from twin.nc.path.blends import BlendKind
 
 
 def _motion(meaning: str, interpolation: Interpolation, *, seed: bool = False) -> GCode:
@@ -33,7 +33,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=offsets.refuse_plane_change,
-        translate=iso.write_plane(plane),
+        translate=codes.write_plane(plane),
         ground="manual",
     )
 
@@ -45,13 +45,13 @@ _PROFILE = "what it sets in the path preprocessing has no counterpart in the twi
 
 CODES: dict[int, GCode] = {
     0: _motion("positioning in a straight line; FF is its feed", RAPID),
-    1: _motion("straight line", iso.FEED, seed=True),
+    1: _motion("straight line", codes.FEED, seed=True),
     2: _motion("arc clockwise", CLOCKWISE, seed=True),
     3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
     4: GCode(
         meaning="dwell, seconds in T",
         perform=actions.dwell,
-        translate=iso.write_dwell("T"),
+        translate=codes.write_dwell("T"),
         ground="manual",
     ),
     5: _motion("point of a spline in X Y", FLAT_SPLINE),

@@ -7,12 +7,12 @@ The canonical moves know lines and arcs; a curve becomes chords that leave it by
 import math
 from collections.abc import Callable
 
-from twin.nc.arcs import Point, direction
-from twin.nc.circular import start_and_end
-from twin.nc.control import Control
-from twin.nc.interpolation import Interpolation
-from twin.nc.planes import XY
-from twin.nc.splines import CHORD_ERROR, MOST_CHORDS
+from twin.nc.control.control import Control
+from twin.nc.control.interpolation import Interpolation
+from twin.nc.geometry.arcs import Point, direction
+from twin.nc.geometry.planes import XY
+from twin.nc.iso.circular import start_and_end
+from twin.nc.path.splines import CHORD_ERROR, MOST_CHORDS
 
 _SAME_DISTANCE = 1e-6
 """Distances from an ellipse's axis that differ by less leave its shape open [mm]."""

@@ -1,10 +1,10 @@
 """Jumps of CODESYS SoftMotion."""
 
-from twin.nc.blocks import Word
-from twin.nc.control import Control
+from twin.nc.control.control import Control
+from twin.nc.control.flow import Place
 from twin.nc.dialects.codesys.program import COUNTER, read_variable
 from twin.nc.dialects.codesys.subprograms import own_lines
-from twin.nc.flow import Place
+from twin.nc.text.blocks import Word
 
 
 def destination(control: Control, target: Word) -> Place:

@@ -5,11 +5,12 @@ import math
 import re
 from collections.abc import Mapping
 
-from twin.nc import arithmetic
-from twin.nc.blends import BlendKind
-from twin.nc.blocks import Statement, Word
-from twin.nc.control import Control
-from twin.nc.expressions import (
+from twin.nc.bytecode.registers import RADIUS_GIVEN
+from twin.nc.control.control import Control
+from twin.nc.path.blends import BlendKind
+from twin.nc.text import arithmetic
+from twin.nc.text.blocks import Statement, Word
+from twin.nc.text.expressions import (
     ARITHMETIC,
     COMPARISON,
     Expression,
@@ -18,7 +19,6 @@ from twin.nc.expressions import (
     FunctionOf,
     Operator,
 )
-from twin.nc.plain_state import RADIUS_GIVEN
 
 COUNTER = "$"
 """The decoder's internal variable among the others, as no program writes it."""

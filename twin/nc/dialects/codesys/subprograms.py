@@ -4,13 +4,13 @@ import re
 from collections.abc import Container, Iterator
 from pathlib import Path
 
-from twin.nc.blocks import Statement
-from twin.nc.control import Control
+from twin.nc.control.control import Control
+from twin.nc.control.flow import Place, Return
 from twin.nc.dialects.codesys.program import Subprogram, assign, variables
-from twin.nc.expressions import Expression
-from twin.nc.flow import Place, Return
-from twin.nc.library import named_files, with_called_files
-from twin.nc.source import Source
+from twin.nc.text.blocks import Statement
+from twin.nc.text.expressions import Expression
+from twin.nc.text.library import named_files, with_called_files
+from twin.nc.text.source import Source
 
 DEEPEST_CALL = 14
 """Subprograms within subprograms (manual, before 4.18)."""

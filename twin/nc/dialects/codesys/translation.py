@@ -1,14 +1,13 @@
 """Blocks of CODESYS SoftMotion as instructions for the fast way: the same as its actions do."""
 
-from twin.nc import arithmetic
-from twin.nc.block_words import write_words
-from twin.nc.block_writer import BlockWriter, NotTranslatableError
-from twin.nc.blocks import Block, Statement, Word
-from twin.nc.control import Control
+from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.block_compiler import write_words
+from twin.nc.control.control import Control
+from twin.nc.control.flow import Place
 from twin.nc.dialects.codesys import jumps, program, subprograms
-from twin.nc.expression_tree import Variable
-from twin.nc.expressions import Expression
-from twin.nc.flow import Place
+from twin.nc.text import arithmetic
+from twin.nc.text.blocks import Block, Statement, Word
+from twin.nc.text.expressions import Expression, Variable
 
 _JUMP, _WRITE, _ADD = 20.0, 36.0, 37.0
 

@@ -2,10 +2,10 @@
 
 import math
 
-from twin.nc.blocks import Word
-from twin.nc.control import Control
-from twin.nc.dialect import WordAction
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import WordAction
 from twin.nc.dialects.codesys.program import variables
+from twin.nc.text.blocks import Word
 
 LARGEST_SWITCH = 32_767
 """Largest number of a switch point (manual)."""

@@ -1,8 +1,7 @@
 """Fagor CNC 8070, milling model."""
 
-from twin.nc import iso
-from twin.nc.control import Control
-from twin.nc.dialect import Comment, Dialect, Mark, MCode, Syntax
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import Comment, Dialect, Mark, MCode, Syntax
 from twin.nc.dialects.fagor8070 import (
     arcs,
     corners,
@@ -24,6 +23,7 @@ from twin.nc.dialects.fagor8070.codes import (
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import with_globals
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
+from twin.nc.iso import codes
 
 
 def _prepare(control: Control) -> None:
@@ -69,7 +69,7 @@ FAGOR8070 = Dialect(
     instead=INSTEAD,
     start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
     m={
-        **iso.M_CODES,
+        **codes.M_CODES,
         6: MCode(
             meaning="tool change",
             action=frames.change_tool,
@@ -96,8 +96,8 @@ FAGOR8070 = Dialect(
     motion_words=frozenset("XYZABCUVWIJKRQ") | {"R1"},
     repeat_word="NR",
     words={
-        "F": iso.set_feed,
-        "S": iso.set_spindle,
+        "F": codes.set_feed,
+        "S": codes.set_spindle,
         "T": frames.select_tool,
         "D": frames.tool_offset,
         "H": auxiliary,
@@ -106,7 +106,7 @@ FAGOR8070 = Dialect(
         "G263": arcs.set_circle_radius,
     },
     word_translations={
-        "S": iso.write_spindle,
+        "S": codes.write_spindle,
         "T": frames.write_tool,
         "D": frames.write_tool_offset,
         "H": write_auxiliary,

@@ -6,7 +6,11 @@ one it is the polar radius.
 
 import math
 
-from twin.nc.arcs import (
+from twin.nc.control.control import Control
+from twin.nc.control.interpolation import Interpolation, PlainLine
+from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
+from twin.nc.geometry.arcs import (
     SAME_POINT,
     TURN,
     Point,
@@ -17,8 +21,7 @@ from twin.nc.arcs import (
     sweep_between,
     turned,
 )
-from twin.nc.blocks import Word
-from twin.nc.circular import (
+from twin.nc.iso.circular import (
     center_of_radius,
     fitted_center,
     plain_arc,
@@ -27,10 +30,7 @@ from twin.nc.circular import (
     sweep_arc,
     take_center,
 )
-from twin.nc.control import Control
-from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
-from twin.nc.interpolation import Interpolation, PlainLine
+from twin.nc.text.blocks import Word
 
 HELIX_ANGLE = 0.1
 """A helix whose pitch misses its end point by more than this earns a warning [deg]."""

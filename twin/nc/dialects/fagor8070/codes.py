@@ -2,14 +2,12 @@
 
 from collections.abc import Mapping
 
-from twin.nc import iso, iso_cycles, offsets
-from twin.nc.block_words import BlockWords
-from twin.nc.block_writer import BlockWriter, NotTranslatableError
-from twin.nc.blocks import Word
+from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.block_compiler import BlockWords
+from twin.nc.bytecode.opcodes import Step
 from twin.nc.canonical import Corner
-from twin.nc.compensation_words import write_compensation_by_tool, write_end_of_compensation
-from twin.nc.control import Control
-from twin.nc.dialect import (
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import (
     Action,
     FeedMode,
     GCode,
@@ -18,8 +16,10 @@ from twin.nc.dialect import (
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
 from twin.nc.dialects.fagor8070.cycles import CYCLES
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.instructions import Step
-from twin.nc.planes import XY, YZ, ZX, Plane
+from twin.nc.geometry.planes import XY, YZ, ZX, Plane
+from twin.nc.iso import codes, cycles, offsets
+from twin.nc.iso.compensation_words import write_compensation_by_tool, write_end_of_compensation
+from twin.nc.text.blocks import Word
 
 
 def dwell(control: Control) -> None:
@@ -120,7 +120,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=frames.change_plane,
-        translate=iso.write_plane(plane),
+        translate=codes.write_plane(plane),
         ground="seed",
     )
 
@@ -179,7 +179,7 @@ CODES: dict[int, GCode] = {
     4: GCode(
         meaning="dwell, seconds in K or right behind",
         perform=dwell,
-        translate=iso.write_dwell("K"),
+        translate=codes.write_dwell("K"),
         ground="manual",
     ),
     5: _g("round corner", "corner", corner=Corner.CONTINUOUS),
@@ -284,7 +284,7 @@ CODES: dict[int, GCode] = {
         meaning="constant cutting speed", refused="a mill's radius is the tool's", ground="manual"
     ),
     97: _g("constant spindle speed", "spindle"),
-    **iso_cycles.RETURN,
+    **cycles.RETURN,
     **_refused("probing", _PROBE, range(100, 105)),
     108: _g("feed blending at the start of the block", "feed blending"),
     109: _g("feed blending at the end of the block", "feed blending"),

@@ -2,9 +2,9 @@
 
 import re
 
-from twin.nc.blends import Blend, BlendKind
-from twin.nc.control import Control
+from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.path.blends import Blend, BlendKind
 
 _CODES = re.compile(rb"G[ \t]*0*3[69](?![0-9])", re.IGNORECASE)
 

@@ -13,11 +13,8 @@ reference plane, and returns with rapid to C, 1 mm, above where it was.
 
 from collections.abc import Mapping
 
-from twin.nc.dialect import GCode, Ground
-from twin.nc.dialects.fagor8070.pockets import call_pocket, mill_pocket
-from twin.nc.dialects.fagor8070.polar import take_goal
-from twin.nc.drilling import cycle_code
-from twin.nc.holes import (
+from twin.nc.control.dialect import GCode, Ground
+from twin.nc.control.drilling_cycle import (
     BOTTOM,
     CHIP_CLEARANCE,
     CLEARANCE,
@@ -34,7 +31,10 @@ from twin.nc.holes import (
     Pecking,
     Retract,
 )
-from twin.nc.interpolation import Interpolation, PlainHole
+from twin.nc.control.interpolation import Interpolation, PlainHole
+from twin.nc.dialects.fagor8070.pockets import call_pocket, mill_pocket
+from twin.nc.dialects.fagor8070.polar import take_goal
+from twin.nc.iso.drilling import cycle_code
 
 _CLEARANCE = 1.0
 """G82: C where it is missing [mm]."""

@@ -1,6 +1,6 @@
 """Decisions where the documents of this control are silent."""
 
-from twin.nc.dialect import Decision
+from twin.nc.control.dialect import Decision
 
 DECISIONS = (
     Decision(

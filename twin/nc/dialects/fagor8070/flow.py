@@ -2,14 +2,14 @@
 
 import re
 
-from twin.nc.blocks import Statement
-from twin.nc.control import Control
+from twin.nc.control.control import Control
+from twin.nc.control.flow import Place
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.structure import Construct, Structure, structure_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
 from twin.nc.dialects.fagor8070.variables import read_variable, refuse
-from twin.nc.expressions import Expression
-from twin.nc.flow import Place
+from twin.nc.text.blocks import Statement
+from twin.nc.text.expressions import Expression
 
 _PLACE = re.compile(r"[ \t]*(?:N[ \t]*([0-9]+)|\[[ \t]*([A-Z_]\w*)[ \t]*\])[ \t]*", re.IGNORECASE)
 

@@ -1,20 +1,20 @@
 """Planes, offsets and tools of the Fagor CNC 8070."""
 
-from twin.nc.block_words import BlockWords
-from twin.nc.block_writer import BlockWriter, NotTranslatableError
-from twin.nc.blocks import Word
-from twin.nc.control import Control
+from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.block_compiler import BlockWords
+from twin.nc.bytecode.opcodes import Step
+from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar, reset_polar_origin
-from twin.nc.instructions import Step
-from twin.nc.offsets import (
+from twin.nc.geometry.planes import Plane, Vector, cross
+from twin.nc.iso.offsets import (
     refuse_plane_change,
     select_offset,
     set_length,
     tool_numbered,
     write_programmed_shift,
 )
-from twin.nc.planes import Plane, Vector, cross
+from twin.nc.text.blocks import Word
 
 OFFSETS_BY_NUMBER = 20
 """Work offsets that G159 can name; the first six are G54 to G59."""

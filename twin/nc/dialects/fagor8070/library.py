@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from twin.nc.library import named_files, with_called_files
-from twin.nc.source import Source
+from twin.nc.text.library import named_files, with_called_files
+from twin.nc.text.source import Source
 
 MARK = "%GLOBAL "
 """Begins the line in front of a global subroutine; a program's own heading has no blank in it."""

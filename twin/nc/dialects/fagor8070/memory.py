@@ -3,11 +3,7 @@
 import dataclasses
 import math
 
-from twin.nc.arcs import Point
-from twin.nc.blocks import Statement
-from twin.nc.control import Control
-from twin.nc.dialects.fagor8070.structure import Structure
-from twin.nc.plain_state import (
+from twin.nc.bytecode.registers import (
     OFFSET_ON,
     POLAR_ABSCISSA,
     POLAR_ANGLE,
@@ -19,7 +15,11 @@ from twin.nc.plain_state import (
     SCALE,
     SIGNS,
 )
-from twin.nc.planes import Vector
+from twin.nc.control.control import Control
+from twin.nc.dialects.fagor8070.structure import Structure
+from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.planes import Vector
+from twin.nc.text.blocks import Statement
 
 ModalCall = tuple[str, dict[str, float], Statement]
 

@@ -11,9 +11,9 @@ wall at the full depth; corners are as round as the tool.
 import dataclasses
 import math
 
-from twin.nc.arcs import Point, turned
-from twin.nc.control import Control
+from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.polar import take_goal
+from twin.nc.geometry.arcs import Point, turned
 
 _DEFAULT_WIDTH = 0.75
 """Width of a pass where C is missing, of the tool's diameter (manual)."""

@@ -3,21 +3,21 @@
 import dataclasses
 from collections.abc import Iterable
 
-from twin.nc.arcs import (
+from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.block_compiler import BlockWords, sorted_words
+from twin.nc.bytecode.opcodes import Step
+from twin.nc.control.control import Control
+from twin.nc.control.interpolation import Interpolation, PlainHole
+from twin.nc.control.state import integer_of
+from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.geometry.arcs import (
     SAME_POINT,
     angle_of,
     direction,
     distance,
 )
-from twin.nc.block_words import BlockWords, sorted_words
-from twin.nc.block_writer import BlockWriter, NotTranslatableError
-from twin.nc.blocks import Word
-from twin.nc.control import Control
-from twin.nc.control_state import integer_of
-from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.expressions import Expression
-from twin.nc.instructions import Step
-from twin.nc.interpolation import Interpolation, PlainHole
+from twin.nc.text.blocks import Word
+from twin.nc.text.expressions import Expression
 
 HELIX_ANGLE = 0.1
 """A helix whose pitch misses its end point by more than this earns a warning [deg]."""

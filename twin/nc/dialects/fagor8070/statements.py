@@ -3,11 +3,11 @@
 import re
 from collections.abc import Callable
 
-from twin.nc.blocks import Statement
-from twin.nc.control import Control
+from twin.nc.control.control import Control
+from twin.nc.control.flow import Place
 from twin.nc.dialects.fagor8070 import flow, subroutines
 from twin.nc.dialects.fagor8070.variables import assign, refuse
-from twin.nc.flow import Place
+from twin.nc.text.blocks import Statement
 
 
 def dwell(control: Control, statement: Statement) -> None:

@@ -4,14 +4,13 @@ import dataclasses
 import re
 from collections.abc import Iterator, Mapping
 
-from twin.nc.blocks import Statement
-from twin.nc.control import Control
+from twin.nc.control.control import Control
+from twin.nc.control.flow import Place, Return
 from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.variables import refuse
-from twin.nc.expression_tree import Number
-from twin.nc.expressions import Expression, ExpressionError
-from twin.nc.flow import Place, Return
+from twin.nc.text.blocks import Statement
+from twin.nc.text.expressions import Expression, ExpressionError, Number
 
 DEEPEST_CALL = 20
 """Subroutines and repetitions within each other (manual, E1152)."""

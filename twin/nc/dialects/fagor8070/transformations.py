@@ -1,14 +1,14 @@
 """Mirror, scale and rotation of the Fagor CNC 8070, and the same for the fast way."""
 
-from twin.nc.block_words import BlockWords
-from twin.nc.block_writer import BlockWriter, NotTranslatableError
-from twin.nc.control import Control
-from twin.nc.dialect import Translation
+from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.block_compiler import BlockWords
+from twin.nc.bytecode.opcodes import Step
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import Translation
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar
-from twin.nc.instructions import Step
-from twin.nc.matrices import LARGEST_SCALE, SMALLEST_SCALE, rotated, stretched
-from twin.nc.planes import Vector
+from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE, rotated, stretched
+from twin.nc.geometry.planes import Vector
 
 
 def mirror_off(control: Control) -> None:

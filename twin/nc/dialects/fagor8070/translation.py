@@ -2,16 +2,16 @@
 
 from collections.abc import Callable
 
-from twin.nc.block_words import sorted_words, write_words
-from twin.nc.block_writer import BlockWriter, NotTranslatableError
-from twin.nc.blocks import Block, Statement
-from twin.nc.control import Control
+from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.block_compiler import sorted_words, write_words
+from twin.nc.bytecode.opcodes import Step
+from twin.nc.control.control import Control
+from twin.nc.control.flow import Place
 from twin.nc.dialects.fagor8070 import flow, polar, subroutines
 from twin.nc.dialects.fagor8070.subroutines import DEEPEST_CALL
 from twin.nc.dialects.fagor8070.variables import EXPRESSIONS, assignments
-from twin.nc.expressions import Expression
-from twin.nc.flow import Place
-from twin.nc.instructions import Step
+from twin.nc.text.blocks import Block, Statement
+from twin.nc.text.expressions import Expression
 
 _RETURNS = (17.0, 29.0)
 

@@ -6,18 +6,19 @@ import re
 from collections.abc import Iterator
 from typing import NoReturn
 
-from twin.nc import arithmetic
-from twin.nc.blocks import Statement
-from twin.nc.control import Control
+from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.expression_tree import Computed, Number
-from twin.nc.expressions import (
+from twin.nc.text import arithmetic
+from twin.nc.text.blocks import Statement
+from twin.nc.text.expressions import (
     ARITHMETIC,
     COMPARISON,
+    Computed,
     Expression,
     ExpressionError,
     ExpressionSyntax,
     FunctionOf,
+    Number,
     Operator,
 )
 

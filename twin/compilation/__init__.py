@@ -1,0 +1,1 @@
+"""Numba: how kernels are declared, kept and announced."""

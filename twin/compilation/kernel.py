@@ -1,0 +1,73 @@
+"""How kernels are compiled: the decorators of every compiled function of this package.
+
+Numba counts the references to every column that a function takes from a tuple, with atomic
+operations; of kernels that are given sixty columns and call each other once a block, that is two
+thirds of the time. A kernel that makes no array works on what belongs to its caller, so that it is
+compiled without the counting (``_nrt``, Numba's run time of references).
+"""
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+import numpy as np
+
+from twin.compilation.cache import keep_kernels_by_content
+
+keep_kernels_by_content()
+
+NONE_YET, ONCE, NO = (
+    cast("int", np.int64(0)),
+    cast("int", np.int64(1)),
+    cast("bool", np.bool_(False)),
+)
+"""For what is given to other kernels: to Numba a plain 0, 1 or False is a type of its own, for which
+it compiles a kernel once more."""
+
+_SUMS = {"reassoc", "nsz", "nnan"}
+"""Freedoms that let a sum or a maximum over neighbours be taken several at a time: its terms may be
+added in any order, and none is NaN."""
+
+Kernel = TypeVar("Kernel", bound=Callable[..., object])
+
+
+def array_kernel(function: Kernel) -> Kernel:
+    """Compile a function that may make arrays."""
+    return _compiled(function)
+
+
+def array_arithmetic_kernel(function: Kernel) -> Kernel:
+    """Compile a function that may make arrays, where a division by zero gives infinity or NaN."""
+    return _compiled(function, error_model="numpy")
+
+
+def summing_kernel(function: Kernel) -> Kernel:
+    """Compile a function of sums whose order the compiler may choose, as long as it is one order.
+
+    A division by zero gives infinity.
+    """
+    return _compiled(function, fastmath=_SUMS, error_model="numpy")
+
+
+def kernel(function: Kernel) -> Kernel:
+    """Compile a function that makes no array."""
+    return _compiled(function, _nrt=False)
+
+
+def inlined_kernel(function: Kernel) -> Kernel:
+    """Compile a function that makes no array, as a part of each function that calls it.
+
+    A call hands over hundreds of values, one for each size and step of a column, which may take
+    longer than the block that is run.
+    """
+    return _compiled(function, _nrt=False, forceinline=True)
+
+
+def arithmetic_kernel(function: Kernel) -> Kernel:
+    """Compile a function that makes no array, where a division by zero gives infinity or NaN."""
+    return _compiled(function, _nrt=False, error_model="numpy")
+
+
+def _compiled(function: Kernel, **options: Any) -> Kernel:
+    jit: Any = numba.njit  # its declared options lack ``_nrt``
+    return jit(cache=True, **options)(function)

@@ -1,0 +1,1 @@
+"""The job file: what runs where, with which stock, tools and tolerances."""

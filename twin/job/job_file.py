@@ -1,0 +1,303 @@
+"""The job file: which program, on which machine, with which stock, tools and tolerances."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Literal
+
+import pydantic
+from pydantic import Field
+
+from twin.errors import ConfigError
+from twin.files.overrides import Change, changed
+from twin.files.stl import stl_extent
+from twin.files.toml import Data, Table, checked, read_toml
+from twin.job.fixture import FixtureTable
+
+Positive = Annotated[float, Field(gt=0)]
+
+DEFAULT_MACHINE = "mill4"
+DEFAULT_CONTOUR_UM = 20.0
+"""Contour tolerance of a job that names none [µm]: what a general mill holds under IT7."""
+
+
+class StockTable(Table):
+    """The blank: ``box``, ``cylinder``, ``tube``, or the shape of an ``stl`` file."""
+
+    shape: Literal["box", "cylinder", "tube", "stl"]
+    size: tuple[Positive, Positive, Positive] | None = None
+    """Box: along X, Y, Z [mm]."""
+    diameter: Positive | None = None
+    """Cylinder and tube [mm]."""
+    height: Positive | None = None
+    """Cylinder and tube [mm]."""
+    bore: Positive | None = None
+    """Tube: diameter of its hole [mm]."""
+    file: str | None = None
+    """STL: its file [mm], relative to the job file."""
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Centre of the top face in program coordinates [mm]; of the box around an STL."""
+    cell: Positive | None = None
+    """Grid of the height map [mm]; none: a tenth of the smallest tool's radius, or a fortieth of the
+    stock's shorter side where that is less, 0.1 at the finest."""
+    material: str | None = None
+    """What it is made of, for the cutting force; none: no force is reckoned."""
+
+    @pydantic.model_validator(mode="after")
+    def _dimensions_fit_shape(self) -> "StockTable":
+        given = {name for name in _DIMENSIONS if getattr(self, name) is not None}
+        needed = _SHAPES[self.shape]
+        if given != set(needed):
+            raise ValueError(f"shape '{self.shape}' needs {' and '.join(needed)} and nothing else")
+        if self.bore is not None and self.diameter is not None and self.bore >= self.diameter:
+            raise ValueError("the bore of a tube must be smaller than its diameter")
+        return self
+
+    @property
+    def extent(self) -> tuple[float, float, float]:
+        """Size of the box around the blank [mm].
+
+        Raises:
+            ConfigError: The STL file cannot be read.
+        """
+        if self.size is not None:
+            return self.size
+        if self.file is not None:
+            return stl_extent(Path(self.file))
+        assert self.diameter is not None
+        assert self.height is not None
+        return (self.diameter, self.diameter, self.height)
+
+
+_DIMENSIONS = ("size", "diameter", "height", "bore", "file")
+_SHAPES = {
+    "box": ("size",),
+    "cylinder": ("diameter", "height"),
+    "tube": ("diameter", "height", "bore"),
+    "stl": ("file",),
+}
+
+
+class ToolTable(Table):
+    """One tool of the job."""
+
+    number: Annotated[int, Field(ge=0)]
+    kind: Literal["flat", "ball", "bull", "drill", "chamfer"] = "flat"
+    diameter: Positive = 10.0
+    """Of the cutting edge [mm]."""
+    length: Positive = 60.0
+    """From the spindle nose to the tip, holder included [mm]."""
+    flute: Positive = 25.0
+    """Length of the cutting part [mm]."""
+    corner: Positive | None = None
+    """Bull-nose: radius of the corner [mm]."""
+    angle: Annotated[float, Field(gt=0, lt=180)] | None = None
+    """Drill and chamfer: included angle of the point [deg]; none: 118 and 90."""
+    tip: Annotated[float, Field(ge=0)] = 0.0
+    """Chamfer: diameter of the flat at the tip [mm]."""
+    shank: Positive | None = None
+    """Diameter above the flutes [mm]; none: that of the cutting edge."""
+    free_length: Positive | None = None
+    """From the holder to the tip [mm]; none: the flutes and three eighths of the rest."""
+    holder: Positive = 32.0
+    """Diameter of the holder's nut [mm]."""
+    teeth: Annotated[int, Field(ge=1)] = 2
+    """Cutting edges, for the cutting force."""
+    speed: Positive | None = None
+    """Spindle speed for the cutting force [1/min]; none: no force is reckoned."""
+
+    @pydantic.model_validator(mode="after")
+    def _shape_is_whole(self) -> "ToolTable":
+        if (self.corner is not None) != (self.kind == "bull"):
+            raise ValueError("kind 'bull', and no other, needs corner = its radius")
+        if self.corner is not None and 2 * self.corner > self.diameter:
+            raise ValueError("the corner of a bull-nose cutter is at most half its diameter")
+        if self.angle is not None and self.kind not in ("drill", "chamfer"):
+            raise ValueError("angle belongs to the kinds 'drill' and 'chamfer'")
+        if self.tip and (self.kind != "chamfer" or self.tip >= self.diameter):
+            raise ValueError("tip belongs to the kind 'chamfer' and is smaller than its diameter")
+        if self.free_length is not None and self.free_length > self.length:
+            raise ValueError("free_length is at most the length")
+        return self
+
+    @property
+    def below_holder(self) -> float:
+        """From the holder to the tip [mm]."""
+        if self.free_length is not None:
+            return self.free_length
+        flute = min(self.flute, 0.8 * self.length)
+        return flute + 0.375 * (self.length - flute)
+
+
+class BlocksToleranceTable(Table):
+    """A tolerance for a range of program lines; of several that hold one line, the last counts."""
+
+    lines: tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
+    """First and last source line, both included."""
+    contour_um: Positive
+    """Largest contour error there, rapids included [µm]."""
+
+    @pydantic.field_validator("lines")
+    @classmethod
+    def _in_order(cls, lines: tuple[int, int]) -> tuple[int, int]:
+        if lines[0] > lines[1]:
+            raise ValueError("lines must be [first, last]")
+        return lines
+
+
+class ToleranceTable(Table):
+    """What the verdict holds the run to."""
+
+    contour_um: Positive = DEFAULT_CONTOUR_UM
+    """Largest distance from the commanded path, seen from the part [µm]."""
+    rapid_contour_um: Positive | None = None
+    """The same during rapids [µm]; none: they are held to ``contour_um`` too."""
+    blocks: tuple[BlocksToleranceTable, ...] = ()
+    """Other contour tolerances for ranges of lines."""
+    corner_um: Positive | None = None
+    """How far a corner may be rounded: nearest the tool comes to it [µm]; none: not judged."""
+    circular_deviation_um: Positive | None = None
+    """Of every arc of at least 90 degrees [µm]; none: not judged."""
+    following_um: Positive | None = None
+    """Largest following error of a linear axis [µm]; none: not judged."""
+    following_mdeg: Positive | None = None
+    """Largest following error of a rotary axis [mdeg]; none: not judged."""
+    cycle_time_s: Positive | None = None
+    """Longest machine time of the program [s]; none: not judged."""
+
+
+class BaselineTable(Table):
+    """How far a run may be from its baseline (``twin check --baseline``)."""
+
+    path_um: Positive = 1.0
+    """Start, end or centre of a block [µm or mdeg]."""
+    feed_percent: Annotated[float, Field(ge=0)] = 0.1
+    """Commanded feed of a block, either way."""
+    cycle_time_percent: Annotated[float, Field(ge=0)] = 1.0
+    """Change of the cycle time, either way."""
+    contour_um: Annotated[float, Field(ge=0)] = 1.0
+    """Growth of the greatest contour error [µm]."""
+
+
+class VideoTable(Table):
+    """How the run is filmed."""
+
+    cameras: tuple[str, ...] = ("overview",)
+    """Named cameras, shown one after the other."""
+    layout: Literal["sequence", "split"] = "sequence"
+    """``split``: all cameras at once, side by side."""
+    display: bool = True
+    """Whether program, axes, feed and error are shown over the picture."""
+    seconds: Positive = 12.0
+    """Length of the video; the run is sped up or slowed down to fit [s]."""
+    speed: Positive | None = None
+    """Times faster than in reality, instead of a length."""
+    quality: Literal["draft", "final"] = "draft"
+    """``final`` has shadows, smooth edges and a finer stock, and takes several times as long."""
+    renderer: Literal["opengl", "filament"] = "opengl"
+    """``filament`` is physically based: it needs a Vulkan driver and takes longer."""
+    fps: Annotated[int, Field(ge=1, le=60)] = 25
+    size: tuple[Annotated[int, Field(ge=64, le=1920)], Annotated[int, Field(ge=64, le=1080)]] = (
+        1280,
+        720,
+    )
+
+
+class JobFile(Table):
+    """A job file; every key but ``program`` has a default."""
+
+    program: str
+    """NC program, relative to the job file."""
+    dialect: str | None = None
+    """One of ``twin dialects``; none: told apart by the program's own words."""
+    machine: str = DEFAULT_MACHINE
+    """A shipped machine's name, or a path relative to the job file."""
+    default_feed: Positive | None = None
+    """Feed where the program sets none [mm/min]; none: the machine's."""
+    default_rotary_feed: Positive | None = None
+    """The same for moves of rotary axes alone [deg/min]."""
+    part_zero: dict[str, float] = Field(default_factory=dict)
+    """Program zero in machine coordinates, by axis [mm or deg]; an axis left out: on the table's
+    centre line, at the height of the stock's top face, other axes at 0."""
+    start: dict[str, float] = Field(default_factory=dict)
+    """Where the axes stand when the program starts, program coordinates [mm or deg]."""
+    stock: StockTable | None = None
+    tools: tuple[ToolTable, ...] = (ToolTable(number=1),)
+    """The first is in the spindle at the start."""
+    fixtures: tuple[FixtureTable, ...] = ()
+    """What holds the part, beside what the machine file puts on its table."""
+    cutting_load: bool = False
+    """The cutting force pushes the axes; the stock's material and a spindle speed must be known."""
+    offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
+    """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
+    variables: dict[str, float] = Field(default_factory=dict)
+    """Values of variables that the program reads but does not set, by their name in it."""
+    block_skip: bool = False
+    """Blocks that begin with a slash are left out."""
+    step_limit: Annotated[int, Field(gt=0)] = 20_000
+    """Blocks that may be run again through jumps and loops before the program counts as endless."""
+    tolerance: ToleranceTable = ToleranceTable()
+    baseline: BaselineTable = BaselineTable()
+    video: VideoTable = VideoTable()
+
+    @pydantic.field_validator("tools")
+    @classmethod
+    def _tools_distinct(cls, tools: tuple[ToolTable, ...]) -> tuple[ToolTable, ...]:
+        numbers = [tool.number for tool in tools]
+        if not tools or len(set(numbers)) != len(numbers):
+            raise ValueError("tools must be at least one, each with its own number")
+        return tools
+
+
+class Job:
+    """A job that was read.
+
+    Attributes:
+        folder: What relative paths in it are relative to.
+        file: Its checked content; the file of an STL stock is a whole path.
+        program: The NC program.
+        path: The job file; None where a program has none.
+    """
+
+    def __init__(self, folder: Path, file: JobFile, path: Path | None = None) -> None:
+        if file.stock is not None and file.stock.file is not None:
+            whole = str((folder / file.stock.file).absolute())
+            stock = file.stock.model_copy(update={"file": whole})
+            file = file.model_copy(update={"stock": stock})
+        self.folder = folder
+        self.file = file
+        self.program = folder / file.program
+        self.path = path
+
+
+def _runs(job: Job, program: Path) -> bool:
+    return job.program.resolve() == program.resolve()
+
+
+def read_job(path: Path, changes: Sequence[Change] = ()) -> Job:
+    """Read a job file, or make the default job of an NC program.
+
+    An NC program with a job file of the same stem beside it is run by that job.
+
+    Args:
+        path: A ``.toml`` job file, or an NC program.
+        changes: Values under ``job.`` to change.
+
+    Raises:
+        ConfigError: The job file is wrong, or the program does not exist.
+    """
+
+    def change(data: Data) -> Data:
+        return changed(data, "job", changes)
+
+    beside = path.with_suffix(".toml")
+    if path.suffix == ".toml":
+        job = Job(path.parent, read_toml(path, JobFile, prepare=change), path)
+    elif beside.is_file() and _runs(
+        job := Job(path.parent, read_toml(beside, JobFile, prepare=change), beside), path
+    ):
+        pass
+    else:
+        job = Job(path.parent, checked(change({"program": path.name}), JobFile, str(path)))
+    if not job.program.is_file():
+        raise ConfigError(f"{job.program}: no such NC program")
+    return job

@@ -1,0 +1,1 @@
+"""Canonical moves as blocks of a plan, and their corners."""

@@ -1,0 +1,241 @@
+"""Blocks: the moves that take time, and the dwells, with what happens where one meets the next."""
+
+import dataclasses
+import itertools
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from twin.columns import Columns, join
+from twin.motion.blocks.block_kernels import largest_travels
+from twin.nc.canonical import (
+    Chunk,
+    CodeArray,
+    Corner,
+    Dwell,
+    Event,
+    FloatArray,
+    IntArray,
+    Motion,
+    Moves,
+)
+from twin.toolpath.geometry import Geometry, geometry
+from twin.units import SECONDS_PER_MINUTE
+
+SHORTEST = 1e-9
+"""A shorter block takes no time [mm or deg]: a thousandth of the nanometre the path is kept to."""
+
+STEEPEST = 10.0
+"""How far an axis may go per path parameter; where one goes further than this while the feed counts
+next to nothing (C turns, X moves by a rounding), the parameter is stretched."""
+
+JOIN_TOLERANCE = 1e-6
+"""Largest gap between consecutive moves that is rounding, not a fault [mm or deg]."""
+
+BoolArray = np.ndarray[tuple[int], np.dtype[np.bool_]]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Blocks(Columns):
+    """A run of n blocks, as columns. A dwell is a block without length.
+
+    Attributes:
+        move: Number of the move in the whole program, -1 before the first, shape (n,).
+        line: Source line, shape (n,).
+        length: In path parameter x, shape (n,) [mm or deg]; 0 for dwells.
+        stretch: Path parameter per what the feed counts, almost always 1, shape (n,).
+        rapid: Whether the move is a rapid, shape (n,).
+        feed: Shape (n,) [mm/s or deg/s]; infinite for rapids that the program gives none.
+        acceleration: Programmed, shape (n,) [mm/s² or deg/s²]; infinite: the machine's.
+        deceleration: The same for slowing down.
+        rotary_alone: Only rotary axes move, shape (n,).
+        corner: ``Corner`` code of the border before the block, shape (n,).
+        tolerance: Of a continuous border before the block, shape (n,) [mm]; NaN: the machine's.
+        pause: How long a dwell waits, shape (n,) [s].
+        geometry: n rows.
+    """
+
+    move: IntArray
+    line: IntArray
+    length: FloatArray
+    stretch: FloatArray
+    rapid: BoolArray
+    feed: FloatArray
+    acceleration: FloatArray
+    deceleration: FloatArray
+    rotary_alone: BoolArray
+    corner: CodeArray
+    tolerance: FloatArray
+    pause: FloatArray
+    geometry: Geometry
+
+
+def blocks_of_chunks(chunks: Iterable[Chunk], start: FloatArray) -> Iterator[Blocks]:
+    """The blocks of a program, in order.
+
+    The path comes to rest before and after rapids, dwells and functions, as the conventions of
+    canonical moves demand; a function at a switch point within a move does not stop it.
+
+    Args:
+        chunks: The program.
+        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+
+    Raises:
+        ValueError: A move does not begin where the one before it ended.
+    """
+    first = 0
+    position = start
+    corner, tolerance = int(Corner.EXACT_STOP), np.nan
+    for chunk in chunks:
+        moves = chunk.moves
+        _check_joined(position, moves)
+        done = 0
+        for event in (*(event for event in chunk.events if _stops(event)), None):
+            until = len(moves) if event is None else event.before
+            if until > done:
+                part = moves[done:until]
+                blocks, corner, tolerance = _of_moves(part, first + done, corner, tolerance)
+                yield blocks
+                position = part.end[-1]
+                done = until
+            if event is not None:
+                corner = int(Corner.EXACT_STOP)
+            if isinstance(event, Dwell):
+                yield _of_dwell(event, first + done - 1, position)
+        first += len(moves)
+
+
+def _stops(event: Event) -> bool:
+    return isinstance(event, Dwell) or event.at == 0.0
+
+
+def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[Blocks, int, float]:
+    """The blocks of moves, and the corner and tolerance at their end."""
+    farthest, linear = largest_travels(moves.start, moves.end, moves.axes.rotary())
+    length = np.maximum(moves.length, farthest / STEEPEST)
+    rows = np.flatnonzero(length >= SHORTEST)
+    corners = np.append(corner, moves.corner).astype(np.uint8)
+    tolerances = np.append(tolerance, moves.corner_tolerance)
+    before = np.append(rows, len(moves))
+    at_border = corners[before]
+    # A stop that was asked for at a move of no length still stops the path.
+    stops = np.append(0, np.cumsum(corners == Corner.EXACT_STOP))
+    previous = np.append(-1, rows)
+    at_border[stops[before + 1] > stops[previous + 1]] = Corner.EXACT_STOP
+    kept = moves if len(rows) == len(moves) else moves[rows]
+    rapid = kept.motion == Motion.RAPID
+    # Rapids stand still at both ends (twin.nc.canonical).
+    at_border[:-1][rapid] = Corner.EXACT_STOP
+    at_border[1:][rapid] = Corner.EXACT_STOP
+    shapes = geometry(kept)
+    stretch = length / np.maximum(moves.length, 1e-12)
+    blocks = Blocks(
+        move=first + rows,
+        line=kept.line,
+        length=length[rows],
+        stretch=stretch[rows],
+        rapid=rapid,
+        feed=np.where(np.isnan(kept.feed), np.inf, kept.feed / SECONDS_PER_MINUTE),
+        acceleration=np.where(np.isnan(kept.acceleration), np.inf, kept.acceleration),
+        deceleration=np.where(np.isnan(kept.deceleration), np.inf, kept.deceleration),
+        rotary_alone=(linear[rows] == 0.0) & (shapes.angle == 0.0),
+        corner=at_border[:-1],
+        tolerance=tolerances[rows],
+        pause=np.zeros(len(rows)),
+        geometry=shapes,
+    )
+    return blocks, int(at_border[-1]), float(tolerances[-1])
+
+
+def _of_dwell(dwell: Dwell, move: int, position: FloatArray) -> Blocks:
+    """The block of a dwell: it stands at ``position``, the end of the move before."""
+    zero = np.zeros(1)
+    still = Geometry(
+        base=position[None],
+        drift=np.zeros_like(position)[None],
+        cosine=np.zeros((1, 3)),
+        sine=np.zeros((1, 3)),
+        angle=zero,
+        end=position[None],
+    )
+    return Blocks(
+        move=np.array([move]),
+        line=np.array([dwell.line]),
+        length=zero,
+        stretch=np.ones(1),
+        rapid=np.zeros(1, np.bool_),
+        feed=zero,
+        acceleration=zero,
+        deceleration=zero,
+        rotary_alone=np.zeros(1, np.bool_),
+        corner=np.array([Corner.EXACT_STOP], np.uint8),
+        tolerance=np.array([np.nan]),
+        pause=np.array([dwell.seconds]),
+        geometry=still,
+    )
+
+
+def _check_joined(position: FloatArray, moves: Moves) -> None:
+    before = np.concatenate([position[None], moves.end])[: len(moves)]
+    gaps = np.abs(moves.start - before)
+    if gaps.max(initial=0.0) > JOIN_TOLERANCE:
+        row = int(np.argmax(np.any(gaps > JOIN_TOLERANCE, axis=1)))
+        raise ValueError(
+            f"line {moves.line[row]}: the move begins at {moves.start[row]}, "
+            f"but the axes stand at {before[row]}"
+        )
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Surroundings:
+    """Blocks to work on now, with their neighbours on both sides.
+
+    Attributes:
+        blocks: All of them.
+        first: Row of the first block to work on.
+        last: Row after the last block to work on.
+        to_the_end: Whether the program ends with the last of ``blocks``.
+    """
+
+    blocks: Blocks
+    first: int
+    last: int
+    to_the_end: bool
+
+
+def with_neighbours(
+    parts: Iterable[Blocks], batch: int, context: int, most_angle: float = np.inf
+) -> Iterator[Surroundings]:
+    """Regroup blocks: ``batch`` at a time, with up to ``context`` known on either side.
+
+    Groups are counted from the start of the program, whatever parts the blocks come in. They are
+    smaller, and less is known beside them, where arcs turn by more than ``most_angle`` together
+    [rad], that of the last one left out.
+    """
+    waiting: list[Blocks] = []
+    count, first = 0, 0
+    for part in itertools.chain(parts, [None]):
+        if part is not None and len(part):
+            waiting.append(part)
+            count += len(part)
+        while count - first >= (1 if part is None else batch + context):
+            window = join(waiting)
+            angle = np.abs(window.geometry.angle)
+            last = first + _within(
+                angle[first : None if part is None else first + batch], most_angle
+            )
+            before = _within(angle[max(0, first - context) : first][::-1], most_angle)
+            behind = _within(angle[last : last + context], most_angle)
+            yield Surroundings(
+                window[first - before : last + behind],
+                before,
+                before + last - first,
+                to_the_end=part is None and last + behind == count,
+            )
+            kept = max(0, last - context)
+            waiting, count, first = [window[kept:]], count - kept, last - kept
+
+
+def _within(angle: FloatArray, most: float) -> int:
+    """How many arcs, lines among them, turn by no more than that, but for the last."""
+    return min(len(angle), int(np.searchsorted(np.cumsum(angle), most)) + 1)

@@ -1,0 +1,1 @@
+"""Motion under override, hold and resume."""

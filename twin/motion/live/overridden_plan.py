@@ -1,0 +1,251 @@
+"""A plan that is made only as far as it is needed, and anew when the operator's wishes change."""
+
+import dataclasses
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from twin.motion.blocks.blocks import BoolArray
+from twin.motion.live.transition_kernels import find_transition
+from twin.motion.pieces.pieces import Pieces
+from twin.motion.profile.phase_kernels import put_brake
+from twin.motion.profile.phases import Phases, no_phases, phases_of, ways_on
+from twin.motion.profile.profile_kernels import STATE_AT_REST, find_phases
+from twin.motion.profile.reach_kernels import ROUNDING, SLOWEST, find_brake, find_reach
+from twin.motion.profile.windows import Window, windows
+from twin.motion.setpoints.sampling_kernels import state_at
+from twin.nc.canonical import FloatArray
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Wishes:
+    """What the operator wants of the plan."""
+
+    feed_override: float = 1.0
+    """Factor of programmed feeds."""
+
+    rapid_override: float = 1.0
+    """Factor of the velocity of rapids."""
+
+    held: bool = False
+    """Stop, wherever it be."""
+
+    single_block: bool = False
+    """Stop at the end of the block."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Drive:
+    """What a window of n stretches is driven by under the wishes.
+
+    Attributes:
+        limits: As the window's, velocities as wanted.
+        entry: As the window's, 0 where a block is to stop.
+        ways: From ``find_reach``.
+        block_end: Stretch before which a single block stops; -1: none.
+        closed: Whether each stretch must not be driven on, shape (n,).
+    """
+
+    limits: FloatArray
+    entry: FloatArray
+    ways: FloatArray
+    block_end: int
+    closed: BoolArray
+
+    def stop_from(self, stretch: int) -> int:
+        """The first stretch from one on that must not be driven on, or n."""
+        ahead = self.closed[stretch:]
+        return stretch + int(np.argmax(ahead)) if np.any(ahead) else len(self.closed)
+
+
+class OverriddenPlan:
+    """Phases under an operator's wishes.
+
+    Args:
+        parts: The program's pieces, in order.
+
+    Attributes:
+        phases: What is planned and not yet forgotten, in order.
+        standing_since: When the plan came to a standstill that it does not leave by itself [s];
+            infinite while it moves.
+        at_block_end: Whether that is the end of a single block.
+    """
+
+    def __init__(self, parts: Iterable[Pieces]) -> None:
+        self._windows = windows(parts)
+        self._state = STATE_AT_REST.copy()
+        self._wishes = Wishes()
+        self.phases: list[Phases] = []
+        self.standing_since = math.inf
+        self.at_block_end = False
+        self._window: Window
+        self._drive: _Drive
+        self._stretches = 0
+        self._empty = not self._open()
+
+    @property
+    def ended(self) -> bool:
+        """Whether the plan reaches the program's end."""
+        return self._empty or (self._window.whole and int(self._state[0]) >= self._window.due)
+
+    def forget(self, time: float) -> None:
+        """Drop phases that end before a time [s]."""
+        del self.phases[:-1]
+        for phases in self.phases:
+            kept = phases.rows[:, 0] + phases.rows[:, 1] >= time
+            self.phases[0] = Phases(phases.parts, phases.rows[kept], phases.rows_pieces[kept])
+
+    def plan_until(self, time: float) -> None:
+        """Plan on to a time [s], or to the program's end."""
+        while self._state[4] < time and not self.ended:
+            stretch = int(self._state[0])
+            window, drive = self._window, self._drive
+            stop = drive.stop_from(stretch)
+            self.at_block_end = stretch == drive.block_end
+            if self.at_block_end:
+                self._stand_until(time)
+            elif stretch >= window.due:
+                self._open()
+            elif self._wishes.held or stretch == stop:
+                self._stand_until(time)
+            else:
+                rows, stretches = find_phases(
+                    drive.limits, drive.entry, drive.ways, window.pause, min(stop, window.due),
+                    time, self._state,
+                )  # fmt: skip
+                self._append(phases_of(window, rows, stretches))
+
+    def wish(self, wishes: Wishes, time: float) -> bool:
+        """Change the wishes; what is planned for later is dropped.
+
+        Args:
+            wishes: What is wanted from now on.
+            time: Now, up to which it is planned [s].
+
+        Returns:
+            Whether this is possible at once; if not, the plan stays as it is, to be tried again.
+        """
+        if self.ended and self._state[4] <= time:
+            return True
+        place = self._state_at(time)
+        if place is None:
+            return False
+        stretch, x, v, a, pause = place
+        window, drive = _drive(self._window, wishes, stretch, x)
+        tables = drive.limits, drive.entry, drive.ways[0]
+        brake = None
+        if a < 0.0 or find_brake(*tables, stretch, x, v, a, ROUNDING, 0) < 0:
+            brake = find_transition(window.limits, *tables, stretch, x, v, a)
+            if brake[0] < 0:
+                return False
+        self._wishes, self._window, self._drive = wishes, window, drive
+        self.standing_since = math.inf
+        window.pause[stretch] = pause
+        self._state[:5] = stretch, x, v, a, time
+        self._state[5:] = STATE_AT_REST[5:]
+        self.phases = [no_phases(window.pieces)]
+        if brake is not None:
+            end, x_end, w, deceleration, jerk = brake
+            rows, stretches = np.zeros((3, 6)), np.zeros((3, 2), np.int64)
+            count, _, end_time, _ = put_brake(
+                rows, stretches, 0, window.limits[0], stretch, end, time, x, v, a, w,
+                deceleration, jerk,
+            )  # fmt: skip
+            self._append(phases_of(window, rows[:count], stretches[:count]))
+            self._state[:5] = end, x_end, w, 0.0, end_time
+        return True
+
+    def _state_at(self, time: float) -> tuple[int, float, float, float, float] | None:
+        """Stretch, x, v, a at a time, and how long the stretch still pauses [s].
+
+        None between two windows: the next begins with the next sample.
+        """
+        phases, window = self.phases[-1], self._window
+        i, x, v, a, row = state_at(phases.rows, phases.rows_pieces, window.pieces.length, time)
+        if row < 0 or self.standing_since <= time:
+            stretch, (x, v, a) = int(self._state[0]), self._state[1:4].tolist()
+            if stretch >= len(window.pause):
+                return None
+            return stretch, x, v, a, float(window.pause[stretch])
+        stretch, x = window.stretch_at(i, x)
+        pause = float(window.pause[stretch])
+        if window.limits[0, stretch] == 0.0:
+            pause = max(0.0, float(phases.rows[row, :2].sum()) - time)
+        return stretch, x, v, a, pause
+
+    def _open(self) -> bool:
+        """Go to the next window; whether there is one."""
+        window = next(self._windows, None)
+        if window is None:
+            return False
+        window = window.joined()
+        known = np.zeros((4, 0))
+        if self.phases:
+            last = self._window
+            if len(last.pause) == self._stretches:
+                self._state[[0, 5]] -= last.due
+                known = ways_on(self._drive.ways, last.due)
+            else:
+                # The window has been parted since: stretches have other numbers.
+                piece, x = last.piece_at(int(self._state[0]), self._state[1])
+                self._state[:2] = window.stretch_at(piece - int(last.begins[last.due]), x)
+                self._state[5:] = STATE_AT_REST[5:]
+        self._stretches = len(window.pause)
+        self._window, self._drive = _drive(
+            window, self._wishes, int(self._state[0]), self._state[1], known
+        )
+        self.phases.append(no_phases(window.pieces))
+        return True
+
+    def _stand_until(self, time: float) -> None:
+        """Add a phase at rest; between two blocks it belongs to the one that has ended."""
+        stretch, x, now = int(self._state[0]), float(self._state[1]), float(self._state[4])
+        self.standing_since = min(self.standing_since, now)
+        lengths = self._window.pieces.length
+        piece, x = self._window.piece_at(stretch, x)
+        if x == 0.0 and piece > 0 and lengths[piece] > 0.0:
+            piece -= 1
+            x = float(lengths[piece])
+        row = np.array([[now, time - now, x, 0.0, 0.0, 0.0]])
+        self._append(Phases(self._window.parts, row, np.array([[piece, piece]])))
+        self._state[4] = time
+
+    def _append(self, more: Phases) -> None:
+        last = self.phases[-1]
+        self.phases[-1] = Phases(
+            more.parts,
+            np.concatenate([last.rows, more.rows]),
+            np.concatenate([last.rows_pieces, more.rows_pieces]),
+        )
+
+
+def _drive(
+    window: Window, wishes: Wishes, stretch: int, x: float, known: FloatArray | None = None
+) -> tuple[Window, _Drive]:
+    """What a window is driven by from a place on; the window, parted where a block is to stop."""
+    pieces = window.pieces
+    block_end = -1
+    if wishes.single_block:
+        piece, _ = window.piece_at(stretch, x)
+        others = np.flatnonzero(pieces.line[piece:] != pieces.line[piece])
+        if len(others) > 0:
+            window = window.parted_at(piece + int(others[0]))
+            block_end, _ = window.stretch_at(piece + int(others[0]), 0.0)
+    first = window.begins[:-1]
+    rapid, feed = pieces.rapid[first], pieces.feed[first]
+    override = np.where(rapid, wishes.rapid_override, wishes.feed_override)
+    limits, entry = window.limits.copy(), window.entry.copy()
+    wanted = np.minimum(limits[1], override * np.where(rapid, limits[1], feed))
+    limits[1] = 0.0 if wishes.held else wanted
+    closed = (limits[1] < SLOWEST) & (limits[0] > 0.0)
+    if block_end >= 0:
+        entry[block_end] = 0.0
+        closed[block_end] = True
+        known = None
+    ways = np.zeros((4, len(entry)))
+    known = np.zeros((4, 0)) if known is None else known[:, stretch:].copy()
+    known[[1, 3]] -= stretch
+    ways[:, stretch:] = find_reach(limits[:, stretch:], entry[stretch:], known)
+    ways[[1, 3]] += stretch
+    return window, _Drive(limits, entry, ways, block_end, closed)

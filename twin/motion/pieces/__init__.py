@@ -1,0 +1,1 @@
+"""Pieces of equal limits that blocks are cut into."""

@@ -1,0 +1,142 @@
+"""Blocks cut into pieces along which the limits of the path may be taken as constant.
+
+Along a piece the path parameter x counts what the feed counts (mm, or degrees where only rotary
+axes move). With v, a, j its time derivatives and q', q'', q''' those of an axis by x, the axis has
+
+    velocity      q' v
+    acceleration  q'' v² + q' a
+    jerk          q''' v³ + 3 q'' v a + q' j
+
+A piece is short enough for bounds of abs(q'), abs(q''), abs(q''') to say nearly all there is.
+"""
+
+import dataclasses
+import math
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from twin.columns import Columns, Picked
+from twin.motion.blocks.blocks import BoolArray, Surroundings, blocks_of_chunks, with_neighbours
+from twin.motion.blocks.corners import CONTEXT, find_borders
+from twin.motion.limits import MotionLimits
+from twin.motion.pieces.bound_kernels import bound_derivatives
+from twin.motion.pieces.cut_kernels import cut_blocks, place_pieces
+from twin.motion.pieces.limit_kernels import piece_limits
+from twin.nc.canonical import Chunk, FloatArray, IntArray
+from twin.toolpath.geometry import Geometry
+
+BATCH = 2000
+"""Blocks that are cut into pieces at a time: as many as are planned at a time."""
+MOST_ANGLE = 1024.0 * math.pi
+"""What their arcs turn together, but for the last [rad]: of helices with many turns each, a few."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Pieces(Columns):
+    """A run of n pieces over k axes, as columns. A dwell is a piece without length.
+
+    Attributes:
+        move: Number of the move in the whole program, -1 before the first, shape (n,).
+        line: Source line, shape (n,).
+        begin: Path fraction of the move at which the piece begins, shape (n,).
+        fraction_per_length: Path fraction per x, shape (n,) [1/mm or 1/deg].
+        length: In x, shape (n,) [mm or deg]; 0 for dwells.
+        rapid: Whether the move is a rapid, shape (n,).
+        feed: What the program asks for, infinite for rapids without, shape (n,) [mm/s or deg/s].
+        velocity: Highest v, shape (n,) [mm/s or deg/s].
+        acceleration: Highest a, shape (n,) [mm/s² or deg/s²].
+        deceleration: Highest -a, shape (n,) [mm/s² or deg/s²].
+        jerk: Highest abs(j), shape (n,) [mm/s³ or deg/s³].
+        entry: Highest v at the begin, shape (n,) [mm/s or deg/s].
+        pause: How long a dwell waits, shape (n,) [s].
+        rounding: What is added to each axis, coefficients by powers of x from the piece's begin,
+            shape (n, k, 6) [mm or deg].
+        geometry: Of each piece's whole move, n rows of a table of moves.
+    """
+
+    move: IntArray
+    line: IntArray
+    begin: FloatArray
+    fraction_per_length: FloatArray
+    length: FloatArray
+    rapid: BoolArray
+    feed: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    deceleration: FloatArray
+    jerk: FloatArray
+    entry: FloatArray
+    pause: FloatArray
+    rounding: FloatArray
+    geometry: Picked[Geometry]
+
+
+def pieces_of_chunks(
+    chunks: Iterable[Chunk], limits: MotionLimits, start: FloatArray, largest_override: float = 1.0
+) -> Iterator[Pieces]:
+    """Cut a program into pieces, dwells included, in order.
+
+    Args:
+        chunks: The program.
+        limits: Of the axes and the path.
+        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        largest_override: Of the feed that the limits of a piece must leave room for.
+
+    Raises:
+        ValueError: A move does not begin where the one before it ended.
+    """
+    blocks = blocks_of_chunks(chunks, start)
+    for surroundings in with_neighbours(blocks, BATCH, CONTEXT, MOST_ANGLE):
+        yield _cut(surroundings, limits, largest_override)
+
+
+def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: float) -> Pieces:
+    blocks, shapes = surroundings.blocks, surroundings.blocks.geometry
+    borders = find_borders(blocks, limits)
+    # The neighbours are cut as well: they tell how fast a piece can be reached and left.
+    owner, offset, length, rounding = cut_blocks(
+        blocks.length, shapes.angle, borders.width, borders.knee, borders.bend
+    )
+    scale, begin, entry = place_pieces(blocks.length, blocks.move, borders.entry, owner, offset)
+    feed = blocks.feed * blocks.stretch
+    wanted = feed * np.where(blocks.rapid, 1.0, largest_override)
+    velocity, acceleration, deceleration, jerk = piece_limits(
+        (wanted, blocks.acceleration, blocks.deceleration, blocks.stretch, blocks.rotary_alone),
+        owner, length, _ceilings(surroundings, entry),
+        *bound_derivatives(
+            shapes.drift, shapes.cosine, shapes.sine, shapes.angle,
+            owner, begin, scale, length, rounding,
+        ),
+        (limits.path_acceleration, limits.path_jerk,
+         limits.rotary_path_acceleration, limits.rotary_path_jerk),
+        limits.velocity, limits.acceleration, limits.jerk,
+    )  # fmt: skip
+    first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
+    due = slice(first, last)
+    owner = owner[due]
+    return Pieces(
+        move=blocks.move.take(owner),
+        line=blocks.line.take(owner),
+        begin=begin[due],
+        fraction_per_length=scale[due],
+        length=length[due],
+        rapid=blocks.rapid.take(owner),
+        feed=feed.take(owner),
+        velocity=velocity[due],
+        acceleration=acceleration[due],
+        deceleration=deceleration[due],
+        jerk=jerk[due],
+        entry=entry[due],
+        pause=blocks.pause.take(owner),
+        rounding=rounding[due],
+        geometry=Picked(owner, shapes),
+    )
+
+
+def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:
+    """Highest velocities at the borders of pieces; any where the program goes on unseen."""
+    ceilings = np.append(entry, 0.0 if surroundings.to_the_end else np.inf)
+    if surroundings.first > 0:
+        ceilings[0] = np.inf
+    return ceilings

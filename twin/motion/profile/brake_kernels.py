@@ -1,0 +1,85 @@
+"""Braking along the path: the quickest way from (v, a) to a lower velocity at a = 0.
+
+The acceleration falls by the full jerk, stays at the full deceleration while it must, and comes
+back to zero by the full jerk. A state with a < 0 is one on a brake that began earlier, at a higher
+velocity: the same formulas hold, as long as the new end leaves time to bring a back to zero.
+"""
+
+import math
+
+from twin.compilation.kernel import array_kernel
+from twin.nc.canonical import FloatArray
+
+
+@array_kernel
+def after_jerk(x: float, v: float, a: float, j: float, t: float) -> tuple[float, float, float]:
+    """Place, velocity and acceleration after t of jerk j."""
+    return x + ((j / 6.0 * t + 0.5 * a) * t + v) * t, v + (0.5 * j * t + a) * t, a + j * t
+
+
+@array_kernel
+def brake_limits(limits: FloatArray, i: int, k: int) -> tuple[float, float, float]:
+    """Deceleration and jerk of a brake from stretch i to border k, and the way behind stretch i.
+
+    Args:
+        limits: Rows length, velocity, acceleration, deceleration, jerk of n stretches, shape
+            (5, n).
+        i: The stretch.
+        k: The border.
+    """
+    deceleration, jerk, behind = limits[3, i], limits[4, i], 0.0
+    for last in range(i + 1, k):
+        deceleration = min(deceleration, limits[3, last])
+        jerk = min(jerk, limits[4, last])
+        behind += limits[0, last]
+    return deceleration, jerk, behind
+
+
+@array_kernel
+def time_to(distance: float, v: float, a: float, j: float, latest: float) -> float:
+    """When x = v t + a t²/2 + j t³/6 reaches ``distance``, within [0, latest], x rising [s]."""
+    low, high = 0.0, latest
+    t = latest
+    if v > 0.0:
+        t = min(latest, distance / v)
+    for _ in range(100):
+        miss = ((j / 6.0 * t + 0.5 * a) * t + v) * t - distance
+        if miss > 0.0:
+            high = t
+        else:
+            low = t
+        slope = (0.5 * j * t + a) * t + v
+        new = t - miss / slope if slope > 0.0 else 0.5 * (low + high)
+        if abs(new - t) <= 1e-15 * t:
+            return min(new, latest)
+        t = new if low < new < high else 0.5 * (low + high)
+    return t
+
+
+@array_kernel
+def brake_distance(v: float, w: float, deceleration: float, jerk: float) -> float:
+    """Shortest way from v to w <= v, a = 0 at both ends [mm or deg]."""
+    drop = v - w
+    if drop * jerk <= deceleration * deceleration:
+        duration = 2.0 * math.sqrt(drop / jerk)
+    else:
+        duration = drop / deceleration + deceleration / jerk
+    return 0.5 * (v + w) * duration
+
+
+@array_kernel
+def brake_time(v: float, w: float, deceleration: float, jerk: float) -> float:
+    """Time of ``brake_distance`` [s]."""
+    drop = v - w
+    if drop * jerk <= deceleration * deceleration:
+        return 2.0 * math.sqrt(drop / jerk)
+    return drop / deceleration + deceleration / jerk
+
+
+@array_kernel
+def brake_need(v: float, a: float, w: float, deceleration: float, jerk: float) -> float:
+    """Way from (v, a) to the first a = 0 at which the velocity is w or less."""
+    lift_time = a / jerk
+    top = v + 0.5 * a * lift_time
+    lift = (v + a * lift_time / 3.0) * lift_time
+    return lift + brake_distance(top, w, deceleration, jerk) if top > w else lift

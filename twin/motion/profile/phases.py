@@ -1,0 +1,100 @@
+"""The velocity along a program, as phases of constant jerk."""
+
+import dataclasses
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from twin.columns import join
+from twin.motion.limits import MotionLimits
+from twin.motion.pieces.pieces import Pieces, pieces_of_chunks
+from twin.motion.profile.profile_kernels import STATE_AT_REST, find_phases
+from twin.motion.profile.reach_kernels import find_reach
+from twin.motion.profile.stretch_kernels import place_phases
+from twin.motion.profile.windows import Window, windows
+from twin.nc.canonical import Chunk, FloatArray, IntArray
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Phases:
+    """A run of m phases of constant jerk over a window of pieces.
+
+    Attributes:
+        parts: The window, in one or two parts.
+        rows: Begin [s], duration [s], x within the piece, v, a, j; shape (m, 6).
+        rows_pieces: Rows of ``pieces`` in which each phase begins and ends, shape (m, 2).
+    """
+
+    parts: tuple[Pieces, ...]
+    rows: FloatArray
+    rows_pieces: IntArray
+
+    @property
+    def pieces(self) -> Pieces:
+        """The window as a whole."""
+        return join(self.parts)
+
+    def joined(self) -> "Phases":
+        """The same over one part."""
+        return Phases((self.pieces,), self.rows, self.rows_pieces)
+
+    def by_part(self) -> Iterator["Phases"]:
+        """The same in turn over one part each; few pieces lie at the border of two."""
+        beyond = self.rows_pieces[:, 1] >= len(self.parts[0])
+        if len(self.parts) == 1 or not np.any(beyond):
+            yield Phases(self.parts[:1], self.rows, self.rows_pieces)
+            return
+        row = int(np.argmax(beyond))
+        piece = int(self.rows_pieces[row, 0])
+        if row > 0:
+            yield Phases(self.parts[:1], self.rows[:row], self.rows_pieces[:row])
+        rest = join([self.parts[0][piece:], *self.parts[1:]])
+        yield Phases((rest,), self.rows[row:], self.rows_pieces[row:] - piece)
+
+    @property
+    def end_time(self) -> float:
+        """When the last phase ends [s]."""
+        return float(self.rows[-1, 0] + self.rows[-1, 1])
+
+
+def plan_phases(
+    chunks: Iterable[Chunk], limits: MotionLimits, *, start: FloatArray
+) -> Iterator[Phases]:
+    """Plan the velocity along a program.
+
+    Args:
+        chunks: The program.
+        limits: Of the axes and the path.
+        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+    """
+    state = STATE_AT_REST.copy()
+    known = np.zeros((4, 0))
+    for window in windows(pieces_of_chunks(chunks, limits, start)):
+        ways = find_reach(window.limits, window.entry, known)
+        rows, stretches = find_phases(
+            window.limits, window.entry, ways, window.pause, window.due, np.inf, state
+        )
+        if len(rows) > 0:
+            yield phases_of(window, rows, stretches)
+        known = ways_on(ways, window.due)
+        state[[0, 5]] -= window.due
+
+
+def phases_of(window: Window, rows: FloatArray, stretches: IntArray) -> Phases:
+    """Phases by pieces; ``rows`` are overwritten."""
+    parts = window.parts_until(int(stretches[:, 1].max(initial=0)))
+    length = np.concatenate([part.length for part in parts])
+    return Phases(parts, rows, place_phases(rows, stretches, window.begins, length))
+
+
+def no_phases(pieces: Pieces) -> Phases:
+    """The beginning of phases over pieces."""
+    return Phases((pieces,), np.zeros((0, 6)), np.zeros((0, 2), np.int64))
+
+
+def ways_on(ways: FloatArray, due: int) -> FloatArray:
+    """What is known of the next window: the result of ``find_reach`` from ``due`` on."""
+    known = ways[:, due:].copy()
+    known[[1, 3]] -= due
+    # The window's end was taken to be a stop.
+    return known[:, :-1]

@@ -1,0 +1,1 @@
+"""Setpoints at the servo period."""

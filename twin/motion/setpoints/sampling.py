@@ -1,0 +1,88 @@
+"""Setpoints of planned phases at the ticks of the servo clock."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from twin.motion.profile.phases import Phases
+from twin.motion.setpoints.sampling_kernels import sample_axes, sample_path
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.nc.canonical import FloatArray
+
+SAMPLES = 16384
+"""Setpoints per chunk at most."""
+
+
+def sample(
+    phases: Phases, tick: int, period_s: float, part_zero: FloatArray, most: int = SAMPLES
+) -> Iterator[Setpoints]:
+    """The setpoints from a tick to the end of the phases, machine coordinates.
+
+    Args:
+        phases: What was planned.
+        tick: Number of the first tick that is wanted.
+        period_s: Servo period [s].
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        most: Samples per chunk.
+    """
+    for part in phases.by_part():
+        for samples in _sample_part(part, tick, period_s, part_zero, most):
+            tick += len(samples)
+            yield samples
+
+
+def _sample_part(
+    phases: Phases, tick: int, period_s: float, part_zero: FloatArray, most: int
+) -> Iterator[Setpoints]:
+    pieces = phases.parts[0]
+    cursor = np.zeros(1, np.int64)
+    while True:
+        piece = np.zeros(most, np.int64)
+        path = np.zeros((most, 3))
+        count = sample_path(
+            phases.rows, phases.rows_pieces, pieces.length, tick, period_s, cursor, piece, path
+        )
+        if count == 0:
+            return
+        piece, path = piece[:count], path[:count]
+        fraction = np.zeros(count)
+        position, velocity, acceleration = (np.zeros((count, len(part_zero))) for _ in range(3))
+        shape = pieces.geometry.table
+        sample_axes(
+            shape.base, shape.drift, shape.cosine, shape.sine, shape.angle, shape.end,
+            pieces.geometry.row, pieces.begin, pieces.fraction_per_length, pieces.rounding,
+            part_zero,
+            piece, path, fraction, position, velocity, acceleration,
+        )  # fmt: skip
+        yield Setpoints(
+            time=np.arange(tick, tick + count, dtype=np.float64) * period_s,
+            line=pieces.line[piece],
+            move=pieces.move[piece],
+            fraction=fraction,
+            position=position,
+            velocity=velocity,
+            acceleration=acceleration,
+        )
+        tick += count
+
+
+def standing(position: FloatArray) -> Setpoints:
+    """One sample at rest before the first move.
+
+    Args:
+        position: Machine coordinates, shape (k,) [mm or deg].
+    """
+    still = np.zeros((1, len(position)))
+    zero = np.zeros(1, np.int64)
+    return Setpoints(np.zeros(1), zero, zero - 1, np.zeros(1), position[None].copy(), still, still)
+
+
+def at_end(phases: Phases) -> Setpoints:
+    """One sample at rest at the end of the last piece of the phases, part coordinates."""
+    pieces = phases.parts[-1]
+    end = pieces.geometry[-1:].whole().end
+    still = np.zeros_like(end)
+    fraction = np.array([0.0 if pieces.move[-1] < 0 else 1.0])
+    return Setpoints(
+        np.zeros(1), pieces.line[-1:], pieces.move[-1:], fraction, end, still, still,
+    )  # fmt: skip

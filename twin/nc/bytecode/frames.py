@@ -1,0 +1,73 @@
+"""What the compiled run through a program is given and changes besides its moves, as columns."""
+
+from typing import NamedTuple
+
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.path.contour_registers import Contour
+
+LINE, PART, FURTHEST, STEPS_LEFT, DEPTH, CALLS, BLOCKS, MADE = range(8)
+"""Places in the progress: line and part that come next, from 0; the furthest place that was run;
+blocks that may still be run again; row of the local variables; parts that are being run for a
+caller; blocks run; moves made."""
+PROGRESS = 8
+
+BACK, FIRST, AGAIN, LAST, OWN, RESTORES = range(6)
+"""Columns of the calls, as ``Return`` has them; ``LAST`` is ``NO_PLACE`` where a word ends the
+part, ``RESTORES`` is one of the following."""
+NOTHING_RESTORED, RESTORED_BY_CONTROL, RESTORED_HERE = range(3)
+"""What its end puts back into force: nothing; what only the control knows; what ``Saved`` holds."""
+CALL_COLUMNS = 6
+NO_PLACE = -1
+MOST_CALLS = 64
+"""Parts within each other: more than any dialect allows."""
+
+ENDED, FULL, PAUSED, UNREAD, LEFT, OFF_PAGE = range(6)
+"""Why a run ends: behind the last line; no room for a move; the caller has not been heard for
+long; at a line that is to be translated; at a block for the general way; at a line of
+another page."""
+
+
+class Memory(NamedTuple):
+    """The columns of ``Variables``.
+
+    Attributes:
+        common: Shape (n,).
+        given_common: Shape (n,).
+        local: Shape (calls, m).
+        given_local: Shape (m,).
+    """
+
+    common: FloatArray
+    given_common: FloatArray
+    local: FloatArray
+    given_local: FloatArray
+
+
+class Saved(NamedTuple):
+    """What was in force when each part was called, as in ``plain_state.State``.
+
+    Attributes:
+        modal: Shape (``MOST_CALLS``, 7).
+        in_force: Shape (``MOST_CALLS``, g).
+    """
+
+    modal: FloatArray
+    in_force: IntArray
+
+
+class Routine(NamedTuple):
+    """How far a program has come.
+
+    Attributes:
+        progress: Shape (``PROGRESS``,).
+        calls: The innermost last, shape (``MOST_CALLS``, ``CALL_COLUMNS``).
+        memory: Its variables.
+        saved: What its calls put back into force.
+        contour: Radius compensation, in force or not.
+    """
+
+    progress: IntArray
+    calls: IntArray
+    memory: Memory
+    saved: Saved
+    contour: Contour

@@ -1,0 +1,198 @@
+"""What the compiled loop over plain blocks is given, changes and fills, as tuples of columns."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.control.drilling_cycle import VALUES
+
+(
+    INTERPOLATION,
+    INCREMENTAL,
+    CENTER_ABSOLUTE,
+    UNIT,
+    CORNER,
+    FEED_FACTOR,
+    PLANE,
+    CYCLE,
+    TO_REFERENCE,
+    NOTHING,
+) = range(10)
+"""Places in the modal state; ``NOTHING`` takes what codes without effect set."""
+MODAL = 10
+(
+    PROGRAMMED_FEED,
+    SPINDLE,
+    SELECTED,
+    IN_SPINDLE,
+    OFFSET_ON,
+    POLAR_ABSCISSA,
+    POLAR_ORDINATE,
+    POLAR_RADIUS,
+    POLAR_ANGLE,
+    SCALE,
+    ROTATION,
+    ROTATION_ABSCISSA,
+    ROTATION_ORDINATE,
+    TURNED,
+    RADIUS_GIVEN,
+) = range(15)
+SIGNS = 15
+REMEMBERED = 18
+GIVEN = REMEMBERED + VALUES
+MATRIX = GIVEN + VALUES
+REGISTERS = MATRIX + 9
+"""Places in the registers: F; S; the tool that comes next and the one that is in use; whether it has
+its offset; the polar origin, the last R and Q; the scale; angle and centre of the rotation in the
+plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; the
+signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
+``holes`` counts it, and the same of the words of the block; the matrix, row by row. NaN: none."""
+DOUBTFUL = -3
+"""A step or a move is left to the general way; neither ``NOT_PLAIN`` nor ``NO_ROOM``."""
+MOST_EVENTS = 16
+"""Events of a block."""
+
+NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
+"""Kinds of interpolation."""
+
+MOST_WORDS = 32
+"""Words of a plain block; longer ones are read by the general way."""
+CODES = 1000
+"""G and M codes are below this number."""
+EARLY, LATE = range(2)
+"""When functions are reported: before the move of their block, or behind it."""
+
+
+class BlockTables(NamedTuple):
+    """What plain blocks mean in a dialect, on a machine.
+
+    Attributes:
+        field: Which place of the modal state each G code sets, shape (``CODES``,); ``NOT_PLAIN``
+            for codes that do more.
+        value: To what it sets it, shape (``CODES``,).
+        group: Its modal group, shape (``CODES``,).
+        cycle: Which drilling cycle each G code begins, 0 where it ends one, ``NOT_PLAIN`` where it
+            does neither, shape (``CODES``,).
+        cycles: What is peculiar to each, as ``holes.Cycle`` has it, and behind that which of its
+            values a word with each plain role gives, ``NOT_PLAIN`` for none; 0 is no cycle, shape
+            (c, 7 + roles).
+        function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
+            shape (``CODES``,); ``NOT_PLAIN`` for codes that do more than that.
+        kind: Kind of each interpolation, shape (i,).
+        clockwise: Of arcs, shape (i,).
+        mismatch: How far start and end radius of an arc may differ, shape (i,) [mm].
+        mismatch_share: The same as a share of the larger one, shape (i,).
+        shift: How far its centre may be moved to fit, shape (i,) [mm].
+        signed_radius: A negative radius asks for the larger arc, else it is not plain, shape (i,).
+        fits_radius: A centre found by its radius is fitted like a given one, shape (i,).
+        linear: Which axes are linear, shape (k,).
+    """
+
+    field: IntArray
+    value: FloatArray
+    group: IntArray
+    cycle: IntArray
+    cycles: FloatArray
+    function: IntArray
+    kind: IntArray
+    clockwise: npt.NDArray[np.bool_]
+    mismatch: FloatArray
+    mismatch_share: FloatArray
+    shift: FloatArray
+    signed_radius: npt.NDArray[np.bool_]
+    fits_radius: npt.NDArray[np.bool_]
+    linear: npt.NDArray[np.bool_]
+
+
+class Constants(NamedTuple):
+    """What stays as it is during a run.
+
+    Attributes:
+        default_feed: Where none is programmed [mm/min].
+        default_rotary_feed: The same for rotary axes alone [deg/min].
+        feed_may_lack: A feed move without a programmed feed was warned of already.
+        rapid_feed: [mm/min]; NaN: the machine's.
+        own_rapid_feed: Feed per second of rapids that the program paces, 0 where they follow F;
+            NaN: ``rapid_feed`` counts.
+        last_values: Corner tolerance, acceleration and deceleration of every move, shape (3,).
+        planes: Columns of abscissa, ordinate and normal of each plane, shape (3, 3).
+        tools: Numbers of the tools that the job lists, shape (t,).
+        longer: How much longer each is than the first, shape (t,) [mm].
+        radii: Of each, shape (t,) [mm].
+        square_corners: Compensation that begins extends outside corners between lines.
+        indirect_leads: It goes around the contour's first and last point.
+        over: Room for where the hole lies, shape (k,).
+        room: Room for the way there, shape (3, k).
+        hole: Room for what the cycle remembers, for the block's words, for what happens at a hole,
+            and for its heights and seconds, shape (4, a).
+    """
+
+    default_feed: float
+    default_rotary_feed: float
+    feed_may_lack: bool
+    rapid_feed: float
+    own_rapid_feed: float
+    last_values: FloatArray
+    planes: IntArray
+    tools: FloatArray
+    longer: FloatArray
+    radii: FloatArray
+    square_corners: bool
+    indirect_leads: bool
+    over: FloatArray
+    room: FloatArray
+    hole: FloatArray
+
+
+class State(NamedTuple):
+    """What changes during a run; the arrays are written to.
+
+    Attributes:
+        modal: The modal state, shape (``MODAL``,).
+        in_force: G code set in each group during the run, ``NOT_PLAIN`` for none, shape (g,).
+        programmed: Programmed position, shape (k,) [mm or deg].
+        part: Part position, shape (k,) [mm or deg].
+        happened: Events that were reported, shape (1,).
+        registers: Shape (``REGISTERS``,).
+        shifts: In the order of ``frame.SHIFTS``, shape (s, k) [mm or deg].
+        total: Their sum, from programmed to part coordinates, shape (k,) [mm or deg].
+        label: The coordinates that a block gives to the place where it stands, shape (k,).
+    """
+
+    modal: FloatArray
+    in_force: IntArray
+    programmed: FloatArray
+    part: FloatArray
+    happened: IntArray
+    registers: FloatArray
+    shifts: FloatArray
+    total: FloatArray
+    label: FloatArray
+
+
+class Rows(NamedTuple):
+    """Room for the moves of a run, as ``MoveColumns`` keeps them.
+
+    Attributes:
+        codes: Shape (n, 5).
+        values: Shape (n, 11).
+        positions: Start, end and display, shape (n, 3, k).
+        events: Moves before each event, its line, kind and number, shape (m, 4).
+        amounts: What it counts, NaN for nothing, shape (m,).
+    """
+
+    codes: IntArray
+    values: FloatArray
+    positions: FloatArray
+    events: IntArray
+    amounts: FloatArray
+
+    def first(self, count: int) -> "Rows":
+        """The first moves, as columns again."""
+        return self._replace(
+            codes=self.codes[:count],
+            values=self.values[:count],
+            positions=self.positions[:count],
+        )

@@ -1,0 +1,1 @@
+"""The compiled tier: state transfer, tables, the virtual machine."""

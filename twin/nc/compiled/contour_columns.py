@@ -1,0 +1,232 @@
+"""Radius compensation as the columns of the compiled run, and back."""
+
+import dataclasses
+import math
+
+import numpy as np
+
+from twin.nc.canonical import Corner, Event, Motion, Shape
+from twin.nc.geometry.curves import Curve
+from twin.nc.geometry.elements import element_from
+from twin.nc.geometry.planes import PLANE_NAMES, Plane
+from twin.nc.path.contour_registers import (
+    BOX,
+    CONTOUR,
+    COUNTS,
+    CURVE,
+    ELEMENT,
+    HAS_CONTOUR,
+    INDIRECT,
+    LINE,
+    MOST_WAITING,
+    MOVED,
+    MOVED_EVENTS,
+    MOVED_ROWS,
+    OLDEST,
+    PASSED,
+    PASSED_COLUMNS,
+    PLACED,
+    PLANE_NUMBER,
+    SQUARE,
+    STAGE,
+    WAITING,
+    Contour,
+    Row,
+)
+from twin.nc.path.event_columns import EventRows
+from twin.nc.path.followed import NECK, Followed, Passed, Stage
+from twin.nc.path.move_columns import Segment
+
+
+def new_contour(axes: int) -> Contour:
+    """Columns for a machine with so many axes; no compensation is in force."""
+    several = Row(
+        np.zeros((MOST_WAITING, 5), np.int64),
+        np.zeros((MOST_WAITING, 11)),
+        np.zeros((MOST_WAITING, 3, axes)),
+    )
+    return Contour(
+        counts=np.zeros(COUNTS, np.int64),
+        plane=np.zeros((3, 3)),
+        aside=np.zeros(1),
+        held=_empty_row(axes),
+        latest=_empty_row(axes),
+        curves=np.zeros((2, CURVE)),
+        start=np.zeros(2),
+        here=np.zeros(axes),
+        position=np.zeros(axes),
+        waiting=several,
+        rows_after=np.zeros(MOST_WAITING + 1, np.int64),
+        passed=np.zeros((NECK, PASSED_COLUMNS)),
+    )
+
+
+def _empty_row(axes: int) -> Row:
+    return Row(np.zeros(5, np.int64), np.zeros(11), np.zeros((3, axes)))
+
+
+def fill(contour: Contour, followed: Followed | None, position: list[float]) -> None:
+    """Give the columns how far compensation has come, and where the path has come to."""
+    counts = contour.counts
+    counts[:] = 0
+    contour.position[:] = position
+    if followed is None:
+        return
+    counts[STAGE], counts[SQUARE] = followed.stage, followed.square
+    counts[INDIRECT], counts[PLACED] = followed.indirect, bool(followed.here)
+    counts[PLANE_NUMBER] = PLANE_NAMES.index(followed.plane.name)
+    contour.plane[:], contour.aside[0] = followed.plane.directions, followed.aside
+    if followed.move is not None:
+        _fill_row(contour.held, followed.move)
+        contour.here[:] = followed.move.start
+    if followed.here:
+        contour.here[:] = followed.here
+    for place, element in ((CONTOUR, followed.contour), (ELEMENT, followed.element)):
+        if element is not None:
+            contour.curves[place] = _column(element.curve)
+    contour.start[:] = followed.start
+    counts[PASSED] = len(followed.passed)
+    for row, each in zip(contour.passed, followed.passed, strict=False):
+        row[:CURVE] = _column(each.element.curve)
+        row[HAS_CONTOUR] = each.contour is not None
+        if each.contour is not None:
+            row[CURVE : 2 * CURVE] = _column(each.contour.curve)
+        row[LINE], row[BOX:] = each.line, each.box
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Gone:
+    """What a run has made of a contour.
+
+    Attributes:
+        followed: How far it has come, or None.
+        waiting: Moves and events at the end of the held move, in order.
+        latest: The last programmed move, or None where there was none.
+        before: The same, unless an event came behind it.
+        came: Something came at all.
+    """
+
+    followed: Followed | None
+    waiting: list[Segment | Event]
+    latest: Segment | None
+    before: Segment | None
+    came: bool
+
+
+def gone(contour: Contour, moves: Row, events: EventRows) -> tuple[Gone, EventRows]:
+    """Read the columns.
+
+    Args:
+        contour: The columns.
+        moves: Those that were emitted, as columns.
+        events: All that were reported.
+
+    Returns:
+        What was made, and the events whose place is known.
+    """
+    counts = contour.counts
+    made, happened = len(moves.codes), len(events)
+    placed = int((events.before >= 0).sum())
+    latest = segment(contour.latest) if counts[MOVED] else None
+    event_behind = happened > counts[MOVED_EVENTS]
+    if made > counts[MOVED_ROWS]:
+        latest = segment(Row(*(column[-1] for column in moves)))
+        event_behind = placed > 0 and events.before[placed - 1] == made
+    before = None if event_behind else latest
+    held_back = list(events.part(placed, happened))
+    waiting = _waiting(contour, held_back)
+    came = latest is not None or happened > 0
+    return Gone(_followed(contour), waiting, latest, before, came), events.part(0, placed)
+
+
+def _waiting(contour: Contour, held_back: list[Event]) -> list[Segment | Event]:
+    waiting: list[Segment | Event] = []
+    for number in range(contour.counts[WAITING] + 1):
+        waiting += [
+            dataclasses.replace(each, before=0) for each in held_back if each.before == -1 - number
+        ]
+        if number < contour.counts[WAITING]:
+            waiting.append(segment(Row(*(column[number] for column in contour.waiting))))
+    return waiting
+
+
+def _followed(contour: Contour) -> Followed | None:
+    counts = contour.counts
+    stage = Stage(int(counts[STAGE]))
+    if stage is Stage.OFF:
+        return None
+    held = stage in (Stage.LEADING_IN, Stage.FOLLOWING)
+    x, y = contour.start.tolist()
+    abscissa, ordinate, normal = contour.plane.tolist()
+    name = PLANE_NAMES[counts[PLANE_NUMBER]]
+    return Followed(
+        stage,
+        Plane(name, (*abscissa,), (*ordinate,), (*normal,)),
+        float(contour.aside[0]),
+        bool(counts[SQUARE]),
+        bool(counts[INDIRECT]),
+        segment(contour.held) if held else None,
+        None if stage is Stage.STARTED else element_from(_tuple(contour.curves[CONTOUR])),
+        element_from(_tuple(contour.curves[ELEMENT])) if stage is Stage.FOLLOWING else None,
+        (x, y),
+        contour.here.tolist() if counts[PLACED] else [],
+        [_passed(contour, number) for number in range(counts[PASSED])],
+    )
+
+
+def _passed(contour: Contour, number: int) -> Passed:
+    row = contour.passed[(contour.counts[OLDEST] + number) % NECK]
+    around = element_from(_tuple(row[CURVE : 2 * CURVE])) if row[HAS_CONTOUR] else None
+    left, low, right, high = row[BOX:].tolist()
+    return Passed(
+        element_from(_tuple(row[:CURVE])), around, int(row[LINE]), (left, low, right, high)
+    )
+
+
+def segment(row: Row) -> Segment:
+    """A row of the run as the control keeps it."""
+    motion, _, line, block, corner = row.codes.tolist()
+    *center_and_normal, sweep, feed, tolerance, acceleration, deceleration = row.values.tolist()
+    start, end, display = row.positions.tolist()
+    a, b, c, i, j, k = center_and_normal
+    return Segment(
+        motion=Motion(motion),
+        line=line,
+        block=block,
+        start=start,
+        end=end,
+        display=display,
+        feed=feed,
+        corner=Corner(corner),
+        corner_tolerance=tolerance,
+        acceleration=acceleration,
+        deceleration=deceleration,
+        center=None if math.isnan(a) else (a, b, c),
+        normal=(i, j, k),
+        sweep=sweep,
+    )
+
+
+def _fill_row(row: Row, move: Segment) -> None:
+    shape = Shape.LINE if move.center is None else Shape.ARC
+    row.codes[:] = (move.motion, shape, move.line, move.block, move.corner)
+    row.values[:3] = math.nan if move.center is None else move.center
+    row.values[3:6] = move.normal
+    row.values[6:] = (
+        move.sweep,
+        move.feed,
+        move.corner_tolerance,
+        move.acceleration,
+        move.deceleration,
+    )
+    row.positions[:] = (move.start, move.end, move.display)
+
+
+def _column(curve: Curve) -> list[float]:
+    is_arc, start, end, center, sweep = curve
+    return [float(is_arc), *start, *end, *center, sweep]
+
+
+def _tuple(column: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Curve:
+    is_arc, a, b, c, d, e, f, sweep = column.tolist()
+    return (bool(is_arc), (a, b), (c, d), (e, f), sweep)

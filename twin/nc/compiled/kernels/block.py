@@ -1,0 +1,126 @@
+"""One block's words, run once or several times, and compensated."""
+
+from copy import deepcopy
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.compilation.kernel import inlined_kernel, kernel
+from twin.nc.bytecode.opcodes import MOST_STORES, MOST_VALUES
+from twin.nc.bytecode.registers import MOST_WORDS, BlockTables, Constants, Rows, State
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.compiled.kernels.columns import copy, copy_rows
+from twin.nc.compiled.kernels.compensation import follow
+from twin.nc.compiled.kernels.words import run_words
+from twin.nc.path.contour_registers import OFF, STAGE, Contour
+
+
+class Bench(NamedTuple):
+    """Room to work in.
+
+    Attributes:
+        roles: Of words, shape (``MOST_WORDS``,).
+        values: Of words, shape (``MOST_WORDS``,).
+        modal: Modal state of the block.
+        kept: State before a block that runs often.
+        stack: Shape (``MOST_VALUES``,).
+        slots: Variables that the block has set, shape (``MOST_STORES``,).
+        before: What they held before, shape (``MOST_STORES``,).
+    """
+
+    roles: IntArray
+    values: FloatArray
+    modal: FloatArray
+    kept: State
+    stack: FloatArray
+    slots: IntArray
+    before: FloatArray
+
+
+def new_bench(state: State) -> Bench:
+    """Room to work in, for a state of this size."""
+    return Bench(
+        np.zeros(MOST_WORDS, np.int64),
+        np.zeros(MOST_WORDS),
+        np.zeros_like(state.modal),
+        deepcopy(state),
+        np.zeros(MOST_VALUES),
+        np.zeros(MOST_STORES, np.int64),
+        np.zeros(MOST_STORES),
+    )
+
+
+@kernel
+def copy_force(
+    modal: FloatArray, in_force: IntArray, to_modal: FloatArray, to_force: IntArray
+) -> None:
+    """Copy what is in force."""
+    copy(modal, to_modal)
+    copy(in_force, to_force)
+
+
+@kernel
+def copy_state(source: State, target: State) -> None:
+    """Copy every column of a state."""
+    copy_force(source.modal, source.in_force, target.modal, target.in_force)
+    copy(source.programmed, target.programmed)
+    copy(source.part, target.part)
+    copy(source.registers, target.registers)
+    copy(source.total, target.total)
+    copy_rows(source.shifts, target.shifts)
+    target.happened[0] = source.happened[0]
+
+
+@inlined_kernel
+def run_times(
+    times: int,
+    line: int,
+    words: int,
+    polar: bool,
+    made: int,
+    first_event: int,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    rows: Rows,
+    contour: Contour,
+    bench: Bench,
+) -> int:
+    """Run the words on the bench.
+
+    Args:
+        times: How often; more than once only while nothing is compensated.
+        line: The block's line, from 1.
+        words: How many there are.
+        polar: As for ``run_words``.
+        made: The next row.
+        first_event: The block's first event that has not been seen to.
+        tables: What words mean.
+        constants: What stays.
+        state: What changes.
+        rows: Room for the moves.
+        contour: Radius compensation.
+        bench: The words.
+
+    Returns:
+        The row after the block's moves, ``NOT_PLAIN``, ``DOUBTFUL`` or ``NO_ROOM``.
+    """
+    after = made
+    for _ in range(times):
+        after = run_words(
+            line,
+            bench.roles[:words],
+            bench.values[:words],
+            tables,
+            constants,
+            state,
+            bench.modal,
+            rows,
+            after,
+            polar,
+        )
+        if after < 0:
+            return after
+    if contour.counts[STAGE] != OFF:
+        return follow(made, after, first_event, state.happened[0], contour, rows)
+    return after

@@ -1,0 +1,253 @@
+"""Drilling cycles, compiled: what ``drilling`` does for a block of plain words, with the same ``holes``."""
+
+import numpy as np
+from numba.extending import register_jitable
+
+from twin.compilation.kernel import kernel
+from twin.nc.bytecode.registers import (
+    CORNER,
+    CYCLE,
+    FEED_FACTOR,
+    GIVEN,
+    INCREMENTAL,
+    PLANE,
+    REMEMBERED,
+    SPINDLE,
+    TO_REFERENCE,
+    UNIT,
+    BlockTables,
+    Constants,
+    Rows,
+    State,
+)
+from twin.nc.canonical import Corner, FloatArray, IntArray, Motion, Shape
+from twin.nc.compiled.kernels.columns import copy
+from twin.nc.compiled.kernels.effects import report
+from twin.nc.compiled.kernels.frame import turn_place
+from twin.nc.compiled.kernels.plane import straight_way
+from twin.nc.compiled.kernels.target import aim, goal_of
+from twin.nc.compiled.kernels.tokenizer import AXIS, NOT_PLAIN, RADIUS
+from twin.nc.control import drilling_cycle
+from twin.nc.control.drilling_cycle import Act, Cycle, Hole
+from twin.nc.control.motion import LARGEST_COORDINATE
+from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
+
+for _shared in (
+    drilling_cycle.begin,
+    drilling_cycle.remember,
+    drilling_cycle.either,
+    drilling_cycle.count_stops,
+    drilling_cycle.hole_of,
+    drilling_cycle.most_acts,
+    drilling_cycle.write_acts,
+):
+    register_jitable(_shared)
+
+NO_ROOM = -2
+"""The rows are full."""
+_WORDS = len(Cycle._fields)
+MOST_STOPS = 500
+"""Stops of a hole: its moves must fit into a chunk."""
+_UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
+_RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
+_LINE = int(Shape.LINE)
+_STOP = int(Corner.EXACT_STOP)
+
+
+@kernel
+def drill(
+    line: int,
+    number: int,
+    roles: IntArray,
+    values: FloatArray,
+    seen: int,
+    begins: bool,
+    anew: bool,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    modal: FloatArray,
+    feed: float,
+    rows: Rows,
+    row: int,
+    polar: bool,
+) -> int:
+    """Drill the hole that a block names.
+
+    Args:
+        line: The block's line, from 1.
+        number: Its N number.
+        roles: What each word's letter is, shape (w,).
+        values: The words' values, shape (w,).
+        seen: Which roles there are, as bits.
+        begins: The block calls the cycle.
+        anew: No cycle was in force before.
+        tables: What blocks mean.
+        constants: What stays; its ``over`` becomes where the tool stands.
+        state: Where the block begins; its label becomes where the path ends.
+        modal: The modal state with this block's codes.
+        feed: F.
+        rows: Room for moves and events.
+        row: The next row.
+        polar: The label of ``state`` holds where the hole lies in the plane.
+
+    Returns:
+        The number of rows after it, ``NO_ROOM``, or ``NOT_PLAIN`` with the cycle untouched.
+    """
+    axes = len(state.part)
+    plane = constants.planes[int(modal[PLANE])]
+    taken, hole = _read_cycle(roles, values, begins, anew, tables, constants, state, modal)
+    if hole.fault != 0 or hole.stops > MOST_STOPS:
+        return NOT_PLAIN
+    rest = seen & ~taken
+    if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
+        return NOT_PLAIN
+    if polar:
+        aim(plane, roles, values, rest, state, modal)
+    target = constants.over
+    for axis in range(axes):
+        target[axis] = goal_of(axis, roles, values, rest, tables, state, modal, polar)
+        if not abs(target[axis]) <= LARGEST_COORDINATE:
+            return NOT_PLAIN
+    after = _write_hole(line, number, target, hole, constants, state, modal, feed, rows, row)
+    if after >= 0:
+        for value in range(drilling_cycle.VALUES):
+            state.registers[REMEMBERED + value] = constants.hole[0, value]
+            state.registers[GIVEN + value] = np.nan
+    return after
+
+
+@kernel
+def _read_cycle(
+    roles: IntArray,
+    values: FloatArray,
+    begins: bool,
+    anew: bool,
+    tables: BlockTables,
+    constants: Constants,
+    state: State,
+    modal: FloatArray,
+) -> tuple[int, Hole]:
+    """Take the words of a block that belong to its drilling cycle: ``drilling`` does the same.
+
+    The first row of ``constants.hole`` becomes what the cycle remembers.
+
+    Returns:
+        The roles of those words as bits, and what is done at the hole.
+    """
+    number = int(modal[CYCLE])
+    row = tables.cycles[number]
+    cycle = Cycle(
+        row[0] != 0.0, int(row[1]), int(row[2]), int(row[3]), row[4] != 0.0, row[5], int(row[6])
+    )
+    across = int(constants.planes[int(modal[PLANE])][2])
+    remembered, given = constants.hole[0], constants.hole[1]
+    for value in range(drilling_cycle.VALUES):
+        remembered[value] = state.registers[REMEMBERED + value]
+        given[value] = state.registers[GIVEN + value]
+    if anew:
+        remembered[drilling_cycle.START] = np.nan
+    if begins:
+        drilling_cycle.begin(remembered, across, state.programmed[across], cycle.lasting)
+    taken = 0
+    if begins or cycle.lasting:
+        for word in range(len(roles)):
+            role = roles[word]
+            value = int(row[_WORDS + role])
+            if role == AXIS + across:
+                value = cycle.across
+            if value >= 0:
+                given[value] = values[word]
+                taken |= 1 << role
+    for value in range(drilling_cycle.VALUES):
+        if (drilling_cycle.LENGTHS >> value) & 1:
+            given[value] *= modal[UNIT]
+    relative = modal[INCREMENTAL] != 0.0
+    if begins or taken:
+        drilling_cycle.remember(remembered, given, relative, relative, cycle.lasting)
+    return taken, drilling_cycle.hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
+
+
+@kernel
+def _write_hole(
+    line: int,
+    number: int,
+    target: FloatArray,
+    hole: Hole,
+    constants: Constants,
+    state: State,
+    modal: FloatArray,
+    feed: float,
+    rows: Rows,
+    row: int,
+) -> int:
+    """Go over the hole, drill it, return: ``drilling.drill``; the arguments are those of ``drill``."""
+    if row + drilling_cycle.most_acts(hole.stops) + 2 > len(rows.codes):
+        return NO_ROOM
+    if np.isnan(feed) and not constants.feed_may_lack:
+        return NOT_PLAIN
+    pace = constants.default_feed if np.isnan(feed) else feed * modal[UNIT] * modal[FEED_FACTOR]
+    axis = int(constants.planes[int(modal[PLANE])][2])
+    here, part, goal = constants.room[0], constants.room[1], constants.room[2]
+    copy(state.programmed, here)
+    copy(state.part, part)
+    copy(state.programmed, goal)
+    over = max(here[axis], hole.reference)
+    acts, amounts, after = constants.hole[2], constants.hole[3], row
+    for step in range(-2, drilling_cycle.write_acts(hole, acts, amounts)):
+        act = _UP if step < 0 else int(acts[step])
+        if act <= _DOWN:
+            if step == -1:
+                copy(target, goal)
+            goal[axis] = over if step < 0 else amounts[step]
+            rapid = act == _UP
+            speed = constants.rapid_feed if rapid else pace
+            corner = _STOP if rapid else int(modal[CORNER])
+            after = _go(goal, rapid, speed, corner, here, part, state, rows, after)
+            if after == NOT_PLAIN:
+                return NOT_PLAIN
+        else:
+            kind, amount = FUNCTION_WITH_SPEED, state.registers[SPINDLE]
+            if act == _DWELL:
+                kind, amount = DWELL, amounts[step]
+            elif act == _M5:
+                kind, amount = FUNCTION_ALONE, np.nan
+            report(rows, state, after, line, kind, act, amount)
+    for each in range(row, after):
+        rows.codes[each, 2], rows.codes[each, 3] = line, number
+        copy(constants.last_values, rows.values[each, 8:])
+    copy(here, target)
+    copy(part, state.label)
+    return after
+
+
+@kernel
+def _go(
+    goal: FloatArray,
+    rapid: bool,
+    pace: float,
+    corner: int,
+    here: FloatArray,
+    part: FloatArray,
+    state: State,
+    rows: Rows,
+    row: int,
+) -> int:
+    """Write a straight move; ``here`` and ``part`` become its end."""
+    position = rows.positions[row]
+    for axis in range(len(goal)):
+        if not abs(goal[axis]) <= LARGEST_COORDINATE:
+            return NOT_PLAIN
+        end = goal[axis] + state.total[axis]
+        position[0, axis], position[1, axis], position[2, axis] = part[axis], end, goal[axis]
+    turn_place(goal, state, position[1])
+    way = straight_way(position)
+    copy(goal, here)
+    if way <= 0.0:
+        return row if way == 0.0 else NOT_PLAIN
+    copy(position[1], part)
+    value, code = rows.values[row], rows.codes[row]
+    value[:6] = np.nan
+    value[6], value[7] = 0.0, pace
+    code[0], code[1], code[4] = _RAPID if rapid else _FEED, _LINE, corner
+    return row + 1

@@ -1,0 +1,157 @@
+"""The move that compensation holds, compiled: kept until its successor is known, let go, gone around.
+
+Each step is the one of ``Compensation``.
+"""
+
+from twin.compilation.kernel import kernel
+from twin.nc.bytecode.registers import Rows
+from twin.nc.canonical import Corner, FloatArray, Shape
+from twin.nc.compiled.kernels.columns import copy, copy_rows
+from twin.nc.compiled.kernels.plane import along_axis, place
+from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.curves import Curve
+from twin.nc.path.contour_registers import (
+    CONTOUR,
+    MOVED,
+    MOVED_EVENTS,
+    MOVED_ROWS,
+    PLACED,
+    STAGE,
+    WAITING,
+    Contour,
+    Row,
+)
+from twin.nc.path.followed import Stage
+
+_LEADING_IN, _FOLLOWING = int(Stage.LEADING_IN), int(Stage.FOLLOWING)
+_ARC = int(Shape.ARC)
+_EXACT_PATH = int(Corner.EXACT_PATH)
+
+
+@kernel
+def hold_events(contour: Contour, rows: Rows, first: int, behind: int) -> None:
+    """Events of the block, from ``first`` on, wait for the end of the held move, if there is one."""
+    if contour.counts[STAGE] not in (_LEADING_IN, _FOLLOWING):
+        return
+    for event in range(first, behind):
+        rows.events[event, 0] = -1 - contour.counts[WAITING]
+
+
+@kernel
+def take_move(contour: Contour, rows: Rows, row: int, events: int) -> None:
+    """A row is the last move that compensation was given; so many events came before."""
+    copy(rows.codes[row], contour.latest.codes)
+    copy(rows.values[row], contour.latest.values)
+    copy_rows(rows.positions[row], contour.latest.positions)
+    contour.counts[MOVED], contour.counts[MOVED_EVENTS] = 1, events
+
+
+@kernel
+def hold_move(contour: Contour, curve: Curve, start: Point) -> None:
+    """Hold the last move until its successor is known; its compensated path begins at a point."""
+    copy(contour.latest.codes, contour.held.codes)
+    copy(contour.latest.values, contour.held.values)
+    copy_rows(contour.latest.positions, contour.held.positions)
+    set_curve(contour.curves[CONTOUR], curve)
+    contour.start[0], contour.start[1] = start
+    contour.counts[WAITING] = 0
+
+
+@kernel
+def curve_of(column: FloatArray) -> Curve:
+    """A curve that is kept as a column."""
+    return (
+        column[0] != 0.0,
+        (column[1], column[2]),
+        (column[3], column[4]),
+        (column[5], column[6]),
+        column[7],
+    )
+
+
+@kernel
+def set_curve(column: FloatArray, curve: Curve) -> None:
+    """Keep a curve."""
+    column[0] = 1.0 if curve[0] else 0.0
+    column[1], column[2] = curve[1]
+    column[3], column[4] = curve[2]
+    column[5], column[6] = curve[3]
+    column[7] = curve[4]
+
+
+@kernel
+def let_go(
+    contour: Contour, before: Curve, part: Curve, at: Point, rows: Rows, row: int, events: int
+) -> int:
+    """The held move up to a point, then what waits for its end; the row after them."""
+    held, plane, counts = contour.held, contour.plane, contour.counts
+    after = row
+    for number in range(counts[WAITING] + 1):
+        value, position = rows.values[after], rows.positions[after]
+        if number == 0:
+            copy(held.codes, rows.codes[after])
+            copy(held.values, value)
+            copy_rows(held.positions, position)
+        else:
+            waiting = contour.waiting
+            copy(waiting.codes[number - 1], rows.codes[after])
+            copy(waiting.values[number - 1], value)
+            copy_rows(waiting.positions[number - 1], position)
+        is_arc = number == 0 and before[0]
+        if is_arc:
+            place(plane, before[3], along_axis(position[0], plane[2]), value)
+            for axis in range(3):
+                value[3 + axis] = plane[2, axis]
+            value[6] = part[4]
+        place(plane, at, along_axis(position[1], plane[2]), position[1])
+        copy(contour.here, position[0])
+        copy(position[1], contour.here)
+        after += 0 if not is_arc and stands(position) else 1
+        contour.rows_after[number] = after
+    event = events - 1
+    while event >= 0 and rows.events[event, 0] < 0:
+        rows.events[event, 0] = contour.rows_after[-1 - rows.events[event, 0]]
+        event -= 1
+    counts[PLACED], counts[MOVED_ROWS] = 1, after
+    return after
+
+
+@kernel
+def stands(position: FloatArray) -> bool:
+    """Whether a straight move with these positions goes nowhere."""
+    still = True
+    for axis in range(position.shape[1]):
+        still = still and position[0, axis] == position[1, axis]
+    return still
+
+
+@kernel
+def level_arc(
+    move: Row, plane: FloatArray, arc: Curve, start: FloatArray, rows: Rows, row: int
+) -> None:
+    """An arc at one height with all else of a move, as ``segments.level_arc`` has it."""
+    code, value, position = rows.codes[row], rows.values[row], rows.positions[row]
+    copy(move.codes, code)
+    copy(move.values, value)
+    code[1] = _ARC
+    height = along_axis(start, plane[2])
+    place(plane, arc[3], height, value)
+    for axis in range(3):
+        value[3 + axis] = plane[2, axis]
+    value[6] = arc[4]
+    copy(start, position[0])
+    copy(start, position[1])
+    place(plane, arc[2], height, position[1])
+    for axis in range(len(start)):
+        shown, end = move.positions[2, axis], move.positions[1, axis]
+        position[2, axis] = position[1, axis] + shown - end
+
+
+@kernel
+def go_around(contour: Contour, corner: Curve, rows: Rows, row: int) -> int:
+    """Go around a corner where the path has come to; the row after it."""
+    level_arc(contour.held, contour.plane, corner, contour.here, rows, row)
+    rows.codes[row, 4] = _EXACT_PATH
+    copy(rows.positions[row, 1], contour.here)
+    contour.counts[MOVED_ROWS] = row + 1
+    return row + 1

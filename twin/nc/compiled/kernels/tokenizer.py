@@ -1,0 +1,169 @@
+"""The bytes of a plain line to words: letters with plain numbers, and comments passed over.
+
+A line is plain when the reading of lines (``line_reader``) would find nothing in it but words of
+the letters that ``PlainTables`` names, each with a plain number, and comments. Whatever else it
+holds, right or wrong, is left to that reader: it alone makes diagnostics.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.compilation.kernel import kernel
+from twin.nc.bytecode.registers import MOST_WORDS
+from twin.nc.canonical import FloatArray, IntArray
+
+ByteArray = npt.NDArray[np.uint8]
+
+NOT_PLAIN = -1
+
+OTHER, NUMBER, CODE, FEED, FUNCTION, RADIUS, CENTER, AXIS = 0, 1, 2, 3, 4, 5, 6, 9
+"""What a letter is: N, G, F, M, R; I, J, K from ``CENTER`` on; axes by their column from ``AXIS``."""
+
+_BLANK, _TAB, _PLUS, _MINUS, _POINT = 32, 9, 43, 45, 46
+_DIGIT_0, _DIGIT_9, _LETTER_A, _LETTER_Z, _TO_UPPER = 48, 57, 65, 90, 0xDF
+_EXACT_MANTISSA = 2**53 // 10 - 1
+"""A mantissa up to here takes a further digit and is still exact as a double."""
+_POWERS = 10.0 ** np.arange(23)
+"""The powers of ten that are exact as doubles.
+
+A quotient of two exact doubles is the double nearest to the decimal number, as ``float`` gives it
+(W. D. Clinger, How to read floating point numbers accurately, 1990).
+"""
+
+
+class LineTables(NamedTuple):
+    """How a dialect's lines are read.
+
+    Attributes:
+        roles: What each letter is, shape (26,).
+        openings: First bytes of each kind of comment, 0 where there is none, shape (c, 2).
+        closings: The same of what ends it; 0, 0: the end of the line.
+        whole_line: It can only begin its line, shape (c,).
+    """
+
+    roles: IntArray
+    openings: ByteArray
+    closings: ByteArray
+    whole_line: npt.NDArray[np.bool_]
+
+
+@kernel
+def line_end(data: ByteArray, begin: int, following: int) -> int:
+    """End of a line without its CR, LF or CR LF, given where it and the next one begin."""
+    end = following
+    if end > begin and data[end - 1] == 10:
+        end -= 1
+        if end > begin and data[end - 1] == 13:
+            end -= 1
+    elif end > begin and data[end - 1] == 13:
+        end -= 1
+    return end
+
+
+@kernel
+def read_words(
+    data: ByteArray, begin: int, end: int, tables: LineTables, roles: IntArray, values: FloatArray
+) -> int:
+    """Read a line.
+
+    Args:
+        data: The program as UTF-8.
+        begin: First byte of the line.
+        end: Behind its last byte.
+        tables: How the dialect's lines are read.
+        roles: Filled with what each word's letter is, shape (``MOST_WORDS``,).
+        values: Filled with the words' values, shape (``MOST_WORDS``,).
+
+    Returns:
+        How many words it has, or ``NOT_PLAIN``.
+    """
+    count, at = 0, begin
+    while True:
+        at = skip_blanks(data, at, end)
+        if at == end:
+            return count
+        letter = data[at] & _TO_UPPER
+        if not _LETTER_A <= letter <= _LETTER_Z:
+            at = _skip_comment(data, begin, at, end, tables)
+            if at == NOT_PLAIN:
+                return NOT_PLAIN
+            continue
+        role = tables.roles[letter - _LETTER_A]
+        if role == OTHER or count == MOST_WORDS or (role == NUMBER and count > 0):
+            return NOT_PLAIN
+        value, at = _read_number(data, skip_blanks(data, at + 1, end), end)
+        if at == NOT_PLAIN:
+            return NOT_PLAIN
+        roles[count], values[count] = role, value
+        count += 1
+
+
+@kernel
+def skip_blanks(data: ByteArray, at: int, end: int) -> int:
+    """The first place from ``at`` on that holds no blank, or ``end``."""
+    while at < end and (data[at] == _BLANK or data[at] == _TAB):
+        at += 1
+    return at
+
+
+@kernel
+def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
+    """A number and the place behind it; ``NOT_PLAIN`` where there is none or it is very long."""
+    negative = at < end and data[at] == _MINUS
+    if negative or (at < end and data[at] == _PLUS):
+        at += 1
+    mantissa, digits, decimals, fraction = 0, 0, 0, False
+    while at < end:
+        byte = data[at]
+        if byte == _POINT:
+            if fraction:
+                return 0.0, NOT_PLAIN
+            fraction = True
+        elif _DIGIT_0 <= byte <= _DIGIT_9:
+            if mantissa > _EXACT_MANTISSA:
+                return 0.0, NOT_PLAIN
+            mantissa = 10 * mantissa + byte - _DIGIT_0
+            digits += 1
+            decimals += fraction
+        else:
+            break
+        at += 1
+    if digits == 0 or decimals >= len(_POWERS):
+        return 0.0, NOT_PLAIN
+    value = mantissa / _POWERS[decimals]
+    return (-value if negative else value), at
+
+
+@kernel
+def _skip_comment(data: ByteArray, begin: int, at: int, end: int, tables: LineTables) -> int:
+    """The place behind the comment that begins here; ``NOT_PLAIN`` where none does."""
+    for kind in range(len(tables.openings)):
+        behind = _behind(data, at, end, tables.openings[kind])
+        if behind == NOT_PLAIN:
+            continue
+        if tables.whole_line[kind] and skip_blanks(data, begin, end) != at:
+            continue
+        closing = tables.closings[kind]
+        for place in range(behind, end):
+            if data[place] < _BLANK and data[place] != _TAB:
+                return NOT_PLAIN
+            if closing[0] != 0:
+                closed = _behind(data, place, end, closing)
+                if closed != NOT_PLAIN:
+                    return closed
+        return end if closing[0] == 0 else NOT_PLAIN
+    return NOT_PLAIN
+
+
+@kernel
+def _behind(data: ByteArray, at: int, end: int, mark: ByteArray) -> int:
+    """The place behind a mark of one or two bytes; ``NOT_PLAIN`` where it does not stand here."""
+    if at >= end or data[at] != mark[0]:
+        return NOT_PLAIN
+    if mark[1] == 0:
+        return at + 1
+    if at + 1 < end and data[at + 1] == mark[1]:
+        return at + 2
+    return NOT_PLAIN

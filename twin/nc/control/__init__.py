@@ -1,0 +1,1 @@
+"""The control: modal state, program flow, variables, what a block does."""

@@ -1,0 +1,226 @@
+"""How a control moves: targets, lines, arcs, feeds, and the labels of its screen."""
+
+import abc
+import math
+from collections.abc import Mapping
+
+from twin.nc.canonical import Corner, Motion
+from twin.nc.control.dialect import FeedMode
+from twin.nc.control.words import ControlWords
+from twin.nc.geometry.planes import Plane, Vector, cross
+from twin.nc.path.move_columns import NAN, Segment
+from twin.nc.path.segments import direction_of
+
+LARGEST_COORDINATE = 1e7
+"""Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
+
+
+_SMALLEST_MOVE = 1e-9
+"""A block that goes less far than this moves nothing [mm or deg]: far below any resolution."""
+
+
+class ControlMotion(ControlWords):
+    """The verbs of motion; positions are programmed ones."""
+
+    def target(self) -> list[float]:
+        """Take the axis words; the programmed position that they ask for, shape (k,)."""
+        target = list(self.programmed)
+        for index, word in self.take_axis_words():
+            value = self.axis_value(index, word)
+            if self.modal.incremental or word.incremental:
+                value += target[index]
+            if not abs(value) <= LARGEST_COORDINATE:
+                self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
+            target[index] = value
+        return target
+
+    def line_to(self, target: list[float], *, rapid: bool) -> None:
+        """Move straight to a programmed position; nothing when it stands there already."""
+        self._add(target, rapid=rapid)
+
+    def spline_to(self, target: list[float], *, flat: bool) -> None:
+        """Move on a spline through a programmed position; ``flat``: its height goes linearly.
+
+        The same position twice ends the spline and begins another.
+        """
+        if target == self.programmed:
+            self.path.end_spline()
+        self._add(target, rapid=False, spline=(flat,))
+
+    def arc_to(self, target: list[float], center: Vector, sweep: float) -> None:
+        """Move on an arc about the plane's normal.
+
+        Args:
+            target: Programmed position of its end, shape (k,).
+            center: Programmed centre at the height of the start [mm].
+            sweep: Signed angle with all turns [deg].
+        """
+        normal, sweep = self.frame.arc(self.modal.plane.normal, sweep)
+        self._add(target, rapid=False, center=self.frame.point(center), normal=normal, sweep=sweep)
+
+    def _add(
+        self,
+        target: list[float],
+        *,
+        rapid: bool,
+        center: Vector | None = None,
+        normal: Vector = (NAN, NAN, NAN),
+        sweep: float = 0.0,
+        spline: tuple[bool] | None = None,
+    ) -> None:
+        end = self.frame.to_part(target)
+        if center is None and math.dist(self.part[:3], end[:3]) < _SMALLEST_MOVE:
+            end[:3] = self.part[:3]  # what a frame has rounded is no way
+        length = self._length(end, center, normal, sweep)
+        if length < _SMALLEST_MOVE:
+            self.programmed = target
+            return
+        modal = self.modal
+        is_arc = center is not None
+        if self.series:
+            self.place_switches(length)
+        feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc, length)
+        acceleration, deceleration = self.acceleration, self.deceleration
+        if rapid:
+            acceleration = _either(self.rapid_acceleration, acceleration)
+            deceleration = _either(self.rapid_deceleration, deceleration)
+        if self.axis_limits or self.axis_accelerations:
+            share = self._axis_shares(end, length, is_arc)
+            feed = _limited(feed, self.axis_limits, share)
+            acceleration = _limited(acceleration, self.axis_accelerations, share)
+            deceleration = _limited(deceleration, self.axis_accelerations, share)
+        self._last = Segment(
+            motion=Motion.RAPID if rapid else Motion.FEED,
+            line=self.block.line,
+            block=self.block.number,
+            start=self.part,
+            end=end,
+            display=target,
+            feed=feed,
+            corner=Corner.EXACT_STOP if rapid else modal.corner,
+            corner_tolerance=modal.corner_tolerance,
+            acceleration=acceleration,
+            deceleration=deceleration,
+            center=center,
+            normal=normal,
+            sweep=sweep,
+        )
+        if spline is None:
+            self.path.add(self._last)
+        else:
+            self.path.add_point(self._last, flat=spline[0])
+        self.programmed = target
+        self.part = end
+
+    def came_to(self, programmed: list[float], part: list[float], last: Segment | None) -> None:
+        """Blocks that went past the control have ended here; ``last`` is their last move, if any."""
+        self.programmed, self.part = programmed, part
+        if last is not None:
+            self._last = last
+
+    @property
+    def direction(self) -> Vector | None:
+        """Where the last move was going when it ended, programmed coordinates; None before one."""
+        move = self._last
+        return None if move is None else self.frame.unturn(direction_of(move, at_end=True))
+
+    def _length(
+        self, end: list[float], center: Vector | None, normal: Vector, sweep: float
+    ) -> float:
+        """What the feed counts, by the convention of ``canonical`` [mm or deg]."""
+        start = self.part
+        if center is not None:
+            radius = math.dist(start[:3], center)
+            advance = sum((end[i] - start[i]) * normal[i] for i in range(3))
+            return math.hypot(radius * math.radians(sweep), advance)
+        spatial = math.dist(start[:3], end[:3])
+        return spatial or math.dist(start[3:], end[3:])
+
+    def _axis_shares(self, end: list[float], length: float, is_arc: bool) -> list[float]:
+        """How much of the path's speed each axis takes at most."""
+        shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
+        return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
+
+    def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
+        turning = not is_arc and all(
+            new == old or not linear
+            for new, old, linear in zip(end, self.part, self.linear, strict=True)
+        )
+        if self.feed is None:
+            self.report.warn_once(
+                "no-feed",
+                "no feed is programmed: the machine's default is used",
+                *self._blamed(None),
+                hint="write F in the first block that needs it",
+            )
+            settings = self.settings
+            return settings.default_rotary_feed if turning else settings.default_feed
+        mode = self.modal.feed_mode
+        if mode is FeedMode.SECONDS_PER_BLOCK:
+            return length / self.feed * 60.0
+        feed = self.feed if turning else self.feed * self.modal.unit
+        if mode is FeedMode.PER_MINUTE:
+            return feed
+        if mode is FeedMode.PER_SECOND:
+            return feed * 60.0
+        if not self.spindle:
+            self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
+        return feed * self.spindle
+
+    def dwell(self, seconds: float) -> None:
+        """Wait."""
+        line = self.block.line
+        self.path.event(lambda columns: columns.dwell(line, seconds))
+
+    def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
+        """Report a function at this place of the path."""
+        line, given = self.block.line, dict(arguments)
+        self.path.event(lambda columns: columns.function(line, word, given, at))
+
+    def part_plane(self) -> Plane:
+        """The working plane as the part sees it."""
+        plane, frame = self.modal.plane, self.frame
+        if frame.plain:
+            return plane
+        normal, _ = frame.arc(plane.normal, 0.0)
+        abscissa, _ = frame.arc(plane.abscissa, 0.0)
+        return Plane(plane.name, abscissa, cross(normal, abscissa), normal)
+
+    @property
+    def has_moved(self) -> bool:
+        """The path has begun."""
+        return self._last is not None
+
+    def stand_at(self, programmed: list[float]) -> None:
+        """Let the path, which has not begun, begin at a programmed position."""
+        self.programmed = programmed
+        self.part = self.path.position = self.frame.to_part(programmed)
+
+    def relabel(self, programmed: list[float], shift: str) -> None:
+        """Give the place where it stands other programmed coordinates; nothing moves."""
+        here = self.frame.to_part(programmed)
+        values = self.frame.shift(shift)
+        moved = [
+            value + part - other for value, part, other in zip(values, self.part, here, strict=True)
+        ]
+        self.frame.set_shift(shift, moved)
+        self.programmed = programmed
+
+    def reframed(self) -> None:
+        """The frame has changed: see where it stands now."""
+        self.programmed = self.frame.to_programmed(self.part)
+
+    @abc.abstractmethod
+    def place_switches(self, length: float) -> None:
+        """Report the block's switch points, told the length of its move."""
+
+
+def _limited(value: float, limits: Mapping[int, float], shares: list[float]) -> float:
+    """A value along the path so that no axis exceeds its own limit; NaN is no limit."""
+    bounds = [limit / shares[index] for index, limit in limits.items() if shares[index] > 0.0]
+    return min([value, *bounds]) if value == value else min(bounds, default=value)
+
+
+def _either(value: float, default: float) -> float:
+    """A value, or where it is NaN another one."""
+    return default if math.isnan(value) else value

@@ -1,0 +1,181 @@
+"""What a control remembers while it runs a program, and how it refuses."""
+
+import dataclasses
+import math
+import re
+from typing import NoReturn
+
+from twin.nc.control.dialect import Dialect, GCode, Modal
+from twin.nc.control.drilling_cycle import START, no_values
+from twin.nc.control.flow import Flow, Return
+from twin.nc.control.settings import ControlSettings
+from twin.nc.control.tools import Tools
+from twin.nc.control.variables import Variables
+from twin.nc.geometry.frame import Frame
+from twin.nc.path.move_columns import NAN, Segment
+from twin.nc.path.path import Path
+from twin.nc.text.blocks import Block, Word
+from twin.nc.text.lexer import Lexer
+from twin.nc.text.reporter import Reporter
+from twin.nc.text.source import Source
+
+
+class ControlState:
+    """The state of one control while it runs one program.
+
+    Attributes:
+        dialect: The language it reads.
+        settings: What it was told of the machine and the job.
+        report: Where its diagnostics go.
+        modal: What stays in force.
+        active: Number of the G code in force in each group.
+        memory: What only this dialect remembers.
+        frame: From programmed to part coordinates.
+        programmed: Where it stands, as its screen shows it, shape (k,) [mm or deg].
+        part: Where it stands in part coordinates, shape (k,) [mm or deg].
+        feed: F as programmed, or None.
+        spindle: S as programmed, or None [1/min].
+        tools: The tools in use.
+        path: Where moves and events go.
+        flow: Which block comes next.
+        variables: What the program computes with.
+        cycle_values: What the words of a milling cycle were last, by address.
+        hole_values: What a drilling cycle remembers, as ``holes`` counts it.
+        block: The block that is being run.
+        words: Its words that nothing has taken yet.
+        codes: Its G codes.
+        series: Its words for switch points, in order.
+        rapid_feed: Feed of rapids where the program limits it [mm/min]; NaN: the machine's.
+        rapid_acceleration: Acceleration of rapids where the program sets their own [mm/s²]; NaN:
+            that of the path.
+        rapid_deceleration: The same for slowing down.
+        axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
+        axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
+        ended: An end code was run.
+    """
+
+    def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
+        self.dialect = dialect
+        self.settings = settings
+        self.report = Reporter(source, strict=settings.strict)
+        self.axis_index = {name: index for index, name in enumerate(settings.axes.names)}
+        self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)
+        self.modal = Modal()
+        for name, value in dialect.start_state.items():
+            setattr(self.modal, name, value)
+        self.active: dict[str, int] = {}
+        self.memory = dialect.memory()
+        self.frame = Frame(len(settings.axes))
+        self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
+        self.part = list(self.programmed)
+        self.feed: float | None = None
+        self.spindle: float | None = None
+        self.acceleration = NAN
+        self.deceleration = NAN
+        self.rapid_acceleration = NAN
+        self.rapid_deceleration = NAN
+        self.tools = Tools(settings.tools, any_tool=settings.any_tool)
+        self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
+        lexer = Lexer(dialect, self.report)
+        self.flow = Flow(source, lexer, settings.step_limit, self.report, self._leave)
+        self.variables = Variables(
+            dialect.is_local, lambda name: dialect.given_variable(settings.variables, name)
+        )
+        self.cycle_values: dict[str, float] = {}
+        self.hole_values = no_values()
+        self.block = Block(0, 0)
+        self.words: dict[str, Word] = {}
+        self.codes: list[tuple[Word, GCode]] = []
+        self.series: list[Word] = []
+        self.rapid_feed = NAN
+        self.axis_limits: dict[int, float] = {}
+        self.axis_accelerations: dict[int, float] = {}
+        self._last: Segment | None = None
+        self.ended = False
+        for number in dialect.start:
+            self.put_into_force(number, dialect.g[number])
+
+    def put_into_force(self, number: int, code: GCode) -> None:
+        """Apply a modal code."""
+        for name, value in code.sets.items():
+            setattr(self.modal, name, value)
+        if self.modal.cycle is None:
+            self._forget_cycle()
+        if code.group:
+            self.active[code.group] = number
+
+    def _forget_cycle(self) -> None:
+        if self.cycle_values:
+            self.cycle_values = {}
+        if not math.isnan(self.hole_values[START]):
+            self.hole_values = no_values()
+
+    def saved_modal(self) -> tuple[Modal, dict[str, int]]:
+        """What is in force, to be restored later."""
+        return dataclasses.replace(self.modal), dict(self.active)
+
+    def restore_modal(self, saved: tuple[Modal, dict[str, int]]) -> None:
+        """Put back what ``saved_modal`` gave."""
+        self.modal, self.active = saved
+
+    def _leave(self, part: Return) -> None:
+        """A called part of the program has ended."""
+        if part.own_variables:
+            self.variables.leave()
+        if part.restores is not None:
+            self.restore_modal(part.restores)
+
+    def code_word(self, number: int) -> Word | None:
+        """Where the block writes a G code, for diagnostics."""
+        return next((word for word, _ in self.codes if number_of(word) == number), None)
+
+    def fail(
+        self, code: str, message: str, word: Word | None = None, hint: str | None = None
+    ) -> NoReturn:
+        """Refuse the block.
+
+        Raises:
+            ProgramError: Always.
+        """
+        self.report.fail(code, message, *self._blamed(word), hint)
+
+    def warn(
+        self, code: str, message: str, word: Word | None = None, hint: str | None = None
+    ) -> None:
+        """Warn; with ``strict``, refuse."""
+        self.report.warn(code, message, *self._blamed(word), hint)
+
+    def _blamed(self, word: Word | None) -> tuple[int, int]:
+        """Column and width of a word; without one of the block's last code or first word."""
+        if word is None and self.codes:
+            word = self.codes[-1][0]
+        if word is None and self.block.words:
+            word = self.block.words[0]
+        return (0, 1) if word is None else (word.column, word.width)
+
+    def _refuse_move(self, move: Segment, code: str, message: str) -> NoReturn:
+        self.report.line = move.line
+        self.report.fail(code, message, *self._span_of(move))
+
+    def _warn_of_move(self, move: Segment, code: str, message: str) -> None:
+        line, self.report.line = self.report.line, move.line
+        self.report.warn(code, message, *self._span_of(move))
+        self.report.line = line
+
+    def _span_of(self, move: Segment) -> tuple[int, int]:
+        """Column and width of a move's block number; without one of the line's first word."""
+        text = self.flow.lines[move.line - 1]
+        number = rf"N[ \t]*0*{move.block}(?![0-9])" if move.block >= 0 else r"\S+"
+        match = re.search(number, text, re.IGNORECASE)
+        return (0, 1) if match is None else (match.start(), len(match[0]))
+
+
+def number_of(word: Word) -> float:
+    """The value of a word that has been computed."""
+    assert isinstance(word.value, float)
+    return word.value
+
+
+def integer_of(value: float) -> int:
+    """A code's number; -1 where it is no whole one."""
+    return int(value) if value == int(value) else -1

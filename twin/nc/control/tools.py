@@ -1,0 +1,36 @@
+"""The tools in use: which one is in the spindle, which comes next, and what they measure."""
+
+from collections.abc import Mapping
+
+from twin.nc.control.settings import ToolData
+
+
+class Tools:
+    """The tool table with its state.
+
+    Attributes:
+        table: Tools by number.
+        spindle: Number of the tool in the spindle.
+        selected: Number of the tool that the next change brings.
+    """
+
+    def __init__(self, table: Mapping[int, ToolData], *, any_tool: bool = False) -> None:
+        """Put the first tool into the spindle; ``any_tool``: every number means this one."""
+        self.table = table
+        first = next(iter(table), None)
+        self._any = table[first] if any_tool and first is not None else None
+        self._reference = 0.0 if first is None else table[first].length
+        self.spindle = first
+        self.selected = first
+
+    def change(self) -> None:
+        """The selected tool goes into the spindle."""
+        self.spindle = self.selected
+
+    def data(self, number: int | None) -> ToolData | None:
+        """What a tool measures; None where the table lacks it."""
+        return None if number is None else self.table.get(number, self._any)
+
+    def longer(self, tool: ToolData) -> float:
+        """How much longer a tool is than the one that the part zero was taken with [mm]."""
+        return tool.length - self._reference

@@ -1,0 +1,101 @@
+"""How a control takes the words of a block and computes their values."""
+
+import abc
+from typing import NoReturn
+
+from twin.nc.control.state import ControlState, number_of
+from twin.nc.text.blocks import Word
+from twin.nc.text.expressions import Expression, ExpressionError
+
+
+class ControlWords(ControlState, abc.ABC):
+    """The words of the block that is being run."""
+
+    def take(self, address: str) -> Word | None:
+        """Take a word from the block; None where it has none."""
+        return self.words.pop(address, None)
+
+    def take_number(self, address: str, default: float = 0.0) -> float:
+        """Take the value of a word from the block."""
+        word = self.words.pop(address, None)
+        return default if word is None else number_of(word)
+
+    def take_computed(self, address: str) -> float:
+        """Take the value of a word that may be a reference to a variable."""
+        word = self.words.pop(address)
+        if isinstance(word.value, Expression):
+            return self.evaluate(word.value, word)
+        return word.value
+
+    def number(self, word: Word) -> float:
+        """The value of a word."""
+        return number_of(word)
+
+    def length(self, word: Word | None) -> float:
+        """The value of a word that counts a length [mm]; 0 where there is none."""
+        return 0.0 if word is None else number_of(word) * self.modal.unit
+
+    def take_axis_words(self) -> list[tuple[int, Word]]:
+        """Take the words that name axes; pairs of column and word.
+
+        Raises:
+            ProgramError: The machine lacks an axis.
+        """
+        taken = []
+        for address in [a for a in self.words if a in self.dialect.axis_letters]:
+            word = self.words.pop(address)
+            index = self.axis_index.get(address)
+            if index is None:
+                self.refuse_axis(word)
+            taken.append((index, word))
+        return taken
+
+    def refuse_axis(self, word: Word) -> NoReturn:
+        """The machine lacks the axis that the word names."""
+        names = ", ".join(self.settings.axes.names)
+        self.fail(
+            "no-such-axis", f"this machine has no axis {word.address}", word, f"axes: {names}"
+        )
+
+    def axis_value(self, index: int, word: Word) -> float:
+        """Value of an axis word [mm or deg]."""
+        return number_of(word) * (self.modal.unit if self.linear[index] else 1.0)
+
+    def evaluate(self, expression: Expression, word: Word) -> float:
+        """Compute an expression; errors point at the word."""
+        try:
+            return float(expression.evaluate(self))
+        except ExpressionError as error:
+            self.fail(error.code, str(error), word, hint=error.hint)
+
+    def expression(self, text: str, column: int) -> Expression:
+        """Read a text that must be one expression."""
+        (only,) = self.expressions(text, column, 1)
+        return only
+
+    def expressions(self, text: str, column: int, count: int | None = None) -> list[Expression]:
+        """Read a text that must be expressions separated by commas."""
+        if not text.strip() and not count:
+            return []
+        try:
+            found, end = self.flow.lexer.expressions.read_list(text, 0)
+        except ExpressionError as error:
+            at = column + (error.column or 0)
+            self.report.fail(error.code, str(error), at, 1, error.hint)
+        if text[end:].strip() or (count is not None and len(found) != count):
+            wanted = "values" if count is None else f"{count} value" + "s" * (count > 1)
+            hint = "equal is written ==" if text[end:].lstrip().startswith("=") else None
+            message = f"{wanted} must stand here and no more"
+            self.report.fail("expression", message, column + end, 1, hint)
+        return found
+
+    def compute(self, expression: Expression, column: int) -> float:
+        """Compute an expression of a statement; errors point at its column."""
+        try:
+            return float(expression.evaluate(self))
+        except ExpressionError as error:
+            self.report.fail(error.code, str(error), column, len(expression.text), error.hint)
+
+    @abc.abstractmethod
+    def read_variable(self, name: str, index: float | None) -> float:
+        """Value of a variable of the program, for expressions."""

@@ -1,0 +1,1 @@
+"""Planes, arcs, curves and frames, as mathematics."""

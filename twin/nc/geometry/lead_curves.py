@@ -1,0 +1,76 @@
+"""Geometry of the ways to and from a compensated contour, as plain functions over tuples.
+
+``leads`` is a view of them; the fast way (``lead_kernels``) compiles them as they stand here, as it
+does those of ``curves``.
+"""
+
+import math
+
+from twin.nc.geometry import arcs, curves
+from twin.nc.geometry.arcs import Point, distance
+from twin.nc.geometry.curves import Curve
+
+ALLOWED_DEPTH = 0.01
+"""How far a lead may cut into the contour without a warning [mm]."""
+
+
+def depth_of(lead: Curve, contour: Curve, radius: float) -> float:
+    """How far a tool on a straight lead cuts into an element of the contour; 0 if little [mm]."""
+    depth = radius - clearance(lead, contour)
+    return depth if depth > ALLOWED_DEPTH else 0.0
+
+
+def clearance(line: Curve, curve: Curve) -> float:
+    """Smallest distance between a line and a line or an arc; 0 where they cross [mm]."""
+    count, first, second = curves.meetings(line, curve)
+    for number in range(count):
+        point = first if number == 0 else second
+        on_line = curves.within(line, curves.along(line, point))
+        if on_line and curves.within(curve, curves.along(curve, point)):
+            return 0.0
+    near = min(
+        distance_to(curve, line[1]),
+        distance_to(curve, line[2]),
+        distance_to(line, curve[1]),
+        distance_to(line, curve[2]),
+    )
+    if curve[0]:
+        share = curves.along(line, curve[3])
+        if curves.within(line, share):
+            near = min(near, distance_to(curve, point_of(line, share)))
+    return near
+
+
+def distance_to(curve: Curve, point: Point) -> float:
+    """From a point to the nearest point of a curve [mm]."""
+    is_arc, start, end, center, _ = curve
+    share = curves.along(curve, point)
+    if 0.0 <= share <= 1.0:
+        if is_arc:
+            return abs(distance(point, center) - curves.radius_of(curve))
+        return distance(point, point_of(curve, share))
+    return min(distance(point, start), distance(point, end))
+
+
+def point_of(line: Curve, share: float) -> Point:
+    """The point of a line at a share of its way."""
+    start, end = line[1], line[2]
+    return (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
+
+
+def way_around(start: Point, end: Point, corner: Point, aside: float) -> tuple[bool, Curve]:
+    """Whether there is an arc as ``leads.around`` has it, and that arc."""
+    none = (False, start, end, corner, 0.0)
+    radius, far = abs(aside), distance(start, corner)
+    lead = (end[0] - start[0], end[1] - start[1])
+    arm = (corner[0] - end[0], corner[1] - end[1])
+    if lead[0] * arm[0] + lead[1] * arm[1] >= 0.0 or far <= radius:
+        return (False, none)
+    opening = math.degrees(math.acos(radius / far))
+    towards = (
+        corner[0] + (start[0] - corner[0]) * radius / far,
+        corner[1] + (start[1] - corner[1]) * radius / far,
+    )
+    touch = arcs.turned(towards, corner, -opening if aside > 0.0 else opening)
+    sweep = arcs.sweep_between(touch, end, corner, aside > 0.0)
+    return (abs(sweep) < 180.0, (True, touch, end, corner, sweep))

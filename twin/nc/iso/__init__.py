@@ -1,0 +1,1 @@
+"""What the dialects share of ISO 6983: codes, cycles, offsets."""

@@ -1,0 +1,182 @@
+"""Drilling cycles: the codes that call them, their words, and what happens at a hole, in every dialect."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import NoReturn
+
+from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.block_compiler import BlockWords
+from twin.nc.bytecode.opcodes import Step
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import GCode, Ground, Translation
+from twin.nc.control.drilling_cycle import (
+    BOTTOM,
+    EVERY,
+    FACTOR,
+    LENGTHS,
+    LIFT,
+    MOST_PECKS,
+    PECK,
+    REFERENCE,
+    Act,
+    Fault,
+    Hole,
+    begin,
+    hole_of,
+    most_acts,
+    no_values,
+    remember,
+    write_acts,
+)
+from twin.nc.control.interpolation import Interpolation, PlainHole
+
+_BESIDE = "ST"
+"""Words that may stand beside a cycle on the fast way: they change nothing of where the tool stands."""
+
+
+def cycle_code(
+    plain: PlainHole,
+    meaning: str,
+    target: Callable[[Control], list[float]] = Control.target,
+    ground: Ground = "decision",
+) -> GCode:
+    """The code that calls a cycle.
+
+    Args:
+        plain: The cycle and its words.
+        meaning: For people.
+        target: Takes the words that name the hole; its programmed position, shape (k,).
+        ground: On what the meaning rests.
+    """
+    cycle = plain.cycle
+
+    def call(control: Control) -> None:
+        axis = control.modal.plane.axes[2]
+        begin(control.hole_values, axis, control.programmed[axis], cycle.lasting)
+        if not cycle.lasting:
+            _take_words(control, plain)
+
+    def perform(control: Control) -> None:
+        if cycle.lasting:
+            _take_words(control, plain)
+        drill(control, _hole(control, plain), target(control))
+
+    return GCode(
+        meaning=meaning,
+        group="cycle",
+        sets={"cycle": Interpolation(perform, plain=plain)},
+        action=call,
+        translate=_write_words(plain.words),
+        ground=ground,
+    )
+
+
+def _take_words(control: Control, plain: PlainHole) -> None:
+    """Take the cycle's words, and that of the axis across the plane."""
+    cycle, given = plain.cycle, no_values()
+    relative = dict.fromkeys((REFERENCE, BOTTOM), control.modal.incremental)
+    for address, value in {**plain.words, _across(control): cycle.across}.items():
+        word = control.take(address)
+        if word is not None:
+            in_mm = (LENGTHS >> value) & 1
+            given[value] = control.length(word) if in_mm else control.number(word)
+            if word.incremental:
+                relative[value] = True
+    remember(control.hole_values, given, relative[REFERENCE], relative[BOTTOM], cycle.lasting)
+
+
+def _write_words(words: Mapping[str, int]) -> Translation:
+    """The same for the fast way, where the words of axes stay with those of the hole."""
+
+    def write(block: BlockWords, writer: BlockWriter) -> None:
+        for address, value in words.items():
+            word = block.take(address)
+            if word is None:
+                continue
+            if word.incremental:
+                raise NotTranslatableError
+            writer.word_value(word)
+            writer.step(Step.CYCLE_WORD, value)
+        others = block.words.keys() & block.control.dialect.word_translations.keys()
+        if others - set(_BESIDE) or any(code.action for _, code in block.functions):
+            raise NotTranslatableError
+
+    return write
+
+
+def _across(control: Control) -> str:
+    """Name of the axis across the plane."""
+    return control.settings.axes.names[control.modal.plane.axes[2]]
+
+
+def _hole(control: Control, plain: PlainHole) -> Hole:
+    """What the cycle does at a hole.
+
+    Raises:
+        ProgramError: A word is missing or wrong.
+    """
+    axis, to_reference = control.modal.plane.axes[2], control.modal.return_to_reference
+    hole = hole_of(plain.cycle, control.hole_values, axis, to_reference)
+    if hole.fault != Fault.NONE:
+        _refuse(control, plain, hole)
+    return hole
+
+
+def _refuse(control: Control, plain: PlainHole, hole: Hole) -> NoReturn:
+    name = plain.name
+    addresses = {value: address for address, value in plain.words.items()}
+    addresses[plain.cycle.across] = _across(control)
+    if hole.fault == Fault.MISSING:
+        missing = [
+            address
+            for value, address in sorted(addresses.items())
+            if (plain.cycle.needed >> value) & 1 and math.isnan(control.hole_values[value])
+        ]
+        control.fail("cycle-word", f"{name} needs {' and '.join(missing)}")
+    if hole.fault == Fault.PLANE:
+        message = f"{name} was called in another plane"
+        control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
+    if hole.fault == Fault.MANY_PECKS:
+        message = f"the hole would need more than {MOST_PECKS} pecks"
+        control.fail("cycle-depth", message, hint="write deeper pecks")
+    if hole.fault == Fault.DWELL:
+        control.fail("dwell", f"{name} cannot wait {hole.dwell:g} seconds")
+    if hole.fault == Fault.PECKS and FACTOR in addresses:
+        above = f"{addresses[PECK]} and {addresses[FACTOR]} above 0"
+        others = f"{addresses[LIFT]} not below 0, and {addresses[EVERY]} a count"
+        control.fail("cycle-depth", f"{name} needs {above}, {others}")
+    if hole.fault == Fault.PECKS:
+        control.fail("cycle-depth", f"{name} needs pecks above 0")
+    message = f"{name} must drill downwards, not from {hole.reference:g} to {hole.bottom:g}"
+    control.fail("cycle-depth", message)
+
+
+def drill(control: Control, hole: Hole, target: list[float]) -> None:
+    """Go over the hole, drill it, return.
+
+    Args:
+        control: The control.
+        hole: What is done there.
+        target: Programmed position of the hole, shape (k,); its height is not used.
+    """
+    axis = control.modal.plane.axes[2]
+    over = list(target)
+    over[axis] = max(control.programmed[axis], hole.reference)
+    if over[axis] != control.programmed[axis]:
+        up = list(control.programmed)
+        up[axis] = over[axis]
+        control.line_to(up, rapid=True)
+    control.line_to(over, rapid=True)
+    room = most_acts(hole.stops)
+    acts, amounts = [0.0] * room, [0.0] * room
+    turning = {} if control.spindle is None else {"S": control.spindle}
+    for number in range(write_acts(hole, acts, amounts)):
+        act, amount = Act(int(acts[number])), amounts[number]
+        if act in (Act.RAPID, Act.FEED):
+            there = list(control.programmed)
+            there[axis] = amount
+            control.line_to(there, rapid=act is Act.RAPID)
+        elif act is Act.DWELL:
+            control.dwell(amount)
+        else:
+            control.function(act.name, {} if act is Act.M5 else turning)

@@ -1,0 +1,1 @@
+"""From axis targets to canonical moves: contour, compensation, rounding."""

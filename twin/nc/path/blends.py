@@ -1,0 +1,215 @@
+"""Blends: what takes the place of a corner between two moves.
+
+A blend lies in a plane; height and further axes go linearly along what it leaves of the moves, and
+stand still on the blend itself.
+"""
+
+import dataclasses
+import enum
+import math
+from collections.abc import Sequence
+
+from twin.nc.geometry.arcs import Point, center_tangent, distance, sweep_between
+from twin.nc.geometry.elements import Element, crossings, turn_between
+from twin.nc.geometry.planes import Plane, Vector, cross, plane_with_normal
+from twin.nc.path.move_columns import Segment
+from twin.nc.path.segments import direction_of, element_of, line_between, part_of
+from twin.nc.path.splines import chords
+
+_STRAIGHT_ON = 1e-4
+"""Corners that turn by less need no blend, those that turn back by less allow none [deg]."""
+
+_SMALL = 1e-9
+
+
+class BlendKind(enum.Enum):
+    """What takes the corner's place."""
+
+    FILLET = "arc of a radius, tangent to both moves"
+    CHAMFER = "line between two points at a distance from the corner"
+    ARC = "arc between two points at a distance from the corner"
+    SPLINE = "spline between two points at a distance from the corner"
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Blend:
+    """A blend to be made.
+
+    Attributes:
+        kind: Its shape.
+        size: Radius of a fillet; distance from the corner of the others [mm].
+        plane: In which it lies, part coordinates.
+        halves: At most half of each move is given up, so that the size adapts to short moves.
+    """
+
+    kind: BlendKind
+    size: float
+    plane: Plane
+    halves: bool = False
+
+
+class NoBlendError(Exception):
+    """The blend does not fit; the message says why."""
+
+
+def blend_corner(
+    first: Segment, second: Segment, blend: Blend
+) -> tuple[Segment, list[Segment], Segment]:
+    """Replace the corner between two moves.
+
+    Returns:
+        What is left of the first move, the blend, what is left of the second move.
+
+    Raises:
+        NoBlendError: It does not fit, or there is nothing to blend.
+    """
+    plane = _plane_of(first, second, blend)
+    before, behind = element_of(first, plane), element_of(second, plane)
+    if before is None or behind is None:
+        raise NoBlendError("one of the moves does not lie in the working plane")
+    turn = turn_between(before, behind)
+    if abs(turn) < _STRAIGHT_ON:
+        return first, [], second
+    if abs(turn) > 180.0 - _STRAIGHT_ON:
+        raise NoBlendError("the path turns back on itself")
+    if blend.kind is BlendKind.FILLET:
+        left, right, center = _fillet(before, behind, turn, blend.size)
+    else:
+        left, right = _cut(before, behind, blend)
+        center = (0.0, 0.0)
+    begin, end = before.point(left), behind.point(right)
+    head = part_of(first, before, plane, 0.0, left)
+    tail = part_of(second, behind, plane, right, 1.0)
+    if blend.kind is BlendKind.CHAMFER:
+        return head, [line_between(first, head.end, tail.start)], tail
+    if blend.kind is BlendKind.SPLINE:
+        return head, _spline(head, tail, before.length * (1.0 - left)), tail
+    if blend.kind is BlendKind.FILLET:
+        sweep = sweep_between(begin, end, center, clockwise=turn < 0.0)
+        return head, _arcs(head, tail, plane, [Element(begin, end, center, sweep)]), tail
+    leaving, arriving = before.tangent_at(left), behind.tangent_at(right)
+    return head, _arcs(head, tail, plane, _biarc(begin, end, leaving, arriving)), tail
+
+
+def _cut(before: Element, behind: Element, blend: Blend) -> tuple[float, float]:
+    """Where both moves are cut, as shares of their ways."""
+    size, shorter = blend.size, min(before.length, behind.length)
+    if blend.halves:
+        size = min(size, shorter / 2.0)
+    elif size > shorter + _SMALL:
+        raise NoBlendError(f"{size:g} mm are longer than the shorter move, {shorter:.4f} mm")
+    return max(0.0, 1.0 - size / before.length), min(1.0, size / behind.length)
+
+
+def _plane_of(first: Segment, second: Segment, blend: Blend) -> Plane:
+    """The blend's own plane; two lines in space span theirs."""
+    if first.center is not None or second.center is not None or not blend.halves:
+        return blend.plane
+    a, b = direction_of(first, at_end=True), direction_of(second, at_end=False)
+    normal = cross(a, b)
+    size = math.hypot(*a) * math.hypot(*b)
+    if math.hypot(*cross(normal, blend.plane.normal)) <= _SMALL * size:
+        return blend.plane
+    return plane_with_normal(normal)
+
+
+def _fillet(
+    before: Element, behind: Element, turn: float, radius: float
+) -> tuple[float, float, Point]:
+    """Where a fillet touches both moves, as shares of their ways, and its centre."""
+    side = math.copysign(radius, turn)
+    beside, following = before.aside(side), behind.aside(side)
+    if beside is None or following is None:
+        raise NoBlendError(f"the radius {radius:g} does not fit into the arc beside the corner")
+    fitting: list[tuple[float, float, Point]] = []
+    for center in crossings(beside, following):
+        left, right = beside.last_along(center), following.along(center)
+        if before.within(left) and behind.within(right):
+            fitting.append((min(max(left, 0.0), 1.0), min(max(right, 0.0), 1.0), center))
+    if not fitting:
+        raise NoBlendError(f"the radius {radius:g} is too large for the moves beside the corner")
+    return min(fitting, key=lambda each: distance(each[2], before.end))
+
+
+def _biarc(begin: Point, end: Point, first: Point, last: Point) -> list[Element]:
+    """One or two arcs from ``begin`` along ``first`` to ``end`` along ``last``."""
+    vx, vy = end[0] - begin[0], end[1] - begin[1]
+    tx, ty = first[0] + last[0], first[1] + last[1]
+    together, chord = vx * tx + vy * ty, vx * vx + vy * vy
+    bend = 2.0 * (1.0 - first[0] * last[0] - first[1] * last[1])
+    reach = (math.sqrt(together * together + bend * chord) - together) / bend
+    joint = (
+        (begin[0] + end[0] + reach * (first[0] - last[0])) / 2.0,
+        (begin[1] + end[1] + reach * (first[1] - last[1])) / 2.0,
+    )
+    left = center_tangent(begin, joint, first)
+    right = center_tangent(end, joint, (-last[0], -last[1]))
+    pieces = [_arc_or_line(begin, joint, left, first), _arc_or_line(joint, end, right, None, last)]
+    if left is not None and right is not None and distance(left, right) < 1e-7:
+        whole = pieces[0].sweep + pieces[1].sweep
+        return [Element(begin, end, left, whole)]
+    return pieces
+
+
+def _arc_or_line(
+    begin: Point,
+    end: Point,
+    center: Point | None,
+    leaving: Point | None,
+    arriving: Point | None = None,
+) -> Element:
+    if center is None:
+        return Element(begin, end)
+    point, along = (begin, leaving) if leaving is not None else (end, arriving)
+    assert along is not None
+    arm = (point[0] - center[0], point[1] - center[1])
+    clockwise = arm[0] * along[1] - arm[1] * along[0] < 0.0
+    return Element(begin, end, center, sweep_between(begin, end, center, clockwise=clockwise))
+
+
+def _arcs(before: Segment, behind: Segment, plane: Plane, pieces: list[Element]) -> list[Segment]:
+    """Plane pieces as moves; their ends meet those of the moves beside them exactly."""
+    made: list[Segment] = []
+    here = before.end
+    height = plane.local(here).height
+    for number, piece in enumerate(pieces):
+        last = number == len(pieces) - 1
+        there = behind.start if last else [*plane.world(*piece.end, height), *here[3:]]
+        move = line_between(before, here, there)
+        if piece.center is not None:
+            move = dataclasses.replace(
+                move,
+                center=plane.world(*piece.center, height),
+                normal=plane.normal,
+                sweep=piece.sweep,
+            )
+        made.append(move)
+        here = there
+    return made
+
+
+def _spline(before: Segment, behind: Segment, size: float) -> list[Segment]:
+    """A curve of degree 5 without a jump of direction or curvature where it meets straight moves."""
+    start, end = before.end, behind.start
+    leave = _unit(direction_of(before, at_end=True))
+    arrive = _unit(direction_of(behind, at_end=False))
+    control = [
+        *([start[i] + share * size * leave[i] for i in range(3)] for share in (0.0, 0.5, 1.0)),
+        *([end[i] - share * size * arrive[i] for i in range(3)] for share in (1.0, 0.5, 0.0)),
+    ]
+    bends = [
+        20.0 * math.hypot(*(a - 2.0 * b + c for a, b, c in zip(*control[k : k + 3], strict=True)))
+        for k in range(4)
+    ]
+
+    def at(u: float) -> Vector:
+        weights = [math.comb(5, k) * u**k * (1.0 - u) ** (5 - k) for k in range(6)]
+        x, y, z = (sum(w * p[i] for w, p in zip(weights, control, strict=True)) for i in range(3))
+        return (x, y, z)
+
+    return chords(line_between(before, start, end), at, max(bends))
+
+
+def _unit(vector: Sequence[float]) -> Vector:
+    size = math.hypot(*vector)
+    return (vector[0] / size, vector[1] / size, vector[2] / size)

@@ -1,0 +1,234 @@
+"""Collects moves and events one by one and hands them out as columns."""
+
+import dataclasses
+import math
+
+import numpy as np
+
+from twin.nc.canonical import (
+    Axes,
+    Chunk,
+    Corner,
+    Dwell,
+    Event,
+    FeedUnit,
+    FloatArray,
+    Function,
+    IntArray,
+    Motion,
+    Moves,
+    Shape,
+)
+from twin.nc.geometry.planes import Vector
+from twin.nc.path.event_columns import EventRows, Events
+
+CHUNK = 4096
+"""Moves in a chunk: enough to make NumPy's overhead vanish, little to hold in memory."""
+
+NAN = math.nan
+
+
+@dataclasses.dataclass(slots=True)
+class Segment:
+    """One move in part coordinates, before it becomes a row.
+
+    Attributes:
+        motion: Rapid or feed.
+        line: Source line.
+        block: N number or ``NO_BLOCK_NUMBER``.
+        start: Shape (k,) [mm or deg].
+        end: Shape (k,) [mm or deg].
+        display: What the screen shows at the end, shape (k,).
+        feed: [mm/min or deg/min]; NaN for rapids.
+        corner: How the end is passed.
+        corner_tolerance: [mm]; NaN: the machine's.
+        acceleration: [mm/s²]; NaN: the machine's.
+        deceleration: [mm/s²]; NaN: the machine's.
+        center: Centre of an arc at the height of its start [mm], or None for a line.
+        normal: Unit normal of an arc.
+        sweep: Signed angle of an arc [deg].
+    """
+
+    motion: Motion
+    line: int
+    block: int
+    start: list[float]
+    end: list[float]
+    display: list[float]
+    feed: float = NAN
+    corner: Corner = Corner.EXACT_PATH
+    corner_tolerance: float = NAN
+    acceleration: float = NAN
+    deceleration: float = NAN
+    center: Vector | None = None
+    normal: Vector = (NAN, NAN, NAN)
+    sweep: float = 0.0
+
+
+class MoveColumns:
+    """The moves and events since the last ``take``."""
+
+    def __init__(self, axes: Axes) -> None:
+        self._axes = axes
+        self._other_linear = np.array([kind == "linear" for kind in axes.kinds])
+        self._other_linear[:3] = False
+        self._rotary = axes.rotary()
+        self._clear()
+
+    def _clear(self) -> None:
+        self._parts: list[tuple[IntArray, FloatArray, FloatArray]] = []
+        self._event_parts: list[list[Event] | EventRows] = []
+        self._event_list: list[Event] = []
+        self._count = 0
+        self._clear_lists()
+
+    def _clear_lists(self) -> None:
+        self._codes: list[int] = []
+        self._values: list[float] = []
+        self._positions: list[float] = []
+
+    def __len__(self) -> int:
+        return self._count
+
+    def add(self, move: Segment) -> None:
+        """Append a move."""
+        center = move.center
+        self._codes += (
+            move.motion,
+            Shape.LINE if center is None else Shape.ARC,
+            move.line,
+            move.block,
+            move.corner,
+        )
+        self._values += (
+            *((NAN, NAN, NAN) if center is None else center),
+            *move.normal,
+            move.sweep,
+            move.feed,
+            move.corner_tolerance,
+            move.acceleration,
+            move.deceleration,
+        )
+        self._positions += move.start
+        self._positions += move.end
+        self._positions += move.display
+        self._count += 1
+
+    def add_rows(self, codes: IntArray, values: FloatArray, positions: FloatArray) -> None:
+        """Append moves that are columns already.
+
+        Args:
+            codes: Motion, shape, line, block and corner, shape (n, 5).
+            values: Centre, normal, sweep, feed, corner tolerance, acceleration and deceleration,
+                shape (n, 11).
+            positions: Start, end and display, shape (n, 3, k).
+        """
+        self._close_lists()
+        self._parts.append((codes.copy(), values.copy(), positions.copy()))
+        self._count += len(codes)
+
+    def _close_lists(self) -> None:
+        """Make the moves that were appended one by one a part of columns."""
+        if self._codes:
+            codes = np.array(self._codes, np.int64).reshape(-1, 5)
+            values = np.array(self._values, np.float64).reshape(-1, 11)
+            positions = np.array(self._positions, np.float64).reshape(len(codes), 3, -1)
+            self._parts.append((codes, values, positions))
+            self._clear_lists()
+
+    def add_event(self, event: Event) -> None:
+        """Append an event after the moves so far."""
+        self._event_list.append(dataclasses.replace(event, before=self._count))
+
+    def add_event_rows(self, events: EventRows) -> None:
+        """Append events as columns; their places count from the next move."""
+        if len(events):
+            self._close_event_list()
+            self._event_parts.append(events.behind(self._count))
+
+    def _close_event_list(self) -> None:
+        if self._event_list:
+            self._event_parts.append(self._event_list)
+            self._event_list = []
+
+    def dwell(self, line: int, seconds: float) -> None:
+        """Append a dwell after the moves so far."""
+        self._event_list.append(Dwell(self._count, line, seconds))
+
+    def function(self, line: int, word: str, arguments: dict[str, float], at: float) -> None:
+        """Append a function after the moves so far."""
+        self._event_list.append(Function(self._count, line, word, arguments, at))
+
+    def take(self) -> Chunk:
+        """All that was appended, as columns; nothing is left here."""
+        self._close_lists()
+        k = len(self._axes)
+        none = (np.zeros((0, 5), np.int64), np.zeros((0, 11)), np.zeros((0, 3, k)))
+        columns = zip(*(self._parts or [none]), strict=True)
+        codes, values, positions = (np.concatenate(each) for each in columns)
+        self._close_event_list()
+        events = Events(self._event_parts)
+        self._clear()
+        start, end = positions[:, 0], positions[:, 1]
+        shape = codes[:, 1].astype(np.uint8)
+        center, normal = values[:, 0:3], values[:, 3:6]
+        radius = _norms(start[:, :3] - center)
+        length, unit = self._measure(start, end, normal, radius, values[:, 6])
+        moves = Moves(
+            axes=self._axes,
+            motion=codes[:, 0].astype(np.uint8),
+            shape=shape,
+            line=codes[:, 2].copy(),
+            block=codes[:, 3].copy(),
+            start=start.copy(),
+            end=end.copy(),
+            display=positions[:, 2].copy(),
+            feed=values[:, 7].copy(),
+            feed_unit=unit.astype(np.uint8),
+            length=length,
+            center=center.copy(),
+            normal=normal.copy(),
+            radius=radius,
+            sweep=values[:, 6].copy(),
+            corner=codes[:, 4].astype(np.uint8),
+            corner_tolerance=values[:, 8].copy(),
+            acceleration=values[:, 9].copy(),
+            deceleration=values[:, 10].copy(),
+        )
+        return Chunk(moves, events)
+
+    def _measure(
+        self,
+        start: FloatArray,
+        end: FloatArray,
+        normal: FloatArray,
+        radius: FloatArray,
+        sweep: FloatArray,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Length that the feed counts and its unit, by the convention of ``canonical``."""
+        delta = end - start
+        spatial = _norms(delta[:, :3])
+        advance = _row_sums(delta[:, :3] * normal)
+        arc = np.hypot(radius * np.deg2rad(sweep), advance)
+        path = np.where(np.isnan(radius), spatial, arc)
+        linear = _norms(delta[:, self._other_linear])
+        rotary = _norms(delta[:, self._rotary])
+        length = np.where(path > 0.0, path, np.where(linear > 0.0, linear, rotary))
+        turning = (path == 0.0) & (linear == 0.0) & (rotary > 0.0)
+        return length, np.where(turning, float(FeedUnit.DEG_PER_MIN), float(FeedUnit.MM_PER_MIN))
+
+
+def _norms(vectors: FloatArray) -> FloatArray:
+    """Length of each row, shape (n,)."""
+    return np.sqrt(_row_sums(vectors * vectors))
+
+
+def _row_sums(rows: FloatArray) -> FloatArray:
+    """Sum of each row from left to right, shape (n,).
+
+    NumPy's own order depends on the layout, and a move must have the same length in every chunk.
+    """
+    total = np.zeros(len(rows))
+    for column in rows.T:
+        total += column
+    return total

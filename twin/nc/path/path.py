@@ -1,0 +1,321 @@
+"""The way of moves from the control to the columns.
+
+The stages, in order: splines through points, blends at corners, tool radius compensation, loops cut
+out, additional axes that go evenly. Each is there only while a program asks for it, and holds few moves.
+"""
+
+import math
+from collections.abc import Callable
+
+from twin.nc.canonical import Axes, Chunk, Motion
+from twin.nc.compiled.contour_columns import Gone
+from twin.nc.geometry.planes import PLANE_NAMES, Plane
+from twin.nc.path.blends import Blend
+from twin.nc.path.compensation import Compensation, Refuse, Warn
+from twin.nc.path.contour_registers import Row
+from twin.nc.path.even_axes import MOST_MOVES, EvenAxes
+from twin.nc.path.event_columns import EventRows
+from twin.nc.path.followed import Followed, Stage
+from twin.nc.path.lead_out import lead_out
+from twin.nc.path.leads import LeadOut
+from twin.nc.path.loops import Loops
+from twin.nc.path.move_columns import MoveColumns, Segment
+from twin.nc.path.rounding import Rounding
+from twin.nc.path.splines import Spline
+
+
+class Path:
+    """Takes moves and events in program order.
+
+    Attributes:
+        position: Where the emitted path has come to, shape (k,) [mm or deg].
+    """
+
+    def __init__(self, axes: Axes, start: list[float], refuse: Refuse, warn: Warn) -> None:
+        self._columns = MoveColumns(axes)
+        self._refuse = refuse
+        self._warn = warn
+        self._before: Segment | None = None
+        self._spline: Spline | None = None
+        self._rounding: Rounding | None = None
+        self._compensation: Compensation | None = None
+        self._leading_out: LeadOut | None = None
+        self._loops: Loops | None = None
+        self._even: EvenAxes | None = None
+        self.position = start
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def take(self) -> Chunk:
+        """All that has been emitted, as columns."""
+        return self._columns.take()
+
+    def finish(self) -> None:
+        """Nothing follows: emit what the stages hold."""
+        self._flush()
+        self.end_compensation()
+        self.keep_loops()
+        if self._even is not None:
+            self._even.finish()
+
+    # --- what the control adds
+
+    def add(self, move: Segment) -> None:
+        """The next programmed move."""
+        if self._spline is not None:
+            self._end_spline(move)
+        self._before = move
+        self._round(move)
+
+    def add_rows(self, moves: Row, events: EventRows, gone: Gone) -> None:
+        """Moves as columns: of a path that was handed over, as compensation has let them go.
+
+        Args:
+            moves: Moves that are driven.
+            events: Those between them; ``before`` counts from the first of them.
+            gone: How far compensation has come.
+        """
+        self._columns.add_event_rows(events)
+        if len(moves.codes):
+            self._columns.add_rows(*moves)
+            self.position = moves.positions[-1, 1].tolist()
+        self._resume(gone)
+
+    @property
+    def hands_over(self) -> bool:
+        """No stage but compensation holds or changes moves, and nothing waits for a move's end."""
+        if self._spline or self._rounding or self._loops or self._even:
+            return False
+        compensation, leading = self._compensation, self._leading_out
+        if compensation is not None:
+            return not compensation.waits and compensation.plane.name in PLANE_NAMES
+        return leading is None or leading.plane.name in PLANE_NAMES
+
+    @property
+    def followed(self) -> Followed | None:
+        """How far compensation has come, or None."""
+        if self._compensation is not None:
+            return self._compensation.followed
+        return None if self._leading_out is None else self._leading_out.followed
+
+    def _resume(self, gone: Gone) -> None:
+        """Compensation has gone on by itself."""
+        if gone.came:
+            self._before = gone.before
+        self._compensation = self._leading_out = None
+        followed = gone.followed
+        if followed is None:
+            return
+        if followed.stage is Stage.LEADING_OUT:
+            assert followed.contour is not None
+            self._leading_out = LeadOut(
+                followed.plane, followed.contour, followed.aside, followed.indirect
+            )
+            return
+        side, radius = math.copysign(1.0, followed.aside), abs(followed.aside)
+        self.start_compensation(
+            followed.plane, side, radius, square=followed.square, indirect=followed.indirect
+        )
+        compensation = self._compensation
+        assert compensation is not None
+        compensation.resume(followed)
+        for each in gone.waiting:
+            if isinstance(each, Segment):
+                compensation.wait(each)
+            else:
+                compensation.event(lambda event=each: self._columns.add_event(event))
+
+    def add_point(self, move: Segment, *, flat: bool) -> None:
+        """The straight way to the next point of a spline; ``flat``: its height goes linearly."""
+        if self._spline is None:
+            before = self._before
+            cuts = before is not None and before.motion is Motion.FEED
+            self._spline = Spline(before if cuts else None, self._round)
+        self._spline.add(move, flat=flat)
+        self._before = None
+
+    def end_spline(self) -> None:
+        """The spline's next point begins a new one."""
+        self._end_spline(None)
+
+    def event(self, happen: Callable[[MoveColumns], None]) -> None:
+        """Something that happens between the moves so far and the next."""
+        self._end_spline(None)
+        self._before = None
+        if self._rounding is None:
+            self._happen(happen)
+        else:
+            self._rounding.event(lambda: self._happen(happen))
+
+    def _end_spline(self, behind: Segment | None) -> None:
+        if self._spline is not None:
+            cuts = behind is not None and behind.motion is Motion.FEED
+            self._spline.finish(behind if cuts else None)
+            self._spline = None
+
+    # --- blends
+
+    def _round(self, move: Segment) -> None:
+        if self._rounding is None:
+            self._compensate(move)
+        else:
+            self._rounding.add(move)
+
+    def hold_for_blends(self) -> None:
+        """From now on moves are held until their successor is known."""
+        if self._rounding is None:
+            self._rounding = Rounding(self._compensate, self._refuse)
+
+    def blend_next(self, blend: Blend) -> bool:
+        """Blend the corner between the last move and the next; False where there is no last."""
+        assert self._rounding is not None
+        if self._rounding.holding is None:
+            return False
+        self._rounding.once = blend
+        return True
+
+    def blend_always(self, blend: Blend | None) -> None:
+        """Blend every corner between two moves that follow; None: no more."""
+        self._end_spline(None)
+        if blend is not None:
+            self.hold_for_blends()
+        if self._rounding is not None:
+            self._rounding.always = blend
+            if blend is None:
+                self._rounding.flush()
+                self._rounding = None
+
+    def _flush(self) -> None:
+        self._end_spline(None)
+        if self._rounding is not None:
+            self._rounding.flush()
+
+    # --- compensation
+
+    def _compensate(self, move: Segment) -> None:
+        if self._compensation is not None:
+            self._compensation.add(move)
+            return
+        if self._leading_out is not None:
+            moves, leads = lead_out(
+                move, self._leading_out, self.position, self._refuse, self._warn
+            )
+            if leads:
+                self._leading_out = None
+            for each in moves:
+                self._emit(each)
+            return
+        self._emit(move)
+
+    def _happen(self, happen: Callable[[MoveColumns], None]) -> None:
+        if self._compensation is None:
+            self._record(happen)
+        else:
+            self._compensation.event(lambda: self._record(happen))
+
+    @property
+    def leading_out(self) -> bool:
+        """Compensation has ended, and no line has led out yet."""
+        return self._leading_out is not None
+
+    @property
+    def compensating(self) -> bool:
+        """Compensation is in force."""
+        return self._compensation is not None
+
+    def start_compensation(
+        self, plane: Plane, side: float, radius: float, *, square: bool, indirect: bool
+    ) -> None:
+        """Compensate from the next move on.
+
+        Args:
+            plane: Working plane in part coordinates.
+            side: +1 left of the contour, -1 right of it.
+            radius: Of the tool [mm].
+            square: Outside corners between lines are extended as far as 90°.
+            indirect: Leads go around the contour's first and last point.
+        """
+        self._flush()
+        self._compensation = Compensation(
+            plane,
+            side,
+            radius,
+            self._emit,
+            self._refuse,
+            self._warn,
+            square=square,
+            indirect=indirect,
+        )
+
+    def end_compensation(self) -> None:
+        """The next line leads out."""
+        if self._compensation is not None:
+            self._flush()
+            self._leading_out = self._compensation.finish()
+            self._compensation = None
+
+    # --- loops
+
+    @property
+    def cutting_loops(self) -> bool:
+        """Loops are cut out."""
+        return self._loops is not None
+
+    def cut_loops(self, plane: Plane) -> None:
+        """Loops of the path in a plane are cut out from now on."""
+        if self._loops is None:
+            self._flush()
+            self._loops = Loops(plane, self._out)
+
+    def keep_loops(self) -> None:
+        """Loops stay."""
+        if self._loops is not None:
+            self._flush()
+            self._loops.flush()
+            self._loops = None
+
+    # --- additional axes
+
+    def go_evenly(self, axis: int) -> None:
+        """From now on the axis of this column goes evenly over the moves that follow."""
+        self._flush()
+        if self._even is None:
+            self._even = EvenAxes(self._columns.add)
+        self._even.begin(axis)
+
+    def go_as_programmed(self, axis: int) -> None:
+        """It has arrived, and goes with each move again."""
+        if self._even is not None:
+            self._flush()
+            self._even.end(axis)
+            if self._even.idle:
+                self._even = None
+
+    def _emit(self, move: Segment) -> None:
+        if move.center is None and move.start == move.end:
+            return
+        self.position = move.end
+        if self._loops is None:
+            self._out(move)
+        else:
+            self._loops.add(move)
+
+    def _out(self, move: Segment) -> None:
+        if self._even is None:
+            self._columns.add(move)
+        elif not self._even.add(move):
+            message = f"an axis cannot go evenly over more than {MOST_MOVES} moves"
+            self._refuse(move, "even-axis", message)
+
+    def _record(self, happen: Callable[[MoveColumns], None]) -> None:
+        if self._loops is None:
+            self._report(happen)
+        else:
+            self._loops.event(lambda: self._report(happen))
+
+    def _report(self, happen: Callable[[MoveColumns], None]) -> None:
+        if self._even is None:
+            happen(self._columns)
+        else:
+            self._even.event(lambda: happen(self._columns))

@@ -1,0 +1,78 @@
+"""The stage of the path that blends corners: it looks one move ahead."""
+
+from collections.abc import Callable
+
+from twin.nc.canonical import Motion
+from twin.nc.path.blends import Blend, NoBlendError, blend_corner
+from twin.nc.path.compensation import Refuse
+from twin.nc.path.move_columns import Segment
+
+
+class Rounding:
+    """Blends the corners that it is told to.
+
+    Attributes:
+        always: Blend of every corner between two moves that it holds for, or None.
+        once: Blend of the next corner, or None.
+    """
+
+    def __init__(self, emit: Callable[[Segment], None], refuse: Refuse) -> None:
+        self._emit = emit
+        self._refuse = refuse
+        self._held: Segment | None = None
+        self._blend: Blend | None = None
+        self._waiting: list[Callable[[], None]] = []
+        self.always: Blend | None = None
+        self.once: Blend | None = None
+
+    @property
+    def holding(self) -> Segment | None:
+        """The move that waits for its successor."""
+        return self._held
+
+    def add(self, move: Segment) -> None:
+        """The next move."""
+        if self._held is not None:
+            self._join(self._held, move)
+        else:
+            self._held = move
+        self._blend, self.once = self.always, None
+
+    def _join(self, held: Segment, move: Segment) -> None:
+        self._held = move
+        blend = self.once or (self._blend if self.always is not None else None)
+        feeds = held.motion is Motion.FEED and move.motion is Motion.FEED
+        if self.once is not None and not feeds:
+            self._refuse(move, "blend", "a rapid move cannot be blended")
+        if blend is not None and feeds and blend.size > 0.0:
+            try:
+                held, between, self._held = blend_corner(held, move, blend)
+            except NoBlendError as error:
+                if self.once is not None:
+                    self._refuse(move, "blend", f"the corner cannot be blended: {error}")
+                between = []
+            self._emit(held)
+            for each in between:
+                self._emit(each)
+        else:
+            self._emit(held)
+        self._happen()
+
+    def event(self, event: Callable[[], None]) -> None:
+        """Something that happens where the path has come to: behind the corner."""
+        if self._held is None:
+            event()
+        else:
+            self._waiting.append(event)
+
+    def flush(self) -> None:
+        """Nothing follows that could be blended."""
+        held, self._held = self._held, None
+        if held is not None:
+            self._emit(held)
+        self._happen()
+
+    def _happen(self) -> None:
+        waiting, self._waiting = self._waiting, []
+        for event in waiting:
+            event()

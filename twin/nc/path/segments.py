@@ -1,0 +1,126 @@
+"""Geometry of single moves in space and in a plane: directions, plane elements, parts of moves."""
+
+import dataclasses
+import math
+
+from twin.nc.geometry.arcs import SAME_POINT, Point, distance
+from twin.nc.geometry.elements import Element
+from twin.nc.geometry.matrices import dot
+from twin.nc.geometry.planes import Plane, Vector, cross
+from twin.nc.path.move_columns import Segment
+
+IN_PLANE = 1.0 - 1e-9
+"""Cosine between an arc's normal and a plane's from which the arc lies in the plane."""
+
+
+def direction_of(move: Segment, *, at_end: bool) -> Vector:
+    """Where a move is going at its start or its end; not of unit length, zero where X Y Z rest."""
+    start, end = move.start, move.end
+    x, y, z = (end[i] - start[i] for i in range(3))
+    if move.center is None:
+        return (x, y, z)
+    point, center, normal = end if at_end else start, move.center, move.normal
+    advance = x * normal[0] + y * normal[1] + z * normal[2]
+    here = advance if at_end else 0.0
+    arm = (
+        point[0] - center[0] - here * normal[0],
+        point[1] - center[1] - here * normal[1],
+        point[2] - center[2] - here * normal[2],
+    )
+    turn, pitch = math.radians(move.sweep), cross(normal, arm)
+    return (
+        pitch[0] * turn + advance * normal[0],
+        pitch[1] * turn + advance * normal[1],
+        pitch[2] * turn + advance * normal[2],
+    )
+
+
+def spatial_length(move: Segment) -> float:
+    """Length of a move in X, Y, Z [mm]."""
+    if move.center is None:
+        return math.dist(move.start[:3], move.end[:3])
+    advance = sum((move.end[i] - move.start[i]) * move.normal[i] for i in range(3))
+    return math.hypot(math.dist(move.start[:3], move.center) * math.radians(move.sweep), advance)
+
+
+def element_of(move: Segment, plane: Plane) -> Element | None:
+    """A move as a plane sees it; None where it is no line or arc there, or has no length."""
+    start, end = plane.local(move.start)[:2], plane.local(move.end)[:2]
+    if move.center is None:
+        return Element(start, end) if distance(start, end) >= SAME_POINT else None
+    sense = dot(move.normal, plane.normal)
+    if abs(sense) < IN_PLANE:
+        return None
+    return Element(start, end, plane.local(move.center)[:2], move.sweep * sense)
+
+
+def part_of(move: Segment, element: Element, plane: Plane, first: float, last: float) -> Segment:
+    """The part of a move between two shares of its way; what else moves goes along.
+
+    Args:
+        move: The whole move.
+        element: What ``element_of`` gave.
+        plane: The plane of the element.
+        first: Where the part begins, 0 to 1.
+        last: Where it ends.
+    """
+    start, end = (
+        whole if share == exact else _at(move, plane, element.point(share), share)
+        for share, exact, whole in ((first, 0.0, move.start), (last, 1.0, move.end))
+    )
+    center = move.center
+    if element.center is not None:
+        center = plane.world(*element.center, plane.local(start).height)
+    return dataclasses.replace(
+        move,
+        start=start,
+        end=end,
+        display=_shown(move, end),
+        center=center,
+        normal=move.normal if element.center is None else plane.normal,
+        sweep=element.sweep * (last - first),
+    )
+
+
+def _at(move: Segment, plane: Plane, point: Point, share: float) -> list[float]:
+    whole = [a + share * (b - a) for a, b in zip(move.start, move.end, strict=True)]
+    height = plane.local(move.start).height * (1.0 - share) + plane.local(move.end).height * share
+    return [*plane.world(*point, height), *whole[3:]]
+
+
+def _shown(move: Segment, here: list[float]) -> list[float]:
+    """What the screen shows before the move has ended: shifted by as much as at its end."""
+    return [a + s - e for a, s, e in zip(here, move.display, move.end, strict=True)]
+
+
+def line_between(move: Segment, start: list[float], end: list[float]) -> Segment:
+    """A straight move with all else of another one."""
+    return dataclasses.replace(
+        move,
+        start=start,
+        end=end,
+        display=_shown(move, end),
+        center=None,
+        normal=(math.nan, math.nan, math.nan),
+        sweep=0.0,
+    )
+
+
+def level_arc(move: Segment, plane: Plane, arc: Element, start: list[float]) -> Segment:
+    """An arc at one height with all else of a move; further axes stand still.
+
+    Args:
+        move: Whose line, feed and the like it takes.
+        plane: Of the arc.
+        arc: In the plane.
+        start: Where it begins, shape (k,).
+    """
+    height = plane.local(start).height
+    end = [*plane.world(*arc.end, height), *start[3:]]
+    assert arc.center is not None
+    return dataclasses.replace(
+        line_between(move, start, end),
+        center=plane.world(*arc.center, height),
+        normal=plane.normal,
+        sweep=arc.sweep,
+    )

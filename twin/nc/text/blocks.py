@@ -1,0 +1,70 @@
+"""A program's blocks: words with the place where they stand."""
+
+import dataclasses
+from typing import NamedTuple
+
+from twin.nc.canonical import NO_BLOCK_NUMBER
+from twin.nc.text.expressions import Expression
+
+
+class Word(NamedTuple):
+    """An address with its value.
+
+    Attributes:
+        address: Upper case, such as ``X`` or ``FF``.
+        value: A number, or an expression where the program computes it.
+        column: First character in the line, from 0.
+        width: Characters from the address to the end of the value.
+        incremental: The word alone is incremental (``X20I``).
+    """
+
+    address: str
+    value: float | Expression
+    column: int
+    width: int
+    incremental: bool = False
+
+    @property
+    def text(self) -> str:
+        """The word as a programmer would write it."""
+        value = f"{self.value:.10g}" if isinstance(self.value, float) else "..."
+        return f"{self.address}{value}"
+
+
+class Statement(NamedTuple):
+    """Something that is not made of words: an assignment, a loop, a call.
+
+    Attributes:
+        keyword: Upper case name of the statement, such as ``$IF`` or ``=``.
+        text: What follows the keyword, without comments.
+        column: Where the keyword begins, from 0.
+        text_column: Where ``text`` begins, from 0.
+    """
+
+    keyword: str
+    text: str
+    column: int
+    text_column: int
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Block:
+    """One block of a program.
+
+    Attributes:
+        line: Source line, from 1.
+        part: Which of the line's blocks it is, from 0.
+        number: Its N number or ``NO_BLOCK_NUMBER``.
+        words: Its words without N, in the order of the text.
+        statement: What it says besides words, or None.
+        skippable: It begins with a slash.
+        name: Its label in brackets, or empty.
+    """
+
+    line: int
+    part: int
+    number: int = NO_BLOCK_NUMBER
+    words: tuple[Word, ...] = ()
+    statement: Statement | None = None
+    skippable: bool = False
+    name: str = ""

@@ -1,0 +1,221 @@
+"""Reading expressions: precedence climbing, from text to trees."""
+
+import re
+from typing import NoReturn
+
+from twin.nc.text.expressions import (
+    NUMBER,
+    Computed,
+    Exists,
+    Expression,
+    ExpressionError,
+    ExpressionSyntax,
+    Negative,
+    Number,
+    NumberedVariable,
+    Prefixed,
+    Tree,
+    Variable,
+    checked,
+)
+
+_DEEPEST = 40
+"""Brackets within brackets that an expression may have."""
+_LONGEST = 200
+"""Operators and functions that an expression may have."""
+
+
+_MOST_KEPT = 4096
+"""Expressions that are kept once they were read: loops compute the same ones again and again."""
+
+
+class ExpressionReader:
+    """Reads the expressions of one dialect."""
+
+    def __init__(self, syntax: ExpressionSyntax) -> None:
+        self._syntax = syntax
+        self._kept: dict[tuple[str, int], tuple[Expression, int]] = {}
+        symbols = sorted(syntax.operators, key=len, reverse=True)
+        self._operator = re.compile(
+            rf"[ \t]*({'|'.join(map(operator_pattern, symbols))})", re.IGNORECASE
+        )
+        self._number = re.compile(NUMBER)
+        self._variable = re.compile(syntax.variable, re.IGNORECASE)
+        self._name = re.compile(r"[A-Z_][A-Z_0-9]*", re.IGNORECASE)
+
+    def read(self, text: str, start: int) -> tuple[Expression, int]:
+        """Read the longest expression that begins at ``start``; return it with its end.
+
+        Raises:
+            ExpressionError: There is none, or it is malformed.
+        """
+        read = self._kept.get((text, start))
+        if read is None:
+            reading = _Reading(self._syntax, self, text, start)
+            tree = reading.operation(0, 0)
+            read = Expression(text[start : reading.at].strip(), tree), reading.at
+            if len(self._kept) < _MOST_KEPT:
+                self._kept[text, start] = read
+        return read
+
+    def read_operand(self, text: str, start: int) -> tuple[Expression, int]:
+        """As ``read``, but up to the first operator only, such as the index of ``P[5] += 1``."""
+        reading = _Reading(self._syntax, self, text, start)
+        tree = reading.operand(0)
+        return Expression(text[start : reading.at].strip(), tree), reading.at
+
+    def read_list(self, text: str, start: int) -> tuple[list[Expression], int]:
+        """Read expressions separated by commas; return them with the end of the last."""
+        expressions = []
+        while True:
+            expression, end = self.read(text, start)
+            expressions.append(expression)
+            rest = text[end:].lstrip()
+            if not rest.startswith(","):
+                return expressions, end
+            start = len(text) - len(rest) + 1
+
+    def operator_at(self, text: str, at: int) -> re.Match[str] | None:
+        """The operator that comes next, or None."""
+        return self._operator.match(text, at)
+
+    def number_at(self, text: str, at: int) -> re.Match[str] | None:
+        """The number that comes next, or None."""
+        return self._number.match(text, at)
+
+    def variable_at(self, text: str, at: int) -> re.Match[str] | None:
+        """The variable that comes next, or None."""
+        return self._variable.match(text, at)
+
+    def name_at(self, text: str, at: int) -> re.Match[str] | None:
+        """The name that comes next, or None."""
+        return self._name.match(text, at)
+
+
+def operator_pattern(symbol: str) -> str:
+    """Regular expression of an operator; two slashes begin a comment."""
+    if symbol == "/":
+        return "/(?!/)"
+    return re.escape(symbol) + (r"\b" if symbol[-1].isalpha() else "")
+
+
+class _Reading:
+    """One expression being read: the text and the place reached."""
+
+    def __init__(
+        self, syntax: ExpressionSyntax, reader: ExpressionReader, text: str, at: int
+    ) -> None:
+        self._syntax = syntax
+        self._reader = reader
+        self._text = text
+        self._operations = 0
+        self.at = at
+
+    def operation(self, lowest: int, depth: int) -> Tree:
+        """Operands joined by operators that bind at least as tightly as ``lowest``."""
+        if depth > _DEEPEST:
+            self._fail("expression-depth", f"more than {_DEEPEST} brackets within brackets")
+        left = self.operand(depth)
+        while (match := self._reader.operator_at(self._text, self.at)) is not None:
+            operator = self._syntax.operators[match[1].upper()]
+            if operator.precedence < lowest:
+                break
+            self._count()
+            self.at = match.end()
+            right = self.operation(operator.precedence + 1, depth + 1)
+            left = Computed(match[1].upper(), operator.compute, (left, right))
+        return left
+
+    def operand(self, depth: int) -> Tree:
+        """A value without operators behind it."""
+        self._skip_blanks()
+        opening, closing = self._syntax.brackets
+        character = self._text[self.at : self.at + 1]
+        if character in ("+", "-") and character:
+            self._count()
+            self.at += 1
+            if depth > _DEEPEST:
+                self._fail("expression-depth", f"more than {_DEEPEST} signs in a row")
+            inner = self.operand(depth + 1)
+            return inner if character == "+" else Negative(inner)
+        if character == opening:
+            self.at += 1
+            inner = self.operation(0, depth + 1)
+            self._expect(closing)
+            return inner
+        if (match := self._reader.number_at(self._text, self.at)) is not None:
+            self.at = match.end()
+            return Number(self._number(match[0]))
+        return self._named(depth)
+
+    def _named(self, depth: int) -> Tree:
+        opening = self._syntax.brackets[0]
+        if (match := self._reader.variable_at(self._text, self.at)) is not None:
+            self.at = match.end()
+            return Variable(match[0].upper())
+        match = self._reader.name_at(self._text, self.at)
+        if match is None:
+            foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
+            hint = f"brackets are {opening} {self._syntax.brackets[1]}" if foreign else None
+            self._fail("expression", "a value is missing here", hint)
+        name, after = match[0].upper(), match.end()
+        if name in self._syntax.indexed and self._text[after : after + 1] == opening:
+            (index,) = self._arguments(name, after, 1, depth)
+            return NumberedVariable(name, index)
+        if name in self._syntax.existence:
+            (value,) = self._arguments(name, after, 1, depth)
+            return Exists(value)
+        if name in self._syntax.prefixes:
+            self._count()
+            self.at = after
+            return Prefixed(self._syntax.prefixes[name], self.operand(depth + 1))
+        if name in self._syntax.constants:
+            self.at = after
+            return Number(self._syntax.constants[name])
+        if name not in self._syntax.functions:
+            known = ", ".join(sorted(self._syntax.functions))
+            self._fail("unknown-function", f"'{name}' is no function here", f"functions: {known}")
+        function = self._syntax.functions[name]
+        arguments = self._arguments(name, after, function.arguments, depth)
+        return Computed(name, function.compute, tuple(arguments))
+
+    def _arguments(self, name: str, at: int, count: int, depth: int) -> list[Tree]:
+        self._count()
+        self.at = at
+        opening, closing = self._syntax.brackets
+        self._skip_blanks()
+        self._expect(opening)
+        arguments = [self.operation(0, depth + 1)]
+        self._skip_blanks()
+        while self._text[self.at : self.at + 1] == ",":
+            self.at += 1
+            arguments.append(self.operation(0, depth + 1))
+            self._skip_blanks()
+        if len(arguments) != count:
+            self._fail("expression", f"{name} takes {count} values, not {len(arguments)}")
+        self._expect(closing)
+        return arguments
+
+    def _number(self, text: str) -> float:
+        try:
+            return checked(float(text))
+        except ExpressionError as error:
+            self._fail(error.code, str(error))
+
+    def _expect(self, character: str) -> None:
+        self._skip_blanks()
+        if self._text[self.at : self.at + 1] != character:
+            self._fail("expression", f"'{character}' is missing here")
+        self.at += 1
+
+    def _skip_blanks(self) -> None:
+        while self._text[self.at : self.at + 1] in (" ", "\t") and self.at < len(self._text):
+            self.at += 1
+
+    def _count(self) -> None:
+        self._operations += 1
+        if self._operations > _LONGEST:
+            self._fail("expression-depth", f"more than {_LONGEST} operations in an expression")
+
+    def _fail(self, code: str, message: str, hint: str | None = None) -> NoReturn:
+        raise ExpressionError(code, message, self.at, hint)

@@ -1,0 +1,240 @@
+"""Values that a program computes: numbers, variables, operators, functions.
+
+A dialect declares its operators, its functions and how its variables look; reading and computing
+are the same for all.
+"""
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol
+
+from twin.nc.text import arithmetic
+
+NUMBER = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+"""An unsigned number, for regular expressions."""
+
+LARGEST_NUMBER = 1e12
+"""Largest magnitude of a value: beyond it neither a coordinate nor a count makes sense."""
+
+
+class ExpressionError(Exception):
+    """An expression cannot be read or computed.
+
+    Attributes:
+        code: Code of the diagnostic.
+        column: Where in the text, from 0; None when computing.
+        hint: What would have worked, or None.
+    """
+
+    def __init__(
+        self, code: str, message: str, column: int | None = None, hint: str | None = None
+    ) -> None:
+        super().__init__(message)
+        self.code = code
+        self.column = column
+        self.hint = hint
+
+    @classmethod
+    def undefined(cls, what: str, values: Sequence[float]) -> "ExpressionError":
+        """An operator or a function has no value there, such as ``1 / 0``."""
+        given = " and ".join(f"{value:g}" for value in values)
+        return cls("undefined-value", f"{what} is undefined for {given}")
+
+
+class Scope(Protocol):
+    """Where an expression finds its variables."""
+
+    def read_variable(self, name: str, index: float | None) -> float:
+        """Value of a variable; ``index`` is the computed one of ``P[...]``, else None.
+
+        Raises:
+            ExpressionError: There is no such variable, or it has no value.
+        """
+        ...
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Expression:
+    """A computed value.
+
+    Attributes:
+        text: As the program writes it.
+        evaluate: Computes it.
+    """
+
+    text: str
+    evaluate: "Tree"
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Operator:
+    """An operator between two values.
+
+    Attributes:
+        precedence: Higher binds tighter.
+        compute: What it does.
+    """
+
+    precedence: int
+    compute: Callable[[float, float], float]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class FunctionOf:
+    """A function of expressions.
+
+    Attributes:
+        compute: What it does.
+        arguments: How many it takes.
+    """
+
+    compute: Callable[..., float]
+    arguments: int = 1
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ExpressionSyntax:
+    """How a dialect writes expressions.
+
+    Attributes:
+        operators: By symbol or word.
+        functions: By name; a function's arguments stand in ``brackets``.
+        constants: By name.
+        variable: Regular expression of a variable's name.
+        indexed: Names that may be followed by an index in brackets, such as ``P``.
+        brackets: Opening and closing character.
+        existence: Functions that tell whether their value is defined.
+        prefixes: Operators before one value, besides + and -.
+    """
+
+    operators: Mapping[str, Operator]
+    functions: Mapping[str, FunctionOf]
+    constants: Mapping[str, float]
+    variable: str
+    brackets: str
+    indexed: tuple[str, ...] = ()
+    existence: tuple[str, ...] = ()
+    prefixes: Mapping[str, Callable[[float], float]] = dataclasses.field(default_factory=dict)
+
+
+def checked(value: float) -> float:
+    """Refuse a number that no coordinate, count or feed could be.
+
+    Raises:
+        ExpressionError: It is not finite or too large.
+    """
+    if not abs(value) <= LARGEST_NUMBER:
+        raise ExpressionError("number-range", f"the value is not within ±{LARGEST_NUMBER:g}")
+    return value
+
+
+ARITHMETIC: Mapping[str, Operator] = {
+    "+": Operator(5, arithmetic.add),
+    "-": Operator(5, arithmetic.subtract),
+    "*": Operator(6, arithmetic.multiply),
+    "/": Operator(6, arithmetic.divide),
+    "MOD": Operator(6, math.fmod),
+}
+"""Operators that every dialect with expressions has."""
+
+COMPARISON: Mapping[str, Operator] = {
+    "<": Operator(4, arithmetic.less),
+    ">": Operator(4, arithmetic.greater),
+    "<=": Operator(4, arithmetic.at_most),
+    ">=": Operator(4, arithmetic.at_least),
+}
+"""Comparisons that every dialect with expressions has."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Number:
+    """A plain number or a constant."""
+
+    value: float
+
+    def __call__(self, _scope: Scope) -> float:
+        """Its value."""
+        return self.value
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Variable:
+    """A variable by its name."""
+
+    name: str
+
+    def __call__(self, scope: Scope) -> float:
+        """Its value; raises ``ExpressionError`` where it has none."""
+        return scope.read_variable(self.name, None)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class NumberedVariable:
+    """A variable by a name and a computed number, such as ``P[P1 + 2]``."""
+
+    name: str
+    index: "Tree"
+
+    def __call__(self, scope: Scope) -> float:
+        """Its value; raises ``ExpressionError`` where it has none."""
+        return scope.read_variable(self.name, self.index(scope))
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Negative:
+    """A value with a minus before it."""
+
+    operand: "Tree"
+
+    def __call__(self, scope: Scope) -> float:
+        """Its value."""
+        return -self.operand(scope)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Prefixed:
+    """A value with a word before it, such as NOT."""
+
+    compute: Callable[[float], float]
+    operand: "Tree"
+
+    def __call__(self, scope: Scope) -> float:
+        """Its value."""
+        return self.compute(self.operand(scope))
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Computed:
+    """An operator or a function, called ``what`` in errors, with its operands."""
+
+    what: str
+    compute: Callable[..., float]
+    operands: tuple["Tree", ...]
+
+    def __call__(self, scope: Scope) -> float:
+        """Its value; raises ``ExpressionError`` where it is undefined or too large."""
+        values = [each(scope) for each in self.operands]
+        try:
+            result = self.compute(*values)
+        except (ArithmeticError, ValueError) as error:
+            raise ExpressionError.undefined(self.what, values) from error
+        return checked(result)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Exists:
+    """Whether a value is defined."""
+
+    operand: "Tree"
+
+    def __call__(self, scope: Scope) -> float:
+        """1 or 0."""
+        try:
+            self.operand(scope)
+        except ExpressionError:
+            return 0.0
+        return 1.0
+
+
+Tree = Number | Variable | NumberedVariable | Negative | Prefixed | Computed | Exists

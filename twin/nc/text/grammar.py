@@ -1,0 +1,61 @@
+"""A dialect's syntax as compiled patterns."""
+
+import re
+
+from twin.nc.control.dialect import Dialect
+from twin.nc.text.expression_reader import ExpressionReader, operator_pattern
+from twin.nc.text.expressions import NUMBER, ExpressionSyntax
+
+
+class Grammar:
+    """What reading a line needs, made once per dialect and program.
+
+    Attributes:
+        dialect: Whose syntax it is.
+        syntax: Its declaration.
+        word: An address with a plain number and, where the dialect has it, the incremental suffix.
+        address: An address alone.
+        suffix: The incremental suffix alone.
+        statement: The keyword of a statement, or None where the dialect has none.
+        reader: Reads computed values, or None.
+        unfinished: The end of a text that a bracket must follow as a value, or None.
+    """
+
+    def __init__(self, dialect: Dialect) -> None:
+        syntax = dialect.syntax
+        self.dialect = dialect
+        self.syntax = syntax
+        self.reader = ExpressionReader(syntax.expressions) if syntax.expressions else None
+        continues = "[0-9.]"
+        if syntax.expressions is not None:
+            operators = sorted(syntax.expressions.operators, key=len, reverse=True)
+            continues += rf"|[ \t]*(?:=|{'|'.join(map(operator_pattern, operators))})"
+        self.unfinished = _unfinished(syntax.expressions) if syntax.expressions else None
+        suffix = r"(I(?![ \t]*[-+.0-9=\[P])|)" if syntax.incremental_suffix else "()"
+        self.word = _compiled(
+            rf"[ \t]*({syntax.address})[ \t]*([+-]?{NUMBER})(?!{continues}){suffix}"
+        )
+        self.address = _compiled(rf"[ \t]*({syntax.address})[ \t]*")
+        self.suffix = _compiled(suffix)
+        self.statement = (
+            _compiled(rf"[ \t]*({syntax.statement})") if syntax.statement is not None else None
+        )
+
+    def name(self, address: str) -> str:
+        """An address in upper case, without the = of ``X1=``, as the dialect calls it."""
+        name = address.upper()
+        if len(name) > 1:
+            name = name.rstrip("= \t")
+            name = self.syntax.aliases.get(name, name)
+        return name
+
+
+def _unfinished(expressions: ExpressionSyntax) -> re.Pattern[str]:
+    """Operators, names of functions and prefixes, and what stands before a value."""
+    names = "|".join([*expressions.functions, *expressions.prefixes])
+    operators = "|".join(map(operator_pattern, expressions.operators))
+    return _compiled(rf"(?:[=,]|{operators}|\b(?:{names}))[ \t]*\Z")
+
+
+def _compiled(pattern: str) -> re.Pattern[str]:
+    return re.compile(pattern, re.IGNORECASE)

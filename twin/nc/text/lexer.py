@@ -1,0 +1,61 @@
+"""From a line of text to blocks of words, by a dialect's syntax."""
+
+from twin.nc.control.dialect import Dialect
+from twin.nc.text.blocks import Block
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.expression_reader import ExpressionReader
+from twin.nc.text.grammar import Grammar
+from twin.nc.text.line_reader import LineReader
+from twin.nc.text.reporter import Reporter
+
+LONGEST_LINE = 65_536
+"""Characters of a line: far beyond any control's block, so that one line cannot eat the memory."""
+
+
+class Lexer:
+    """Reads the lines of programs in one dialect."""
+
+    def __init__(self, dialect: Dialect, report: Reporter) -> None:
+        self._grammar = Grammar(dialect)
+        self._report = report
+
+    @property
+    def expressions(self) -> ExpressionReader:
+        """Reads this dialect's expressions."""
+        assert self._grammar.reader is not None
+        return self._grammar.reader
+
+    def blocks(self, line: str, number: int, previous: str = "") -> tuple[Block, ...]:
+        """Read a line; a line without words gives no block.
+
+        Args:
+            line: Its text.
+            number: Its number, from 1.
+            previous: Text of the line before.
+
+        Raises:
+            ProgramError: It cannot be read.
+        """
+        if not line or line.isspace():
+            return ()
+        self._report.line = number
+        self._check(line)
+        try:
+            return LineReader(self._grammar, self._report, line, number).blocks()
+        except ProgramError:
+            excuse = self._grammar.syntax.excused(line, previous)
+            if excuse is None:
+                raise
+        self._report.warn(excuse, "this line is no block and is left out", 0, len(line))
+        return ()
+
+    def _check(self, line: str) -> None:
+        if len(line) > LONGEST_LINE:
+            message = f"the line has {len(line)} characters, more than {LONGEST_LINE}"
+            self._report.fail("line-too-long", message, LONGEST_LINE)
+        if not line.isprintable():
+            for column, character in enumerate(line):
+                if ord(character) < 32 and character not in "\t\f\v":
+                    message = f"the line holds the control character {ord(character)}"
+                    hint = None if ord(character) else "if the file is UTF-16, save it as UTF-8"
+                    self._report.fail("control-character", message, column, hint=hint)

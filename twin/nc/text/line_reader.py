@@ -1,0 +1,286 @@
+"""One line being read: its words, labels, comments and statements, from left to right."""
+
+import re
+from typing import NoReturn
+
+from twin.nc.canonical import NO_BLOCK_NUMBER
+from twin.nc.text.blocks import Block, Statement, Word
+from twin.nc.text.expressions import LARGEST_NUMBER, ExpressionError
+from twin.nc.text.grammar import Grammar
+from twin.nc.text.reporter import Reporter
+
+LARGEST_LABEL = 4_294_967_295
+"""Largest N number (32 bits, as the Fagor manual states)."""
+
+_STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
+_GARBLED = re.compile(r"[-+.0-9]{1,20}")
+"""What looks like a number and was not read as one."""
+_NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
+_NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
+_BLANKS = re.compile(r"[ \t]*")
+_PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t,;:'-]+[^\W\d_]+)+[ \t]*[.!?:]?[ \t]*(?=$|N[ \t]*[0-9])")
+"""At least two words of letters alone, up to the end of the line or the next block."""
+_NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re.IGNORECASE)
+"""Words of a post-processor that had no number to write: no prose."""
+_NAME = re.compile(r"[^\W\d_]\w+(?![\w(\[])")
+"""Letters and digits without a bracket behind, as neither a value nor a function is written."""
+
+_LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
+"""Cyrillic letters that look like Latin ones: a keyboard left in the wrong layout."""
+
+
+class LineReader:
+    """Reads one line."""
+
+    def __init__(self, grammar: Grammar, report: Reporter, line: str, number: int) -> None:
+        self._grammar = grammar
+        self._syntax = grammar.syntax
+        self._report = report
+        self._line = line
+        self._line_number = number
+        self._at = 0
+        self._done: list[Block] = []
+        self._words: list[Word] = []
+        self._number = NO_BLOCK_NUMBER
+        self._name = ""
+        self._skippable = False
+
+    def blocks(self) -> tuple[Block, ...]:
+        """The line's blocks.
+
+        Raises:
+            ProgramError: It cannot be read.
+        """
+        line = self._line
+        match_word = self._grammar.word.match
+        has_statements = self._grammar.statement is not None
+        name_of = self._grammar.name
+        words = self._words
+        while True:
+            if has_statements and not words and self._statement():
+                words = self._words
+                continue
+            match = match_word(line, self._at)
+            if match is None:
+                if not self._something_else():
+                    break
+                continue
+            address, number, suffix = match.groups()
+            begin, self._at = match.start(1), match.end()
+            if address in ("N", "n"):
+                self._label(number, begin)
+                words = self._words
+                continue
+            value = float(number)
+            if not abs(value) <= LARGEST_NUMBER:
+                self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
+            words.append(Word(name_of(address), value, begin, self._at - begin, bool(suffix)))
+        self._close()
+        return tuple(self._done)
+
+    def _something_else(self) -> bool:
+        """Read what is no plain word and no statement; False at the end of the line."""
+        blanks = _BLANKS.match(self._line, self._at)
+        assert blanks is not None
+        self._at = blanks.end()
+        if self._at == len(self._line):
+            return False
+        for comment in self._syntax.comments:
+            if self._line.startswith(comment.opening, self._at) and (
+                not comment.whole_line or not self._line[: self._at].strip()
+            ):
+                return self._comment(comment.opening, comment.closing)
+        if self._block_skip() or self._named_label():
+            return True
+        if not self._computed_word():
+            self._refuse(self._at)
+        return True
+
+    def _prose(self) -> bool:
+        """Leave out prose behind the words of a block, with a warning."""
+        match = _PROSE.match(self._line, self._at) if self._words else None
+        if match is None or not self._syntax.trailing_prose or _NO_NUMBER.search(match[0]):
+            return False
+        self._report.line = self._line_number
+        message = "this is no part of the block and is left out"
+        self._report.warn(
+            "trailing-prose", message, self._at, len(match[0]), "write it in brackets: ( ... )"
+        )
+        self._at = match.end()
+        return True
+
+    def _comment(self, opening: str, closing: str) -> bool:
+        """Pass over a comment; False where it runs to the end of the line."""
+        if not closing:
+            return False
+        end = self._line.find(closing, self._at + len(opening))
+        if end < 0:
+            message = f"the comment is not closed by '{closing}'"
+            self._fail("open-comment", message, self._at, hint="close it on its own line")
+        self._at = end + len(closing)
+        return True
+
+    def _block_skip(self) -> bool:
+        if self._line[self._at] != "/" or self._words or self._number != NO_BLOCK_NUMBER:
+            return False
+        self._skippable = True
+        self._at += 1
+        return True
+
+    def _named_label(self) -> bool:
+        if not self._syntax.named_labels or self._words or self._name:
+            return False
+        match = _NAMED_LABEL.match(self._line, self._at)
+        if match is None:
+            return False
+        self._name = match[1].upper()
+        self._at = match.end()
+        return True
+
+    def _statement(self) -> bool:
+        pattern = self._grammar.statement
+        match = pattern.match(self._line, self._at) if pattern is not None else None
+        if match is None:
+            return False
+        text = self._statement_text(match.end())
+        statement = Statement(match[1].upper(), text, match.start(1), match.end())
+        self._finish_block(statement)
+        self._start_block(NO_BLOCK_NUMBER)
+        self._at = match.end() + len(text)
+        return True
+
+    def _statement_text(self, start: int) -> str:
+        """What belongs to a statement: up to a comment that ends the line, or the next block."""
+        end = len(self._line)
+        for comment in self._syntax.comments:
+            if not comment.closing and (found := self._line.find(comment.opening, start)) >= 0:
+                end = min(end, found)
+        if self._syntax.several_blocks and (label := _NEXT_LABEL.search(self._line, start, end)):
+            end = label.start()
+        text = self._line[start:end]
+        for comment in self._syntax.comments:
+            if comment.closing and text.rstrip().endswith(comment.closing):
+                opening = text.rfind(comment.opening)
+                if (
+                    opening > 0
+                    and text[opening - 1] in " \t"
+                    and not self._wants_value(text[:opening], comment.opening)
+                ):
+                    return text[:opening] + " " * (len(text) - opening)
+        return text
+
+    def _wants_value(self, text: str, opening: str) -> bool:
+        """Whether a bracket behind a text is a value, not a comment, where both look alike."""
+        expressions, unfinished = self._syntax.expressions, self._grammar.unfinished
+        if expressions is None or unfinished is None or expressions.brackets[0] != opening:
+            return False
+        return unfinished.search(text) is not None
+
+    def _computed_word(self) -> bool:
+        reader = self._grammar.reader
+        match = self._grammar.address.match(self._line, self._at)
+        if reader is None or match is None:
+            return False
+        begin = match.start(1)
+        try:
+            expression, end = reader.read(self._line, match.end())
+        except ExpressionError as error:
+            if self._prose():
+                return True
+            self._refuse_value(begin, error)
+        name = self._grammar.name(match[1])
+        if name == "N":
+            self._fail("label", "a block number must be a plain number", begin)
+        suffix = self._grammar.suffix.match(self._line, end)
+        assert suffix is not None
+        self._at = suffix.end()
+        self._words.append(Word(name, expression, begin, self._at - begin, bool(suffix[1])))
+        return True
+
+    def _refuse_value(self, begin: int, error: ExpressionError) -> NoReturn:
+        name = _NAME.match(self._line, begin)
+        if name is not None and error.code == "unknown-function":
+            message = f"'{name[0]}' is no word of {self._grammar.dialect.name}"
+            hint = f"a value is a number, a variable or a function; {self._comments()}"
+            self._fail("unknown-word", message, begin, width=len(name[0]), hint=hint)
+        column = begin if error.column is None else min(error.column, len(self._line) - 1)
+        self._fail(error.code, str(error), column, hint=error.hint)
+
+    def _label(self, number: str, begin: int) -> None:
+        value = float(number)
+        if not (value <= LARGEST_LABEL and value == int(value) and value >= 0.0):
+            self._fail("label", f"N{number} is no block number", begin)
+        if self._words or self._number != NO_BLOCK_NUMBER:
+            if not self._syntax.several_blocks:
+                message = "N must begin its block"
+                self._fail("label", message, begin, hint="write the blocks on lines of their own")
+            self._finish_block()
+        self._start_block(int(value))
+
+    def _start_block(self, number: int) -> None:
+        self._number = number
+        self._name = ""
+        self._words = []
+
+    def _finish_block(self, statement: Statement | None = None) -> None:
+        self._done.append(
+            Block(
+                self._line_number,
+                len(self._done),
+                self._number,
+                tuple(self._words),
+                statement,
+                self._skippable,
+                self._name,
+            )
+        )
+
+    def _close(self) -> None:
+        if self._words or self._number != NO_BLOCK_NUMBER or self._name:
+            self._finish_block()
+
+    def _refuse(self, at: int) -> NoReturn:
+        character = self._line[at]
+        latin = character.upper().translate(_LOOKALIKES)
+        address = self._grammar.address.match(self._line, at)
+        if "\u0400" <= character <= "\u04ff":
+            message = f"'{character}' is a Cyrillic letter"
+            hint = f"write the Latin {latin}" if latin != character.upper() else self._comments()
+            self._fail("foreign-letter", message, at, hint=hint)
+        statement = _STATEMENT.match(self._line, at)
+        if statement is not None and self._grammar.statement is not None:
+            known = ", ".join(self._grammar.dialect.statements)
+            message = f"'{statement[0]}' is no statement of {self._grammar.dialect.name}"
+            self._fail(
+                "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"
+            )
+        if address is not None:
+            self._refuse_missing_value(address)
+        message = f"'{character}' begins no word of {self._grammar.dialect.name}"
+        self._fail("unreadable", message, at, hint=self._hint_for(character))
+
+    def _refuse_missing_value(self, address: re.Match[str]) -> NoReturn:
+        name, end = address[1], address.end()
+        garbled = _GARBLED.match(self._line, end)
+        if garbled is not None:
+            message = f"'{garbled[0]}' is no number"
+            self._fail("missing-value", message, end, width=len(garbled[0]))
+        slip = "O" in (name.upper(), self._line[end : end + 1].upper())
+        hint = "the letter O is no 0" if slip else "write a number after it"
+        self._fail("missing-value", f"'{name}' has no value", address.start(1), hint=hint)
+
+    def _hint_for(self, character: str) -> str | None:
+        if character == ",":
+            return "decimals begin with a point"
+        return self._comments() if character in ";$\"('/" else None
+
+    def _comments(self) -> str:
+        comments = [each for each in self._syntax.comments if not each.whole_line]
+        shown = " or ".join(f"{each.opening} {each.closing}".strip() for each in comments)
+        return f"comments are written {shown}"
+
+    def _fail(
+        self, code: str, message: str, column: int, *, width: int = 1, hint: str | None = None
+    ) -> NoReturn:
+        self._report.line = self._line_number
+        self._report.fail(code, message, column, width, hint)

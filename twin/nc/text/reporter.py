@@ -1,0 +1,93 @@
+"""Where diagnostics are made: the line in question, and whether warnings count as errors."""
+
+from typing import NoReturn
+
+from twin.nc.text.diagnostics import Diagnostic, ProgramError, Severity
+from twin.nc.text.source import Source
+
+_LONGEST_TEXT = 800
+"""Characters of a message or a hint: a program may hold names of any length."""
+_MOST_WARNINGS = 1000
+"""Warnings that are kept: a program that earns more has made its point."""
+
+
+class Reporter:
+    """Makes the diagnostics of one program.
+
+    Attributes:
+        line: Source line that is being read or run, from 1.
+        warnings: The warnings so far.
+    """
+
+    def __init__(self, source: Source, *, strict: bool) -> None:
+        self._source = source
+        self._strict = strict
+        self._said: set[str] = set()
+        self.line = 0
+        self.warnings: list[Diagnostic] = []
+
+    def fail(
+        self, code: str, message: str, column: int = 0, width: int = 1, hint: str | None = None
+    ) -> NoReturn:
+        """Refuse the program.
+
+        Args:
+            code: Stable name of the finding.
+            message: What is wrong.
+            column: First character in question, from 0.
+            width: How many characters.
+            hint: What would have worked.
+
+        Raises:
+            ProgramError: Always.
+        """
+        raise ProgramError(self._diagnostic("error", code, message, column, width, hint))
+
+    def warn(
+        self, code: str, message: str, column: int = 0, width: int = 1, hint: str | None = None
+    ) -> None:
+        """Warn, or refuse when warnings count as errors; arguments as for ``fail``."""
+        if self._strict:
+            self.fail(code, message, column, width, hint)
+        if len(self.warnings) < _MOST_WARNINGS:
+            self.warnings.append(self._diagnostic("warning", code, message, column, width, hint))
+
+    def warn_once(
+        self, code: str, message: str, column: int = 0, width: int = 1, hint: str | None = None
+    ) -> None:
+        """Warn of something that holds for the whole program, where it is met first."""
+        if code not in self._said:
+            self._said.add(code)
+            self.warn(code, message, column, width, hint)
+
+    def has_said(self, code: str) -> bool:
+        """Whether ``warn_once`` has given this warning."""
+        return code in self._said
+
+    def _diagnostic(
+        self,
+        severity: Severity,
+        code: str,
+        message: str,
+        column: int,
+        width: int,
+        hint: str | None,
+    ) -> Diagnostic:
+        lines = self._source.lines
+        text = lines[self.line - 1] if 0 < self.line <= len(lines) else ""
+        file, line = self._source.place(max(1, self.line))
+        return Diagnostic(
+            severity=severity,
+            code=code,
+            message=_shortened(message),
+            file=file,
+            line=line,
+            column=column + 1,
+            width=width,
+            source=text,
+            hint=None if hint is None else _shortened(hint),
+        )
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _LONGEST_TEXT else f"{text[:_LONGEST_TEXT]}..."

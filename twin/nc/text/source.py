@@ -1,0 +1,111 @@
+"""The bytes of a program, as lines of text with the name that the user gave them."""
+
+import dataclasses
+import hashlib
+import itertools
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Protocol
+
+from twin.errors import UsageError
+from twin.nc.text.lines import PAGE, Lines
+
+_SURROGATES = "surrogatepass"
+"""Text that is made on the fly may hold what no file can."""
+
+
+class HasCodePage(Protocol):
+    """What reading needs to know of a dialect."""
+
+    @property
+    def code_page(self) -> str:
+        """Legacy code page of its programs, such as ``cp1251``."""
+        ...
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Source:
+    """A program that was read.
+
+    Attributes:
+        name: The file as the user named it.
+        lines: Its lines without their ends.
+        sha256: Digest of its bytes, without those of further files.
+        parts: Further files whose lines follow: number of the first line, from 1, and name.
+    """
+
+    name: str
+    lines: Lines
+    sha256: str
+    parts: tuple[tuple[int, str], ...] = ()
+
+    def place(self, line: int) -> tuple[str, int]:
+        """The file that a line stands in, and its number there, from 1."""
+        name, first = self.name, 1
+        for begin, part in self.parts:
+            if line >= begin:
+                name, first = part, begin
+        return name, line - first + 1
+
+    def followed_by(self, line: str, other: "Source") -> "Source":
+        """The program with a line of text and another file behind it."""
+
+        def texts() -> Iterator[bytes]:
+            last = b"\n"
+            for page in self.lines.pages():
+                yield page.text
+                last = page.text
+            if not last.endswith((b"\n", b"\r")):
+                yield b"\n"
+            yield f"{line}\n".encode()
+
+        first = len(Lines(texts())) + 1
+        lines = Lines(itertools.chain(texts(), (page.text for page in other.lines.pages())))
+        return dataclasses.replace(self, lines=lines, parts=(*self.parts, (first, other.name)))
+
+    @property
+    def text(self) -> str:
+        """All lines, ended by newlines."""
+        text = self.lines.text.decode("utf-8", _SURROGATES)
+        return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_source(path: Path, dialect: HasCodePage | None = None) -> Source:
+    """Read a program as UTF-8, else in the dialect's legacy code page, else byte by byte.
+
+    Args:
+        path: The file.
+        dialect: Whose legacy code page it may be in; None when that is not known.
+
+    Raises:
+        UsageError: The file cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            return _source_of(iter(lambda: file.read(PAGE), b""), str(path), dialect)
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}") from error
+
+
+def source_from_bytes(data: bytes, name: str, dialect: HasCodePage | None = None) -> Source:
+    """Make a source of bytes that need not come from a file; arguments as in ``read_source``."""
+    return _source_of([data], name, dialect)
+
+
+def source_from_text(text: str, name: str = "program") -> Source:
+    """Make a source of text, for tests and programs that are made on the fly."""
+    data = text.encode("utf-8", _SURROGATES)
+    return Source(name, Lines([data]), hashlib.sha256(data).hexdigest())
+
+
+def _source_of(pieces: Iterable[bytes], name: str, dialect: HasCodePage | None) -> Source:
+    digest = hashlib.sha256()
+
+    def seen() -> Iterator[bytes]:
+        for piece in pieces:
+            digest.update(piece)
+            yield piece
+
+    encodings = ("utf-8",) if dialect is None else ("utf-8", dialect.code_page)
+    lines = Lines(seen(), encodings)
+    return Source(name, lines, digest.hexdigest())

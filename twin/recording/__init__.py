@@ -1,0 +1,1 @@
+"""The recording: its form, its writer, its reader."""

@@ -1,0 +1,39 @@
+"""What a run came to: what result.json, the report and the exit code are made of."""
+
+import dataclasses
+
+from twin.compare.figures import Figures
+from twin.compare.verdict import Verdict
+from twin.cutting.cut import CutResult
+from twin.machine.alarms import Alarm, NearMiss
+from twin.nc.canonical import FloatArray
+from twin.nc.text.diagnostics import Diagnostic
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What a run came to.
+
+    Attributes:
+        verdict: Pass, fail or alarm, with the reasons.
+        figures: Following and contour error.
+        cut: What the cut told; None without a stock.
+        alarms: Alarms of the machine, in order.
+        near_miss: The closest that the tool's side and the part's came, below the machine's limit.
+        warnings: The interpreter's.
+        samples: How many samples were recorded, settling included.
+        duration_s: Machine time of the program, settling not counted [s].
+        final_commanded: Program coordinates at the end, shape (k,) [mm or deg].
+        final_simulated: The same of the simulated joints.
+    """
+
+    verdict: Verdict
+    figures: Figures
+    cut: CutResult | None
+    alarms: tuple[Alarm, ...]
+    near_miss: NearMiss | None
+    warnings: tuple[Diagnostic, ...]
+    samples: int
+    duration_s: float
+    final_commanded: FloatArray
+    final_simulated: FloatArray

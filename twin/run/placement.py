@@ -1,0 +1,76 @@
+"""Where program zero lies in the machine, and whether the stock fits there."""
+
+import numpy as np
+
+from twin.errors import ConfigError
+from twin.job.job_file import JobFile
+from twin.machine.config import Machine
+from twin.nc.canonical import FloatArray
+
+WORK_HOLDING_HEIGHT = 40.0
+"""Height of the jaws or parallels between the rotary table and the stock [mm]."""
+
+
+def part_zero(job: JobFile, machine: Machine, spindle_over_table: float) -> FloatArray:
+    """Machine coordinates of program zero.
+
+    An axis that the job's ``part_zero`` names is taken at its word. Otherwise program zero lies on
+    the table's centre line, at the height of the top face of the stock on its work holding;
+    without a stock in the middle of the Z travel.
+
+    Args:
+        job: The job file.
+        machine: The machine.
+        spindle_over_table: Height of the spindle nose over the table at machine Z 0 [mm].
+
+    Returns:
+        Shape (k,) [mm or deg].
+
+    Raises:
+        ConfigError: An axis does not exist, or the stock would lie below the table.
+    """
+    zero = np.zeros(len(machine.axes))
+    zero[:2] = machine.part_frame.center
+    zero[2] = _default_height(job, machine, spindle_over_table)
+    _write_axes(zero, job.part_zero, machine, "part_zero")
+    _require_stock_above_table(job, float(zero[2]), spindle_over_table)
+    return zero
+
+
+def start_position(job: JobFile, machine: Machine) -> FloatArray:
+    """Where the axes stand when the program starts, program coordinates, shape (k,) [mm or deg].
+
+    Raises:
+        ConfigError: An axis does not exist.
+    """
+    start = np.zeros(len(machine.axes))
+    _write_axes(start, job.start, machine, "start")
+    return start
+
+
+def _write_axes(row: FloatArray, values: dict[str, float], machine: Machine, key: str) -> None:
+    for name, value in values.items():
+        if name not in machine.axes.names:
+            known = ", ".join(machine.axes.names)
+            raise ConfigError(f"job key '{key}.{name}': {machine.file.name} has the axes {known}")
+        row[machine.axes.index(name)] = value
+
+
+def _default_height(job: JobFile, machine: Machine, spindle_over_table: float) -> float:
+    if job.stock is not None:
+        top = WORK_HOLDING_HEIGHT + job.stock.extent[2] - job.stock.position[2]
+        return top + job.tools[0].length - spindle_over_table
+    travel = machine.axis("Z").travel
+    return 0.0 if travel is None else (travel[0] + travel[1]) / 2.0
+
+
+def _require_stock_above_table(job: JobFile, zero_z: float, spindle_over_table: float) -> None:
+    if job.stock is None:
+        return
+    program_zero_over_table = spindle_over_table + zero_z - job.tools[0].length
+    bottom = program_zero_over_table + job.stock.position[2] - job.stock.extent[2]
+    if bottom < 0.0:
+        raise ConfigError(
+            f"the stock would reach {-bottom:.3f} mm below the table: raise part_zero.Z "
+            f"to {zero_z - bottom:.3f} or more, or make the stock less high"
+        )

@@ -1,0 +1,181 @@
+"""From a job to everything that a run needs: the program, its dialect, the machine, the places."""
+
+import dataclasses
+import functools
+from collections.abc import Sequence
+from pathlib import Path
+
+import pydantic
+
+from twin.errors import RecordingError, UsageError
+from twin.files.overrides import Change
+from twin.files.shipped import machine_file
+from twin.job.job_file import Job, JobFile, read_job
+from twin.machine.config import Machine, read_machine
+from twin.nc.canonical import FloatArray
+from twin.nc.control.settings import ControlSettings, ToolData
+from twin.nc.dialects import Dialect, dialect_named, recognise
+from twin.nc.interpreter import Interpretation
+from twin.nc.text.source import Source, read_source, source_from_text
+from twin.recording.reader import RecordingHeader
+from twin.run.placement import start_position
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Preparation:
+    """A job made concrete.
+
+    Attributes:
+        job: The job file and where it lies.
+        machine: The machine that it runs on.
+        source: The NC program.
+        dialect: The language that the program is written in.
+        settings: What the interpreter is told about machine and job.
+    """
+
+    job: Job
+    machine: Machine
+    source: Source
+    dialect: Dialect
+    settings: ControlSettings
+
+    def interpretation(self) -> Interpretation:
+        """A fresh pass over the program."""
+        return Interpretation(self.source, self.dialect, self.settings)
+
+    @functools.cached_property
+    def start(self) -> FloatArray:
+        """Where the axes stand at the program's start, program coordinates, shape (k,).
+
+        The job says it, or the program itself before its first move (G92 of ``codesys``).
+        """
+        chunks = (chunk.moves for chunk in self.interpretation().chunks())
+        begin = next((moves.start[0] for moves in chunks if len(moves)), None)
+        return start_position(self.job.file, self.machine) if begin is None else begin
+
+
+def prepare(
+    path: Path,
+    *,
+    dialect: str | None = None,
+    machine: str | None = None,
+    strict: bool = False,
+    changes: Sequence[Change] = (),
+) -> Preparation:
+    """Read a job, or a program with its job beside it, and all that it names.
+
+    Args:
+        path: NC program or job file.
+        dialect: Overrides the job's dialect.
+        machine: Overrides the job's machine; a path is relative to the working folder.
+        strict: Warnings of the interpreter are errors.
+        changes: Values of the job (``job.``) and the machine file (``machine.``) to change.
+
+    Raises:
+        UsageError: A file is missing or wrong, or the dialect cannot be told.
+    """
+    if path.is_dir():
+        raise UsageError(f"{path}: a folder; twin check runs the programs in a folder")
+    if not path.is_file():
+        raise UsageError(f"{path}: no such file")
+    return prepare_job(
+        read_job(path, changes), dialect=dialect, machine=machine, strict=strict, changes=changes
+    )
+
+
+def prepare_job(
+    job: Job,
+    *,
+    dialect: str | None = None,
+    machine: str | None = None,
+    strict: bool = False,
+    changes: Sequence[Change] = (),
+) -> Preparation:
+    """Read all that a job names; arguments and errors as for ``prepare``."""
+    if machine is None:
+        found = machine_file(job.file.machine, beside=job.folder)
+    else:
+        found = machine_file(machine)
+    twin_machine = read_machine(found, changes).with_fixtures(job.file.fixtures)
+    name = dialect or job.file.dialect
+    named = None if name is None else dialect_named(name)
+    source = read_source(job.program, named)
+    language = named or recognise(source)
+    if language.library is not None:
+        source = language.library(source, job.program.parent)
+    return Preparation(
+        job=job,
+        machine=twin_machine,
+        source=source,
+        dialect=language,
+        settings=_control_settings(job, twin_machine, strict=strict),
+    )
+
+
+def prepare_recorded(header: RecordingHeader, *, machine: str | None = None) -> Preparation:
+    """What a recording was made with, from what it says about itself.
+
+    Args:
+        header: Of the recording.
+        machine: Overrides the machine file; a path is relative to the working folder.
+
+    Raises:
+        UsageError: The recording does not hold its job, or the machine file is gone or wrong.
+    """
+    try:
+        file = JobFile.model_validate_json(header.job)
+    except pydantic.ValidationError as error:
+        raise RecordingError(
+            "the recording does not hold the job that it was made with: run the job again"
+        ) from error
+    beside = header.machine_file if Path(header.machine_file).is_file() else header.machine
+    found = read_machine(machine_file(machine or beside)).with_fixtures(file.fixtures)
+    job = Job(Path(), file)
+    dialect = dialect_named(header.dialect)
+    source = source_from_text(header.program_text, header.program)
+    if not header.program_text:
+        source = read_source(Path(header.program), dialect)
+        if source.sha256 != header.program_sha256:
+            raise RecordingError(f"{source.name}: is not the program that was recorded")
+    return Preparation(
+        job=job,
+        machine=found,
+        source=source,
+        dialect=dialect,
+        settings=_control_settings(job, found, strict=False),
+    )
+
+
+def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSettings:
+    control = machine.file.control
+    start = start_position(job.file, machine)
+    return ControlSettings(
+        axes=machine.axes,
+        periodic=frozenset(name for name in machine.axes.names if machine.axis(name).periodic),
+        default_feed=job.file.default_feed or control.default_feed,
+        default_rotary_feed=job.file.default_rotary_feed or control.default_rotary_feed,
+        start=machine.axes.named(start),
+        tools={
+            tool.number: ToolData(radius=tool.diameter / 2.0, length=tool.length)
+            for tool in job.file.tools
+        },
+        any_tool="tools" not in job.file.model_fields_set,
+        offsets=job.file.offsets,
+        machine_zero=_machine_zero(job, machine),
+        variables=job.file.variables,
+        recalculate_on_rapid=control.recalculate_on_rapid,
+        module_rotary=control.module_rotary,
+        block_skip=job.file.block_skip,
+        step_limit=job.file.step_limit,
+        strict=strict,
+    )
+
+
+def _machine_zero(job: Job, machine: Machine) -> dict[str, float] | None:
+    """Part coordinates of machine zero; None where the job leaves the height of part zero open."""
+    if "Z" not in job.file.part_zero:
+        return None
+    zero = dict.fromkeys(machine.axes.names, 0.0)
+    zero["X"], zero["Y"] = machine.part_frame.center
+    zero |= job.file.part_zero
+    return {name: -value for name, value in zero.items()}

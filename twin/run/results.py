@@ -1,0 +1,79 @@
+"""``result.json`` and ``report.html`` of a run."""
+
+import dataclasses
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from twin.commands.pictures import STILL_NAME
+from twin.compare.report import Report, write_report
+from twin.compare.result import RunSummary, result, write_result
+from twin.run.outcome import Outcome
+from twin.run.run import Run
+
+RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", "still.png")
+"""What a run may leave; an earlier run's files of these names are removed when one begins.
+
+The result, written last, is removed first: where it stands, everything that it speaks of is whole.
+"""
+
+
+def write_results(run: Run, outcome: Outcome, folder: Path) -> None:
+    """Write the verdict and every figure behind it, for programs and for people.
+
+    Args:
+        run: The run.
+        outcome: What it came to.
+        folder: Where the files go; a still that was drawn there is put on the page.
+    """
+    content = result_of(run, outcome)
+    write_report(folder / "report.html", report_of(run, outcome, content, folder / STILL_NAME))
+    write_result(folder / "result.json", content)
+
+
+def result_of(run: Run, outcome: Outcome) -> dict[str, Any]:
+    """The content of ``result.json``."""
+    tolerance = run.preparation.job.file.tolerance
+    return result(
+        _summary(run, outcome), outcome.figures, tolerance, outcome.verdict, outcome.alarms
+    )
+
+
+def report_of(
+    run: Run, outcome: Outcome, content: Mapping[str, Any], still: Path | None = None
+) -> Report:
+    """What the page about a run is made of.
+
+    Args:
+        run: The run.
+        outcome: What it came to.
+        content: The content of ``result.json``.
+        still: A picture of its end, put on the page where it exists.
+    """
+    return Report(
+        header=run.header(),
+        source=run.preparation.source.lines,
+        figures=outcome.figures,
+        verdict=outcome.verdict,
+        tolerance=run.preparation.job.file.tolerance,
+        trace=run.trace,
+        result=content,
+        stills=[("The end of the run", still)] if still is not None and still.is_file() else [],
+    )
+
+
+def _summary(run: Run, outcome: Outcome) -> RunSummary:
+    preparation = run.preparation
+    named = preparation.machine.axes.named
+    return RunSummary(
+        program=preparation.source.name,
+        dialect=preparation.dialect.name,
+        machine=preparation.machine.file.name,
+        duration_s=outcome.duration_s,
+        wall_s=run.clock.wall_s,
+        stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
+        near_miss=None if outcome.near_miss is None else dataclasses.asdict(outcome.near_miss),
+        cut=None if outcome.cut is None else outcome.cut.as_json(),
+        commanded=named(outcome.final_commanded),
+        simulated=named(outcome.final_simulated),
+    )

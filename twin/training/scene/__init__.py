@@ -1,0 +1,1 @@
+"""A scene: its file, tasks and texts."""

@@ -1,0 +1,181 @@
+"""Scene files: a story, a machine with its faults, a program, and tasks that are checked.
+
+A scene is one TOML file in a folder of its own or of several; what it names lies in that folder.
+"""
+
+import dataclasses
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Any, Literal
+
+import pydantic
+from pydantic import Field
+
+from twin.errors import ConfigError, UsageError
+from twin.files.toml import Table, read_toml
+from twin.job.job_file import Job, JobFile
+from twin.run.preparation import Preparation, prepare_job
+from twin.training.scene.tasks import TaskTable
+from twin.training.scene.texts import Language, Text
+from twin.training.session.commands import Mode
+from twin.training.session.faults import FaultTable
+
+_SHIPPED = Path(__file__).resolve().parent / "scenes"
+
+
+class StartTable(Table):
+    """How the machine and its control are found."""
+
+    mode: Mode = "auto"
+    position: dict[str, float] = Field(default_factory=dict)
+    """Where the axes stand, machine coordinates [mm or deg]; none: as the job's start says."""
+    zero_error: dict[str, float] = Field(default_factory=dict)
+    """How far the control's part zero is off the part's true one [mm or deg]."""
+    tool_length_error: float = 0.0
+    """How much longer the tool table has the tool in the spindle than it is [mm]."""
+    spindle: bool = False
+    """Whether the spindle turns already."""
+    feed_override: Annotated[int, Field(ge=0, le=120)] = 100
+    rapid_override: Annotated[int, Field(ge=0, le=100)] = 100
+    alarm: str = ""
+    """An alarm that stands when the operator comes: ``hard-limit`` for an axis on its switch."""
+
+
+class PictureTable(Table):
+    """How the machine is shown."""
+
+    camera: str = "table"
+    """Named camera that the view begins with."""
+    columns: Annotated[int, Field(ge=4, le=96)] = 40
+    """Columns of the drawn stock along its longer side; the cutting itself is as fine as ever."""
+
+
+class StepTable(Table):
+    """A step of a scripted operator: a command, or something to wait for."""
+
+    do: str | None = None
+    """A command; its arguments stand in ``give``."""
+    give: dict[str, Any] = Field(default_factory=dict)
+    wait: Literal["rest", "alarm", "moving", "line", "end", "seconds", "contact"] | None = None
+    """``rest``: the axes stand; ``end``: the program has ended; ``line``: that line runs;
+    ``contact``: the feeler lamp is lit."""
+    value: float = 0.0
+    """The line, or the seconds."""
+
+    @pydantic.model_validator(mode="after")
+    def _one_of_both(self) -> "StepTable":
+        if (self.do is None) == (self.wait is None):
+            raise ValueError("a step has either do or wait")
+        return self
+
+    def command(self) -> dict[str, Any]:
+        """The command as plain data."""
+        return {"do": self.do, **self.give}
+
+
+class SceneFile(Table):
+    """A scene file."""
+
+    schema_: Literal[1] = Field(alias="schema")
+    title: Text
+    story: Text
+    language: Language = "en"
+    """What labels, messages and texts are in, unless ``--language`` says otherwise."""
+    job: JobFile
+    """Program, machine, the part's true zero, stock and tools; as in a job file."""
+    start: StartTable = StartTable()
+    faults: tuple[FaultTable, ...] = ()
+    """What is broken from the start."""
+    tasks: Annotated[tuple[TaskTable, ...], Field(min_length=1)]
+    hints: tuple[Text, ...] = ()
+    hint_cost: Annotated[int, Field(ge=0)] = 1
+    """Points that a hint costs."""
+    time_limit_s: Annotated[float, Field(gt=0)] = 1800.0
+    """Machine time after which the scene is judged [s]."""
+    picture: PictureTable = PictureTable()
+    solution: tuple[StepTable, ...] = ()
+    """A scripted operator who reaches full points."""
+    mistake: tuple[StepTable, ...] = ()
+    """A scripted operator who falls into the trap."""
+    mistake_fails: tuple[int, ...] = ()
+    """Numbers of the tasks that the mistake fails."""
+
+    @pydantic.field_validator("job")
+    @classmethod
+    def _stay_in_folder(cls, job: JobFile) -> JobFile:
+        named = [job.program, job.machine, (job.stock and job.stock.file) or ""]
+        for name in named:
+            path = PurePosixPath(name)
+            if path.is_absolute() or ".." in path.parts or "\\" in name:
+                raise ValueError(f"'{name}' leaves the scene's folder")
+        return job
+
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    """A scene that was read.
+
+    Attributes:
+        name: Its file's stem.
+        file: Its checked content.
+        preparation: Its job made concrete.
+    """
+
+    name: str
+    file: SceneFile
+    preparation: Preparation
+
+    @property
+    def points(self) -> int:
+        """What all its tasks are worth."""
+        return sum(task.points for task in self.file.tasks)
+
+
+def scene_names() -> tuple[str, ...]:
+    """Names of the shipped scenes, sorted."""
+    return tuple(sorted(path.stem for path in _SHIPPED.glob("*.toml")))
+
+
+def scene_path(name: str) -> Path:
+    """Find a scene by its shipped name or its file.
+
+    Raises:
+        UsageError: There is none; the message lists the shipped ones.
+    """
+    if name in scene_names():
+        return _SHIPPED / f"{name}.toml"
+    path = Path(name)
+    if path.suffix == ".toml" and path.is_file():
+        return path
+    raise UsageError(
+        f"no scene '{name}': shipped scenes are {', '.join(scene_names())}; "
+        "or give the path of a scene.toml"
+    )
+
+
+def read_scene(path: Path) -> Scene:
+    """Read a scene with all that it names.
+
+    Raises:
+        ConfigError: The scene, or what it names, is wrong.
+    """
+    file = read_toml(path, SceneFile)
+    folder = path.resolve().parent
+    _require_inside(folder, path, file)
+    scene = Scene(path.stem, file, prepare_job(Job(folder, file.job)))
+    axes = scene.preparation.machine.axes.names
+    named = [*file.start.position, *file.start.zero_error, *(f.axis for f in file.faults if f.axis)]
+    for task in file.tasks:
+        named += task.axes_named()
+    for axis in named:
+        if axis not in axes:
+            raise ConfigError(f"{path}: no axis '{axis}': the machine has {', '.join(axes)}")
+    return scene
+
+
+def _require_inside(folder: Path, path: Path, file: SceneFile) -> None:
+    """Refuse links that lead out of the scene's folder."""
+    for name in (file.job.program, (file.job.stock and file.job.stock.file) or ""):
+        if name and not (folder / name).resolve().is_relative_to(folder):
+            raise ConfigError(f"{path}: '{name}' leads out of the scene's folder")
+    if not (folder / file.job.program).is_file():
+        raise ConfigError(f"{path}: no NC program '{file.job.program}' beside it")

@@ -1,0 +1,58 @@
+"""What the panel says: labels and alarms by language, with the words that one control has alone."""
+
+import functools
+from pathlib import Path
+
+from twin.files.toml import Table, read_toml
+from twin.training.scene.texts import Language
+
+_FOLDER = Path(__file__).resolve().parent / "vocabularies"
+
+
+class AlarmWords(Table):
+    """What an alarm is called and what to do about it."""
+
+    name: str
+    advice: str
+
+
+class VocabularyFile(Table):
+    """A vocabulary file."""
+
+    labels: dict[str, str]
+    alarms: dict[str, AlarmWords]
+    controls: dict[str, dict[str, str]]
+
+
+class Words:
+    """The words of one control in one language.
+
+    Attributes:
+        language: Which.
+        control: Name of the dialect.
+    """
+
+    def __init__(self, language: Language, control: str) -> None:
+        file = vocabulary(language)
+        self.language: Language = language
+        self.control = control
+        self._labels = file.labels | file.controls.get(control, {})
+        self._alarms = file.alarms
+
+    def __getitem__(self, key: str) -> str:
+        """A label."""
+        return self._labels[key]
+
+    def alarm(self, code: str) -> AlarmWords:
+        """What an alarm is called; one without words is called by its code."""
+        return self._alarms.get(code) or AlarmWords(name=code, advice="")
+
+
+@functools.cache
+def vocabulary(language: Language) -> VocabularyFile:
+    """Read the words of a language.
+
+    Raises:
+        ConfigError: The file is damaged.
+    """
+    return read_toml(_FOLDER / f"{language}.toml", VocabularyFile)

@@ -1,0 +1,1 @@
+"""The server: its doors and its page."""

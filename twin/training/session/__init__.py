@@ -1,0 +1,1 @@
+"""A session: the room, what is done in it, its score."""

@@ -1,0 +1,219 @@
+"""What an operator or a trainer can do, as plain data that is checked before it reaches a machine.
+
+A session is nothing but its scene and the commands that were given at each tick of the servo clock:
+a log of them is enough to live it again.
+"""
+
+from typing import Annotated, Any, Literal
+
+import pydantic
+from pydantic import Field
+
+from twin.errors import UsageError
+from twin.files.toml import Table
+from twin.training.session.faults import FaultTable
+
+Mode = Literal["auto", "single", "jog", "mdi"]
+"""Automatic, single block, manual jog, manual data input."""
+
+MODES: tuple[Mode, ...] = ("auto", "single", "jog", "mdi")
+
+FEED_OVERRIDES = (0, 120)
+"""Ends of the feed override dial [%]."""
+RAPID_OVERRIDES = (0, 100)
+"""Ends of the rapid override dial [%]."""
+SPINDLE_SPEEDS = (1.0, 20000.0)
+"""Ends of what the spindle turns [1/min]."""
+
+LONGEST_TEXT = 2000
+"""Characters of a block, of a program's line, of an answer."""
+
+
+class SelectMode(Table):
+    """Turn the mode switch."""
+
+    do: Literal["mode"] = "mode"
+    mode: Mode
+
+
+class CycleStart(Table):
+    """Start the program, the next block or the MDI block; or go on after a hold."""
+
+    do: Literal["cycle_start"] = "cycle_start"
+
+
+class FeedHold(Table):
+    """Stop the axes on their path."""
+
+    do: Literal["feed_hold"] = "feed_hold"
+
+
+class Reset(Table):
+    """Give up what runs, and clear the alarm whose cause is gone."""
+
+    do: Literal["reset"] = "reset"
+
+
+class EmergencyStop(Table):
+    """Press the mushroom button, or turn it free."""
+
+    do: Literal["emergency_stop"] = "emergency_stop"
+    pressed: bool = True
+
+
+class Override(Table):
+    """Turn an override dial."""
+
+    do: Literal["override"] = "override"
+    dial: Literal["feed", "rapid"] = "feed"
+    percent: Annotated[int, Field(ge=FEED_OVERRIDES[0], le=FEED_OVERRIDES[1])]
+
+    @pydantic.model_validator(mode="after")
+    def _within_dial(self) -> "Override":
+        if self.dial == "rapid" and self.percent > RAPID_OVERRIDES[1]:
+            raise ValueError(f"the rapid override ends at {RAPID_OVERRIDES[1]} %")
+        return self
+
+
+class Jog(Table):
+    """Move one axis by hand."""
+
+    do: Literal["jog"] = "jog"
+    axis: str
+    direction: Literal[1, -1]
+    step: Annotated[float, Field(gt=0, le=1000)] | None = None
+    """How far [mm or deg]; none: until ``jog_stop``."""
+    feed: Annotated[float, Field(gt=0, le=100000)] = 2000.0
+    """[mm/min or deg/min]."""
+
+
+class JogStop(Table):
+    """Let go of the jog button."""
+
+    do: Literal["jog_stop"] = "jog_stop"
+
+
+class Enter(Table):
+    """Type a block into MDI."""
+
+    do: Literal["mdi"] = "mdi"
+    text: Annotated[str, Field(max_length=LONGEST_TEXT)]
+
+
+class Edit(Table):
+    """Write a line of the program anew; several lines replace it by several, none deletes it."""
+
+    do: Literal["edit"] = "edit"
+    line: Annotated[int, Field(ge=1)]
+    text: Annotated[str, Field(max_length=LONGEST_TEXT)] | None = None
+
+
+class Spindle(Table):
+    """Start or stop the spindle by hand."""
+
+    do: Literal["spindle"] = "spindle"
+    on: bool
+    speed: Annotated[float, Field(ge=SPINDLE_SPEEDS[0], le=SPINDLE_SPEEDS[1])] | None = None
+    """[1/min]; none: as it last turned."""
+
+
+class Coolant(Table):
+    """Open or close the coolant by hand."""
+
+    do: Literal["coolant"] = "coolant"
+    on: bool
+
+
+class SetZero(Table):
+    """Make the place where an axis stands read a value: the part zero moves."""
+
+    do: Literal["set_zero"] = "set_zero"
+    axis: str
+    reading: Annotated[float, Field(ge=-10000, le=10000)] = 0.0
+
+
+class SetOffset(Table):
+    """Write the part zero of an axis into the table, machine coordinates."""
+
+    do: Literal["set_offset"] = "set_offset"
+    axis: str
+    value: Annotated[float, Field(ge=-10000, le=10000)]
+
+
+class SetTool(Table):
+    """Write a tool's length into the tool table."""
+
+    do: Literal["set_tool"] = "set_tool"
+    number: Annotated[int, Field(ge=0)]
+    length: Annotated[float, Field(gt=0, le=1000)]
+
+
+class Answer(Table):
+    """Answer a scene's question."""
+
+    do: Literal["answer"] = "answer"
+    task: Annotated[int, Field(ge=1)]
+    """Number of the task that asks."""
+    choice: Annotated[str, Field(max_length=LONGEST_TEXT)]
+
+
+class Hint(Table):
+    """Ask for the next hint; it costs points."""
+
+    do: Literal["hint"] = "hint"
+
+
+class Finish(Table):
+    """Hand in: the tasks that hold to the end are judged."""
+
+    do: Literal["finish"] = "finish"
+
+
+class Inject(Table):
+    """Trainer: break something."""
+
+    do: Literal["inject"] = "inject"
+    fault: FaultTable
+
+
+class Repair(Table):
+    """Trainer: take back every fault."""
+
+    do: Literal["repair"] = "repair"
+
+
+Command = (
+    SelectMode | CycleStart | FeedHold | Reset | EmergencyStop | Override | Jog | JogStop | Enter
+    | Edit | Spindle | Coolant | SetZero | SetOffset | SetTool | Answer | Hint | Finish | Inject
+    | Repair
+)  # fmt: skip
+
+TRAINERS = (Inject, Repair)
+"""Commands that are a trainer's alone."""
+
+_ADAPTER: pydantic.TypeAdapter[Command] = pydantic.TypeAdapter(
+    Annotated[Command, Field(discriminator="do")]
+)
+
+
+def command_from(data: Any) -> Command:
+    """Check a command that came from outside.
+
+    Args:
+        data: A mapping with ``do`` and what belongs to it.
+
+    Raises:
+        UsageError: It is no command; the message says what is wrong with it.
+    """
+    try:
+        return _ADAPTER.validate_python(data)
+    except pydantic.ValidationError as error:
+        detail = error.errors()[0]
+        where = ".".join(str(part) for part in detail["loc"])
+        message = detail["msg"].removeprefix("Value error, ")
+        raise UsageError(f"no such command: {where + ': ' if where else ''}{message}") from error
+
+
+def command_data(command: Command) -> dict[str, Any]:
+    """A command as plain data, with only what was given."""
+    return {"do": command.do, **command.model_dump(exclude_unset=True, exclude={"do"})}

@@ -1,0 +1,129 @@
+"""Whether what a task asks for has come about."""
+
+import dataclasses
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from twin.training.scene.tasks import TaskTable
+
+if TYPE_CHECKING:
+    from twin.training.session.room import Room
+
+State = Literal["open", "done", "failed"]
+
+
+@dataclasses.dataclass(slots=True)
+class Evidence:
+    """What has happened that tasks ask for.
+
+    Attributes:
+        alarms: Codes of the alarms that came.
+        cleared: Codes of those that were cleared.
+        ended_well: The program has run to its end without an alarm.
+        single: Lines that were run in single block.
+        held: Lines in which the axes were held to a stand.
+        answers: What was answered, by number of the task.
+    """
+
+    alarms: list[str] = dataclasses.field(default_factory=list)
+    cleared: list[str] = dataclasses.field(default_factory=list)
+    ended_well: bool = False
+    single: set[int] = dataclasses.field(default_factory=set)
+    held: set[int] = dataclasses.field(default_factory=set)
+    answers: dict[int, str] = dataclasses.field(default_factory=dict)
+
+
+def _reached(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+    goal = task.reached
+    assert goal is not None
+    if room.moving:
+        return "open"
+    zero = room.tables.tip_zero if goal.frame == "part" else np.zeros(len(room.label))
+    names = room.machine.machine.axes.names
+    stands = room.machine.position - zero
+    off = [abs(stands[names.index(axis)] - value) for axis, value in goal.at.items()]
+    return "done" if max(off) <= goal.tolerance else "open"
+
+
+def _stayed(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+    limits = task.stayed
+    assert limits is not None
+    column = room.machine.machine.axes.names.index(limits.axis)
+    places = room.samples.joint_position[:, column] - room.tables.tip_zero[column]
+    inside = bool(((places >= limits.low) & (places <= limits.high)).all())
+    return "open" if inside else "failed"
+
+
+def _zero(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+    goal = task.zero
+    assert goal is not None
+    names = room.machine.machine.axes.names
+    off = np.abs(room.tables.zero - room.tables.true_zero)
+    worst = max(float(off[names.index(axis)]) for axis in goal.axes)
+    return "done" if worst <= goal.tolerance else "open"
+
+
+def _tool_length(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+    tables = room.tables
+    off = abs(tables.lengths[tables.spindle] - tables.tool.length)
+    return "done" if task.tool_length and off <= task.tool_length else "open"
+
+
+def _finished(evidence: Evidence, _room: "Room", _task: TaskTable, _number: int) -> State:
+    return "done" if evidence.ended_well else "open"
+
+
+def _single_block(evidence: Evidence, _room: "Room", task: TaskTable, _number: int) -> State:
+    return "done" if evidence.single.issuperset(task.single_block) else "open"
+
+
+def _held_in(evidence: Evidence, _room: "Room", task: TaskTable, _number: int) -> State:
+    return "done" if evidence.held.intersection(task.held) else "open"
+
+
+def _alarm_cleared(evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+    return "done" if task.cleared in evidence.cleared and room.alarm is None else "open"
+
+
+def _no_alarm(evidence: Evidence, _room: "Room", task: TaskTable, _number: int) -> State:
+    forbidden = "any" in task.no_alarm or set(task.no_alarm).intersection(evidence.alarms)
+    return "failed" if forbidden and evidence.alarms else "open"
+
+
+def _within(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+    assert task.within_s is not None
+    return "failed" if room.time_s > task.within_s else "open"
+
+
+def _removed(evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+    assert task.removed_mm3 is not None
+    if not evidence.ended_well or room.work is None:
+        return "open"
+    low, high = task.removed_mm3
+    return "done" if low <= room.work.removed <= high else "failed"
+
+
+def _question(evidence: Evidence, _room: "Room", task: TaskTable, number: int) -> State:
+    assert task.question is not None
+    if number not in evidence.answers:
+        return "open"
+    return "done" if evidence.answers[number] == task.question.right else "failed"
+
+
+CHECKS: dict[str, Callable[[Evidence, "Room", TaskTable, int], State]] = {
+    "reached": _reached,
+    "stayed": _stayed,
+    "zero": _zero,
+    "tool_length": _tool_length,
+    "finished": _finished,
+    "single_block": _single_block,
+    "held": _held_in,
+    "cleared": _alarm_cleared,
+    "no_alarm": _no_alarm,
+    "within_s": _within,
+    "removed_mm3": _removed,
+    "question": _question,
+}
+"""By the task's condition."""

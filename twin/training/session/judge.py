@@ -1,0 +1,141 @@
+"""The judge: which tasks are done, which have failed, and what that is worth."""
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+from twin.errors import UsageError
+from twin.training.session.conditions import CHECKS, Evidence, State
+
+if TYPE_CHECKING:
+    from twin.training.session.room import Room
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Verdict:
+    """How a task stands.
+
+    Attributes:
+        state: ``open`` until it is done or has failed.
+        time_s: When that was decided, in machine time [s]; None while it is open.
+    """
+
+    state: State = "open"
+    time_s: float | None = None
+
+
+class Judge:
+    """Looks after the tasks of a scene while it runs.
+
+    Attributes:
+        verdicts: How each task stands, in the order of the scene.
+        hints: How many hints have been asked for.
+        over: The scene has been handed in, or its time is up.
+        evidence: What has happened that tasks ask for.
+    """
+
+    def __init__(self, room: "Room") -> None:
+        self._file = room.scene.file
+        self.verdicts: list[Verdict] = [Verdict() for _ in self._file.tasks]
+        self.hints = 0
+        self.over = False
+        self.evidence = Evidence()
+        self._trouble = False
+        self._hold_line = 0
+
+    @property
+    def score(self) -> int:
+        """Points so far: of what is done, less what the hints cost; never below 0."""
+        points = sum(
+            task.points
+            for task, verdict in zip(self._file.tasks, self.verdicts, strict=True)
+            if verdict.state == "done"
+        )
+        return max(0, points - self.hints * self._file.hint_cost)
+
+    def note_alarm(self, code: str) -> None:
+        """An alarm has come."""
+        self.evidence.alarms.append(code)
+        self._trouble = True
+
+    def note_cleared(self, code: str) -> None:
+        """An alarm has been cleared."""
+        self.evidence.cleared.append(code)
+
+    def note_start(self) -> None:
+        """The program has been started from its beginning."""
+        self._trouble = False
+        self.evidence.ended_well = False
+
+    def note_end(self, room: "Room") -> None:
+        """The program has run to its end."""
+        self.evidence.ended_well = not self._trouble
+        self._note_single(room)
+
+    def note_hold(self, room: "Room") -> None:
+        """The operator has asked for a feed hold."""
+        self._hold_line = int(room.machine.setpoint.line[0])
+
+    def answer(self, task: int, choice: str) -> None:
+        """Take an answer; the first one counts.
+
+        Raises:
+            UsageError: That task asks nothing, or has been answered.
+        """
+        known = self._file.tasks
+        question = known[task - 1].question if 1 <= task <= len(known) else None
+        if question is None:
+            raise UsageError(f"task {task} asks nothing")
+        if task in self.evidence.answers:
+            raise UsageError(f"task {task} has been answered")
+        if choice not in question.choices:
+            raise UsageError(f"the choices are {', '.join(question.choices)}")
+        self.evidence.answers[task] = choice
+
+    def ask_hint(self) -> None:
+        """Show one hint more.
+
+        Raises:
+            UsageError: There are no more.
+        """
+        if self.hints >= len(self._file.hints):
+            raise UsageError("there are no more hints")
+        self.hints += 1
+
+    def finish(self, room: "Room") -> None:
+        """Judge what holds to the end; what is open fails."""
+        if self.over:
+            return
+        for number, task in enumerate(self._file.tasks):
+            if self.verdicts[number].state != "open":
+                continue
+            kept = task.to_end and (task.condition != "within_s" or self._others_done())
+            self.verdicts[number] = Verdict("done" if kept else "failed", room.time_s)
+        self.over = True
+
+    def _others_done(self) -> bool:
+        return all(
+            verdict.state == "done"
+            for task, verdict in zip(self._file.tasks, self.verdicts, strict=True)
+            if not task.to_end
+        )
+
+    def look(self, room: "Room") -> None:
+        """Check every open task against the machine as it stands after a slice."""
+        if self.over:
+            return
+        if room.run is not None and room.running == "program" and room.run.motion.held:
+            self._note_single(room)
+            if self._hold_line and not room.moving:
+                self.evidence.held.add(self._hold_line)
+                self._hold_line = 0
+        for number, task in enumerate(self._file.tasks):
+            if self.verdicts[number].state == "open":
+                state = CHECKS[task.condition](self.evidence, room, task, number + 1)
+                if state != "open":
+                    self.verdicts[number] = Verdict(state, room.time_s)
+        if room.time_s >= self._file.time_limit_s:
+            self.finish(room)
+
+    def _note_single(self, room: "Room") -> None:
+        if room.mode == "single":
+            self.evidence.single.add(int(room.machine.setpoint.line[0]))

@@ -1,0 +1,84 @@
+"""The log of a session, and living it again: the same commands at the same ticks."""
+
+import dataclasses
+from typing import Any, Literal
+
+from twin.training.scene.scene_file import Scene
+from twin.training.session.actions import carry_out
+from twin.training.session.commands import command_from
+from twin.training.session.room import SLICE, Room
+
+Who = Literal["operator", "trainer"]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Entry:
+    """A line of the log.
+
+    Attributes:
+        tick: Servo periods since the beginning.
+        who: Who did it.
+        command: What, as plain data.
+        refusal: Why the machine did not do it; empty when it did.
+    """
+
+    tick: int
+    who: Who
+    command: dict[str, Any]
+    refusal: str = ""
+
+
+class Replay:
+    """A session that is lived again, little by little.
+
+    Attributes:
+        room: The machine as it was.
+        over: It has come to where the session had come to.
+    """
+
+    def __init__(self, scene: Scene, log: list[Entry], tick: int) -> None:
+        """Go back to the beginning.
+
+        Args:
+            scene: The session's scene.
+            log: What was done.
+            tick: How far it had come.
+        """
+        self.room = Room(scene)
+        self._log = list(log)
+        self._given = 0
+        self._end = tick
+
+    @property
+    def over(self) -> bool:
+        """Whether all has been lived again."""
+        return self.room.tick >= self._end
+
+    def advance(self, seconds: float) -> None:
+        """Go on by machine time [s], to the end at most."""
+        room = self.room
+        goal = min(self._end, room.tick + SLICE * round(seconds / room.slice_s))
+        while self._given < len(self._log) and self._log[self._given].tick <= goal:
+            entry = self._log[self._given]
+            room.advance((entry.tick - room.tick) // SLICE)
+            if not entry.refusal:
+                carry_out(room, command_from(entry.command))
+            self._given += 1
+        room.advance((goal - room.tick) // SLICE)
+
+
+def relive(scene: Scene, log: list[Entry], tick: int) -> Room:
+    """Live a session again.
+
+    Args:
+        scene: Its scene.
+        log: What was done.
+        tick: How far to go.
+
+    Returns:
+        The room as it was at that tick.
+    """
+    replay = Replay(scene, log, tick)
+    while not replay.over:
+        replay.advance(1.0)
+    return replay.room

@@ -1,0 +1,153 @@
+"""What a panel needs to know of the running machine, as plain data that nobody can change."""
+
+import dataclasses
+
+import numpy as np
+
+from twin.nc.canonical import FloatArray
+from twin.nc.functions import SpindleState
+from twin.training.session.commands import Mode
+from twin.training.session.judge import Verdict
+from twin.training.session.notice import Notice
+from twin.training.session.program_run import ModalState
+from twin.training.session.room import Room
+from twin.units import SECONDS_PER_MINUTE
+
+Row = tuple[float, ...]
+
+_STILL = 1e-3
+"""Speed below which the feed is that of the table [mm/s]."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ToolRow:
+    """A row of the tool table: number, kind, diameter and length in the table [mm]."""
+
+    number: int
+    kind: str
+    diameter: float
+    length: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Snapshot:
+    """The machine at an instant; rows have one value per axis [mm or deg]."""
+
+    time_s: float
+    axes: tuple[str, ...]
+    units: tuple[str, ...]
+    mode: Mode
+    running: str
+    """``program``, ``mdi``, ``jog`` or nothing."""
+    held: bool
+    moving: bool
+    alarm: Notice | None
+    pressed: bool
+    position: Row
+    """As the control's screen shows it."""
+    machine_position: Row
+    distance_to_go: Row
+    following_error: Row
+    load: Row
+    """Share of the drive's force limit, 0 to 1."""
+    feed: float
+    """Of the tool's tip against the machine [mm/min]; of the table where nothing else moves
+    [deg/min]."""
+    modal: ModalState | None
+    feed_override: int
+    rapid_override: int
+    spindle: SpindleState
+    coolant: bool
+    program: tuple[str, ...]
+    line: int
+    """Source line that runs, 0 for none."""
+    entered: str
+    tool: int
+    tools: tuple[ToolRow, ...]
+    zero: Row
+    touches: bool
+    """The feeler lamp."""
+    verdicts: tuple[Verdict, ...]
+    answers: tuple[tuple[int, str], ...]
+    hints: int
+    score: int
+    over: bool
+    trail: Row
+    """Where the tip is, seen from the part, X Y Z [mm]."""
+    frozen: bool = False
+    replaying: bool = False
+    refusal: str = ""
+    """Why the last command was refused."""
+    speed: float = 1.0
+    """Machine time per time on the wall, as it has been of late."""
+
+
+def take_snapshot(room: Room) -> Snapshot:
+    """Look at a room."""
+    machine = room.machine.machine
+    now = room.samples[-1:]
+    setpoint = now.setpoint
+    position = now.joint_position[0]
+    zero = room.tables.program_zero
+    to_go, modal = _from_run(room, zero)
+    limits = np.array([machine.axis(name).force_limit or np.inf for name in machine.axes.names])
+    tip = room.part_frame.position((position - room.tables.longer)[None])[0]
+    return Snapshot(
+        time_s=room.time_s,
+        axes=machine.axes.names,
+        units=tuple("mm" if kind == "linear" else "deg" for kind in machine.axes.kinds),
+        mode=room.mode,
+        running=room.running,
+        held=room.held,
+        moving=room.moving,
+        alarm=room.alarm,
+        pressed=room.pressed,
+        position=_row(position - zero + room.label),
+        machine_position=_row(position),
+        distance_to_go=_row(to_go),
+        following_error=_row(setpoint.position[0] - position),
+        load=_row(np.abs(now.drive_force[0]) / limits),
+        feed=_feed(now.joint_velocity[0]),
+        modal=modal,
+        feed_override=room.feed_override,
+        rapid_override=room.rapid_override,
+        spindle=room.spindle,
+        coolant=room.coolant,
+        program=room.lines,
+        line=int(setpoint.line[0]) if room.running == "program" else 0,
+        entered=room.entered,
+        tool=room.tables.spindle,
+        tools=tuple(
+            ToolRow(tool.number, tool.kind, tool.diameter, room.tables.lengths[tool.number])
+            for tool in room.tables.tools.values()
+        ),
+        zero=_row(room.tables.zero),
+        touches=room.touches,
+        verdicts=tuple(room.judge.verdicts),
+        answers=tuple(room.judge.evidence.answers.items()),
+        hints=room.judge.hints,
+        score=room.judge.score,
+        over=room.judge.over,
+        trail=_row(tip),
+    )
+
+
+def _from_run(room: Room, zero: FloatArray) -> tuple[FloatArray, ModalState | None]:
+    """Distance to go, and what is in force."""
+    if room.run is None:
+        return np.zeros(len(zero)), None
+    setpoint = room.machine.setpoint
+    move = int(setpoint.move[0])
+    target = room.run.target(move)
+    to_go = np.zeros(len(zero)) if target is None else target[0] + zero - setpoint.position[0]
+    return to_go, room.run.modal(move)
+
+
+def _feed(velocity: FloatArray) -> float:
+    linear = float(np.linalg.norm(velocity[:3]))
+    turning = float(np.abs(velocity[3:]).max(initial=0.0))
+    return SECONDS_PER_MINUTE * (linear if linear > _STILL or not turning else turning)
+
+
+def _row(values: FloatArray) -> Row:
+    return tuple(float(value) for value in values)

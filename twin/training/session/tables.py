@@ -1,0 +1,66 @@
+"""The control's tables: where it believes part zero to be, and how long it believes the tools."""
+
+import numpy as np
+
+from twin.errors import UsageError
+from twin.job.job_file import ToolTable
+from twin.nc.canonical import FloatArray
+
+
+class Tables:
+    """Part zero and tool lengths, as the control has them and as they are.
+
+    Machine coordinates count for the first tool; with a longer one the head stands higher by the
+    difference, which the control takes from its table and the material from the tool.
+
+    Attributes:
+        zero: Machine coordinates of part zero in the control's table, shape (k,) [mm or deg].
+        true_zero: Where it is.
+        lengths: Tool lengths in the control's table, by number [mm].
+        tools: The tools as they are, by number.
+        spindle: Number of the tool in the spindle.
+    """
+
+    def __init__(self, true_zero: FloatArray, tools: tuple[ToolTable, ...]) -> None:
+        self.true_zero = true_zero
+        self.zero = true_zero.copy()
+        self.tools = {tool.number: tool for tool in tools}
+        self.lengths = {tool.number: tool.length for tool in tools}
+        self.spindle = tools[0].number
+        self._reference = tools[0].length
+
+    @property
+    def tool(self) -> ToolTable:
+        """The tool in the spindle."""
+        return self.tools[self.spindle]
+
+    @property
+    def program_zero(self) -> FloatArray:
+        """Machine coordinates of program zero with the tool in the spindle, shape (k,)."""
+        return self.zero + self._along_z(self.lengths[self.spindle] - self._reference)
+
+    @property
+    def tip_zero(self) -> FloatArray:
+        """Machine coordinates at which the tip stands on the part's true zero, shape (k,)."""
+        return self.true_zero + self.longer
+
+    @property
+    def longer(self) -> FloatArray:
+        """How much higher the head stands than with the first tool, shape (k,) [mm]."""
+        return self._along_z(self.tool.length - self._reference)
+
+    def set_length(self, number: int, length: float) -> None:
+        """Write a tool's length [mm].
+
+        Raises:
+            UsageError: There is no such tool.
+        """
+        if number not in self.lengths:
+            known = ", ".join(str(each) for each in self.lengths)
+            raise UsageError(f"no tool {number}: the table has {known}")
+        self.lengths[number] = length
+
+    def _along_z(self, value: float) -> FloatArray:
+        shift = np.zeros(len(self.zero))
+        shift[2] = value
+        return shift

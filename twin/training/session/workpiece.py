@@ -1,0 +1,89 @@
+"""The stock on the table while it is cut live, and the feeler that says when a tool touches it."""
+
+import math
+
+import numpy as np
+
+from twin.cutting.cut import Cutter
+from twin.cutting.height_map import BoolArray, HeightMap
+from twin.job.job_file import StockTable, ToolTable
+from twin.machine.alarms import Alarm
+from twin.nc.canonical import FloatArray
+from twin.recording.reader import Samples
+from twin.run.stock_alarm import stock_alarm
+from twin.toolpath.part_frame import PartFrame
+
+CONTACT_MM = 0.02
+"""Distance at which the feeler lamp is lit [mm]: a strip of paper drags."""
+
+
+class Workpiece:
+    """The stock of a scene.
+
+    Attributes:
+        removed: Material taken off so far [mm³].
+        version: Grows whenever the stock changes.
+    """
+
+    def __init__(
+        self, stock: StockTable, tool: ToolTable, part_frame: PartFrame, zero: FloatArray
+    ) -> None:
+        """Clamp the blank.
+
+        Raises:
+            ConfigError: The stock is wrong.
+        """
+        self._stock = stock
+        self._frame = part_frame
+        self._zero = zero
+        self._cutter = Cutter(stock, tool, part_frame, zero, halts=True)
+        self.removed = 0.0
+        self.version = 0
+
+    @property
+    def map(self) -> HeightMap:
+        """The height map as cut so far."""
+        return self._cutter.map
+
+    def mount(self, tool: ToolTable) -> None:
+        """Go on with another tool."""
+        before = self._cutter.map
+        self._cutter = Cutter(self._stock, tool, self._frame, self._zero, halts=True)
+        self._cutter.map = before
+
+    def cut(self, tips: Samples, rapid: BoolArray, standing: BoolArray) -> Alarm | None:
+        """Cut along samples of the tool's tip.
+
+        Args:
+            tips: n samples, with positions as if the first tool were in the spindle.
+            rapid: Which belong to rapids, shape (n,).
+            standing: During which the spindle stands, shape (n,).
+
+        Returns:
+            The alarm of a cut that must not be.
+        """
+        removed = self._cutter.add(tips, rapid, standing)
+        self.removed += removed
+        self.version += removed > 0.0
+        for event in self._cutter.events():
+            if event.what in ("holder", "shank"):
+                message = f"the {event.what} meets the stock, {event.depth_mm:.2f} mm deep"
+                return Alarm("collision", event.line, event.time_s, "", message)
+        halted = self._cutter.halted
+        return None if halted is None else stock_alarm(halted, self._cutter.tool)
+
+    def forgive(self) -> None:
+        """An alarm has been cleared: only what comes from now on counts."""
+        self.mount(self._cutter.tool)
+
+    def touches(self, tip: FloatArray) -> bool:
+        """Whether the tool touches the uncut blank.
+
+        Args:
+            tip: Machine coordinates of the tip, shape (k,) [mm or deg].
+        """
+        x, y, z = (float(value) for value in self._frame.position(tip[None])[0])
+        map_, tool = self._cutter.map, self._cutter.tool
+        inside = map_.outline.snap(np.array([x]), np.array([y]))
+        beside = math.hypot(x - float(inside[0][0]), y - float(inside[1][0])) - 0.5 * tool.diameter
+        return max(beside, z - map_.top) <= CONTACT_MM
