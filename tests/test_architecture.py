@@ -16,12 +16,13 @@ MAY_IMPORT = {
     "machine": {"nc", "toolpath", "motion"},
     "logs": {"nc"},
     "compare": {"nc", "toolpath", "motion", "logs"},
+    "calibrate": {"nc", "toolpath", "motion", "machine", "compare", "logs"},
     "cutting": {"nc", "toolpath", "motion"},
     "render": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "logs"},
     "training": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "render", "logs"},
 }
 ROOMS = set(MAY_IMPORT)
-NO_MUJOCO = ROOMS - {"machine", "render", "training"}
+NO_MUJOCO = ROOMS - {"machine", "render", "training", "calibrate"}
 
 
 def imported_modules(path: Path) -> set[str]:

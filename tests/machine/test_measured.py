@@ -54,8 +54,6 @@ def test_a_constant_force_moves_the_circle_by_force_over_gain_of_the_loop() -> N
 
 def test_the_drive_stands_against_a_constant_force_from_the_start() -> None:
     machine = shipped_machine(constant_force=-50.0, reset_time_s=0.02)
-    (samples,) = simulate(
-        machine, physics_model(machine, build_spec(machine)), [line(0, 0.0, 0.2)]
-    )
+    (samples,) = simulate(machine, physics_model(machine, build_spec(machine)), [line(0, 0.0, 0.2)])
     assert samples.drive_force[:, 1] == pytest.approx(50.0, abs=1e-6)
     assert np.ptp(samples.joint_position, axis=0).max() < 1e-9
