@@ -21,9 +21,9 @@ from twin.job.job_file import StockTable, ToolTable, VideoTable
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples, open_recording
-from twin.render.canvas import Canvas, Pixels
+from twin.render.drawing.canvas import Canvas, Pixels
 from twin.render.film import film
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.replay import scene_of
@@ -66,10 +66,10 @@ def rows() -> Iterator[Row]:
         yield Row("picture", f"ring cut by C at X100, cell {cell} mm: volume off", ring(cell), "%")
     with tempfile.TemporaryDirectory() as folder:
         run = Run(prepare(resource_root("programs") / "mefi" / "helix.toml"))
-        survey = run.survey()
-        run.execute(survey, Path(folder), no_progress)
+        program = run.dry_run()
+        run.execute(program, Path(folder), no_progress)
         with open_recording(Path(folder) / "recording.h5") as recording:
-            scene = scene_of(recording, run.preparation, survey.notes)
+            scene = scene_of(recording, run.preparation, program.notes)
             yield from _film(scene, run.preparation.job.file.video, Path(folder) / "film.mp4")
 
 

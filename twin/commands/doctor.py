@@ -15,7 +15,7 @@ LIBRARIES = ("mujoco", "numpy", "numba", "h5py", "trimesh", "av", "pillow", "mat
 def print_doctor() -> ExitCode:
     """Print what was found; pictures that cannot be made are an error, the rest runs without."""
     from twin.render.doctor import render_facts
-    from twin.render.filament import PACKAGES
+    from twin.render.drawing.filament import PACKAGES
 
     typer.echo(f"python     {platform.python_version()} ({sys.executable})")
     for name in LIBRARIES:
