@@ -4,13 +4,11 @@ import math
 from typing import NamedTuple
 
 from twin.compilation.kernel import array_kernel
+from twin.cutting.tool_height_kernels import below_capsule, lowest_height
 from twin.nc.canonical import FloatArray
 
 _FAR = 1e9
 """Farther than any stock reaches [mm]."""
-
-_BISECTIONS = 40
-"""Halvings of a sweep in search of its lowest point: 1e-12 of its length."""
 
 
 class Grid(NamedTuple):
@@ -162,7 +160,7 @@ def overlap(
             end = min(columns - 1, math.floor((right - grid.origin[0]) / grid.cell)) + 1
             for column in range(first, end):
                 x = grid.origin[0] + column * grid.cell
-                lower = _lowest(x, y, points[i], points[i + 1], cylinder) + above
+                lower = lowest_height(x, y, points[i], points[i + 1], cylinder) + above
                 depth[i] = max(depth[i], heights[row, column] - lower)
 
 
@@ -249,9 +247,9 @@ def _cut_row(
     for i in range(len(line)):
         if line[i] <= lowest:
             continue
-        if ball and _below_capsule(x + i * grid.cell, y, line[i], a, b, profile[0]):
+        if ball and below_capsule(x + i * grid.cell, y, line[i], a, b, profile[0]):
             continue
-        z = max(_lowest(x + i * grid.cell, y, a, b, profile), grid.bottom)
+        z = max(lowest_height(x + i * grid.cell, y, a, b, profile), grid.bottom)
         cut = line[i] - z
         if cut > 0.0:
             line[i] = z
@@ -259,99 +257,3 @@ def _cut_row(
             moment += cut * i
             deepest = max(deepest, cut)
     return volume, deepest, moment
-
-
-@array_kernel
-def _below_capsule(
-    x: float, y: float, z: float, a: FloatArray, b: FloatArray, radius: float
-) -> bool:
-    """Whether a point no higher than a swept ball's centres is outside of it: a cheap refusal."""
-    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    px, py, pz = x - a[0], y - a[1], z - a[2] - radius
-    if pz > min(0.0, dz):
-        return False
-    squared = dx * dx + dy * dy + dz * dz
-    if squared > 0.0:
-        t = min(1.0, max(0.0, (px * dx + py * dy + pz * dz) / squared))
-        px, py, pz = px - t * dx, py - t * dy, pz - t * dz
-    return px * px + py * py + pz * pz >= radius * radius
-
-
-@array_kernel
-def _lowest(
-    x: float, y: float, a: FloatArray, b: FloatArray, profile: tuple[float, float, float, float]
-) -> float:
-    """Lowest height over (x, y) of a tool that moves straight from a to b; inf if it misses.
-
-    With t from 0 to 1 the distance from the axis is convex in t, the profile is convex and rises
-    with the distance, and the tip's height is linear: their sum is convex, so that its only
-    minimum is an end of the stretch in reach or the place where its slope changes sign.
-    """
-    radius, flat, corner, slope = profile
-    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    squared = dx * dx + dy * dy
-    px, py = x - a[0], y - a[1]
-    if squared == 0.0:
-        return min(a[2], b[2]) + _profile(math.hypot(px, py), radius, flat, corner, slope)
-    nearest = (px * dx + py * dy) / squared
-    across = px * dx + py * dy
-    offset = max(px * px + py * py - across * across / squared, 0.0)
-    reach = radius * radius - offset
-    if reach < 0.0:
-        return math.inf
-    half = math.sqrt(reach / squared)
-    first, last = max(0.0, nearest - half), min(1.0, nearest + half)
-    if first > last:
-        return math.inf
-    if dz == 0.0:
-        t = min(last, max(first, nearest))
-    elif flat >= radius:
-        t = last if dz < 0.0 else first
-    elif flat == 0.0 and corner > 0.0:
-        steepest = math.sqrt(reach / (squared * (squared + dz * dz)))
-        t = min(last, max(first, nearest - dz * steepest))
-    else:
-        t = _turning_point(first, last, nearest, squared, offset, dz, profile)
-    along = t - nearest
-    distance = math.sqrt(offset + squared * along * along)
-    return a[2] + t * dz + _profile(min(distance, radius), radius, flat, corner, slope)
-
-
-@array_kernel
-def _profile(distance: float, radius: float, flat: float, corner: float, slope: float) -> float:
-    if distance > radius:
-        return math.inf
-    beyond = max(distance - flat, 0.0)
-    if corner > 0.0:
-        return corner - math.sqrt(max(corner * corner - beyond * beyond, 0.0))
-    return slope * beyond
-
-
-@array_kernel
-def _turning_point(
-    first: float,
-    last: float,
-    nearest: float,
-    squared: float,
-    offset: float,
-    dz: float,
-    profile: tuple[float, float, float, float],
-) -> float:
-    """Where the height over a cell stops falling, by halving the stretch [share of the line]."""
-    _, flat, corner, slope = profile
-    for _ in range(_BISECTIONS):
-        t = 0.5 * (first + last)
-        along = t - nearest
-        distance = math.sqrt(offset + squared * along * along)
-        rise = dz
-        if distance > flat:
-            beyond = distance - flat
-            steepness = slope
-            if corner > 0.0:
-                steepness = beyond / math.sqrt(max(corner * corner - beyond * beyond, 1e-18))
-            rise += steepness * squared * along / distance
-        if rise > 0.0:
-            last = t
-        else:
-            first = t
-    return 0.5 * (first + last)
