@@ -4,9 +4,13 @@ from pathlib import Path
 
 from twin.recording.reader import open_recording
 from twin.run.progress import Progress
+<<<<<<< HEAD
 from twin.run.run import DryRun, Run
+=======
+from twin.run.results import STILL_NAME
+from twin.run.run import Run, Survey
+>>>>>>> main
 
-STILL_NAME = "still.png"
 FILM_STEM = "video"
 
 
