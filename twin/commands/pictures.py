@@ -4,12 +4,8 @@ from pathlib import Path
 
 from twin.recording.reader import open_recording
 from twin.run.progress import Progress
-<<<<<<< HEAD
-from twin.run.run import DryRun, Run
-=======
 from twin.run.results import STILL_NAME
-from twin.run.run import Run, Survey
->>>>>>> main
+from twin.run.run import DryRun, Run
 
 FILM_STEM = "video"
 
