@@ -55,7 +55,7 @@ def cycle_s(chunks: list[Chunk], limits: MotionLimits) -> float:
 
 
 def without_jerk_limit(limits: MotionLimits) -> MotionLimits:
-    """The same machine with jerk out of the way."""
+    """The machine with jerk limits that never bind."""
     return dataclasses.replace(
         limits, jerk=np.full(4, NO_JERK_LIMIT), path_jerk=math.inf, rotary_path_jerk=math.inf
     )
@@ -156,7 +156,8 @@ def _single_moves(folder: Path) -> Iterator[Row]:
 
 def _chains() -> Iterator[Row]:
     """The tests' chains of tangent moves beside TOPP-RA's bound, with and without a jerk limit."""
-    sys.path.insert(0, str(ROOT / "tests" / "motion"))
+    tests = ROOT / "tests" / "motion"
+    sys.path[:0] = [str(tests), str(tests / "profile")]
     try:
         import test_time_optimality as oracle
     except ImportError:
