@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from twin.check.outcome import CheckOutcome, Finding
-from twin.check.task import CheckSettings
+from twin.check.settings import CheckSettings
 from twin.check.variation import Variant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from twin.recording.reader import open_recording
 from twin.run.progress import Progress
+from twin.run.results import STILL_NAME
 from twin.run.run import Run, Survey
 
-STILL_NAME = "still.png"
 FILM_STEM = "video"
 
 

@@ -3,6 +3,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import twin
+import twin.compare.result
+import twin.run.run
 from tests.check.test_check_runs import write_job
 from twin import api
 from twin.commands.compare import compare_and_print
@@ -42,3 +45,9 @@ def test_what_is_wrong_is_an_error_of_the_twin(tmp_path: Path):
         export_and_print(tmp_path / "a.csv", None)
     with pytest.raises(UsageError, match="text or json"):
         compare_and_print(tmp_path / "a.h5", tmp_path / "b.h5", form="xml")
+
+
+def test_functions_stay_what_they_are_when_rooms_of_their_names_are_loaded():
+    assert twin.run is api.run
+    assert twin.compare is api.compare
+    assert {"run", "plan", "interpret", "compare"} <= set(dir(twin))

@@ -28,7 +28,7 @@ kernels.double(1), kernels.triple(1)
 
 def test_the_first_compilation_is_told_of_once(tmp_path: Path) -> None:
     (tmp_path / "kernels.py").write_text(KERNELS)
-    root = Path(__file__).parents[1]
+    root = Path(__file__).parents[2]
     surroundings = {**os.environ, "PYTHONPATH": f"{root}{os.pathsep}{tmp_path}"}
     surroundings.pop("NUMBA_DISABLE_JIT", None)
     said = [
