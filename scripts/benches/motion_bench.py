@@ -156,10 +156,9 @@ def _single_moves(folder: Path) -> Iterator[Row]:
 
 def _chains() -> Iterator[Row]:
     """The tests' chains of tangent moves beside TOPP-RA's bound, with and without a jerk limit."""
-    tests = ROOT / "tests" / "motion"
-    sys.path[:0] = [str(tests), str(tests / "profile")]
+    sys.path.insert(0, str(ROOT / "tests" / "motion"))
     try:
-        import test_time_optimality as oracle
+        import toppra_bound as oracle
     except ImportError:
         return
     name = f"TOPP-RA {version('toppra')} (no jerk limit)"
