@@ -1,6 +1,7 @@
 """The planner beside its oracles and peers: Ruckig, TOPP-RA, LinuxCNC; and how fast it is."""
 
 import dataclasses
+import importlib
 import math
 import subprocess
 import sys
@@ -158,7 +159,7 @@ def _chains() -> Iterator[Row]:
     """The tests' chains of tangent moves beside TOPP-RA's bound, with and without a jerk limit."""
     sys.path.insert(0, str(ROOT / "tests" / "motion"))
     try:
-        import toppra_bound as oracle
+        oracle = importlib.import_module("toppra_bound")
     except ImportError:
         return
     name = f"TOPP-RA {version('toppra')} (no jerk limit)"
