@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from twin import training
 from twin.files.toml import read_toml
 from twin.training.scene import phrases
 from twin.training.scene.phrases import PhrasesFile, translated
@@ -14,7 +15,7 @@ from twin.training.scene.texts import LANGUAGES, Language
 from twin.training.session.script import play
 from twin.training.session.session import Session
 
-ROOM = Path(phrases.__file__).parent
+ROOM = Path(training.__file__).parent / "session"
 SPEAKERS = ("actions.py", "room.py", "session.py", "tables.py")
 RAISED = ("UsageError", "TwinError", "AlarmStandsError")
 OTHERS: list[Language] = [lang for lang in LANGUAGES if lang != "en"]
