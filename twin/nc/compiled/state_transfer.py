@@ -11,33 +11,33 @@ from twin.nc.bytecode.frames import (
     DEPTH,
     FIRST,
     FURTHEST,
+    INSTRUCTION_BUDGET,
     LAST,
     LINE,
     MADE,
     MOST_CALLS,
     NO_PLACE,
     NOTHING_RESTORED,
-    OWN,
+    OWNS_SCOPE,
     PART,
     PROGRESS,
     RESTORED_BY_CONTROL,
     RESTORES,
-    STEPS_LEFT,
-    Memory,
-    Routine,
+    ExecutionState,
     Saved,
+    VariableStore,
 )
 from twin.nc.bytecode.opcodes import number_of_place, place_of_number
 from twin.nc.bytecode.registers import State
 from twin.nc.canonical import IntArray
-from twin.nc.compiled.kernels.tokenizer import NOT_PLAIN
+from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Modal
 from twin.nc.control.flow import Place, Progress, Return
 from twin.nc.path.contour_registers import Contour
 
 
-class HandOver:
+class StateTransfer:
     """One run: what the kernel is given of a control's program, and what it makes of it."""
 
     def __init__(self, control: Control, state: State, contour: Contour) -> None:
@@ -52,14 +52,14 @@ class HandOver:
         self._control = control
         self._saved = Saved(
             np.zeros((MOST_CALLS, len(state.modal))),
-            np.zeros((MOST_CALLS, len(state.in_force)), np.int64),
+            np.zeros((MOST_CALLS, len(state.active_codes)), np.int64),
         )
         self._begin = control.flow.progress()
         place, furthest, steps_left = self._begin
         self._progress = np.zeros(PROGRESS, np.int64)
         self._progress[[LINE, PART]] = place
         self._progress[FURTHEST] = number_of_place(furthest)
-        self._progress[STEPS_LEFT] = steps_left
+        self._progress[INSTRUCTION_BUDGET] = steps_left
         self._progress[DEPTH] = control.variables.depth
         self._given = control.flow.calls
         self._progress[CALLS] = len(self._given)
@@ -68,13 +68,13 @@ class HandOver:
             self._calls[row] = _numbers(call)
 
     @property
-    def routine(self) -> Routine:
+    def routine(self) -> ExecutionState:
         """For the kernel; the columns of variables may have grown since it was asked for last."""
         variables = self._control.variables
-        memory = Memory(
+        memory = VariableStore(
             variables.common, variables.given_common, variables.local, variables.given_local
         )
-        return Routine(self._progress, self._calls, memory, self._saved, self._contour)
+        return ExecutionState(self._progress, self._calls, memory, self._saved, self._contour)
 
     @property
     def line(self) -> int:
@@ -105,7 +105,7 @@ class HandOver:
             _call(row, self._restored(index, int(row[RESTORES])))
             for index, row in enumerate(self._calls[: progress[CALLS]])
         ]
-        control.flow.resume(Progress(place, furthest, int(progress[STEPS_LEFT])), calls)
+        control.flow.resume(Progress(place, furthest, int(progress[INSTRUCTION_BUDGET])), calls)
         control.variables.depth = int(progress[DEPTH])
 
     def _restored(self, index: int, by: int) -> tuple[Modal, dict[str, int]] | None:
@@ -116,7 +116,7 @@ class HandOver:
             return None
         control = self._control
         before = control.saved_modal()
-        put_into_force(control, self._saved.in_force[index])
+        put_into_force(control, self._saved.active_codes[index])
         restored = control.saved_modal()
         control.restore_modal(before)
         return restored
@@ -125,7 +125,7 @@ class HandOver:
 def put_into_force(control: Control, numbers: IntArray) -> None:
     """Apply the codes that a run has found in each group."""
     for number in numbers.tolist():
-        if number != NOT_PLAIN:
+        if number != UNSUPPORTED:
             control.put_into_force(number, control.dialect.g[number])
 
 
@@ -135,7 +135,7 @@ def _numbers(call: Return) -> list[int]:
     numbers[FIRST] = number_of_place(call.first)
     numbers[AGAIN] = call.again
     numbers[LAST] = NO_PLACE if call.last is None else number_of_place(call.last)
-    numbers[OWN] = call.own_variables
+    numbers[OWNS_SCOPE] = call.own_variables
     numbers[RESTORES] = NOTHING_RESTORED if call.restores is None else RESTORED_BY_CONTROL
     return numbers
 

@@ -1,4 +1,4 @@
-"""The fast way through plain blocks against the control, bit for bit."""
+"""The compiled tier through plain blocks against the control, bit for bit."""
 
 import dataclasses
 import random
@@ -40,7 +40,7 @@ RARE = {
     "fagor8070": "G1 R5 Q30|P1=2|G1 XP1|G1 X20I|; text|G73|G11|G10|G1 X5 NR3|[HERE]",
     "mefi": '"text|G1 X1 "behind|Z1 G10|M5|S200|G4 P2|T2 M6|G54|G55 X3|G92 X1|G43 H2|G49|M3 S5 M8',
 }
-"""What the general way must run in between."""
+"""What the interpreter tier must run in between."""
 WRONG = {
     "gost": "(open",
     "codesys": "T90|PC360|G16 I1",
@@ -62,8 +62,10 @@ class Seen:
     place: bytes
 
 
-def seen(source: Source, dialect: str, settings: ControlSettings, plain_from: int) -> Seen:
-    interpretation = Interpretation(source, dialect_named(dialect), settings, plain_from=plain_from)
+def seen(source: Source, dialect: str, settings: ControlSettings, compiled_from: int) -> Seen:
+    interpretation = Interpretation(
+        source, dialect_named(dialect), settings, compiled_from=compiled_from
+    )
     chunks: list[Chunk] = []
     error = None
     try:
@@ -100,7 +102,7 @@ def assert_same(source: Source, dialect: str, settings: ControlSettings = WITH_T
 def general_blocks(
     text: str, dialect: str, job: ControlSettings, monkeypatch: pytest.MonkeyPatch
 ) -> int:
-    """How many blocks the general way runs where the fast way is taken from the start."""
+    """How many blocks the interpreter tier runs where the compiled tier is taken from the start."""
     lines: list[int] = []
     general = Control.run
 
@@ -229,12 +231,12 @@ def test_long_runs_cross_the_border_of_chunks(dialect: str) -> None:
 
 
 def test_the_fast_way_is_taken() -> None:
-    """Otherwise the tests above compare the general way with itself."""
-    from twin.nc.compiled.runner import PlainRunner
+    """Otherwise the tests above compare the interpreter tier with itself."""
+    from twin.nc.compiled.virtual_machine import VirtualMachine
 
     text = "G90 G1 X0 F100\n" + "G1 X1 Y2 (a)\n\nG2 X11 Y2 I5 J0\n" * 50
     for dialect in ("gost", "codesys", "fagor8070"):
         interpretation = Interpretation(source_from_text(text), dialect_named(dialect), SETTINGS)
         interpretation._control.prepare()
-        assert PlainRunner(interpretation._control).run()
+        assert VirtualMachine(interpretation._control).run()
         assert interpretation._control.flow.place.line == 151, dialect

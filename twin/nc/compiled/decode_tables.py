@@ -1,4 +1,4 @@
-"""What the fast way through plain blocks knows: tables made of a dialect's declaration.
+"""What the compiled tier through plain blocks knows: tables made of a dialect's declaration.
 
 Nothing is said here of any dialect: a code, a letter or an interpolation that the declaration does
 not describe completely is not plain.
@@ -36,16 +36,16 @@ from twin.nc.compiled.kernels.tokenizer import (
     CODE,
     FEED,
     FUNCTION,
-    NOT_PLAIN,
     NUMBER,
     OTHER,
     RADIUS,
+    UNSUPPORTED,
     LineTables,
 )
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Comment, Dialect, FeedMode, GCode, Modal
 from twin.nc.control.drilling_cycle import Cycle
-from twin.nc.control.interpolation import Interpolation, PlainArc, PlainHole, PlainLine
+from twin.nc.control.interpolation import ArcRule, CycleRule, Interpolation, LineRule
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.geometry.planes import PLANE_ORDER
@@ -66,15 +66,15 @@ _FIELDS: Mapping[str, int] = {
 """The fields of ``Modal`` that plain codes may set, and their places."""
 
 
-class PlainTables:
+class DecodeTables:
     """The tables of one dialect on one machine.
 
     Attributes:
         lines: How lines are read.
         blocks: What blocks mean.
         groups: The modal groups in the order of their numbers in ``blocks``.
-        roles: What the letters of plain words are.
-        rapid_feed: What ``PlainLine`` says of rapids.
+        token_kinds: What the letters of plain words are.
+        rapid_feed: What ``LineRule`` says of rapids.
     """
 
     def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
@@ -83,8 +83,8 @@ class PlainTables:
         self._places = {id(each): float(at) for at, each in enumerate(self._interpolations)}
         self._cycles = _cycles(dialect)
         self.rapid_feed = _rapid_feed(self._interpolations)
-        self.roles = _roles(dialect, settings)
-        self.lines = _line_tables(dialect, self.roles)
+        self.token_kinds = _token_kinds(dialect, settings)
+        self.lines = _line_tables(dialect, self.token_kinds)
         self.blocks = self._block_tables(dialect, settings)
 
     def modal(self, modal: Modal) -> FloatArray:
@@ -105,8 +105,8 @@ class PlainTables:
     @property
     def cycle_letters(self) -> set[str]:
         """Letters of the words of drilling cycles."""
-        plain = [each.plain for each in self._cycles if each is not None]
-        return {letter for each in plain if isinstance(each, PlainHole) for letter in each.words}
+        plain = [each.rule for each in self._cycles if each is not None]
+        return {letter for each in plain if isinstance(each, CycleRule) for letter in each.words}
 
     def knows_cycle(self, cycle: Interpolation | None) -> bool:
         """Whether the kernel can drill it."""
@@ -126,10 +126,10 @@ class PlainTables:
         return float(value)
 
     def _block_tables(self, dialect: Dialect, settings: ControlSettings) -> BlockTables:
-        field = np.full(CODES, NOT_PLAIN, np.int64)
+        field = np.full(CODES, UNSUPPORTED, np.int64)
         value = np.zeros(CODES)
         group = np.zeros(CODES, np.int64)
-        cycle = np.full(CODES, NOT_PLAIN, np.int64)
+        cycle = np.full(CODES, UNSUPPORTED, np.int64)
         for number, code in dialect.g.items():
             group[number] = self.groups.index(code.group)
             if "cycle" in code.sets:
@@ -137,14 +137,14 @@ class PlainTables:
             meant = self._meaning(code)
             if meant is not None:
                 field[number], value[number] = meant
-        plain = [each.plain if each else None for each in self._interpolations]
-        arcs = [each if isinstance(each, PlainArc) else PlainArc(clockwise=False) for each in plain]
+        plain = [each.rule if each else None for each in self._interpolations]
+        arcs = [each if isinstance(each, ArcRule) else ArcRule(clockwise=False) for each in plain]
         return BlockTables(
             field=field,
             value=value,
             group=group,
             cycle=cycle,
-            cycles=_cycle_rows(self._cycles, self.roles),
+            cycles=_cycle_rows(self._cycles, self.token_kinds),
             function=_functions(dialect),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
@@ -179,7 +179,7 @@ def _interpolations(dialect: Dialect) -> list[Interpolation | None]:
         value = code.sets.get("interpolation")
         if (
             isinstance(value, Interpolation)
-            and value.plain is not None
+            and value.rule is not None
             and all(value is not each for each in found)
         ):
             found.append(value)
@@ -193,51 +193,51 @@ def _cycles(dialect: Dialect) -> list[Interpolation | None]:
 
 
 def _drills(interpolation: Interpolation) -> bool:
-    return isinstance(interpolation.plain, PlainHole)
+    return isinstance(interpolation.rule, CycleRule)
 
 
-def _cycle_rows(cycles: list[Interpolation | None], roles: Mapping[str, int]) -> FloatArray:
+def _cycle_rows(cycles: list[Interpolation | None], token_kinds: Mapping[str, int]) -> FloatArray:
     parts = len(Cycle._fields)
-    rows = np.full((len(cycles), parts + 1 + max(roles.values())), float(NOT_PLAIN))
+    rows = np.full((len(cycles), parts + 1 + max(token_kinds.values())), float(UNSUPPORTED))
     rows[:, :parts] = 0.0
     for row, each in zip(rows, cycles, strict=True):
-        if each is not None and isinstance(each.plain, PlainHole):
-            row[:parts] = each.plain.cycle
-            for letter in each.plain.words.keys() & roles.keys():
-                row[parts + roles[letter]] = each.plain.words[letter]
+        if each is not None and isinstance(each.rule, CycleRule):
+            row[:parts] = each.rule.cycle
+            for letter in each.rule.words.keys() & token_kinds.keys():
+                row[parts + token_kinds[letter]] = each.rule.words[letter]
     return rows
 
 
 def _rapid_feed(
     interpolations: list[Interpolation | None],
 ) -> Callable[[Control], float] | None:
-    plain = [each.plain for each in interpolations if each is not None and each.rapid]
-    return next((each.rapid_feed for each in plain if isinstance(each, PlainLine)), None)
+    plain = [each.rule for each in interpolations if each is not None and each.rapid]
+    return next((each.rapid_feed for each in plain if isinstance(each, LineRule)), None)
 
 
 def _functions(dialect: Dialect) -> IntArray:
     """M codes that are only reported; a spindle's start carries its speed, and is not plain."""
-    function = np.full(CODES, EARLY if dialect.any_m else NOT_PLAIN, np.int64)
+    function = np.full(CODES, EARLY if dialect.any_m else UNSUPPORTED, np.int64)
     for number, code in dialect.m.items():
         only_told = code.action is None and not code.silent and not code.ends
-        function[number] = (LATE if code.late else EARLY) if only_told else NOT_PLAIN
+        function[number] = (LATE if code.late else EARLY) if only_told else UNSUPPORTED
     for start in SPINDLE_STARTS:
-        function[int(start[1:])] = NOT_PLAIN
+        function[int(start[1:])] = UNSUPPORTED
     return function
 
 
 def _kind(interpolation: Interpolation | None) -> int:
     if interpolation is None:
         return NO_MOTION
-    if isinstance(interpolation.plain, PlainArc):
+    if isinstance(interpolation.rule, ArcRule):
         return ARC
     return RAPID_LINE if interpolation.rapid else FEED_LINE
 
 
-def _line_tables(dialect: Dialect, roles: Mapping[str, int]) -> LineTables:
+def _line_tables(dialect: Dialect, token_kinds: Mapping[str, int]) -> LineTables:
     by_letter = np.full(26, OTHER, np.int64)
-    for letter, role in roles.items():
-        by_letter[ord(letter) - ord("A")] = role
+    for letter, token_kind in token_kinds.items():
+        by_letter[ord(letter) - ord("A")] = token_kind
     comments = dialect.syntax.comments
     return LineTables(
         by_letter,
@@ -247,20 +247,22 @@ def _line_tables(dialect: Dialect, roles: Mapping[str, int]) -> LineTables:
     )
 
 
-def _roles(dialect: Dialect, settings: ControlSettings) -> dict[str, int]:
+def _token_kinds(dialect: Dialect, settings: ControlSettings) -> dict[str, int]:
     """Letters with a plain meaning; those that a dialect uses otherwise as well have none."""
     center = {letter: CENTER + index for index, letter in enumerate("IJK")}
     axes = {name: AXIS + index for index, name in enumerate(settings.axes.names)}
-    roles = {
-        letter: role
-        for letter, role in {"R": RADIUS, **center, **axes}.items()
-        if letter in dialect.motion_words and (role < AXIS or letter in dialect.axis_letters)
+    token_kinds = {
+        letter: token_kind
+        for letter, token_kind in {"R": RADIUS, **center, **axes}.items()
+        if letter in dialect.motion_words and (token_kind < AXIS or letter in dialect.axis_letters)
     }
     taken = {*dialect.words, *dialect.references, *dialect.signed, *dialect.series}
-    roles = {letter: role for letter, role in roles.items() if letter not in taken}
+    token_kinds = {
+        letter: token_kind for letter, token_kind in token_kinds.items() if letter not in taken
+    }
     if dialect.words.get("F") is codes.set_feed:
-        roles["F"] = FEED
-    return {**roles, "N": NUMBER, "G": CODE, "M": FUNCTION}
+        token_kinds["F"] = FEED
+    return {**token_kinds, "N": NUMBER, "G": CODE, "M": FUNCTION}
 
 
 def _marks(texts: list[str]) -> np.ndarray[tuple[int, int], np.dtype[np.uint8]]:

@@ -1,4 +1,4 @@
-"""Lines that differ in their numbers alone are translated alike: once, for all of them.
+"""Lines that differ in their numbers alone are compiled alike: once, for all of them.
 
 A post-processor's program may hold a hundred thousand lines such as ``X[P1+2.5]``; reading each as
 an expression would cost more than running it.
@@ -10,40 +10,40 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from twin.nc.bytecode.opcodes import Step, Table
+from twin.nc.bytecode.opcodes import BytecodeTable, Opcode
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.tokenizer import CODE, FUNCTION
 from twin.nc.text.expressions import LARGEST_NUMBER, NUMBER
 
 _LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)
-_SHARED = (Step.KEEP, Step.CYCLE_WORD)
-"""Steps of lines that may share a shape, besides those that compute and move."""
-_MOST_SHAPES = 1000
-"""Shapes that are kept: a program that has more gains nothing by them."""
+_SHARED = (Opcode.SNAPSHOT, Opcode.CYCLE_WORD)
+"""Opcodes of lines that may share a template, besides those that compute and move."""
+_MOST_TEMPLATES = 1000
+"""Templates that are kept: a program that has more gains nothing by them."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Shape:
+class Template:
     """What the lines of one shape do.
 
     Attributes:
-        steps: Shape (n,).
-        arguments: Shape (n,).
-        numbers: Of the line that was translated, shape (n,).
+        opcodes: Shape (n,).
+        operands: Shape (n,).
+        immediates: Of the line that was compiled, shape (n,).
         places: Rows whose number is the line's own, in the order of its text, shape (m,).
     """
 
-    steps: IntArray
-    arguments: IntArray
-    numbers: FloatArray
+    opcodes: IntArray
+    operands: IntArray
+    immediates: FloatArray
     places: IntArray
 
 
-class LineShapes:
-    """The shapes of one program's lines."""
+class LineTemplates:
+    """The templates of one program's lines."""
 
     def __init__(self, letters: Iterable[str]) -> None:
-        """Know no shape yet.
+        """Know no template yet.
 
         Args:
             letters: Those of words whose value does not change what the block is.
@@ -53,7 +53,7 @@ class LineShapes:
             rf"((?<![\w.$#])[{''.join(letters)}][ \t]*[-+]?{NUMBER}|(?<![\w.$#]){NUMBER})",
             re.IGNORECASE,
         )
-        self._shapes: dict[tuple[str, ...], Shape] = {}
+        self._templates: dict[tuple[str, ...], Template] = {}
 
     def split(self, text: str) -> tuple[tuple[str, ...], list[float]]:
         """A line without its numbers, and these."""
@@ -69,18 +69,18 @@ class LineShapes:
             return ("N", *pieces), numbers
         return tuple(pieces), numbers[1:]
 
-    def find(self, key: tuple[str, ...], numbers: list[float]) -> Shape | None:
-        """The shape of a line that was split, or None."""
-        shape = self._shapes.get(key)
-        if shape is None or any(not abs(number) <= LARGEST_NUMBER for number in numbers):
+    def find(self, key: tuple[str, ...], numbers: list[float]) -> Template | None:
+        """The template for a line that was split, or None."""
+        template = self._templates.get(key)
+        if template is None or any(not abs(number) <= LARGEST_NUMBER for number in numbers):
             return None
-        return shape
+        return template
 
     def keep(
         self,
         key: tuple[str, ...],
         numbers: list[float],
-        table: Table,
+        table: BytecodeTable,
         rows: slice,
         columns: list[int],
     ) -> None:
@@ -88,23 +88,23 @@ class LineShapes:
 
         Args:
             key: The line without its numbers.
-            numbers: They.
+            numbers: Its numbers.
             table: The instructions.
             rows: Those of the line.
             columns: Where the word stands that each of the rows of a line of one block belongs to.
         """
-        steps, arguments = table.step[rows].copy(), table.argument[rows].copy()
+        opcodes, operands = table.opcode[rows].copy(), table.operand[rows].copy()
         own = np.flatnonzero(
-            (steps == Step.NUMBER)
-            | ((steps == Step.WORD_NUMBER) & ~np.isin(arguments, (CODE, FUNCTION)))
+            (opcodes == Opcode.CONSTANT)
+            | ((opcodes == Opcode.WORD_CONSTANT) & ~np.isin(operands, (CODE, FUNCTION)))
         )
-        shared = len(columns) == len(steps) and (
-            ((steps <= Step.RUN) | np.isin(steps, _SHARED)).all()
-            and (steps[1:] != Step.BLOCK).all()
-            and len(self._shapes) < _MOST_SHAPES
+        shared = len(columns) == len(opcodes) and (
+            ((opcodes <= Opcode.RUN) | np.isin(opcodes, _SHARED)).all()
+            and (opcodes[1:] != Opcode.BLOCK).all()
+            and len(self._templates) < _MOST_TEMPLATES
         )
         if not shared:
             return
         own = own[np.argsort(np.array(columns)[own], kind="stable")]
-        if table.number[rows][own].tolist() == numbers:
-            self._shapes[key] = Shape(steps, arguments, table.number[rows].copy(), own)
+        if table.immediate[rows][own].tolist() == numbers:
+            self._templates[key] = Template(opcodes, operands, table.immediate[rows].copy(), own)

@@ -1,23 +1,23 @@
-"""The fast way: plain and translated blocks go past the control's words, in one compiled loop.
+"""The compiled tier: plain and compiled blocks go past the control's words, in one compiled loop.
 
 The control stays the one place that knows what a program means. It hands its state to the loop,
 the loop runs blocks as far as they are plain, and the control takes the state back; where a
-dialect remembers something that acts on such blocks, they go the general way.
+dialect remembers something that acts on such blocks, they go the interpreter tier.
 """
 
 import math
 
 import numpy as np
 
-from twin.nc.bytecode.frames import FULL, LEFT, OFF_PAGE, PAUSED, UNREAD
+from twin.nc.bytecode.frames import FULL, OFF_PAGE, PAUSED, TRAPPED, UNCOMPILED_LINE
 from twin.nc.bytecode.registers import (
     CYCLE,
-    GIVEN,
+    CYCLE_STATE,
+    CYCLE_WORDS,
     IN_SPINDLE,
     MATRIX,
     PROGRAMMED_FEED,
     REGISTERS,
-    REMEMBERED,
     ROTATION,
     SCALE,
     SELECTED,
@@ -30,13 +30,13 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.contour_columns import fill, gone, new_contour
-from twin.nc.compiled.hand_over import HandOver, put_into_force
-from twin.nc.compiled.kernels.block import new_bench
+from twin.nc.compiled.decode_tables import FEED_FACTORS, DecodeTables
+from twin.nc.compiled.kernels.block import new_scratch
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
 from twin.nc.compiled.kernels.program import run_program
-from twin.nc.compiled.kernels.tokenizer import NOT_PLAIN
-from twin.nc.compiled.tables import FEED_FACTORS, PlainTables
-from twin.nc.compiled.translator import Translator
+from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
+from twin.nc.compiled.line_compiler import LineCompiler
+from twin.nc.compiled.state_transfer import StateTransfer, put_into_force
 from twin.nc.control.control import Control
 from twin.nc.control.drilling_cycle import most_acts, no_values
 from twin.nc.geometry.planes import PLANE_ORDER
@@ -54,8 +54,8 @@ _MOST = 200_000
 """Blocks after which a run without moves lets an interruption through."""
 
 
-class PlainRunner:
-    """Runs plain blocks, and those that were translated, for a control.
+class VirtualMachine:
+    """Runs plain blocks, and those that were compiled, for a control.
 
     Attributes:
         full: The path has no room for the next block's moves.
@@ -66,8 +66,8 @@ class PlainRunner:
         self._control = control
         self._lines = control.flow.lines
         self._page = Page(0, b"")
-        self._tables = PlainTables(control.dialect, control.settings)
-        self._translator = Translator(control, self._tables)
+        self._tables = DecodeTables(control.dialect, control.settings)
+        self._line_compiler = LineCompiler(control, self._tables)
         self._rows = Rows(
             np.zeros((CHUNK, 5), np.int64),
             np.zeros((CHUNK, 11)),
@@ -81,7 +81,7 @@ class PlainRunner:
         self._radii = np.array([tool.radius for tool in table.values()])
         self._hole = np.zeros((4, most_acts(MOST_STOPS)))
         self._contour = new_contour(axes)
-        self._bench = new_bench(self._state())
+        self._bench = new_scratch(self._state())
         self._pause = 1
         self._wait = 0
         self.full = False
@@ -98,23 +98,23 @@ class PlainRunner:
             return False
         state, rows = self._state(), self._rows.first(room)
         fill(self._contour, control.path.followed, control.path.position)
-        handed = HandOver(control, state, self._contour)
-        why = self._run(state, rows, handed)
-        self.full = why == FULL and room - handed.made < CHUNK
-        worthwhile = handed.blocks >= _WORTHWHILE
-        if why == LEFT:
+        transfer = StateTransfer(control, state, self._contour)
+        why = self._run(state, rows, transfer)
+        self.full = why == FULL and room - transfer.made < CHUNK
+        worthwhile = transfer.blocks >= _WORTHWHILE
+        if why == TRAPPED:
             self._wait = 1 if worthwhile else self._pause
-        self._pause = 1 if worthwhile or why != LEFT else min(2 * self._pause, _LONGEST_PAUSE)
-        if not handed.gone_on:
+        self._pause = 1 if worthwhile or why != TRAPPED else min(2 * self._pause, _LONGEST_PAUSE)
+        if not transfer.gone_on:
             return self.full
-        handed.give_back()
-        self._give_back(state, rows.first(handed.made))
+        transfer.give_back()
+        self._give_back(state, rows.first(transfer.made))
         return True
 
-    def _run(self, state: State, rows: Rows, handed: HandOver) -> int:
+    def _run(self, state: State, rows: Rows, transfer: StateTransfer) -> int:
         """Run; why the run ended."""
-        translator, constants = self._translator, self._constants()
-        instructions = translator.instructions
+        line_compiler, constants = self._line_compiler, self._constants()
+        bytecode = line_compiler.bytecode
         while True:
             why = run_program(
                 self._page.data,
@@ -125,16 +125,16 @@ class PlainRunner:
                 constants,
                 state,
                 rows,
-                instructions.table,
-                handed.routine,
+                bytecode.table,
+                transfer.routine,
                 self._bench,
                 _MOST,
             )
             if why == OFF_PAGE:
-                self._page = self._lines.page_of(handed.line)
-            elif why == UNREAD:
-                if not translator.translate(handed.line):
-                    return LEFT
+                self._page = self._lines.page_of(transfer.line)
+            elif why == UNCOMPILED_LINE:
+                if not line_compiler.compile(transfer.line):
+                    return TRAPPED
             elif why != PAUSED:
                 return why
 
@@ -179,22 +179,25 @@ class PlainRunner:
         control = self._control
         return State(
             modal=self._tables.modal(control.modal),
-            in_force=np.full(len(self._tables.groups), NOT_PLAIN, np.int64),
+            active_codes=np.full(len(self._tables.groups), UNSUPPORTED, np.int64),
             programmed=np.array(control.programmed),
             part=np.array(control.part),
-            happened=np.zeros(1, np.int64),
+            event_count=np.zeros(1, np.int64),
             registers=self._registers(),
             shifts=np.array(control.frame.shifts),
             total=np.array(control.frame.total),
-            label=np.zeros(len(control.part)),
+            target=np.zeros(len(control.part)),
         )
 
     def _registers(self) -> FloatArray:
         control = self._control
         registers = np.zeros(REGISTERS)
-        registers[REMEMBERED:GIVEN], registers[GIVEN:MATRIX] = control.hole_values, math.nan
-        registers[SCALE], registers[ROTATION], registers[SIGNS:REMEMBERED] = 1.0, math.nan, 1.0
-        registers[TURNED] = not control.frame.plain
+        registers[CYCLE_STATE:CYCLE_WORDS], registers[CYCLE_WORDS:MATRIX] = (
+            control.hole_values,
+            math.nan,
+        )
+        registers[SCALE], registers[ROTATION], registers[SIGNS:CYCLE_STATE] = 1.0, math.nan, 1.0
+        registers[TURNED] = not control.frame.is_identity
         registers[MATRIX:] = np.ravel(control.frame.matrix)
         tools = control.tools
         for place, value in (
@@ -221,20 +224,20 @@ class PlainRunner:
 
     def _give_cycle_back(self, state: State) -> None:
         cycle = self._tables.cycle(state.modal[CYCLE])
-        values = state.registers[REMEMBERED:GIVEN].tolist()
+        values = state.registers[CYCLE_STATE:CYCLE_WORDS].tolist()
         self._control.modal.cycle = cycle
         self._control.hole_values = no_values() if cycle is None else values
 
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control
-        put_into_force(control, state.in_force)
+        put_into_force(control, state.active_codes)
         self._give_cycle_back(state)
         self._take_registers(state.registers.tolist())
         control.frame.set_shifts(state.shifts.tolist())
         a, b, c, d, e, f, g, h, i = state.registers[MATRIX:].tolist()
         control.frame.set_matrix(((a, b, c), (d, e, f), (g, h, i)))
-        happened = int(state.happened[0])
-        events = EventRows(rows.events[:happened], rows.amounts[:happened])
+        event_count = int(state.event_count[0])
+        events = EventRows(rows.events[:event_count], rows.event_values[:event_count])
         moves = Row(rows.codes, rows.values, rows.positions)
         gone_on, placed = gone(self._contour, moves, events)
         control.path.add_rows(moves, placed, gone_on)

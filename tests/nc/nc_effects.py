@@ -1,6 +1,6 @@
 """Blocks that do more than move and compute, by dialect, for programs that are made at random."""
 
-DEEDS = {
+EFFECTS = {
     "fagor8070": (
         "G4 K1|G04 0.5|#TIME [P1]|#TIME[1]|M8|M5 M9|S[P1*10] M3|S1000|M3|M4 S5 M8|T1|"
         "T2 M6|M6|T[P1] M6|D0|D1|H5|G54|G55|G55 X3|G56 G0 Z[P1]|G53|G92 X[P1] Y3|"
