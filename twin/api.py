@@ -77,7 +77,7 @@ def plan(
 
 
 def setpoints(run: Run) -> Iterator[Setpoints]:
-    """The same in chunks, for a run that is prepared already."""
+    """The setpoints of a run that is prepared already, in chunks."""
     preparation = run.preparation
     return plan_chunks(
         preparation.interpretation().chunks(),

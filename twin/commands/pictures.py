@@ -11,12 +11,12 @@ from twin.run.run import Run
 FILM_STEM = "video"
 
 
-def film_run(run: Run, program: DryRun, folder: Path, progress: Progress) -> None:
+def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> None:
     """Film a run that was recorded, and draw its end as a still.
 
     Args:
         run: The run.
-        program: What the dry run found.
+        dry_run: What the first pass over its program found.
         folder: Where ``recording.h5`` lies and the pictures go.
         progress: Told how far the film is.
 
@@ -29,7 +29,7 @@ def film_run(run: Run, program: DryRun, folder: Path, progress: Progress) -> Non
 
     video = run.preparation.job.file.video
     with open_recording(folder / "recording.h5") as recording:
-        scene = scene_of(recording, run.preparation, program.notes)
+        scene = scene_of(recording, run.preparation, dry_run.summary)
         film(
             scene,
             video=video,

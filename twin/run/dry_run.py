@@ -3,7 +3,7 @@
 import dataclasses
 from collections.abc import Iterable
 
-from twin.cutting.program_notes import NoteTaker, ProgramNotes
+from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
 from twin.cutting.spindle import speaks_of_spindle
 from twin.machine.alarms import Alarm
 from twin.machine.travel import soft_limit_alarm
@@ -22,17 +22,17 @@ class DryRun:
         warnings: What the interpreter had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
         speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
-        notes: What the program says beside its moves.
+        summary: What the program says beside its moves.
     """
 
     moves: int
     warnings: tuple[Diagnostic, ...]
     alarm: Alarm | None
     speaks_of_spindle: bool
-    notes: ProgramNotes
+    summary: ProgramSummary
 
 
-def dry_run(preparation: Preparation, part_zero: FloatArray, clock: StageClock) -> DryRun:
+def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageClock) -> DryRun:
     """Interpret a whole program, so that no error is met with the machine half-way.
 
     Args:
@@ -46,11 +46,11 @@ def dry_run(preparation: Preparation, part_zero: FloatArray, clock: StageClock) 
     """
     interpretation = preparation.interpretation()
     moves, alarm, speaks = 0, None, False
-    taker = NoteTaker(preparation.job.file)
+    builder = SummaryBuilder(preparation.job.file)
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())
     for chunk in chunks:
         moves += len(chunk.moves)
-        taker.add(chunk)
+        builder.add(chunk)
         speaks = speaks or speaks_of_spindle(chunk)
         if alarm is None:
             alarm = soft_limit_alarm(preparation.machine, chunk.moves, part_zero)
@@ -59,5 +59,5 @@ def dry_run(preparation: Preparation, part_zero: FloatArray, clock: StageClock) 
         warnings=tuple(interpretation.diagnostics),
         alarm=alarm,
         speaks_of_spindle=speaks,
-        notes=taker.notes(),
+        summary=builder.summary(),
     )

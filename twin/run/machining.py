@@ -8,7 +8,7 @@ from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.events import CutEvent
 from twin.cutting.fixtures import FixtureGuard
 from twin.cutting.part import write_stl
-from twin.cutting.program_notes import ProgramNotes
+from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.spindle import Spindle
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.alarms import Alarm
@@ -26,7 +26,7 @@ class Machining:
         self,
         machine: Machine,
         stock: StockTable | None,
-        notes: ProgramNotes,
+        summary: ProgramSummary,
         part_frame: PartFrame,
         part_zero: FloatArray,
         *,
@@ -37,21 +37,21 @@ class Machining:
         Args:
             machine: Its fixtures are those of the job.
             stock: The blank; None where nothing is cut.
-            notes: What is in the spindle when, and which moves are rapids.
+            summary: What is in the spindle when, and which moves are rapids.
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
         """
-        self._notes = notes
+        self._summary = summary
         self._spindle = Spindle(held_to_program=speaks_of_spindle)
         self._cutter: Cutter | None = None
         if stock is not None:
-            self._cutter = Cutter(stock, notes.tools, part_frame, part_zero, halts=True)
+            self._cutter = Cutter(stock, summary.tools, part_frame, part_zero, halts=True)
         self._guard: FixtureGuard | None = None
         # Without a rotary table the model has no part frame in which a fixture could stand.
         if machine.file.fixtures and machine.part_frame.rotary is not None:
-            height = notes.tools.tools[0].length - spindle_over_table_mm(machine)
-            self._guard = FixtureGuard(machine.file.fixtures, notes.tools, part_frame, height)
+            height = summary.tools.tools[0].length - spindle_over_table_mm(machine)
+            self._guard = FixtureGuard(machine.file.fixtures, summary.tools, part_frame, height)
 
     def expect(self, chunk: Chunk) -> None:
         """Take note of a chunk of the program, before its samples come."""
@@ -90,7 +90,7 @@ class Machining:
         cutter = self._cutter
         if cutter is None:
             return samples, None
-        rapid = self._notes.is_rapid(samples.setpoint.move)
+        rapid = self._summary.is_rapid(samples.setpoint.move)
         cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
         if cutter.halted is None:
             return samples, None

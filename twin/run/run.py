@@ -11,7 +11,7 @@ from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
 from twin.compare.verdict import judge
 from twin.cutting.axis_load import AxisLoad
-from twin.cutting.program_notes import ProgramNotes
+from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.machine.model import build_spec, spindle_over_table_mm
 from twin.machine.motion_limits import motion_limits
@@ -22,7 +22,7 @@ from twin.motion.setpoints.settle import settle
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.text.source import Source
 from twin.recording.reader import LONGEST_TEXT, RecordingHeader, RecordingWriter, Samples, record
-from twin.run.dry_run import DryRun, dry_run
+from twin.run.dry_run import DryRun, interpret_all
 from twin.run.machining import Machining
 from twin.run.outcome import Outcome
 from twin.run.placement import part_zero
@@ -72,28 +72,28 @@ class Run:
             ProgramError: The program is wrong.
             ConfigError: It brings a tool that the job does not list.
         """
-        return dry_run(self.preparation, self.part_zero, self.clock)
+        return interpret_all(self.preparation, self.part_zero, self.clock)
 
-    def execute(self, program: DryRun, out: Path | None, progress: Progress) -> Outcome:
+    def execute(self, dry_run: DryRun, out: Path | None, progress: Progress) -> Outcome:
         """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
 
         A program that would leave the travel moves nothing and writes nothing.
 
         Args:
-            program: What the dry run found.
+            dry_run: What the dry run found.
             out: The folder; None writes neither, for who wants the verdict alone.
             progress: Told how far the simulation is.
 
         Raises:
             SimulationError: The simulation failed; the recording is not kept.
         """
-        comparison, machining = self._comparison(), self._machining(program)
+        comparison, machining = self._comparison(), self._machining(dry_run)
         reached = _Reached(self.part_zero, self.preparation.start)
-        alarm, near_miss = program.alarm, None
+        alarm, near_miss = dry_run.alarm, None
         if alarm is None:
             with self._recording(out) as writer:
                 setpoints = self._setpoints(comparison, machining)
-                simulation = self._simulation(setpoints, program.notes)
+                simulation = self._simulation(setpoints, dry_run.summary)
                 for simulated in self.clock.watch("simulate", simulation):
                     with self.clock.stage("cut"):
                         samples, alarm = machining.add(simulated)
@@ -104,7 +104,7 @@ class Run:
                     if writer is not None:
                         with self.clock.stage("record"):
                             writer.append(samples, contour_um)
-                    progress("simulate", reached.share_of(program.moves))
+                    progress("simulate", reached.share_of(dry_run.moves))
                     if alarm is not None:
                         break
                 alarm, near_miss = alarm or simulation.alarm, simulation.near_miss
@@ -122,7 +122,7 @@ class Run:
             cut=cut,
             alarms=alarms,
             near_miss=near_miss,
-            warnings=program.warnings,
+            warnings=dry_run.warnings,
             samples=len(reached),
             duration_s=duration_s,
             final_commanded=reached.commanded,
@@ -153,14 +153,14 @@ class Run:
 
         return self.clock.watch("plan", settle(planned(), period))
 
-    def _simulation(self, setpoints: Iterator[Setpoints], notes: ProgramNotes) -> Simulation:
+    def _simulation(self, setpoints: Iterator[Setpoints], summary: ProgramSummary) -> Simulation:
         machine, job = self.preparation.machine, self.preparation.job.file
         load = None
         if job.cutting_load:
             if job.stock is None:
                 raise ConfigError("cutting_load needs a [stock] to cut")
-            load = AxisLoad(job.stock, notes, self.part_frame, self.part_zero)
-        return simulate(machine, self.spec, setpoints, notes.tools, load)
+            load = AxisLoad(job.stock, summary, self.part_frame, self.part_zero)
+        return simulate(machine, self.spec, setpoints, summary.tools, load)
 
     def _comparison(self) -> Comparison:
         return Comparison(
@@ -170,14 +170,14 @@ class Run:
             apart=[part.lines for part in self.preparation.job.file.tolerance.blocks],
         )
 
-    def _machining(self, program: DryRun) -> Machining:
+    def _machining(self, dry_run: DryRun) -> Machining:
         return Machining(
             self.preparation.machine,
             self.preparation.job.file.stock,
-            program.notes,
+            dry_run.summary,
             self.part_frame,
             self.part_zero,
-            speaks_of_spindle=program.speaks_of_spindle,
+            speaks_of_spindle=dry_run.speaks_of_spindle,
         )
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import mujoco
 
-from twin.cutting.program_notes import ProgramNotes
+from twin.cutting.program_summary import ProgramSummary
 from twin.errors import RenderError
 from twin.job.job_file import StockTable
 from twin.machine.config import Machine
@@ -21,7 +21,7 @@ class Scene:
     spec: mujoco.MjSpec
     """Machine, tool and named cameras, as the machine room builds it; it is not changed."""
     machine: Machine
-    notes: ProgramNotes
+    summary: ProgramSummary
     """What is in the spindle when, which moves are rapids, what the screen shows."""
     source: Sequence[str] = ()
     """Lines of the program."""
