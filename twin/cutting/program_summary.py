@@ -45,7 +45,7 @@ class Steps(Generic[ValueT]):
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class ProgramNotes:
+class ProgramSummary:
     """What a whole program says beside its moves.
 
     Attributes:
@@ -70,7 +70,7 @@ class ProgramNotes:
         return result
 
 
-class NoteTaker:
+class SummaryBuilder:
     """Reads a program along, chunk by chunk."""
 
     def __init__(self, job: JobFile) -> None:
@@ -110,14 +110,14 @@ class NoteTaker:
         steps = np.abs(np.diff(added, axis=0, prepend=last[None])).max(axis=1) > _SHOWN_STEP
         self._shown += [(before + int(i), added[i].copy()) for i in np.flatnonzero(steps)]
 
-    def notes(self) -> ProgramNotes:
+    def summary(self) -> ProgramSummary:
         """All that was noted."""
         shown = None
         if self._shown:
             zero = np.zeros_like(self._shown[0][1])
             shown = _steps([(0, zero), *self._shown])
         first_move, tools = zip(*self._plan, strict=True)
-        return ProgramNotes(
+        return ProgramSummary(
             tools=ToolPlan(tools, first_move),
             rapid=np.frombuffer(bytes(self._rapid), np.bool_),
             spindle=_steps(self._spindle),

@@ -6,6 +6,7 @@ from motion_programs import SETTINGS
 
 from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.nc.canonical import FloatArray
+from twin.toolpath.geometry_kernels import Curves
 
 
 def bounds_of(
@@ -15,10 +16,10 @@ def bounds_of(
     rounding = np.zeros((1, 4, 6))
     rounding[0, 1] = coefficients
     drift, none = np.array([[0.0, slope, 0.0, 0.0]]), np.zeros((1, 3))
+    curves = Curves(np.zeros((1, 4)), drift, none, none, np.zeros(1), drift)
     bounds, _, against = bound_derivatives(
-        drift, none, none, np.zeros(1),
-        np.zeros(1, np.int64), np.zeros(1), np.ones(1), np.array([length]), rounding,
-    )  # fmt: skip
+        curves, np.zeros(1, np.int64), np.zeros(1), np.ones(1), np.array([length]), rounding
+    )
     return bounds[0, :, 1], against[0, :, 1]
 
 

@@ -1,4 +1,4 @@
-"""Stretches: runs of pieces that are driven as one, under the strictest of their limits.
+"""Segments: runs of pieces that are driven as one, under the strictest of their limits.
 
 The jerk limit keeps a path from following limits that change faster than it can; so pieces that
 differ little, or that are together too short for their differences to be used, may be one.
@@ -7,32 +7,32 @@ differ little, or that are together too short for their differences to be used, 
 import numpy as np
 
 from twin.compilation.kernel import array_kernel
+from twin.motion.profile.backward_pass_kernels import SLOWEST
 from twin.motion.profile.brake_kernels import brake_distance
-from twin.motion.profile.reach_kernels import SLOWEST
 from twin.nc.canonical import FloatArray, IntArray
 
 ALIKE = 0.995
 """Ratio from which on limits count as the same: what a cycle may lose by it is half of that."""
 
 SHORT_RAMP = 0.25
-"""Share of the way that a change between the velocities of a stretch would take, which the stretch
+"""Share of the distance that a change between the velocities of a segment would take, which the segment
 may be as long as."""
 
 SHORT_DELAY = 0.25
-"""Share of the time from zero to full acceleration that passing a stretch may take."""
+"""Share of the time from zero to full acceleration that passing a segment may take."""
 
 
 @array_kernel
-def find_stretches(limits: FloatArray, entry: FloatArray, feed: FloatArray) -> IntArray:
-    """Where stretches begin.
+def find_segments(limits: FloatArray, entry: FloatArray, feed: FloatArray) -> IntArray:
+    """Where segments begin.
 
     Args:
         limits: Rows length, velocity, acceleration, deceleration, jerk of n pieces, shape (5, n).
         entry: Highest v at the begin of each piece, shape (n,).
-        feed: What the program asks for; it is the same all along a stretch, shape (n,).
+        feed: What the program asks for; it is the same all along a segment, shape (n,).
 
     Returns:
-        First piece of each of m stretches and, last, n; shape (m + 1,).
+        First piece of each of m segments and, last, n; shape (m + 1,).
     """
     count = limits.shape[1]
     begins = np.zeros(count + 1, np.int64)
@@ -79,56 +79,56 @@ def find_stretches(limits: FloatArray, entry: FloatArray, feed: FloatArray) -> I
 
 @array_kernel
 def merge_limits(limits: FloatArray, entry: FloatArray, begins: IntArray) -> FloatArray:
-    """Limits of stretches.
+    """Limits of segments.
 
     Args:
-        limits: As in ``find_stretches``.
-        entry: As in ``find_stretches``.
-        begins: From ``find_stretches``, shape (m + 1,).
+        limits: As in ``find_segments``.
+        entry: As in ``find_segments``.
+        begins: From ``find_segments``, shape (m + 1,).
 
     Returns:
         As ``limits``, shape (5, m).
     """
     count = len(begins) - 1
     out = np.zeros((5, count))
-    for stretch in range(count):
-        first = begins[stretch]
-        out[:, stretch] = limits[:, first]
-        for piece in range(first + 1, begins[stretch + 1]):
-            out[0, stretch] += limits[0, piece]
-            out[1, stretch] = min(out[1, stretch], limits[1, piece], entry[piece])
+    for segment in range(count):
+        first = begins[segment]
+        out[:, segment] = limits[:, first]
+        for piece in range(first + 1, begins[segment + 1]):
+            out[0, segment] += limits[0, piece]
+            out[1, segment] = min(out[1, segment], limits[1, piece], entry[piece])
             for row in range(2, 5):
-                out[row, stretch] = min(out[row, stretch], limits[row, piece])
+                out[row, segment] = min(out[row, segment], limits[row, piece])
     return out
 
 
 @array_kernel
 def place_phases(
-    phases: FloatArray, stretches: IntArray, begins: IntArray, lengths: FloatArray
+    phases: FloatArray, segments: IntArray, begins: IntArray, lengths: FloatArray
 ) -> IntArray:
     """Tell in which pieces phases begin and end, and count their x from the begin of the first.
 
     Args:
-        phases: Rows begin [s], duration [s], x within the stretch, v, a, j; x is overwritten by
+        phases: Rows begin [s], duration [s], x within the segment, v, a, j; x is overwritten by
             that within the piece; shape (m, 6).
-        stretches: First and last stretch of each phase, shape (m, 2).
-        begins: From ``find_stretches``.
+        segments: First and last segment of each phase, shape (m, 2).
+        begins: From ``find_segments``.
         lengths: Of the pieces.
 
     Returns:
         First and last piece of each phase, shape (m, 2).
     """
-    out = np.zeros_like(stretches)
-    stretch, piece, behind = -1, 0, 0.0
-    for row in range(len(stretches)):
-        if stretches[row, 0] != stretch:
-            stretch = stretches[row, 0]
-            piece, behind = begins[stretch], 0.0
-        last = begins[stretch + 1] - 1
+    out = np.zeros_like(segments)
+    segment, piece, behind = -1, 0, 0.0
+    for row in range(len(segments)):
+        if segments[row, 0] != segment:
+            segment = segments[row, 0]
+            piece, behind = begins[segment], 0.0
+        last = begins[segment + 1] - 1
         while piece < last and phases[row, 2] - behind >= lengths[piece]:
             behind += lengths[piece]
             piece += 1
         out[row, 0] = piece
-        out[row, 1] = begins[stretches[row, 1] + 1] - 1
+        out[row, 1] = begins[segments[row, 1] + 1] - 1
         phases[row, 2] = max(0.0, phases[row, 2] - behind)
     return out

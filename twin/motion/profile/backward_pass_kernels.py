@@ -1,25 +1,25 @@
 """From which states one can still brake in time, and how fast each border may be passed.
 
-The state on the path is (stretch, x within it, v, a). It is *safe* if from it one can brake to a
-later border of stretches, arriving there with a = 0 and no faster than that border's ``reach``, within
-all limits on the way. ``reach`` is the highest velocity that is itself safe at the border with
-a = 0, so that a safe state has a safe way to the end of the window, where v = 0. It is found
-backwards from the end.
+A state on the path is *safe* if from it one can brake to a later border of segments, arriving there
+with a = 0 and no faster than that border's controllable velocity, within all limits on the way. The
+controllable velocity is the highest that is itself safe at the border with a = 0, so that a safe
+state can go on safely to the end of the window, where v = 0. It is found backwards from the end.
 """
 
 import math
 
 import numpy as np
 
-from twin.compilation.kernel import array_kernel
-from twin.motion.profile.brake_kernels import brake_distance, brake_need
-from twin.motion.profile.way_kernels import (
-    MOST_CHORDS,
-    MOST_STEPS,
+from twin.compilation.kernel import array_kernel, kernel
+from twin.motion.profile.brake_kernels import brake_distance, brake_distance_from
+from twin.motion.profile.brake_margin_kernels import (
+    MAX_CHORDS,
+    MAX_STEPS,
+    brake_margin,
     crossing,
     narrowed,
-    room_for_brake,
 )
+from twin.motion.profile.state import Brake, Course, State
 from twin.nc.canonical import FloatArray
 
 BISECTIONS = 52
@@ -28,18 +28,18 @@ BISECTIONS = 52
 ROUNDING = 1e-9
 """Relative slack for comparisons of quantities that are equal but for rounding."""
 
-REACH_PRECISION = 1e-9
+VELOCITY_PRECISION = 1e-9
 """Of velocities at borders, relative: far finer than any loss of time."""
 
 SLOWEST = 1e-6
 """A border that must be passed more slowly than this is passed from a stop [mm/s or deg/s]."""
 
-REACH_GAIN = 1e-5
+LEAST_GAIN = 1e-5
 """A brake that does not allow this much more than the best so far is not looked into; where a limit
 on the way bounds the velocity, no more than this share of it is lost."""
 
 LONGEST_BRAKE = math.sqrt(32.0 / 27.0)
-"""The way from v to w is longest for w = v / 3: that much longer than the one to a stop."""
+"""The distance from v to w is longest for w = v / 3: that much longer than the one to a stop."""
 
 NEARLY = 1e-9
 """Of a root: from here on a step of Newton's leads to the rounding of a double."""
@@ -48,25 +48,17 @@ FAILED_BRAKES = 4
 """Brakes that fit their distance but break a limit on the way before the search gives up."""
 
 
-@array_kernel
-def find_brake(
-    limits: FloatArray, entry: FloatArray, reach: FloatArray,
-    i: int, x: float, v: float, a: float, slack: float, nearest: int,
-) -> int:  # fmt: skip
+@kernel
+def find_brake(course: Course, state: State, slack: float) -> int:
     """The border to which a safe state can brake; -1 if none is found.
 
     Args:
-        limits: Rows length, velocity, acceleration, deceleration, jerk of n stretches, shape
-            (5, n).
-        entry: Highest v at each border, shape (n + 1,).
-        reach: As above; entries up to i are not looked at, shape (n + 1,).
-        i: Stretch of the state.
-        x: Place within it.
-        v: Velocity.
-        a: Acceleration, not negative.
+        course: The path; controllable velocities up to the state's segment are not looked at.
+        state: Its acceleration is not negative.
         slack: Relative slack of all comparisons.
-        nearest: Borders before this one are not tried.
     """
+    limits, entry, controllable = course
+    i, x, v, a = state
     count = limits.shape[1]
     wide = 1.0 + slack
     if v > limits[1, i] * wide or a > limits[2, i] * wide:
@@ -81,7 +73,7 @@ def find_brake(
     for k in range(i + 1, count + 1):
         if k > i + 1:
             last = k - 1
-            longest = LONGEST_BRAKE * brake_need(v, a, 0.0, deceleration, jerk)
+            longest = LONGEST_BRAKE * brake_distance_from(v, a, 0.0, deceleration, jerk)
             if limits[0, last] == 0.0 or longest < distance:
                 # Any brake would end earlier: if none has done, nothing further on does.
                 return -1
@@ -90,8 +82,8 @@ def find_brake(
             jerk = min(jerk, limits[4, last])
             ceiling = min(ceiling, limits[1, last], entry[last])
             softest = min(softest, limits[2, last])
-        w = reach[k]
-        if k >= nearest and w < lowest:
+        w = controllable[k]
+        if w < lowest:
             lift_time = a / jerk
             lift = (v + a * lift_time / 3.0) * lift_time
             top = v + 0.5 * a * lift_time
@@ -101,7 +93,7 @@ def find_brake(
             if need <= distance * wide + slack * 1e-3:
                 if top <= ceiling * wide and (lift <= own_distance or a <= softest):
                     return k
-                room = room_for_brake(limits, entry, i, x, v, a, k, w, deceleration, jerk, wide)
+                room = brake_margin(course, state, Brake(k, w, deceleration, jerk), wide)
                 if room >= -slack * (distance + 1e-3):
                     return k
                 lowest = w
@@ -113,7 +105,7 @@ def find_brake(
     return -1
 
 
-@array_kernel
+@kernel
 def _fastest_start(distance: float, w: float, deceleration: float, jerk: float) -> float:
     """The highest v from which a brake to w takes no more than ``distance``."""
     # Eased all the way the drop is jerk s², over (2 w + jerk s²) s.
@@ -130,71 +122,71 @@ def _fastest_start(distance: float, w: float, deceleration: float, jerk: float) 
     return -half + math.sqrt(max(0.0, (w - half) * (w - half) + 2.0 * deceleration * distance))
 
 
-@array_kernel
+@kernel
 def _faster_start(
-    limits: FloatArray, entry: FloatArray, i: int, k: int, w: float,
-    deceleration: float, jerk: float, distance: float, best: float, highest: float,
-) -> tuple[float, bool]:  # fmt: skip
-    """The highest v up to ``highest`` from which one can brake to border k.
+    course: Course, i: int, brake: Brake, distance: float, best: float, highest: float
+) -> tuple[float, bool]:
+    """The highest v up to ``highest`` from which a brake is possible.
 
     Args:
-        limits: As in ``find_brake``.
-        entry: As in ``find_brake``.
+        course: The path.
         i: Border of the start, where a = 0.
-        k: Border of the end.
-        w: Velocity there.
-        deceleration: Of the brake.
-        jerk: Of the brake.
-        distance: From border i to border k.
+        brake: The brake.
+        distance: From border i to that of the brake.
         best: A velocity that is known to be safe.
         highest: Ceiling of v.
 
     Returns:
         The velocity, or ``best`` where it is hardly higher; whether no limit on the way bounds it.
     """
-    low = max(best * (1.0 + REACH_GAIN), SLOWEST)
+    _, w, deceleration, jerk = brake
+    low = max(best * (1.0 + LEAST_GAIN), SLOWEST)
     if low >= highest or (low > w and brake_distance(low, w, deceleration, jerk) > distance):
         return best, True
     high = highest
     if w < high and brake_distance(high, w, deceleration, jerk) > distance:
         high = min(high, _fastest_start(distance, w, deceleration, jerk))
-    at_high = room_for_brake(
-        limits, entry, i, 0.0, high, 0.0, k, min(w, high), deceleration, jerk, 1.0
-    )
+    at_high = _margin_from(course, i, high, brake)
     if at_high >= -ROUNDING * distance:
         return max(best, high), True
-    at_low = room_for_brake(
-        limits, entry, i, 0.0, low, 0.0, k, min(w, low), deceleration, jerk, 1.0
-    )
+    at_low = _margin_from(course, i, low, brake)
     if at_low < 0.0:
         return best, False
     side = 0
-    for step in range(MOST_STEPS):
-        if high - low <= REACH_GAIN * high:
+    for step in range(MAX_STEPS):
+        if high - low <= LEAST_GAIN * high:
             break
-        v = crossing(low, high, at_low, at_high) if step < MOST_CHORDS else 0.5 * (low + high)
-        room = room_for_brake(limits, entry, i, 0.0, v, 0.0, k, min(w, v), deceleration, jerk, 1.0)
+        v = crossing(low, high, at_low, at_high) if step < MAX_CHORDS else 0.5 * (low + high)
+        room = _margin_from(course, i, v, brake)
         low, high, at_low, at_high, side = narrowed(low, high, at_low, at_high, side, v, room)
     return low, False
 
 
+@kernel
+def _margin_from(course: Course, i: int, v: float, brake: Brake) -> float:
+    """``brake_margin`` from border i with a = 0, to the brake's velocity or v if that is lower."""
+    k, w, deceleration, jerk = brake
+    return brake_margin(course, State(i, 0.0, v, 0.0), Brake(k, min(w, v), deceleration, jerk), 1.0)
+
+
 @array_kernel
-def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> FloatArray:
+def backward_pass(limits: FloatArray, entry: FloatArray, known: FloatArray) -> FloatArray:
     """The highest safe velocity at every border with a = 0, and the brake that makes it safe.
 
     Args:
-        limits: As in ``find_brake``.
-        entry: As in ``find_brake``; the last must be 0.
-        known: The same result of a window that ended earlier, for the first borders of this one,
+        limits: Of a ``Course``.
+        entry: Of a ``Course``; the last must be 0.
+        known: The result of a window that ended earlier, for the first borders of this one,
             shape (4, m <= n + 1).
 
     Returns:
-        Rows reach, border to which to brake, velocity there, last border looked at; shape
+        Rows controllable velocity, border to which to brake, velocity there, last border looked at; shape
         (4, n + 1).
     """
     count = limits.shape[1]
     out = np.zeros((4, count + 1))
-    reach = out[0]
+    controllable = out[0]
+    course = Course(limits, entry, controllable)
     for i in range(count + 1):
         out[1, i] = out[3, i] = min(i + 1, count)
     news = known.shape[1]
@@ -210,28 +202,27 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
         best, to = 0.0, i + 1
         if i < known.shape[1]:
             best, to = known[0, i], int(known[1, i])
-        at = known[2, i] if best > 0.0 else reach[to]
+        at = known[2, i] if best > 0.0 else controllable[to]
         deceleration, jerk = math.inf, math.inf
         distance, lowest = 0.0, math.inf
         failed = 0
         for k in range(i + 1, count + 1):
             last, out[3, i] = k - 1, k
-            if limits[0, last] == 0.0 or best >= highest * (1.0 - REACH_PRECISION):
+            if limits[0, last] == 0.0 or best >= highest * (1.0 - VELOCITY_PRECISION):
                 break
             if k > i + 1 and brake_distance(highest, 0.0, deceleration, jerk) < distance:
                 break
             distance += limits[0, last]
             deceleration = min(deceleration, limits[3, last])
             jerk = min(jerk, limits[4, last])
-            w = reach[k]
+            w = controllable[k]
             if w < lowest:
-                v, free = _faster_start(
-                    limits, entry, i, k, w, deceleration, jerk, distance, best, highest
-                )
+                brake = Brake(k, w, deceleration, jerk)
+                v, free = _faster_start(course, i, brake, distance, best, highest)
                 if not free:
                     lowest = w
                     failed += 1
-                # Where a brake ends before the last stretch, one to a nearer border does better.
+                # Where a brake ends before the last segment, one to a nearer border does better.
                 before = distance - limits[0, last]
                 creeps = v > w and brake_distance(v, w, deceleration, jerk) < before
                 if v > best and not (creeps and last > i):
@@ -239,7 +230,7 @@ def find_reach(limits: FloatArray, entry: FloatArray, known: FloatArray) -> Floa
             if entry[k] < SLOWEST or failed >= FAILED_BRAKES:
                 break
         if best >= SLOWEST:
-            reach[i], out[1, i], out[2, i] = best, to, at
-        if i < known.shape[1] and reach[i] != known[0, i]:
+            controllable[i], out[1, i], out[2, i] = best, to, at
+        if i < known.shape[1] and controllable[i] != known[0, i]:
             news = i
     return out

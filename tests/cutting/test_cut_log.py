@@ -7,8 +7,8 @@ import random
 import numpy as np
 import pytest
 
+from twin.cutting.cut_log import LINES_TOLD, BlockCut, CutLog
 from twin.cutting.events import EventLog, Stretches
-from twin.cutting.ledger import LINES_TOLD, BlockCut, Ledger
 from twin.nc.canonical import FloatArray
 
 
@@ -26,7 +26,7 @@ def chunk(chance: random.Random, lines: list[int]) -> tuple[Stretches, FloatArra
 
 
 def enter(book: dict[int, BlockCut], stretches: Stretches, width: FloatArray, force: FloatArray):
-    """The same as the ledger does, stretch by stretch."""
+    """The same as the cut_log does, stretch by stretch."""
     for i in np.flatnonzero(stretches.removed > 0):
         block = book.setdefault(int(stretches.line[i]), BlockCut())
         block.removed_mm3 += stretches.removed[i]
@@ -38,28 +38,28 @@ def enter(book: dict[int, BlockCut], stretches: Stretches, width: FloatArray, fo
 
 def test_every_line_of_a_program_that_comes_round_again() -> None:
     chance = random.Random(1)  # noqa: S311 (no cryptography)
-    ledger, book = Ledger(remembered=50), {}
+    cut_log, book = CutLog(remembered=50), {}
     for start in range(0, 300, 7):
         entries = chunk(chance, sorted((start + k // 3) % 90 for k in range(30)))
-        ledger.add(*entries)
+        cut_log.add(*entries)
         enter(book, *entries)
-    assert ledger.forgotten == 0
-    assert list(ledger.blocks) == sorted(book)
-    for line, block in ledger.blocks.items():
+    assert cut_log.forgotten == 0
+    assert list(cut_log.blocks) == sorted(book)
+    for line, block in cut_log.blocks.items():
         assert dataclasses.astuple(block) == pytest.approx(dataclasses.astuple(book[line]))
 
 
 def test_of_very_many_lines_the_foremost_are_told_of() -> None:
     chance = random.Random(2)  # noqa: S311 (the same)
-    ledger, book = Ledger(remembered=2000), {}
+    cut_log, book = CutLog(remembered=2000), {}
     for start in range(0, 20_000, 40):
         entries = chunk(chance, [start + k // 2 for k in range(80)])
-        ledger.add(*entries)
+        cut_log.add(*entries)
         enter(book, *entries)
-    told = ledger.blocks
+    told = cut_log.blocks
     assert len(told) == LINES_TOLD
-    assert ledger.forgotten > 10_000
-    assert len(ledger._kept) <= 4000
+    assert cut_log.forgotten > 10_000
+    assert len(cut_log._kept) <= 4000
     most = sorted(book, key=lambda line: -book[line].removed_mm3)[: LINES_TOLD // 2]
     hardest = sorted(book, key=lambda line: -(book[line].force_n or 0.0))[: LINES_TOLD // 2]
     assert {*most, *hardest} <= told.keys()
@@ -69,23 +69,23 @@ def test_of_very_many_lines_the_foremost_are_told_of() -> None:
 
 def test_the_line_that_is_being_cut_is_not_let_go_of() -> None:
     chance = random.Random(3)  # noqa: S311 (the same)
-    ledger, book = Ledger(remembered=20), {}
+    cut_log, book = CutLog(remembered=20), {}
     for start in range(1, 500, 10):
         entries = chunk(chance, [*range(start, start + 10), 0, 0])
         entries[0].removed[-2:] = 1e-6 * start
-        ledger.add(*entries)
+        cut_log.add(*entries)
         enter(book, *entries)
-    ledger._tidy()
-    assert ledger.forgotten > 0
-    (row,) = np.flatnonzero(ledger._kept.line == 0)
-    assert ledger._kept.removed[row] == pytest.approx(book[0].removed_mm3)
+    cut_log._tidy()
+    assert cut_log.forgotten > 0
+    (row,) = np.flatnonzero(cut_log._kept.line == 0)
+    assert cut_log._kept.removed[row] == pytest.approx(book[0].removed_mm3)
 
 
 def test_without_a_force_none_is_told() -> None:
     stretches, width, _ = chunk(random.Random(4), [5] * 9)  # noqa: S311 (the same)
-    ledger = Ledger()
-    ledger.add(stretches, width, None)
-    assert ledger.blocks[5].force_n is None
+    cut_log = CutLog()
+    cut_log.add(stretches, width, None)
+    assert cut_log.blocks[5].force_n is None
 
 
 def test_of_very_many_gouges_the_deepest_are_told_of_in_order() -> None:

@@ -7,41 +7,34 @@ does has a closed form, which the velocity at a place has not.
 
 import math
 
-from twin.compilation.kernel import array_kernel
-from twin.nc.canonical import FloatArray
+from twin.compilation.kernel import kernel
+from twin.motion.profile.state import Brake, Course, State
 
-MOST_CHORDS = 16
+MAX_CHORDS = 16
 """Steps along chords, which are usually enough; the interval is halved from then on."""
 
-MOST_STEPS = 64
+MAX_STEPS = 64
 """In all: halving comes down to the rounding of a double by then."""
 
 
-@array_kernel
-def room_for_brake(
-    limits: FloatArray, entry: FloatArray, i: int, x: float, v: float, a: float,
-    k: int, w: float, deceleration: float, jerk: float, wide: float,
-) -> float:  # fmt: skip
-    """By how much of the way the brake that is shortest of room has any to spare; negative: none.
+@kernel
+def brake_margin(course: Course, state: State, brake: Brake, wide: float) -> float:
+    """By how much of the distance the brake that is shortest of room has any to spare.
 
     Args:
-        limits: Rows length, velocity, acceleration, deceleration, jerk of n stretches, shape
-            (5, n).
-        entry: Highest v at each border, shape (n + 1,).
-        i: Stretch of the state.
-        x: Place within it.
-        v: Velocity.
-        a: Acceleration.
-        k: Border at which the brake ends at the latest.
-        w: Velocity there.
-        deceleration: Of the brake.
-        jerk: Of the brake.
+        course: The path; its controllable velocities are not looked at.
+        state: Where the brake begins.
+        brake: The brake.
         wide: Factor by which velocities and accelerations may pass their limits.
 
     Returns:
-        The least way between where the brake meets a limit and where it has to, or between its end
-        and border k; minus infinity where it never meets one [mm or deg].
+        The least distance between where the brake meets a limit and where it has to, or between its
+        end and its border; negative where it comes too late, minus infinity where it never meets
+        one [mm or deg].
     """
+    limits, entry, _ = course
+    i, x, v, a = state
+    k, w, deceleration, jerk = brake
     if a <= 0.0 and v > limits[1, i] * wide:
         return -math.inf
     top = v + a * a / (2.0 * jerk)
@@ -61,18 +54,18 @@ def room_for_brake(
     room = math.inf
     here = 0.0
     ahead = limits[0, i] - x
-    for stretch in range(i, k):
-        highest = limits[1, stretch] * wide
+    for segment in range(i, k):
+        highest = limits[1, segment] * wide
         rising = a > 0.0 and here < lift
-        if stretch > i:
-            passed = min(highest, entry[stretch] * wide)
+        if segment > i:
+            passed = min(highest, entry[segment] * wide)
             if rising:
                 if passed < top:
-                    room = min(room, _way_up(passed, top, lift, jerk) - here)
-                softest = limits[2, stretch] * wide
+                    room = min(room, _distance_up(passed, top, lift, jerk) - here)
+                softest = limits[2, segment] * wide
                 if softest < a:
                     softened = top - softest * softest / (2.0 * jerk)
-                    room = min(room, here - _way_up(softened, top, lift, jerk))
+                    room = min(room, here - _distance_up(softened, top, lift, jerk))
             elif passed < low:
                 return -math.inf
             elif passed < top:
@@ -86,21 +79,21 @@ def room_for_brake(
                     met = total - (low + left / 3.0) * math.sqrt(2.0 * left / jerk)
                 room = min(room, here - met)
         if rising and highest < top:
-            room = min(room, _way_up(highest, top, lift, jerk) - min(ahead, lift))
+            room = min(room, _distance_up(highest, top, lift, jerk) - min(ahead, lift))
         here = ahead
-        if stretch + 1 < k:
-            ahead += limits[0, stretch + 1]
+        if segment + 1 < k:
+            ahead += limits[0, segment + 1]
     return min(room, here - total)
 
 
-@array_kernel
-def _way_up(velocity: float, top: float, lift: float, jerk: float) -> float:
+@kernel
+def _distance_up(velocity: float, top: float, lift: float, jerk: float) -> float:
     """Where a velocity is reached before the peak."""
     below = top - velocity
     return lift - (top - below / 3.0) * math.sqrt(2.0 * below / jerk)
 
 
-@array_kernel
+@kernel
 def crossing(low: float, high: float, at_low: float, at_high: float) -> float:
     """Where the straight line between two points changes sign, or their middle if it does not."""
     if not (at_low >= 0.0 > at_high > -math.inf) or at_low == math.inf:
@@ -108,7 +101,7 @@ def crossing(low: float, high: float, at_low: float, at_high: float) -> float:
     return low + (high - low) * (at_low / (at_low - at_high))
 
 
-@array_kernel
+@kernel
 def _damped(kept: float, replaced: float, new: float) -> float:
     """The value of the end of an interval that was kept twice running (Anderson and Björck 1973).
 
@@ -121,7 +114,7 @@ def _damped(kept: float, replaced: float, new: float) -> float:
     return kept * (share if share > 0.0 else 0.5)
 
 
-@array_kernel
+@kernel
 def narrowed(
     low: float, high: float, at_low: float, at_high: float, side: int, new: float, room: float
 ) -> tuple[float, float, float, float, int]:
@@ -130,8 +123,8 @@ def narrowed(
     Args:
         low: Its lower end.
         high: Its upper end.
-        at_low: Room there, as the last step has left it.
-        at_high: The same of the upper end.
+        at_low: Room at the lower end, as the last step has left it.
+        at_high: Room at the upper end, as the last step has left it.
         side: Which end was replaced last: 1 the lower one, -1 the upper one, 0 none.
         new: A place within it.
         room: Room there.

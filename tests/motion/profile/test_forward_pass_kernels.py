@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from motion_programs import SETTINGS
 
-from twin.motion.profile.profile_kernels import STATE_AT_REST, find_phases
-from twin.motion.profile.reach_kernels import find_reach
+from twin.motion.profile.backward_pass_kernels import backward_pass
+from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, forward_pass
 from twin.nc.canonical import FloatArray
 
 
@@ -14,9 +14,9 @@ def one_piece(length: float, velocity: float, acceleration: float, jerk: float) 
     """The phases from rest to rest along one piece that last longer than rounding."""
     limits = np.array([[length], [velocity], [acceleration], [acceleration], [jerk]])
     entry = np.zeros(2)
-    reach = find_reach(limits, entry, np.zeros((4, 0)))
+    brakes = backward_pass(limits, entry, np.zeros((4, 0)))
     state = STATE_AT_REST.copy()
-    phases, _ = find_phases(limits, entry, reach, np.zeros(1), 1, math.inf, state)
+    phases, _ = forward_pass(limits, entry, brakes, np.zeros(1), 1, math.inf, state)
     return phases[phases[:, 1] > 1e-6]
 
 

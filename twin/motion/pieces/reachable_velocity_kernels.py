@@ -1,21 +1,36 @@
 """The velocities at which curved pieces can be reached and left."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from twin.compilation.kernel import array_arithmetic_kernel
 from twin.motion.blocks.blocks import BoolArray
+from twin.motion.pieces.bound_kernels import DerivativeBounds
 from twin.nc.canonical import FloatArray
 
 
+class Along(NamedTuple):
+    """What n pieces allow along the path.
+
+    Attributes:
+        length: Shape (n,).
+        speeding: Highest a of the path, shape (n,).
+        braking: Highest -a of the path, shape (n,).
+        readiness: Share of the acceleration that the jerk leaves on average, shape (n,).
+    """
+
+    length: FloatArray
+    speeding: FloatArray
+    braking: FloatArray
+    readiness: FloatArray
+
+
 @array_arithmetic_kernel
-def reach_velocities(
-    bounds: FloatArray, against: npt.NDArray[np.bool_],
-    curved: BoolArray, length: FloatArray, limits: FloatArray,
-    ceilings: FloatArray, axis_acceleration: FloatArray, speeding: FloatArray, braking: FloatArray,
-    readiness: FloatArray,
+def lower_to_reachable(
+    derivatives: DerivativeBounds, curved: BoolArray, along_path: Along, limits: FloatArray,
+    ceilings: FloatArray, axis_acceleration: FloatArray,
 ) -> None:  # fmt: skip
     """Lower the velocity of curved pieces, in place, to what they see if only v and a count.
 
@@ -24,19 +39,16 @@ def reach_velocities(
     velocity may then be used for changing it.
 
     Args:
-        bounds: Of abs(q'), abs(q''), abs(q'''), shape (n, 3, k).
-        against: Whether the part of q'' in the acceleration can add to that of a > 0, and of a < 0,
-            shape (n, 2, k).
+        derivatives: Of the pieces.
         curved: Whether any q'' is not 0, shape (n,).
-        length: Shape (n,).
+        along_path: Of the pieces.
         limits: Rows velocity, lowered along curved pieces, acceleration and deceleration without
             what a curve takes, jerk; shape (4, n).
-        ceilings: The same at the pieces' borders, shape (n + 1,).
+        ceilings: Highest velocities at the pieces' borders, shape (n + 1,).
         axis_acceleration: Shape (k,).
-        speeding: Highest a of the path, shape (n,).
-        braking: Highest -a of the path, shape (n,).
-        readiness: Share of the acceleration that the jerk leaves on average, shape (n,).
     """
+    bounds, against = derivatives.axes, derivatives.against
+    length, speeding, braking, readiness = along_path
     count, axes = len(length), len(axis_acceleration)
     velocity = limits[0]
     border = np.zeros(count + 1)
@@ -55,15 +67,15 @@ def reach_velocities(
             start = border[known]
             if start >= border[wanted]:
                 continue
-            way = length[i] * readiness[i]
-            highest = start + way * along[i]
+            distance = length[i] * readiness[i]
+            highest = start + distance * along[i]
             for axis in range(axes):
                 slope = bounds[i, 0, axis]
                 if slope > 0.0:
                     curve = bounds[i, 1, axis] if against[i, direction, axis] else 0.0
                     # The division does not wait for the piece before.
-                    share = 1.0 / (slope + 2.0 * way * curve)
-                    top = (slope * start + way * axis_acceleration[axis]) * share
+                    share = 1.0 / (slope + 2.0 * distance * curve)
+                    top = (slope * start + distance * axis_acceleration[axis]) * share
                     highest = min(highest, top)
             border[wanted] = min(border[wanted], max(highest, start))
     for i in range(count):

@@ -6,7 +6,7 @@ from twin.columns import join
 from twin.motion.blocks.block_kernels import largest_travels
 from twin.motion.blocks.blocks import Blocks, blocks_of_chunks
 from twin.motion.blocks.border_kernels import (
-    KNEE_NOISE,
+    STEP_NOISE,
     border_steps,
     border_velocities,
     tolerance_shares,
@@ -33,8 +33,7 @@ def plain_steps(blocks: Blocks, order: int) -> FloatArray:
 
 
 def found_steps(blocks: Blocks) -> tuple[FloatArray, FloatArray]:
-    shapes = blocks.geometry
-    return border_steps(shapes.drift, shapes.cosine, shapes.sine, shapes.angle, blocks.length)
+    return border_steps(blocks.geometry.curves(), blocks.length)
 
 
 @SETTINGS
@@ -46,8 +45,8 @@ def test_steps_are_those_of_the_geometry(program: Program) -> None:
     for order, found in zip((1, 2), found_steps(blocks), strict=True):
         expected = plain_steps(blocks, order)
         size = 1.0 + np.abs(expected).max()
-        assert np.abs(found - expected).max() <= 1e-12 * size + KNEE_NOISE
-        assert not np.any((found != 0.0) & (np.abs(found) < KNEE_NOISE))
+        assert np.abs(found - expected).max() <= 1e-12 * size + STEP_NOISE
+        assert not np.any((found != 0.0) & (np.abs(found) < STEP_NOISE))
 
 
 @SETTINGS
@@ -56,21 +55,26 @@ def test_shares_and_velocities_are_those_of_the_steps(program: Program) -> None:
     blocks = blocks_of(program)
     if blocks is None:
         return
-    knee, bend = found_steps(blocks)
+    tangent_step, curvature_step = found_steps(blocks)
     count = len(blocks)
-    per_width, per_square = tolerance_shares(knee, bend, np.full(count, 0.02), 0.5)
+    per_width, per_square = tolerance_shares(
+        tangent_step, curvature_step, np.full(count, 0.02), 0.5
+    )
     assert np.allclose(
         per_width,
-        np.maximum(np.linalg.norm(knee[:, :3], axis=1) / 0.02, np.abs(knee[:, 3]) / 0.5),
+        np.maximum(
+            np.linalg.norm(tangent_step[:, :3], axis=1) / 0.02, np.abs(tangent_step[:, 3]) / 0.5
+        ),
     )
-    assert np.allclose(per_square, np.linalg.norm(bend[:, :3], axis=1) / 0.02)
+    assert np.allclose(per_square, np.linalg.norm(curvature_step[:, :3], axis=1) / 0.02)
     rounded, stops, width = np.arange(count) % 2 == 0, np.zeros(count, np.bool_), np.zeros(count)
     stops[0], width[-1] = True, 0.1
     step, gain = np.array([1.0, 2.0, 3.0, 4.0]), np.array([400.0, 300.0, 200.0, 100.0])
-    found = border_velocities(knee, bend, stops, rounded, width, step, gain)
+    found = border_velocities(tangent_step, curvature_step, stops, rounded, width, step, gain)
     with np.errstate(divide="ignore"):
         expected = np.minimum(
-            (step / np.abs(knee)).min(axis=1), np.sqrt((gain / np.abs(bend)).min(axis=1))
+            (step / np.abs(tangent_step)).min(axis=1),
+            np.sqrt((gain / np.abs(curvature_step)).min(axis=1)),
         )
     expected[rounded & np.isfinite(expected)] = 0.0
     expected[width > 0.0] = np.inf

@@ -11,16 +11,17 @@ from hypothesis import strategies as st
 from motion_programs import SETTINGS
 
 from twin.motion.live.transition_kernels import find_transition
+from twin.motion.profile.backward_pass_kernels import backward_pass, find_brake
 from twin.motion.profile.brake_kernels import (
     brake_distance,
-    brake_need,
+    brake_distance_from,
     brake_time,
     time_to,
 )
-from twin.motion.profile.phase_kernels import put_brake
-from twin.motion.profile.reach_kernels import find_brake, find_reach
-from twin.motion.profile.stretch_kernels import find_stretches, merge_limits, place_phases
-from twin.motion.profile.way_kernels import room_for_brake
+from twin.motion.profile.brake_margin_kernels import brake_margin
+from twin.motion.profile.phase_kernels import PhaseRows, write_brake
+from twin.motion.profile.segment_kernels import find_segments, merge_limits, place_phases
+from twin.motion.profile.state import Brake, Course, State
 from twin.nc.canonical import FloatArray
 
 FEWER = hypothesis.settings(SETTINGS, max_examples=40)
@@ -59,7 +60,9 @@ def test_brakes_agree_with_the_sum_of_their_acceleration(
 ) -> None:
     a, w = rising * deceleration, lower * v
     t, x, velocity, _ = plain_brake(v, a, w, deceleration, jerk)
-    assert brake_need(v, a, w, deceleration, jerk) == pytest.approx(x[-1], rel=1e-6, abs=1e-9)
+    assert brake_distance_from(v, a, w, deceleration, jerk) == pytest.approx(
+        x[-1], rel=1e-6, abs=1e-9
+    )
     assert velocity[-1] == pytest.approx(w, rel=1e-6, abs=1e-6)
     if a == 0.0:
         assert brake_distance(v, w, deceleration, jerk) == pytest.approx(x[-1], rel=1e-6, abs=1e-9)
@@ -74,16 +77,14 @@ def test_a_brake_goes_on_from_any_state_on_it(
     """From a state with a < 0 the rest of the way and the rows are those of the whole brake."""
     t, x, velocity, acceleration = plain_brake(v, 0.0, 0.0, deceleration, jerk)
     row = int(share * (len(t) - 1))
-    rest = brake_need(velocity[row], acceleration[row], 0.0, deceleration, jerk)
+    rest = brake_distance_from(velocity[row], acceleration[row], 0.0, deceleration, jerk)
     assert rest == pytest.approx(x[-1] - x[row], rel=1e-3, abs=1e-4 * x[-1])
-    rows, pieces = np.zeros((3, 6)), np.zeros((3, 2), np.int64)
+    rows = PhaseRows(np.zeros((3, 6)), np.zeros((3, 2), np.int64))
     lengths = np.array([10.0 * x[-1] + 1.0])
-    count, _, end, _ = put_brake(
-        rows, pieces, 0, lengths, 0, 0, 0.0, 0.0,
-        velocity[row], acceleration[row], 0.0, deceleration, jerk,
-    )  # fmt: skip
+    here = State(0, 0.0, velocity[row], acceleration[row])
+    count, end, _, _ = write_brake(rows, 0, lengths, 0.0, here, Brake(1, 0.0, deceleration, jerk))
     assert end == pytest.approx(t[-1] - t[row], rel=1e-2, abs=1e-3 * t[-1])
-    _, duration, _, begin_v, begin_a, j = rows[count - 1]
+    _, duration, _, begin_v, begin_a, j = rows.phases[count - 1]
     assert begin_v + (begin_a + 0.5 * j * duration) * duration == pytest.approx(0.0, abs=1e-6 * v)
 
 
@@ -125,7 +126,8 @@ def test_a_brake_has_room_where_it_keeps_the_limits_on_its_way(
          [deceleration] * 4, [jerk] * 4]
     )  # fmt: skip
     entry = np.array([math.inf, *(cap * v for cap in caps[:3]), 0.0])
-    room = room_for_brake(limits, entry, 0, 0.0, v, a, 4, w, deceleration, jerk, 1.0)
+    course, brake = Course(limits, entry, entry), Brake(4, w, deceleration, jerk)
+    room = brake_margin(course, State(0, 0.0, v, a), brake, 1.0)
     borders = np.append(0.0, np.cumsum(limits[0]))
 
     there = np.minimum(np.searchsorted(borders[1:4], x, "right"), 3)
@@ -145,7 +147,7 @@ def test_a_brake_has_room_where_it_keeps_the_limits_on_its_way(
 
 
 @st.composite
-def stretches(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
+def segments(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
     count = draw(st.integers(1, 7))
 
     def row(low: float, high: float) -> list[float]:
@@ -161,7 +163,7 @@ def stretches(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
 def plain_is_safe(
     limits: FloatArray,
     entry: FloatArray,
-    reach: FloatArray,
+    controllable: FloatArray,
     i: int,
     v: float,
     slack: float,
@@ -170,13 +172,13 @@ def plain_is_safe(
 ) -> bool:
     """Whether some brake from border i with a = 0 keeps every limit, by looking at all of it.
 
-    ``onward``: it must not stop before the stretch that it is meant to end in. From v to a small w
+    ``onward``: it must not stop before the segment that it is meant to end in. From v to a small w
     it takes longer than to a stop, but nobody wants to stop where the path goes on.
     """
     count = limits.shape[1]
     for k in range(i + 1, count + 1):
         deceleration, jerk = limits[3, i:k].min(), limits[4, i:k].min()
-        w = min(v, reach[k])
+        w = min(v, controllable[k])
         _, x, velocity, _ = plain_brake(v, 0.0, w, deceleration, jerk)
         borders = np.cumsum(limits[0, i:k])
         if x[-1] > borders[-1] * (1.0 + slack) + 1e-12:
@@ -208,30 +210,31 @@ A_STOP_WOULD_BE_SHORTER = (
 
 @FEWER
 @example(A_STOP_WOULD_BE_SHORTER)
-@given(stretches())
+@given(segments())
 def test_reach_is_safe_and_nearly_the_most_that_is(case: tuple[FloatArray, FloatArray]) -> None:
     limits, entry = case
-    reach, to, at, _ = find_reach(limits, entry, np.zeros((4, 0)))
-    assert reach[-1] == 0.0
+    controllable, to, at, _ = backward_pass(limits, entry, np.zeros((4, 0)))
+    assert controllable[-1] == 0.0
     for i in range(limits.shape[1]):
-        if reach[i] == 0.0:
+        if controllable[i] == 0.0:
             continue
-        assert at[i] <= reach[int(to[i])] * (1.0 + 1e-12)
-        assert plain_is_safe(limits, entry, reach, i, reach[i], 1e-3)
+        assert at[i] <= controllable[int(to[i])] * (1.0 + 1e-12)
+        assert plain_is_safe(limits, entry, controllable, i, controllable[i], 1e-3)
         highest = min(entry[i], limits[1, i], limits[1, i - 1] if i > 0 else math.inf)
-        if reach[i] < 0.98 * highest:
-            faster = min(highest, 1.02 * reach[i])
-            assert not plain_is_safe(limits, entry, reach, i, faster, 0.0, onward=True)
-        slower, end = 0.999 * reach[i], int(to[i])
+        if controllable[i] < 0.98 * highest:
+            faster = min(highest, 1.02 * controllable[i])
+            assert not plain_is_safe(limits, entry, controllable, i, faster, 0.0, onward=True)
+        slower, end = 0.999 * controllable[i], int(to[i])
         stop = brake_distance(slower, 0.0, limits[3, i:end].min(), limits[4, i:end].min())
-        # Slower is as safe, unless it is so slow that it would stop before that brake's last stretch.
+        # Slower is as safe, unless it is so slow that it would stop before that brake's last segment.
         if stop > limits[0, i : end - 1].sum():
-            assert find_brake(limits, entry, reach, i, 0.0, slower, 0.0, 1e-9, 0) > i
+            course = Course(limits, entry, controllable)
+            assert find_brake(course, State(i, 0.0, slower, 0.0), 1e-9) > i
 
 
 @SETTINGS
 @given(
-    stretches(), st.floats(0.0, 0.99), st.floats(0.1, 1.0), st.floats(-0.99, 0.99),
+    segments(), st.floats(0.0, 0.99), st.floats(0.1, 1.0), st.floats(-0.99, 0.99),
     st.lists(st.floats(0.0, 1.0), min_size=7, max_size=7),
 )  # fmt: skip
 def test_transition_ends_where_its_brake_does(
@@ -243,13 +246,17 @@ def test_transition_ends_where_its_brake_does(
     entry[-1] = 0.0
     wanted = limits.copy()
     wanted[1] *= lower[: limits.shape[1]]
-    reach = find_reach(wanted, entry, np.zeros((4, 0)))[0]
+    controllable = backward_pass(wanted, entry, np.zeros((4, 0)))[0]
     x, v = place * limits[0, 0], share * limits[1, 0]
     a = rising * (limits[2, 0] if rising > 0.0 else limits[3, 0])
-    end, x_end, w, deceleration, jerk = find_transition(limits, wanted, entry, reach, 0, x, v, a)
-    if end >= 0:
+    brake, x_end = find_transition(limits, Course(wanted, entry, controllable), State(0, x, v, a))
+    border, w, deceleration, jerk = brake
+    if border >= 0:
+        end = border - 1
         way = limits[0, :end].sum() + x_end - x
-        assert way == pytest.approx(brake_need(v, a, w, deceleration, jerk), rel=1e-9, abs=1e-9)
+        assert way == pytest.approx(
+            brake_distance_from(v, a, w, deceleration, jerk), rel=1e-9, abs=1e-9
+        )
         assert w <= wanted[1, end] * (1.0 + 1e-9)
 
 
@@ -261,15 +268,19 @@ def test_transition_to_a_third_of_the_velocity(then: float) -> None:
     limits = np.array([[length, 50.0], [v, v], [1e6, 1e6], [1e6, 1e6], [jerk, jerk]])
     wanted, entry = limits.copy(), np.array([math.inf, math.inf, 0.0])
     wanted[1] = 0.6 * v, then * v
-    reach = find_reach(wanted, entry, np.zeros((4, 0)))[0]
-    end, x_end, w, deceleration, j = find_transition(limits, wanted, entry, reach, 0, 0.0, v, 0.0)
+    controllable = backward_pass(wanted, entry, np.zeros((4, 0)))[0]
+    here = State(0, 0.0, v, 0.0)
+    (border, w, deceleration, j), x_end = find_transition(
+        limits, Course(wanted, entry, controllable), here
+    )
+    end = border - 1
     way = limits[0, :end].sum() + x_end
-    assert way == pytest.approx(brake_need(v, 0.0, w, deceleration, j), rel=1e-9)
+    assert way == pytest.approx(brake_distance_from(v, 0.0, w, deceleration, j), rel=1e-9)
 
 
 @SETTINGS
-@given(stretches(), st.lists(st.booleans(), min_size=7, max_size=7))
-def test_stretches_are_the_strictest_of_their_pieces(
+@given(segments(), st.lists(st.booleans(), min_size=7, max_size=7))
+def test_segments_are_the_strictest_of_their_pieces(
     case: tuple[FloatArray, FloatArray], dwells: list[bool]
 ) -> None:
     limits, entry = case
@@ -278,7 +289,7 @@ def test_stretches_are_the_strictest_of_their_pieces(
     limits[0] *= 0.01
     limits[0, np.repeat(dwells[:count], 4)] = 0.0
     entry = np.where(np.arange(4 * count) % 4 == 0, np.repeat(entry[:-1], 4), np.inf)
-    begins = find_stretches(limits, entry, limits[1])
+    begins = find_segments(limits, entry, limits[1])
     merged = merge_limits(limits, entry, begins)
     assert begins[0] == 0
     assert begins[-1] == 4 * count
@@ -297,7 +308,7 @@ def test_stretches_are_the_strictest_of_their_pieces(
     st.lists(st.floats(0.1, 2.0), min_size=1, max_size=12),
     st.lists(st.floats(0.0, 1.0), max_size=9),
 )
-def test_phases_are_placed_in_the_pieces_of_their_stretch(
+def test_phases_are_placed_in_the_pieces_of_their_segment(
     lengths: list[float], shares: list[float]
 ) -> None:
     begins = np.array([0, len(lengths)])

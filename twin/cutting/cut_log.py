@@ -42,7 +42,7 @@ class BlockCut:
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class _Lines(Columns):
-    """The same of n lines as columns; the force is NaN where it is not reckoned."""
+    """What n program lines took off, as columns; the force is NaN where it is not known."""
 
     line: IntArray
     removed: FloatArray
@@ -81,7 +81,7 @@ def _rank(values: FloatArray) -> IntArray:
 _NOTHING = _Lines(np.zeros(0, np.int64), *(np.zeros(0) for _ in range(5)))
 
 
-class Ledger:
+class CutLog:
     """Adds up removal by program line and by time.
 
     Attributes:

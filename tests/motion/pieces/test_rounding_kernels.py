@@ -12,12 +12,14 @@ STEPS = st.lists(st.floats(-2.0, 2.0), min_size=4, max_size=4).map(np.array)
 @SETTINGS
 @given(STEPS, STEPS, st.floats(1e-3, 10.0), st.sampled_from([-1.0, 1.0]))
 def test_a_rounding_begins_and_ends_as_anywhere_along_it(
-    knee: np.ndarray, bend: np.ndarray, width: float, side: float
+    tangent_step: np.ndarray, curvature_step: np.ndarray, width: float, side: float
 ) -> None:
     general, at_end = np.zeros((4, 6)), np.zeros((4, 6))
-    add_rounding(general, side * width, width, knee, bend, -side)
-    add_at_end(at_end, width, knee, bend, side)
-    size = (np.abs(knee) * width + np.abs(bend) * width**2)[:, None] / width ** np.arange(6.0)
+    add_rounding(general, side * width, width, tangent_step, curvature_step, -side)
+    add_at_end(at_end, width, tangent_step, curvature_step, side)
+    size = (np.abs(tangent_step) * width + np.abs(curvature_step) * width**2)[
+        :, None
+    ] / width ** np.arange(6.0)
     assert np.all(np.abs(general - at_end) <= 1e-14 * size)
 
 

@@ -60,6 +60,6 @@ def test_small_groups_give_the_same_setpoints(
 ) -> None:
     program = helices(12, 3.0, corner)
     whole = run(program, mill(), period_s=0.02)
-    monkeypatch.setattr(pieces, "MOST_ANGLE", 40.0 * math.pi)
+    monkeypatch.setattr(pieces, "MAX_ANGLE", 40.0 * math.pi)
     grouped = run(program, mill(), period_s=0.02)
     assert np.array_equal(whole.position, grouped.position)
