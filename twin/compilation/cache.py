@@ -64,7 +64,7 @@ class KernelCache(_Cache):
         self._locks: dict[str, int] = {}
 
     @property
-    def cache_path(self) -> str:
+    def cache_path(self) -> Any:
         """Where the kernel is kept that is compiled next."""
         return str(writable_folder() / self._folder)
 
