@@ -65,10 +65,3 @@ def test_rooms_of_numbers_load_without_mujoco_or_opengl():
         "assert 'mujoco' not in sys.modules and 'OpenGL' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
-
-
-def test_files_hold_one_idea():
-    long = {
-        p.name: n for p in PACKAGE.rglob("*.py") if (n := len(p.read_text().splitlines())) > 350
-    }
-    assert not long, f"files above 350 lines: {long}"

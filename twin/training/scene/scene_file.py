@@ -19,7 +19,7 @@ from twin.training.scene.texts import Language, Text
 from twin.training.session.commands import Mode
 from twin.training.session.faults import FaultTable
 
-_SHIPPED = Path(__file__).resolve().parent / "scenes"
+_SHIPPED = Path(__file__).resolve().parent.parent / "scenes"
 
 
 class StartTable(Table):
