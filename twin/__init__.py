@@ -1,42 +1,25 @@
-"""A digital twin of a 4-axis mill.
+"""A digital twin of a 4-axis mill: NC text in, a verdict, a part and a picture out.
 
-NC text flows one way through six rooms: ``nc`` reads it, ``toolpath`` knows its geometry,
-``motion`` plans it, ``machine`` simulates it, ``compare`` judges it; ``cutting`` and ``render``
-watch. ``twin.interpret``, ``twin.plan``, ``twin.run`` and ``twin.compare`` are the Python API
-(``twin.api``).
+    import twin
+
+    moves = twin.interpret("part.nc")
+    setpoints = twin.plan("part.nc")
+    done = twin.run("part.toml", out="out/part")
+    difference = twin.compare("out/part/recording.h5", "log.csv")
+
+Each function's help has shapes, units and an example. Errors are raised as ``twin.errors.TwinError``.
 """
 
 import sys
-import types
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
-
-from twin.version import __version__
 
 if TYPE_CHECKING:
     from twin.api import compare, interpret, plan, run
 
+from twin.version import __version__
+
 __all__ = ["__version__", "compare", "interpret", "plan", "run"]
-
-
-class _CallableRoom(types.ModuleType):
-    """A room that bears the name of a function of the Python API is that function too."""
-
-    def __call__(self, *arguments: Any, **options: Any) -> Any:
-        from twin import api
-
-        return getattr(api, self.__name__.rpartition(".")[2])(*arguments, **options)
-
-
-class _Package(types.ModuleType):
-    """Whoever imports the room ``twin.run`` binds its name here and must not hide ``twin.run()``."""
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name in __all__ and isinstance(value, types.ModuleType):
-            value.__class__ = _CallableRoom
-        super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package
 
 
 def __getattr__(name: str) -> Any:
@@ -46,3 +29,19 @@ def __getattr__(name: str) -> Any:
 
         return getattr(api, name)
     raise AttributeError(f"module 'twin' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    """What a user calls; the rooms behind it are imported by their names."""
+    return sorted(__all__)
+
+
+class _Package(ModuleType):
+    """Keeps ``twin.run`` and ``twin.compare`` functions, although rooms bear these names."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (name in __all__ and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

@@ -76,7 +76,8 @@ class JobItem(pytest.Item):
             JobError: It does not pass.
         """
         from twin.check.forms import figures
-        from twin.check.task import CheckSettings, check_program
+        from twin.check.settings import CheckSettings
+        from twin.check.task import check_program
 
         option = self.config.getoption
         baseline = option("--twin-baseline")

@@ -9,7 +9,8 @@ import pytest
 
 from twin.check.outcome import CheckOutcome
 from twin.check.runner import run_tasks
-from twin.check.task import CheckSettings, check_variant
+from twin.check.settings import CheckSettings
+from twin.check.task import check_variant
 from twin.check.variation import Variant, variants
 from twin.errors import ExitCode, UsageError
 from twin.files.overrides import changed

@@ -36,7 +36,7 @@ def check(
     strict: StrictOption = False,
 ) -> None:
     """Run many programs without pictures; one table, exit 1 if any falls short."""
-    from twin.check.task import CheckSettings
+    from twin.check.settings import CheckSettings
     from twin.commands.check import check_and_print
 
     settings = CheckSettings(
@@ -66,7 +66,7 @@ def sweep(
     strict: StrictOption = False,
 ) -> None:
     """Run a job for every combination of values; exit 1 if any falls short."""
-    from twin.check.task import CheckSettings
+    from twin.check.settings import CheckSettings
     from twin.commands.sweep import sweep_and_print
 
     code = sweep_and_print(
@@ -81,7 +81,7 @@ def sweep(
 
 
 def compare(
-    first: Annotated[Path, typer.Argument(help="Recording, or CSV log.", show_default=False)],
+    first: Annotated[Path, typer.Argument(help="Recording, or log.", show_default=False)],
     second: Annotated[Path, typer.Argument(help="The same.", show_default=False)],
     form: FormatOption = "text",
     period: Annotated[
@@ -93,13 +93,17 @@ def compare(
     tolerance: Annotated[
         float | None, typer.Option("--tolerance", help="Largest actual difference (mm or deg).")
     ] = None,
+    columns: Annotated[
+        Path | None, typer.Option("--columns", help="Map of the columns of logs (TOML).")
+    ] = None,
 ) -> None:
     """Compare two recordings, or a recording with a log of the real machine."""
     from twin.commands.compare import compare_and_print
 
     code = compare_and_print(
-        first, second, form=form, period_s=period, offset_s=offset, tolerance=tolerance
-    )
+        first, second, form=form, period_s=period, offset_s=offset, tolerance=tolerance,
+        columns=columns,
+    )  # fmt: skip
     raise typer.Exit(code)
 
 

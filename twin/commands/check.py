@@ -14,7 +14,8 @@ from twin.check import forms
 from twin.check.discovery import find_programs
 from twin.check.outcome import CheckOutcome
 from twin.check.runner import run_tasks
-from twin.check.task import CheckSettings, check_program
+from twin.check.settings import CheckSettings
+from twin.check.task import check_program
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
 from twin.run.progress import shown_progress

@@ -12,7 +12,8 @@ from rich.table import Table
 from twin.check import forms
 from twin.check.outcome import CheckOutcome
 from twin.check.runner import run_tasks
-from twin.check.task import CheckSettings, check_variant
+from twin.check.settings import CheckSettings
+from twin.check.task import check_variant
 from twin.check.variation import variants
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text

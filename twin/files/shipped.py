@@ -4,7 +4,7 @@ from pathlib import Path
 
 from twin.errors import UsageError
 
-_PACKAGE = Path(__file__).resolve().parent.parent
+_PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def resource_root(kind: str) -> Path:

@@ -150,7 +150,7 @@ class ToleranceTable(Table):
     contour_um: Positive = DEFAULT_CONTOUR_UM
     """Largest distance from the commanded path, seen from the part [µm]."""
     rapid_contour_um: Positive | None = None
-    """The same during rapids [µm]; none: they are held to ``contour_um`` too."""
+    """Largest contour error during rapids [µm]; none: they are held to ``contour_um`` too."""
     blocks: tuple[BlocksToleranceTable, ...] = ()
     """Other contour tolerances for ranges of lines."""
     corner_um: Positive | None = None
@@ -214,7 +214,7 @@ class JobFile(Table):
     default_feed: Positive | None = None
     """Feed where the program sets none [mm/min]; none: the machine's."""
     default_rotary_feed: Positive | None = None
-    """The same for moves of rotary axes alone [deg/min]."""
+    """Feed of moves of rotary axes alone where the program sets none [deg/min]; none: the machine's."""
     part_zero: dict[str, float] = Field(default_factory=dict)
     """Program zero in machine coordinates, by axis [mm or deg]; an axis left out: on the table's
     centre line, at the height of the stock's top face, other axes at 0."""

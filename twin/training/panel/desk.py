@@ -7,8 +7,8 @@ from mujoco.studio.dear_imgui import dear_imgui as imgui
 from twin.training.panel.instruments import dial, mushroom
 from twin.training.panel.kit import BLUE, BRIGHT_GREEN, CYAN, GREEN, RED, YELLOW, Kit
 from twin.training.panel.request import Request, do
+from twin.training.scene.modes import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
 from twin.training.scene.vocabulary import Words
-from twin.training.session.commands import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
 from twin.training.session.snapshot import Snapshot
 
 JOG_STEPS = (0.01, 0.1, 1.0, 10.0, None)

@@ -5,7 +5,7 @@ from mujoco.studio.dear_imgui import dear_imgui as imgui
 from twin.training.panel.desk import JOG_STEPS, DeskState, jog_key
 from twin.training.panel.request import Request, do
 from twin.training.panel.side import SideState, measured_tool, sheets
-from twin.training.session.commands import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
+from twin.training.scene.modes import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
 from twin.training.session.snapshot import Snapshot
 
 _PLAIN = (("Space", "cycle_start"), ("H", "feed_hold"), ("R", "reset"))

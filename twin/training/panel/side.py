@@ -6,10 +6,10 @@ from mujoco.studio.dear_imgui import dear_imgui as imgui
 
 from twin.training.panel.kit import BRIGHT_GREEN, CYAN, QUIET, RED, TEXT, YELLOW, Kit
 from twin.training.panel.request import Request, do
+from twin.training.scene.fault_table import FAULT_KINDS
 from twin.training.scene.scene_file import SceneFile
 from twin.training.scene.texts import in_language
 from twin.training.scene.vocabulary import Words
-from twin.training.session.faults import FAULT_KINDS
 from twin.training.session.snapshot import Snapshot
 
 _MARKS = {"open": ("○", TEXT), "done": ("●", BRIGHT_GREEN), "failed": ("×", RED)}

@@ -14,10 +14,10 @@ from twin.errors import ConfigError, UsageError
 from twin.files.toml import Table, read_toml
 from twin.job.job_file import Job, JobFile
 from twin.run.preparation import Preparation, prepare_job
+from twin.training.scene.fault_table import FaultTable
+from twin.training.scene.modes import Mode
 from twin.training.scene.tasks import TaskTable
 from twin.training.scene.texts import Language, Text
-from twin.training.session.commands import Mode
-from twin.training.session.faults import FaultTable
 
 _SHIPPED = Path(__file__).resolve().parent.parent / "scenes"
 

@@ -11,17 +11,9 @@ from pydantic import Field
 
 from twin.errors import UsageError
 from twin.files.toml import Table
-from twin.training.session.faults import FaultTable
+from twin.training.scene.fault_table import FaultTable
+from twin.training.scene.modes import FEED_OVERRIDES, RAPID_OVERRIDES, Mode
 
-Mode = Literal["auto", "single", "jog", "mdi"]
-"""Automatic, single block, manual jog, manual data input."""
-
-MODES: tuple[Mode, ...] = ("auto", "single", "jog", "mdi")
-
-FEED_OVERRIDES = (0, 120)
-"""Ends of the feed override dial [%]."""
-RAPID_OVERRIDES = (0, 100)
-"""Ends of the rapid override dial [%]."""
 SPINDLE_SPEEDS = (1.0, 20000.0)
 """Ends of what the spindle turns [1/min]."""
 

@@ -2,14 +2,12 @@
 
 import dataclasses
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 from twin.training.scene.tasks import TaskTable
-
-if TYPE_CHECKING:
-    from twin.training.session.room import Room
+from twin.training.session.observed import Observed
 
 State = Literal["open", "done", "failed"]
 
@@ -35,19 +33,19 @@ class Evidence:
     answers: dict[int, str] = dataclasses.field(default_factory=dict)
 
 
-def _reached(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+def _reached(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     goal = task.reached
     assert goal is not None
     if room.moving:
         return "open"
-    zero = room.tables.tip_zero if goal.frame == "part" else np.zeros(len(room.label))
+    zero = room.tables.tip_zero if goal.frame == "part" else np.zeros(len(room.tables.zero))
     names = room.machine.machine.axes.names
     stands = room.machine.position - zero
     off = [abs(stands[names.index(axis)] - value) for axis, value in goal.at.items()]
     return "done" if max(off) <= goal.tolerance else "open"
 
 
-def _stayed(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+def _stayed(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     limits = task.stayed
     assert limits is not None
     column = room.machine.machine.axes.names.index(limits.axis)
@@ -56,7 +54,7 @@ def _stayed(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) ->
     return "open" if inside else "failed"
 
 
-def _zero(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+def _zero(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     goal = task.zero
     assert goal is not None
     names = room.machine.machine.axes.names
@@ -65,39 +63,39 @@ def _zero(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> S
     return "done" if worst <= goal.tolerance else "open"
 
 
-def _tool_length(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+def _tool_length(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     tables = room.tables
     off = abs(tables.lengths[tables.spindle] - tables.tool.length)
     return "done" if task.tool_length and off <= task.tool_length else "open"
 
 
-def _finished(evidence: Evidence, _room: "Room", _task: TaskTable, _number: int) -> State:
+def _finished(evidence: Evidence, _room: Observed, _task: TaskTable, _number: int) -> State:
     return "done" if evidence.ended_well else "open"
 
 
-def _single_block(evidence: Evidence, _room: "Room", task: TaskTable, _number: int) -> State:
+def _single_block(evidence: Evidence, _room: Observed, task: TaskTable, _number: int) -> State:
     return "done" if evidence.single.issuperset(task.single_block) else "open"
 
 
-def _held_in(evidence: Evidence, _room: "Room", task: TaskTable, _number: int) -> State:
+def _held_in(evidence: Evidence, _room: Observed, task: TaskTable, _number: int) -> State:
     return "done" if evidence.held.intersection(task.held) else "open"
 
 
-def _alarm_cleared(evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+def _alarm_cleared(evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     return "done" if task.cleared in evidence.cleared and room.alarm is None else "open"
 
 
-def _no_alarm(evidence: Evidence, _room: "Room", task: TaskTable, _number: int) -> State:
+def _no_alarm(evidence: Evidence, _room: Observed, task: TaskTable, _number: int) -> State:
     forbidden = "any" in task.no_alarm or set(task.no_alarm).intersection(evidence.alarms)
     return "failed" if forbidden and evidence.alarms else "open"
 
 
-def _within(_evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+def _within(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     assert task.within_s is not None
     return "failed" if room.time_s > task.within_s else "open"
 
 
-def _removed(evidence: Evidence, room: "Room", task: TaskTable, _number: int) -> State:
+def _removed(evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     assert task.removed_mm3 is not None
     if not evidence.ended_well or room.work is None:
         return "open"
@@ -105,14 +103,14 @@ def _removed(evidence: Evidence, room: "Room", task: TaskTable, _number: int) ->
     return "done" if low <= room.work.removed <= high else "failed"
 
 
-def _question(evidence: Evidence, _room: "Room", task: TaskTable, number: int) -> State:
+def _question(evidence: Evidence, _room: Observed, task: TaskTable, number: int) -> State:
     assert task.question is not None
     if number not in evidence.answers:
         return "open"
     return "done" if evidence.answers[number] == task.question.right else "failed"
 
 
-CHECKS: dict[str, Callable[[Evidence, "Room", TaskTable, int], State]] = {
+CHECKS: dict[str, Callable[[Evidence, Observed, TaskTable, int], State]] = {
     "reached": _reached,
     "stayed": _stayed,
     "zero": _zero,

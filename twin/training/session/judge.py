@@ -1,13 +1,10 @@
 """The judge: which tasks are done, which have failed, and what that is worth."""
 
 import dataclasses
-from typing import TYPE_CHECKING
 
 from twin.errors import UsageError
 from twin.training.session.conditions import CHECKS, Evidence, State
-
-if TYPE_CHECKING:
-    from twin.training.session.room import Room
+from twin.training.session.observed import Observed
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -33,7 +30,7 @@ class Judge:
         evidence: What has happened that tasks ask for.
     """
 
-    def __init__(self, room: "Room") -> None:
+    def __init__(self, room: Observed) -> None:
         self._file = room.scene.file
         self.verdicts: list[Verdict] = [Verdict() for _ in self._file.tasks]
         self.hints = 0
@@ -66,12 +63,12 @@ class Judge:
         self._trouble = False
         self.evidence.ended_well = False
 
-    def note_end(self, room: "Room") -> None:
+    def note_end(self, room: Observed) -> None:
         """The program has run to its end."""
         self.evidence.ended_well = not self._trouble
         self._note_single(room)
 
-    def note_hold(self, room: "Room") -> None:
+    def note_hold(self, room: Observed) -> None:
         """The operator has asked for a feed hold."""
         self._hold_line = int(room.machine.setpoint.line[0])
 
@@ -101,7 +98,7 @@ class Judge:
             raise UsageError("there are no more hints")
         self.hints += 1
 
-    def finish(self, room: "Room") -> None:
+    def finish(self, room: Observed) -> None:
         """Judge what holds to the end; what is open fails."""
         if self.over:
             return
@@ -119,7 +116,7 @@ class Judge:
             if not task.to_end
         )
 
-    def look(self, room: "Room") -> None:
+    def look(self, room: Observed) -> None:
         """Check every open task against the machine as it stands after a slice."""
         if self.over:
             return
@@ -136,6 +133,6 @@ class Judge:
         if room.time_s >= self._file.time_limit_s:
             self.finish(room)
 
-    def _note_single(self, room: "Room") -> None:
+    def _note_single(self, room: Observed) -> None:
         if room.mode == "single":
             self.evidence.single.add(int(room.machine.setpoint.line[0]))

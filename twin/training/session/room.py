@@ -20,8 +20,8 @@ from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS, SpindleStat
 from twin.nc.text.source import Source
 from twin.recording.reader import Samples
 from twin.run.placement import part_zero, start_position
+from twin.training.scene.modes import Mode
 from twin.training.scene.scene_file import Scene
-from twin.training.session.commands import Mode
 from twin.training.session.faults import inject
 from twin.training.session.judge import Judge
 from twin.training.session.notice import Notice

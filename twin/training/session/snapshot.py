@@ -6,7 +6,7 @@ import numpy as np
 
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
-from twin.training.session.commands import Mode
+from twin.training.scene.modes import Mode
 from twin.training.session.judge import Verdict
 from twin.training.session.notice import Notice
 from twin.training.session.program_run import ModalState

@@ -1,0 +1,102 @@
+"""The machine's sentences in the operator's language: all that it can say in a scene."""
+
+import ast
+import string
+from pathlib import Path
+
+import pytest
+
+from twin import training
+from twin.files.toml import read_toml
+from twin.training.scene import phrases
+from twin.training.scene.phrases import PhrasesFile, translated
+from twin.training.scene.scene_file import read_scene, scene_names, scene_path
+from twin.training.scene.texts import LANGUAGES, Language
+from twin.training.session.script import play
+from twin.training.session.session import Session
+
+ROOM = Path(training.__file__).parent / "session"
+SPEAKERS = ("actions.py", "room.py", "session.py", "tables.py")
+RAISED = ("UsageError", "TwinError", "AlarmStandsError")
+OTHERS: list[Language] = [lang for lang in LANGUAGES if lang != "en"]
+ALL = read_toml(phrases._FILE, PhrasesFile).phrases
+
+
+def places(text: str) -> list[str]:
+    return sorted(name for _, name, _, _ in string.Formatter().parse(text) if name)
+
+
+def sample(node: ast.expr) -> str | None:
+    """A sentence as it would be said, with something in each of its places."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return node.value
+    if isinstance(node, ast.JoinedStr):
+        return "".join(
+            str(part.value) if isinstance(part, ast.Constant) else "1.5" for part in node.values
+        )
+    return None
+
+
+def refusals() -> set[str]:
+    """What actions, rooms and sessions say no with, read from their source."""
+    found = set()
+    for name in SPEAKERS:
+        for node in ast.walk(ast.parse((ROOM / name).read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name):
+                continue
+            if node.func.id in RAISED and node.args:
+                found.add(sample(node.args[0]))
+    return {text for text in found if text}
+
+
+@pytest.mark.parametrize("phrase", ALL, ids=lambda phrase: phrase["en"][:40])
+def test_a_sentence_is_told_in_every_language_with_its_figures(phrase):
+    assert set(phrase) == set(LANGUAGES)
+    assert len({text.strip() for text in phrase.values()}) == len(LANGUAGES)
+    for text in phrase.values():
+        assert places(text) == places(phrase["en"])
+    said = phrase["en"].format(**{name: f"{name}7" for name in places(phrase["en"])})
+    for language in OTHERS:
+        expected = phrase[language].format(**{name: f"{name}7" for name in places(phrase["en"])})
+        assert translated(said, language) == expected
+
+
+@pytest.mark.parametrize("text", sorted(refusals()))
+def test_every_refusal_is_translated(text):
+    assert translated(text, "en") == text
+    for language in OTHERS:
+        assert translated(text, language) != text
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_every_alarm_of_a_scenes_scripts_is_translated(name, monkeypatch):
+    scene = read_scene(scene_path(name))
+    said: list[str] = []
+    for steps in (scene.file.solution, scene.file.mistake):
+        session = Session(scene)
+        raised = session.room.raise_alarm
+
+        def note(code, message, raised=raised, **where):
+            said.append(message)
+            raised(code, message, **where)
+
+        monkeypatch.setattr(session.room, "raise_alarm", note)
+        play(session, steps)
+    for message in said:
+        for language in OTHERS:
+            assert translated(message, language) != message, message
+
+
+def test_names_within_a_sentence_are_translated_and_unknown_ones_are_kept():
+    message = "the holder's nut meets the clamp (0.08 mm deep)"
+    assert translated(message, "cs") == "náraz: matice držáku a upínka (0.08 mm hluboko)"
+    assert translated("the gadget meets the table (1.00 mm deep)", "it") == (
+        "urto: gadget e tavola (per 1.00 mm)"
+    )
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_nobody_has_translated_stays_as_the_control_says_it(language):
+    message = "arc-radius: the radius does not reach {over} the chord"
+    assert translated(message, language) == message
+    assert translated("", language) == ""
