@@ -52,7 +52,7 @@ def test_a_pipe_is_written_to_and_stays_a_pipe(tmp_path: Path):
     assert pipe.is_fifo()
 
 
-def test_a_device_is_not_replaced(tmp_path: Path):
+def test_a_device_is_not_replaced():
     before = Path("/dev/null").stat().st_ino
     write_text(Path("/dev/null"), "gone")
     assert Path("/dev/null").stat().st_ino == before
@@ -72,7 +72,7 @@ def test_outputs_are_tried_beforehand_and_leave_nothing(tmp_path: Path):
     require_folder(tmp_path / "reports")
     assert list((tmp_path / "new").iterdir()) == []
     (tmp_path / "file").touch()
-    with pytest.raises(OSError, match="result.json") as found:
+    with pytest.raises(OSError, match=r"result\.json") as found:
         require_writable(tmp_path / "file" / "result.json")
     assert found.value.filename == str(tmp_path / "file" / "result.json")
     with pytest.raises(IsADirectoryError):
