@@ -188,9 +188,11 @@ def test_outputs_that_cannot_be_written_are_told_before_anything_runs(
 ):
     job = str(write_job(tmp_path, "part"))
     monkeypatch.setattr("twin.commands.check.run_tasks", lambda *_, **__: pytest.fail("it ran"))
-    for wrong in ({"junit": tmp_path}, {"json_file": Path(job) / "a.json"}):
+    for junit, json_file in ((tmp_path, None), (None, Path(job) / "a.json")):
         with pytest.raises(OSError, match=str(tmp_path)):
-            check_and_print([job], settings=CheckSettings(), environment={}, **wrong)
+            check_and_print(
+                [job], settings=CheckSettings(), junit=junit, json_file=json_file, environment={}
+            )
 
 
 def test_json_alone_stands_on_the_standard_output(

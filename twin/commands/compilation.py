@@ -55,7 +55,8 @@ def compile_into_reach() -> Path:
 def compile_for_every_processor(folder: Path) -> None:
     """Compile every kernel into a folder that others may read, for any processor of the architecture."""
     keep_in(folder)
-    vars(numba_config).update(CPU_NAME="generic", CPU_FEATURES="")
+    for name, value in (("CPU_NAME", "generic"), ("CPU_FEATURES", "")):
+        setattr(numba_config, name, value)
     compile_kernels()
     for path in [folder, *folder.rglob("*")]:
         path.chmod(0o755 if path.is_dir() else 0o644)
