@@ -51,6 +51,31 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "planner",
         "live report",
     ),
+    "twin.compare": (
+        "figures statistics_kernels",
+        "statistics",
+        "circular contour",
+        "comparison",
+        "trace verdict tracks",
+        "result baseline_text track_comparison",
+        "baseline report",
+    ),
+    "twin.render": (
+        "drawing",
+        "scene",
+        "doctor frames hud",
+        "encoder gauge",
+        "still",
+        "film inspection_still",
+    ),
+    "twin.run": (
+        "stages progress run_folder",
+        "placement outcome",
+        "preparation",
+        "dry_run machining messages replay",
+        "run",
+        "results",
+    ),
     "twin.training": ("scene", "session", "panel", "server"),
 }
 """Of each folder with rooms, its rooms from the ground up; those of one floor know nothing of each

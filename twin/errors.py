@@ -4,7 +4,7 @@ import enum
 
 
 class ExitCode(enum.IntEnum):
-    """What a command returns to the shell; the same for every command."""
+    """What every command returns to the shell."""
 
     OK = 0
     FAILED = 1

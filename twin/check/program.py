@@ -71,7 +71,7 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         differing = _baseline_reasons(preparation, None, settings)
         return _not_run(path, error, _findings(preparation, differing))
     if settings.reports is not None:
-        from twin.compare.report import write_report
+        from twin.compare.report.report import write_report
         from twin.run.results import report_of, result_of
 
         page = report_of(run, outcome, result_of(run, outcome))
