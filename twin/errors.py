@@ -15,6 +15,8 @@ class ExitCode(enum.IntEnum):
     """The NC program is wrong."""
     ALARM = 4
     """The machine raised an alarm."""
+    CRASH = 70
+    """The twin itself is at fault: a defect, or a process that was killed."""
     INTERRUPTED = 130
 
 
