@@ -58,6 +58,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "comparison",
         "trace verdict tracks",
         "result baseline_text track_comparison",
+        "block_difference",
         "baseline report",
     ),
     "twin.render": (
