@@ -1,6 +1,7 @@
 """The application behind the guard: pages, the drawn machine, and the stream of a running session."""
 
 import asyncio
+import contextlib
 import functools
 import json
 from pathlib import Path
@@ -164,7 +165,7 @@ class RoomApp:
         await socket.accept()
         if page is None:
             return await socket.close(1013)
-        tell = asyncio.create_task(self._tell(socket, page))
+        tell = asyncio.create_task(self._tell_until_gone(socket, page))
         try:
             await self._hear(socket, page)
         except (WebSocketDisconnect, RuntimeError):
@@ -194,6 +195,16 @@ class RoomApp:
             elif self.seats.may(page, said):
                 who = "trainer" if page.role == "trainer" else "operator"
                 self._driver.ask(said, who, page.number)
+
+    async def _tell_until_gone(self, socket: WebSocket, page: Page) -> None:
+        """Show a page the machine until it is gone, or reads no more."""
+        try:
+            await self._tell(socket, page)
+        except (WebSocketDisconnect, RuntimeError):
+            pass  # Gone; whoever hears it notices too.
+        except TimeoutError:
+            with contextlib.suppress(RuntimeError):
+                await socket.close(1008)
 
     async def _tell(self, socket: WebSocket, page: Page) -> None:
         """Show a page the machine, no faster than it reads."""

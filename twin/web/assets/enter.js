@@ -2,7 +2,7 @@
 const token = location.hash.slice(1);
 const role = location.pathname.split("/")[1];
 if (token) {
-  history.replaceState(null, "", location.pathname);
+  history.replaceState(null, "", location.pathname + location.search);
   fetch(`/enter/${role}`, { method: "POST", body: token }).then((answer) => {
     const said = { 401: "This token is wrong, or of an earlier session.", 429: "Too many wrong tokens: wait a minute." };
     if (answer.ok) location.reload();

@@ -4,7 +4,6 @@ export class View {
   /** canvas; address of the machine's files; tell: called with "ready" or "failed". */
   constructor(canvas, address, tell) {
     this.canvas = canvas;
-    this.pictures = 0;
     this.waiting = [];
     this.ready = false;
     this.worker = null;
@@ -13,7 +12,7 @@ export class View {
       const surface = canvas.transferControlToOffscreen();
       this.worker.onerror = () => tell("failed", "");
       this.worker.onmessage = ({ data }) => {
-        if (data.pictures !== undefined) this.pictures = data.pictures;
+        if (data.pictures !== undefined) Object.assign(document.body.dataset, { pictures: data.pictures, drawing: Math.round(data.drawing_ms) });
         if (data.failed) tell("failed", data.failed);
         if (data.ready) {
           this.ready = true;

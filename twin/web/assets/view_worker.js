@@ -10,8 +10,9 @@ import { readPatch, readState } from "./wire.js";
 
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 const FASTEST_MS = 33;
+const SLOW_MS = 120;
 
-let renderer, scene, camera, base, fine, size = [1, 1], dirty = true, busy = false, last = 0, pictures = 0;
+let renderer, scene, camera, base, fine, size = [1, 1], dirty = true, busy = false, last = 0, pictures = 0, drawing = 0, dots = 1, slow = 0;
 let machine = null, patches = Promise.resolve(), wanted = 0;
 const orbit = { azimuth: -0.9, elevation: 0.42, distance: 2.4, target: new THREE.Vector3(0, 0, 1), follows: "part" };
 const shown = { trail: true, stock: true, collision: false };
@@ -19,15 +20,13 @@ const trail = new Trail();
 let path = null;
 
 function open({ canvas, width, height, ratio, address, quality }) {
-  renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
-  const context = renderer.getContext();
-  const info = context.getExtension("WEBGL_debug_renderer_info");
-  const name = info ? context.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
-  fine = quality === "fine" || (quality !== "plain" && !SOFTWARE.test(name));
+  fine = quality === "fine" || (quality !== "plain" && !drawn_by_processor());
+  renderer = new THREE.WebGLRenderer({ canvas, antialias: fine, powerPreference: "high-performance" });
   base = address;
   renderer.toneMapping = THREE.ACESFilmicToneMapping;
   renderer.toneMappingExposure = 1.0;
-  renderer.setPixelRatio(fine ? ratio : Math.min(ratio, 1));
+  dots = fine ? ratio : Math.min(ratio, 1);
+  renderer.setPixelRatio(dots);
   scene = new THREE.Scene();
   scene.background = new THREE.Color(0x11161b);
   scene.fog = new THREE.Fog(0x11161b, 6, 14);
@@ -37,6 +36,12 @@ function open({ canvas, width, height, ratio, address, quality }) {
   resize([width, height]);
 }
 
+function drawn_by_processor() {
+  const context = new OffscreenCanvas(1, 1).getContext("webgl2");
+  const info = context?.getExtension("WEBGL_debug_renderer_info");
+  return !info || SOFTWARE.test(context.getParameter(info.UNMASKED_RENDERER_WEBGL));
+}
+
 function light() {
   if (fine) {
     const maker = new THREE.PMREMGenerator(renderer);
@@ -44,7 +49,6 @@ function light() {
     scene.environmentIntensity = 0.55;
     scene.environmentRotation = new THREE.Euler(Math.PI / 2, 0, 0);
     renderer.shadowMap.enabled = true;
-    renderer.shadowMap.type = THREE.PCFSoftShadowMap;
   } else {
     scene.add(new THREE.HemisphereLight(0xdfe9f5, 0x40454c, 1.1));
   }
@@ -214,9 +218,11 @@ function aim() {
   camera.lookAt(orbit.target);
 }
 
-function draw(now) {
-  requestAnimationFrame(draw);
-  if (!machine || now - last < FASTEST_MS) return;
+/** One picture, if anything has changed. What draws slowly leaves the processor to the machine for as long again. */
+function draw() {
+  setTimeout(draw, Math.max(FASTEST_MS, drawing));
+  const now = performance.now();
+  if (!machine) return;
   const seconds = Math.min(0.1, 0.001 * (now - last));
   last = now;
   if (state) {
@@ -227,11 +233,26 @@ function draw(now) {
   if (!dirty) return;
   dirty = false;
   aim();
+  const began = performance.now();
   renderer.render(scene, camera);
+  if (!fine) wait_for_picture();
+  drawing = performance.now() - began;
   pictures += 1;
 }
 
-setInterval(() => postMessage({ pictures }), 1000);
+setInterval(() => postMessage({ pictures, drawing_ms: drawing }), 1000);
+
+/** What a processor draws slowly is drawn with fewer dots. */
+function wait_for_picture() {
+  const context = renderer.getContext();
+  context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, new Uint8Array(4));
+  slow = drawing > SLOW_MS ? slow + 1 : 0;
+  if (slow > 2 && dots > 0.6) {
+    slow = 0;
+    renderer.setPixelRatio(dots *= 0.8);
+    renderer.setSize(size[0], size[1], false);
+  }
+}
 
 /** The whole path of a run: places [mm] and colours, as lines. */
 function drawPath({ places, colours }) {
@@ -245,7 +266,7 @@ function drawPath({ places, colours }) {
 }
 
 const heard = {
-  open(given) { open(given); requestAnimationFrame(draw); },
+  open(given) { open(given); draw(); },
   load,
   state: take,
   patch(buffer) {
