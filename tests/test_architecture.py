@@ -14,10 +14,11 @@ MAY_IMPORT = {
     "toolpath": {"nc"},
     "motion": {"nc", "toolpath"},
     "machine": {"nc", "toolpath", "motion"},
-    "compare": {"nc", "toolpath", "motion"},
+    "logs": {"nc"},
+    "compare": {"nc", "toolpath", "motion", "logs"},
     "cutting": {"nc", "toolpath", "motion"},
-    "render": {"nc", "toolpath", "motion", "machine", "compare", "cutting"},
-    "training": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "render"},
+    "render": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "logs"},
+    "training": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "render", "logs"},
 }
 ROOMS = set(MAY_IMPORT)
 NO_MUJOCO = ROOMS - {"machine", "render", "training"}

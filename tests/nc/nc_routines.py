@@ -7,7 +7,7 @@ import abc
 from collections.abc import Callable
 from random import Random
 
-from tests.nc.nc_deeds import DEEDS
+from tests.nc.nc_effects import EFFECTS
 
 NUMBERS = ["0", "1", "2", "3", ".5", "7.25", "10", "45", "90", "0.001", "360", "12.", "1000000"]
 
@@ -20,7 +20,7 @@ class Writer(abc.ABC):
         self.lines: list[str] = []
         self.depth = 0
         self.label = 0
-        self.deeds = random_.choice([0.0, 0.1, 0.4])
+        self.effects = random_.choice([0.0, 0.1, 0.4])
         """How much of the program does more than move and compute."""
 
     @abc.abstractmethod
@@ -89,8 +89,8 @@ class Fagor(Writer):
             for axis in "XYZC"
             if self.odds(0.5)
         )
-        if self.odds(self.deeds):
-            return self.random.choice(DEEDS["fagor8070"].split("|"))
+        if self.odds(self.effects):
+            return self.random.choice(EFFECTS["fagor8070"].split("|"))
         code = self.pick("G1", "G1", "G0", "G91 G1", "G90 G1", "G1", "G70 G1", "G71 G1")
         kind = self.random.random()
         if kind < 0.07:
@@ -228,8 +228,8 @@ class Codesys(Writer):
             for axis in "XYZC"
             if self.odds(0.5)
         )
-        if self.odds(self.deeds):
-            return self.random.choice(DEEDS["codesys"].split("|"))
+        if self.odds(self.effects):
+            return self.random.choice(EFFECTS["codesys"].split("|"))
         kind = self.random.random()
         if kind < 0.1:
             return f"G91 G3 X{self.pick('0', '10')} Y0 I{self.pick('5', '5', '#a')} J0"
@@ -309,8 +309,8 @@ class Mefi(Writer):
     """G73 of the MEFI CNC8x6: nested and overlapping repeats."""
 
     def move(self) -> str:
-        if self.odds(self.deeds):
-            return self.random.choice(DEEDS["mefi"].split("|"))
+        if self.odds(self.effects):
+            return self.random.choice(EFFECTS["mefi"].split("|"))
         axes = "".join(f" {axis}{self.number()}" for axis in "XYZC" if self.odds(0.5))
         kind = self.random.random()
         if kind < 0.1:

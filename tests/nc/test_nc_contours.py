@@ -8,7 +8,7 @@ import pytest
 
 from tests.nc.nc_contours import program, switched
 from tests.nc.nc_running import WITH_TABLES
-from tests.nc.test_nc_plain import ALWAYS, assert_same, general_blocks, seen
+from tests.nc.test_nc_compiled import ALWAYS, assert_same, general_blocks, seen
 from twin.nc.canonical import Function
 from twin.nc.dialects import DIALECTS
 from twin.nc.text.source import source_from_text
@@ -43,7 +43,7 @@ def test_a_long_contour_goes_through_many_chunks() -> None:
 
 
 def test_what_waits_when_a_run_ends_comes_at_the_end_of_the_held_move() -> None:
-    """A block for the general way stands behind events and a move along the normal."""
+    """A block for the interpreter tier stands behind events and a move along the normal."""
     contour = "X0 Y0\nX10\nX20\nX30\nX40\nX50\nX60\nM8\nZ1\nM9\nG9 X70 Y10\nX80\nG40 X90 Y0\nM30"
     text = f"G90 G1 F100 X-20 Y-20\nG41 D1\n{contour}"
     result = assert_same(source_from_text(text), "gost", JOB)

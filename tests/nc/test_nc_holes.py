@@ -7,7 +7,7 @@ import pytest
 
 from tests.nc.nc_holes import program
 from tests.nc.nc_running import WITH_TABLES
-from tests.nc.test_nc_plain import assert_same, general_blocks
+from tests.nc.test_nc_compiled import assert_same, general_blocks
 from twin.nc.text.source import source_from_text
 
 JOB = dataclasses.replace(WITH_TABLES, step_limit=2000)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tests.nc.nc_routines import MAKERS, program
 from tests.nc.nc_running import SETTINGS, WITH_TABLES, bad
-from tests.nc.test_nc_plain import ALWAYS, assert_same, seen
+from tests.nc.test_nc_compiled import ALWAYS, assert_same, seen
 from twin.nc.control.control import Control
 from twin.nc.dialects import DIALECTS
 from twin.nc.text.expressions import LARGEST_NUMBER
@@ -72,9 +72,9 @@ def test_operators_and_functions_give_the_same_bits(operands: list[float]) -> No
     from twin.nc.compiled.kernels import expression as kernels
 
     functions: list[tuple[Mapping[Callable[..., float], int], Callable[..., float]]] = [
-        (kernels.ONE, kernels.of_one),
-        (kernels.TWO, kernels.of_two),
-        (kernels.THREE, kernels.of_three),
+        (kernels.UNARY_FUNCTIONS, kernels.unary),
+        (kernels.BINARY_FUNCTIONS, kernels.binary),
+        (kernels.TERNARY_FUNCTIONS, kernels.ternary),
     ]
     for count, (numbers, compiled) in enumerate(functions, start=1):
         for compute, number in numbers.items():
@@ -93,9 +93,13 @@ def test_every_operator_and_function_is_compiled(dialect: str) -> None:
     syntax = DIALECTS[dialect].syntax.expressions
     if syntax is None:
         return
-    by_count = {1: kernels.ONE, 2: kernels.TWO, 3: kernels.THREE}
-    assert all(each.compute in kernels.TWO for each in syntax.operators.values())
-    assert all(each in kernels.ONE for each in syntax.prefixes.values())
+    by_count = {
+        1: kernels.UNARY_FUNCTIONS,
+        2: kernels.BINARY_FUNCTIONS,
+        3: kernels.TERNARY_FUNCTIONS,
+    }
+    assert all(each.compute in kernels.BINARY_FUNCTIONS for each in syntax.operators.values())
+    assert all(each in kernels.UNARY_FUNCTIONS for each in syntax.prefixes.values())
     assert all(each.compute in by_count[each.arguments] for each in syntax.functions.values())
 
 
@@ -259,7 +263,7 @@ def test_nothing_of_a_block_that_fails_remains() -> None:
     assert error.code == "undefined-value"
 
 
-def test_memory_of_translated_lines_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_memory_of_compiled_lines_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("twin.nc.bytecode.opcodes.MOST_INSTRUCTIONS", 50)
     lines = ["P1=0", "G1 F100", "$WHILE P1<3", "P1=P1+1"]
     lines += [f"X[P1+{number}] Y[P1*{number}]" for number in range(60)]

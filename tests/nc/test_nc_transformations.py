@@ -9,7 +9,7 @@ import pytest
 
 from tests.nc.nc_running import SETTINGS, WITH_TABLES, good
 from tests.nc.nc_transformations import program
-from tests.nc.test_nc_plain import assert_same, general_blocks
+from tests.nc.test_nc_compiled import assert_same, general_blocks
 from twin.nc.canonical import FloatArray, Shape
 from twin.nc.control.settings import ToolData
 from twin.nc.geometry.matrices import IDENTITY, applied, inverse, product, rotated, stretched

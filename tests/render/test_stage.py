@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from tests.render.conftest import NOTES, TOOL, Record
+from tests.render.conftest import SUMMARY, TOOL, Record
 from twin.cutting.tools import ToolPlan, profile
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.config import Machine
@@ -52,7 +52,7 @@ def test_tool_tip_is_where_the_recording_says(scene: Scene, line: int) -> None:
 def test_a_change_of_tool_is_seen(scene: Scene) -> None:
     long = ToolTable(number=2, kind="drill", diameter=8.0, length=55.0)
     changed = dataclasses.replace(
-        scene, notes=dataclasses.replace(NOTES, tools=ToolPlan((TOOL, long), (0, 2)))
+        scene, summary=dataclasses.replace(SUMMARY, tools=ToolPlan((TOOL, long), (0, 2)))
     )
     with stage(changed, SIZE, DRAFT) as play:
         for line, number in ((2, 1), (3, 2)):
@@ -177,12 +177,12 @@ def test_trail_shows_the_error(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("twin.render.stage.TRAIL_MM", (2.0, 2.0))
-    feeds = dataclasses.replace(NOTES, rapid=np.zeros(4, np.bool_))
+    feeds = dataclasses.replace(SUMMARY, rapid=np.zeros(4, np.bool_))
     colours = []
     for error in (0.0, 25.0):
         with open_recording(make_recording(np.full(1001, error))) as recording:
             scene = Scene(
-                recording=recording, spec=spec, machine=machine, notes=feeds, error_scale_um=20.0
+                recording=recording, spec=spec, machine=machine, summary=feeds, error_scale_um=20.0
             )
             colours.append(trail_colour(scene))
     assert colours[0][1] > colours[0][0] + 30, "green"

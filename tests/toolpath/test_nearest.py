@@ -120,8 +120,8 @@ def test_only_the_window_is_searched():
     frame = PartFrame(rotary=None, center=(0.0, 0.0))
     path = path_columns(moves_of(out, aside, back), frame, np.zeros(4))
     point = (2.0, 0.1, 0.0)
-    assert nearest_between(path, 0, 0.0, 2, 1.0, *point, 0.0) == pytest.approx((0.1, 0, 0.2))
-    assert nearest_between(path, 2, 0.0, 2, 1.0, *point, 0.0) == pytest.approx((0.9, 2, 0.8))
+    assert nearest_between(path, (0, 0.0), (2, 1.0), *point, 0.0) == pytest.approx((0.1, 0, 0.2))
+    assert nearest_between(path, (2, 0.0), (2, 1.0), *point, 0.0) == pytest.approx((0.9, 2, 0.8))
 
 
 def test_of_equal_places_the_last_is_taken():
@@ -129,7 +129,9 @@ def test_of_equal_places_the_last_is_taken():
     back = line(out["end"], np.zeros(4))
     frame = PartFrame(rotary=None, center=(0.0, 0.0))
     path = path_columns(moves_of(out, back), frame, np.zeros(4))
-    assert nearest_between(path, 0, 0.0, 1, 1.0, 4.0, 1.0, 0.0, 1e-9) == pytest.approx((1, 1, 0.6))
+    assert nearest_between(path, (0, 0.0), (1, 1.0), 4.0, 1.0, 0.0, 1e-9) == pytest.approx(
+        (1, 1, 0.6)
+    )
 
 
 def test_points_without_a_direction_have_a_distance():

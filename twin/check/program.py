@@ -58,8 +58,8 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     )
     run = Run(preparation)
     try:
-        survey = run.survey()
-        outcome = run.execute(survey, None, no_progress)
+        dry_run = run.dry_run()
+        outcome = run.execute(dry_run, None, no_progress)
     except ProgramError as error:
         differing = _baseline_reasons(preparation, None, settings)
         return _not_run(path, error, _findings(preparation, differing))

@@ -81,7 +81,7 @@ def sweep(
 
 
 def compare(
-    first: Annotated[Path, typer.Argument(help="Recording, or CSV log.", show_default=False)],
+    first: Annotated[Path, typer.Argument(help="Recording, or log.", show_default=False)],
     second: Annotated[Path, typer.Argument(help="The same.", show_default=False)],
     form: FormatOption = "text",
     period: Annotated[
@@ -93,13 +93,17 @@ def compare(
     tolerance: Annotated[
         float | None, typer.Option("--tolerance", help="Largest actual difference (mm or deg).")
     ] = None,
+    columns: Annotated[
+        Path | None, typer.Option("--columns", help="Map of the columns of logs (TOML).")
+    ] = None,
 ) -> None:
     """Compare two recordings, or a recording with a log of the real machine."""
     from twin.commands.compare import compare_and_print
 
     code = compare_and_print(
-        first, second, form=form, period_s=period, offset_s=offset, tolerance=tolerance
-    )
+        first, second, form=form, period_s=period, offset_s=offset, tolerance=tolerance,
+        columns=columns,
+    )  # fmt: skip
     raise typer.Exit(code)
 
 

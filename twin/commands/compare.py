@@ -10,6 +10,7 @@ from rich.table import Table
 
 from twin.compare.track_comparison import TrackDifference, compare_files
 from twin.errors import ExitCode, UsageError
+from twin.logs.column_map import read_column_map
 
 
 def compare_and_print(
@@ -20,16 +21,18 @@ def compare_and_print(
     period_s: float | None = None,
     offset_s: float | None = None,
     tolerance: float | None = None,
+    columns: Path | None = None,
 ) -> ExitCode:
     """Compare two runs and print how they differ.
 
     Args:
-        first: Recording or CSV log.
+        first: Recording or log.
         second: The same.
         form: ``text`` or ``json``.
         period_s: Time between the samples of logs without a time column [s].
         offset_s: Known offset in time [s]; found by the commanded positions by default.
         tolerance: Largest difference of the actual positions [mm or deg]; none: not judged.
+        columns: A map of the columns of logs; by default what their headings say.
 
     Returns:
         ``FAILED`` when a tolerance was given and does not hold, else ``OK``.
@@ -39,7 +42,8 @@ def compare_and_print(
     """
     if form not in ("text", "json"):
         raise UsageError(f"--format {form}: use text or json")
-    found = compare_files(first, second, period_s=period_s, offset_s=offset_s)
+    meant = None if columns is None else read_column_map(columns)
+    found = compare_files(first, second, period_s=period_s, offset_s=offset_s, columns=meant)
     if form == "json":
         typer.echo(json.dumps(dataclasses.asdict(found), indent=2))
     else:

@@ -23,7 +23,7 @@ def print_interpretation(
         raise UsageError(f"no format '{form}': known formats are {', '.join(FORMATS)}")
     preparation = prepare(program, dialect=dialect, machine=machine, strict=strict)
     interpretation = preparation.interpretation()
-    interpretation.before_fast_way = _announce
+    interpretation.before_compiled_tier = _announce
     try:
         for line in FORMATS[form](interpretation):
             sys.stdout.write(f"{line}\n")

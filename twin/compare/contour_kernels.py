@@ -52,13 +52,15 @@ def follow(path, point, command, back, state, distance, place_move, place_fracti
         back_move = int(back[i, 0])
         if low_move < back_move or (low_move == back_move and low_u < back[i, 1]):
             low_move, low_u = back_move, back[i, 1]
-        error, move, u = nearest_between(path, low_move, low_u, now_move, now_u, x, y, z, _TIE_MM)
+        error, move, u = nearest_between(
+            path, (low_move, low_u), (now_move, now_u), x, y, z, _TIE_MM
+        )
         # Within the margin ahead of the command nothing is nearer than the command less the margin.
         asked = distance_at(path, now_move, now_u, x, y, z)
         if was_ahead or asked - margin < error:
             high_move, high_u = walk(path, high_move, high_u, margin)
             ahead, ahead_move, ahead_u = nearest_between(
-                path, now_move, now_u, high_move, high_u, x, y, z, _TIE_MM
+                path, (now_move, now_u), (high_move, high_u), x, y, z, _TIE_MM
             )
             if ahead < error - _TIE_MM:
                 error, move, u = ahead, ahead_move, ahead_u

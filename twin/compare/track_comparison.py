@@ -8,6 +8,7 @@ import numpy as np
 
 from twin.compare.tracks import Track, read_track
 from twin.errors import UsageError
+from twin.logs.column_map import ColumnMap
 from twin.nc.canonical import FloatArray
 
 _COARSE_SAMPLES = 8192
@@ -58,19 +59,23 @@ def compare_files(
     *,
     period_s: float | None = None,
     offset_s: float | None = None,
+    columns: ColumnMap | None = None,
 ) -> TrackDifference:
-    """How two recordings, or a recording and a CSV log, differ after they are aligned in time.
+    """How two recordings, or a recording and a log, differ after they are aligned in time.
 
     Args:
-        first: Recording (``.h5``) or CSV log.
+        first: Recording (``.h5``) or log of a real machine, in a form that ``twin.logs`` reads.
         second: The same.
         period_s: Time between the samples of logs without a time column [s].
         offset_s: Known offset in time [s]; found by the commanded positions by default.
+        columns: What the columns of logs are; by default what their headings say.
 
     Raises:
         UsageError: A file cannot be read, or the two have nothing in common.
     """
-    one, other = (read_track(Path(path), period_s=period_s) for path in (first, second))
+    one, other = (
+        read_track(Path(path), period_s=period_s, columns=columns) for path in (first, second)
+    )
     return compare_tracks(one, other, offset_s=offset_s)
 
 

@@ -84,7 +84,7 @@ class AxisTable(Table):
     """Largest step of the axis's velocity where an exact path goes through a knee [mm/s or deg/s];
     0: the axis stops there."""
     junction_acceleration_step: NonNegative = 0.0
-    """The same of its acceleration where only the curvature jumps [mm/s² or deg/s²]."""
+    """Largest step of its acceleration where only the curvature of the path jumps [mm/s² or deg/s²]."""
     kv: Positive
     """Position-loop gain [(m/min)/mm; rotary (1000 deg/min)/deg]: lag = velocity / gain."""
     damping_ratio: Positive = 1.0
@@ -123,7 +123,7 @@ class PathTable(Table):
     jerk: Positive
     """[mm/s³]."""
     rotary_acceleration: Positive | None = None
-    """The same for a path of rotary axes alone [deg/s²]; none: the axes decide."""
+    """Acceleration of a path of rotary axes alone [deg/s²]; none: the axes decide."""
     rotary_jerk: Positive | None = None
     """[deg/s³]."""
     corner_tolerance: Positive = 0.01

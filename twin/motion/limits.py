@@ -3,7 +3,7 @@
 **Where the junction steps come from.** A drive with velocity feed-forward and a position loop of
 natural frequency w, critically damped (w twice the loop gain), answers a step dv of the commanded
 velocity with an error ``dv t exp(-w t)``, whose peak is ``dv / (e w)``. With w = 250 1/s (a gain of
-125 1/s, 7.5 (m/min)/mm), 1 mm/s costs 1.5 µm at the knee, and 0.5 deg/s of a table 0.74 mdeg, 1.3
+125 1/s, 7.5 (m/min)/mm), 1 mm/s costs 1.5 µm at the corner, and 0.5 deg/s of a table 0.74 mdeg, 1.3
 µm at a radius of 100 mm: as much as a good machine's own geometry. A step da of the acceleration,
 fed forward, is a step of the drive's force by m da; a tenth of the axis's acceleration takes a
 tenth of the force that the drive has for it, well within what its current loop follows in a servo
@@ -43,17 +43,17 @@ class MotionLimits:
     """Of X Y Z along the path [mm/s³]."""
 
     rotary_path_acceleration: float = math.inf
-    """The same for a path of rotary axes alone [deg/s²]."""
+    """Of a path of rotary axes alone [deg/s²]."""
 
     rotary_path_jerk: float = math.inf
-    """[deg/s³]."""
+    """Of a path of rotary axes alone [deg/s³]."""
 
     junction_velocity_step: FloatArray | float = 0.0
-    """Largest step of each axis's velocity where the path is kept through a knee, shape (k,) or one
+    """Largest step of each axis's velocity where the path is kept through a corner, shape (k,) or one
     for all [mm/s or deg/s]; 0: stop there."""
 
     junction_acceleration_step: FloatArray | float = 0.0
-    """The same of its acceleration where only the curvature steps [mm/s² or deg/s²]."""
+    """Largest step of each axis's acceleration where only the curvature steps [mm/s² or deg/s²]."""
 
     corner_tolerance: float = 0.01
     """Of a continuous corner whose program names none: distance from the path [mm]."""

@@ -15,14 +15,14 @@ from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
 
 if TYPE_CHECKING:
-    from twin.nc.compiled.runner import PlainRunner
+    from twin.nc.compiled.virtual_machine import VirtualMachine
 
-PLAIN_FROM = 500
-"""Blocks and moves after which a program of more lines takes the fast way, which costs time to load."""
+COMPILED_FROM = 500
+"""Blocks and moves after which a program of more lines takes the compiled tier, which costs time to load."""
 SHORT_PROGRAM = 100
 """A program of fewer lines, which can only loop, takes it after so many times as many blocks where
 it is not loaded yet."""
-_FAST_WAY = "twin.nc.compiled.runner"
+_COMPILED_TIER = "twin.nc.compiled.virtual_machine"
 
 
 class Interpretation:
@@ -32,7 +32,7 @@ class Interpretation:
         source: The program.
         dialect: The language it is read in.
         settings: What the control was told of the machine and the job.
-        before_fast_way: Done when the fast way is about to be loaded, which may have to compile it.
+        before_compiled_tier: Done when the compiled tier is about to be loaded, which may have to compile it.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class Interpretation:
         dialect: Dialect,
         settings: ControlSettings,
         *,
-        plain_from: int = PLAIN_FROM,
+        compiled_from: int = COMPILED_FROM,
     ) -> None:
         """Take a program.
 
@@ -49,14 +49,14 @@ class Interpretation:
             source: The program.
             dialect: The language it is read in.
             settings: What the control is told of the machine and the job.
-            plain_from: Blocks and moves after which the fast way is taken where there are as many
+            compiled_from: Blocks and moves after which the compiled tier is taken where there are as many
                 lines, or where it is loaded.
         """
         self.source = source
         self.dialect = dialect
         self.settings = settings
-        self.before_fast_way: Callable[[], None] = lambda: None
-        self._plain_from = plain_from
+        self.before_compiled_tier: Callable[[], None] = lambda: None
+        self._compiled_from = compiled_from
         self._control = Control(dialect, settings, source)
 
     @property
@@ -83,8 +83,8 @@ class Interpretation:
         control = self._control
         try:
             control.prepare()
-            done, fast_from = 0, self._fast_from()
-            plain = self._plain_runner() if fast_from == 0 else None
+            done, compiled_after = 0, self._compiled_after()
+            plain = self._virtual_machine() if compiled_after == 0 else None
             while not control.ended:
                 if plain is None or not plain.run():
                     block = control.flow.next()
@@ -94,8 +94,8 @@ class Interpretation:
                     control.run(block)
                     if plain is None:
                         done += 1 + len(control.path) - before
-                        if done >= fast_from:
-                            plain = self._plain_runner()
+                        if done >= compiled_after:
+                            plain = self._virtual_machine()
                 if len(control.path) >= CHUNK or (plain is not None and plain.full):
                     yield control.path.take()
             control.finish()
@@ -104,13 +104,13 @@ class Interpretation:
             raise
         yield control.path.take()
 
-    def _plain_runner(self) -> "PlainRunner":
-        self.before_fast_way()
-        from twin.nc.compiled.runner import PlainRunner
+    def _virtual_machine(self) -> "VirtualMachine":
+        self.before_compiled_tier()
+        from twin.nc.compiled.virtual_machine import VirtualMachine
 
-        return PlainRunner(self._control)
+        return VirtualMachine(self._control)
 
-    def _fast_from(self) -> int:
-        """Blocks and moves after which the fast way begins."""
-        long = len(self.source.lines) >= self._plain_from
-        return self._plain_from * (1 if long or _FAST_WAY in sys.modules else SHORT_PROGRAM)
+    def _compiled_after(self) -> int:
+        """Blocks and moves after which the compiled tier begins."""
+        long = len(self.source.lines) >= self._compiled_from
+        return self._compiled_from * (1 if long or _COMPILED_TIER in sys.modules else SHORT_PROGRAM)

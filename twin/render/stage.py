@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.cutting.colours import Colours
 from twin.cutting.cut import Cutter, Rectangle, union
-from twin.cutting.program_notes import ProgramNotes
+from twin.cutting.program_summary import ProgramSummary
 from twin.errors import RenderError
 from twin.job.job_file import StockTable
 from twin.machine.config import Machine
@@ -63,7 +63,7 @@ class Scene:
     spec: mujoco.MjSpec
     """Machine, tool and named cameras, as the machine room builds it; it is not changed."""
     machine: Machine
-    notes: ProgramNotes
+    summary: ProgramSummary
     """What is in the spindle when, which moves are rapids, what the screen shows."""
     source: Sequence[str] = ()
     """Lines of the program."""
@@ -128,7 +128,7 @@ class Stage:
         self._trail = trail
         self._tools = tools
         self._seen = seen
-        self._tool = scene.notes.tools.tools[0]
+        self._tool = scene.summary.tools.tools[0]
         self._move = 0
         self._joints = Joints(scene.machine, model)
         self._samples = 0
@@ -146,7 +146,7 @@ class Stage:
         self._samples += len(samples)
         self._position = samples.joint_position[-1]
         self._move = int(samples.setpoint.move[-1])
-        self._tool = self._scene.notes.tools.at(self._move)
+        self._tool = self._scene.summary.tools.at(self._move)
         if self._cutter is not None:
             period = self._scene.recording.header.period_s
             late = min(len(samples), max(1, round(OF_LATE_S / period)))
@@ -160,7 +160,7 @@ class Stage:
     def _cut(self, samples: Samples) -> float:
         """Take the samples' material off; returns how much [mm³]."""
         assert self._cutter is not None
-        removed = self._cutter.add(samples, self._scene.notes.is_rapid(samples.setpoint.move))
+        removed = self._cutter.add(samples, self._scene.summary.is_rapid(samples.setpoint.move))
         self._changed = union(self._changed, self._cutter.changed)
         return removed
 
@@ -200,7 +200,7 @@ class Stage:
     def _tip(self) -> FloatArray:
         """Where the tool point is, in the part's frame, shape (3,) [mm]."""
         tip = self._scene.recording.header.part_frame.position(self._position[None])[0]
-        return tip - [0.0, 0.0, self._scene.notes.tools.longer(self._tool)]
+        return tip - [0.0, 0.0, self._scene.summary.tools.longer(self._tool)]
 
     def _spray(self) -> Chips:
         """Chips of what was removed of late; out of a slot they fly from its upper edge."""
@@ -220,7 +220,7 @@ class Stage:
         return Focus(center, SHADOWS_OVER_PART * MM * max(radius, SMALLEST_MM))
 
     def _refresh(self) -> None:
-        turns = self._scene.notes.spindle.at(self._move)
+        turns = self._scene.summary.spindle.at(self._move)
         self._tools.show(self._tool, 1.0 if turns is None else float(np.sign(turns)))
         self._joints.set(self.data, self._position)
         mujoco.mj_forward(self.model, self.data)
@@ -259,11 +259,11 @@ def stage(
     header = scene.recording.header
     spec = scene.spec.copy()
     turn_zero = header.part_frame.turn_zero
-    placement = place(scene.machine, spec.compile(), scene.notes.tools.tools[0].length, turn_zero)
+    placement = place(scene.machine, spec.compile(), scene.summary.tools.tools[0].length, turn_zero)
     cutter = surface = None
     if scene.stock is not None:
         cutter = Cutter(
-            scene.stock, scene.notes.tools, header.part_frame, header.part_zero, keep_marks=True
+            scene.stock, scene.summary.tools, header.part_frame, header.part_zero, keep_marks=True
         )
         step = max(1, -(-max(cutter.map.heights.shape) // quality.drawn_cells))
         skin = Skin(cutter.map, cutter.marks, step, paint)
@@ -271,14 +271,14 @@ def stage(
         surface.add_to(spec)
         corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
         add_work_holding(spec, scene.stock, placement, corner)
-    points = trail_points(scene.recording, scene.notes)
+    points = trail_points(scene.recording, scene.summary)
     seen = framed(points.position if cutter is None else cutter.map.corners)
     add_part_cameras(spec, placement, *seen)
     way = Trail(
         points if trail else points[_NO_POINTS], _trail_radius(points.position), scene.error_scale
     )
     way.add_to(spec)
-    tools = ToolBodies(scene.notes.tools, scene.machine.file.spindle.flange_diameter)
+    tools = ToolBodies(scene.summary.tools, scene.machine.file.spindle.flange_diameter)
     tools.add_to(spec)
     prepare(spec, renderer, quality, size)
     model = spec.compile()

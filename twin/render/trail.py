@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from twin.cutting.outline import BoolArray
-from twin.cutting.program_notes import ProgramNotes
+from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.thin_kernels import thin
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Recording
@@ -67,25 +67,25 @@ class TrailPoints:
         return self[thin(self.position, group, tolerance, np.inf, MOST_JOINED)]
 
 
-def trail_points(recording: Recording, notes: ProgramNotes) -> TrailPoints:
+def trail_points(recording: Recording, summary: ProgramSummary) -> TrailPoints:
     """The trail of a whole recording, with few enough points to be drawn.
 
     Args:
         recording: Of n samples; its contour errors colour the trail, where it has any.
-        notes: What is in the spindle when, and which moves are rapids.
+        summary: What is in the spindle when, and which moves are rapids.
     """
     parts = []
     first = 0
     for chunk in recording.chunks():
         position = recording.header.part_frame.position(chunk.joint_position)
-        for run, tool in notes.tools.runs(chunk.setpoint.move):
-            position[run, 2] -= notes.tools.longer(tool)
+        for run, tool in summary.tools.runs(chunk.setpoint.move):
+            position[run, 2] -= summary.tools.longer(tool)
         sample = first + np.arange(len(chunk))
         first += len(chunk)
         error = recording.contour_um(first - len(chunk), first)
         if error is None:
             error = np.full(len(chunk), np.nan)
-        rapid = notes.is_rapid(chunk.setpoint.move)
+        rapid = summary.is_rapid(chunk.setpoint.move)
         parts.append(TrailPoints(position, sample, rapid, error).thinned(FINEST_MM))
     if not parts:
         return TrailPoints(

@@ -15,7 +15,7 @@ from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.fixtures import FixtureGuard
 from twin.cutting.part import write_stl
-from twin.cutting.program_notes import NoteTaker, ProgramNotes
+from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
 from twin.cutting.spindle import Spindle, speaks_of_spindle
 from twin.errors import ConfigError
 from twin.machine.alarms import Alarm
@@ -41,7 +41,7 @@ from twin.version import __version__
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class Survey:
+class DryRun:
     """What a first pass over the program found, before anything moves.
 
     Attributes:
@@ -49,14 +49,14 @@ class Survey:
         warnings: What the interpreter had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
         speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
-        notes: What the program says beside its moves.
+        summary: What the program says beside its moves.
     """
 
     moves: int
     warnings: tuple[Diagnostic, ...]
     alarm: Alarm | None
     speaks_of_spindle: bool
-    notes: ProgramNotes
+    summary: ProgramSummary
 
 
 class Run:
@@ -92,13 +92,13 @@ class Run:
         self._planned_s = 0.0
         self._spindle = Spindle(held_to_program=False)
 
-    def execute(self, survey: Survey, out: Path | None, progress: Progress) -> Outcome:
+    def execute(self, dry_run: DryRun, out: Path | None, progress: Progress) -> Outcome:
         """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
 
         A program that would leave the travel moves nothing and writes nothing.
 
         Args:
-            survey: What the first pass found.
+            dry_run: What the first pass found.
             out: The folder; None writes neither, for who wants the verdict alone.
             progress: Told how far the simulation is.
 
@@ -113,17 +113,17 @@ class Run:
             self.part_zero,
             apart=[part.lines for part in tolerance.blocks],
         )
-        cutter, guard = self._cutter(survey.notes), self._guard(survey.notes)
+        cutter, guard = self._cutter(dry_run.summary), self._guard(dry_run.summary)
         track = _Track(self.part_zero, preparation.start)
-        self._spindle = Spindle(held_to_program=survey.speaks_of_spindle)
-        alarm, near_miss = survey.alarm, None
+        self._spindle = Spindle(held_to_program=dry_run.speaks_of_spindle)
+        alarm, near_miss = dry_run.alarm, None
         if alarm is None:
             with self._recording(out) as writer:
-                simulation = self._simulation(comparison, survey.notes)
+                simulation = self._simulation(comparison, dry_run.summary)
                 for simulated in self.clock.watch("simulate", simulation):
                     with self.clock.stage("cut"):
                         clear, touched = _keep_clear(guard, simulated)
-                        samples, alarm = self._cut(cutter, clear, survey.notes)
+                        samples, alarm = self._cut(cutter, clear, dry_run.summary)
                         alarm = alarm or touched
                     track.add(samples)
                     with self.clock.stage("compare"):
@@ -132,7 +132,7 @@ class Run:
                     if writer is not None:
                         with self.clock.stage("record"):
                             writer.append(samples, contour_um)
-                    progress("simulate", track.progress(survey.moves))
+                    progress("simulate", track.progress(dry_run.moves))
                     if alarm is not None:
                         break
                 alarm, near_miss = alarm or simulation.alarm, simulation.near_miss
@@ -148,14 +148,14 @@ class Run:
             cut=cut,
             alarms=alarms,
             near_miss=near_miss,
-            warnings=survey.warnings,
+            warnings=dry_run.warnings,
             samples=len(track),
             duration_s=duration_s,
             final_commanded=track.commanded,
             final_simulated=track.simulated,
         )
 
-    def survey(self) -> Survey:
+    def dry_run(self) -> DryRun:
         """Interpret the whole program once, so that no error is met with the machine half-way.
 
         Raises:
@@ -163,28 +163,28 @@ class Run:
         """
         interpretation = self.preparation.interpretation()
         moves, alarm, speaks = 0, None, False
-        taker = NoteTaker(self.preparation.job.file)
+        builder = SummaryBuilder(self.preparation.job.file)
         for chunk in self.clock.watch("interpret", interpretation.chunks()):
             moves += len(chunk.moves)
-            taker.add(chunk)
+            builder.add(chunk)
             speaks = speaks or speaks_of_spindle(chunk)
             if alarm is None:
                 alarm = soft_limit_alarm(self.preparation.machine, chunk.moves, self.part_zero)
-        return Survey(
+        return DryRun(
             moves=moves,
             warnings=tuple(interpretation.diagnostics),
             alarm=alarm,
             speaks_of_spindle=speaks,
-            notes=taker.notes(),
+            summary=builder.summary(),
         )
 
     def _cut(
-        self, cutter: Cutter | None, samples: Samples, notes: ProgramNotes
+        self, cutter: Cutter | None, samples: Samples, summary: ProgramSummary
     ) -> tuple[Samples, Alarm | None]:
         """Cut along a chunk; what is left of it where the stock raised an alarm, and the alarm."""
         if cutter is None:
             return samples, None
-        rapid = notes.is_rapid(samples.setpoint.move)
+        rapid = summary.is_rapid(samples.setpoint.move)
         cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
         if cutter.halted is None:
             return samples, None
@@ -192,15 +192,15 @@ class Run:
         end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
         return samples[:end], alarm
 
-    def _load(self, notes: ProgramNotes) -> AxisLoad | None:
+    def _load(self, summary: ProgramSummary) -> AxisLoad | None:
         job = self.preparation.job.file
         if not job.cutting_load:
             return None
         if job.stock is None:
             raise ConfigError("cutting_load needs a [stock] to cut")
-        return AxisLoad(job.stock, notes, self.part_frame, self.part_zero)
+        return AxisLoad(job.stock, summary, self.part_frame, self.part_zero)
 
-    def _simulation(self, comparison: Comparison, notes: ProgramNotes) -> Simulation:
+    def _simulation(self, comparison: Comparison, summary: ProgramSummary) -> Simulation:
         machine = self.preparation.machine
         period = machine.file.servo_period_s
         setpoints = plan(
@@ -211,8 +211,8 @@ class Run:
             start=self.preparation.start + self.part_zero,
         )
         settled = self.clock.watch("plan", settle(self._planned(setpoints), period))
-        load = self._load(notes)
-        return simulate(machine, self.spec, settled, notes.tools, load)
+        load = self._load(summary)
+        return simulate(machine, self.spec, settled, summary.tools, load)
 
     def _planned(self, setpoints: Iterator[Setpoints]) -> Iterator[Setpoints]:
         for chunk in setpoints:
@@ -226,19 +226,19 @@ class Run:
             self._spindle.expect(chunk)
             yield chunk
 
-    def _cutter(self, notes: ProgramNotes) -> Cutter | None:
+    def _cutter(self, summary: ProgramSummary) -> Cutter | None:
         job = self.preparation.job.file
         if job.stock is None:
             return None
-        return Cutter(job.stock, notes.tools, self.part_frame, self.part_zero, halts=True)
+        return Cutter(job.stock, summary.tools, self.part_frame, self.part_zero, halts=True)
 
-    def _guard(self, notes: ProgramNotes) -> FixtureGuard | None:
+    def _guard(self, summary: ProgramSummary) -> FixtureGuard | None:
         """What keeps the cutter off the fixtures; without a turning table nobody knows where."""
         machine = self.preparation.machine
         if not machine.file.fixtures or machine.part_frame.rotary is None:
             return None
-        height = notes.tools.tools[0].length - spindle_over_table_mm(machine)
-        return FixtureGuard(machine.file.fixtures, notes.tools, self.part_frame, height)
+        height = summary.tools.tools[0].length - spindle_over_table_mm(machine)
+        return FixtureGuard(machine.file.fixtures, summary.tools, self.part_frame, height)
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:
         return nullcontext() if out is None else record(out / "recording.h5", self.header())

@@ -14,7 +14,7 @@ import numpy as np
 
 from twin.columns import Columns
 from twin.nc.canonical import FloatArray, IntArray, Moves, Shape
-from twin.toolpath.geometry_kernels import evaluate
+from twin.toolpath.geometry_kernels import Curves, evaluate
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -39,6 +39,10 @@ class Geometry(Columns):
     sine: FloatArray
     angle: FloatArray
     end: FloatArray
+
+    def curves(self) -> Curves:
+        """The columns, for compiled code."""
+        return Curves(self.base, self.drift, self.cosine, self.sine, self.angle, self.end)
 
     def position(self, move: IntArray, fraction: FloatArray) -> FloatArray:
         """Where the axes are.
@@ -83,10 +87,7 @@ class Geometry(Columns):
 
     def _evaluate(self, move: IntArray, fraction: FloatArray, order: int) -> FloatArray:
         out = np.zeros((len(move), self.base.shape[1]))
-        evaluate(
-            self.base, self.drift, self.cosine, self.sine, self.angle, self.end,
-            move, fraction, order, out,
-        )  # fmt: skip
+        evaluate(self.curves(), move, fraction, order, out)
         return out
 
 

@@ -1,6 +1,7 @@
 """The inner loop of ``twin.toolpath.geometry``."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,33 +9,31 @@ from twin.compilation.kernel import array_kernel
 from twin.nc.canonical import FloatArray, IntArray
 
 
+class Curves(NamedTuple):
+    """The columns of a ``Geometry``, for compiled code."""
+
+    base: FloatArray
+    drift: FloatArray
+    cosine: FloatArray
+    sine: FloatArray
+    angle: FloatArray
+    end: FloatArray
+
+
 @array_kernel
 def evaluate(
-    base: FloatArray,
-    drift: FloatArray,
-    cosine: FloatArray,
-    sine: FloatArray,
-    angle: FloatArray,
-    end: FloatArray,
-    move: IntArray,
-    fraction: FloatArray,
-    order: int,
-    out: FloatArray,
+    curves: Curves, move: IntArray, fraction: FloatArray, order: int, out: FloatArray
 ) -> None:
     """Position (order 0) or derivative by path fraction (order 1 to 3) of rows of a geometry.
 
     Args:
-        base: Columns of ``Geometry``, and so on to ``end``.
-        drift: See above.
-        cosine: See above.
-        sine: See above.
-        angle: See above.
-        end: See above.
+        curves: The geometry.
         move: Rows, shape (m,).
         fraction: Path fractions, shape (m,).
         order: 0 to 3.
         out: Result, shape (m, k) [mm or deg].
     """
+    base, drift, cosine, sine, angle, end = curves
     for row in range(len(move)):
         i = move[row]
         u = fraction[row]

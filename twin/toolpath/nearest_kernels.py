@@ -16,7 +16,7 @@ _RESOLUTION_MM = 1e-9
 _STEP_MM = 1e-10
 """Newton's method ends when a step is shorter than this; the distance changes by far less."""
 _SMALLEST_PIECE = 2.0**-10
-"""Share of the searched stretch below which a piece is solved without the proof."""
+"""Share of the searched fractions below which a piece is solved without the proof."""
 _ITERATIONS = 80
 """More than bisection alone needs to halve a bracket down to rounding."""
 
@@ -230,29 +230,27 @@ def _nearest_on_curve(path, move, low, high, x, y, z):
 
 
 @array_kernel
-def nearest_between(path, low_move, low_u, high_move, high_u, x, y, z, tie):
+def nearest_between(path, low, high, x, y, z, tie):
     """Nearest place between two places of the path, ends included.
 
     Args:
         path: The moves.
-        low_move: Where the search begins.
-        low_u: Fraction of that move.
-        high_move: Where it ends, not before the beginning.
-        high_u: Fraction of that move.
-        x: The point, in the part's frame [mm].
-        y: The same.
-        z: The same.
+        low: Move and fraction where the search begins.
+        high: Move and fraction where it ends, not before the beginning.
+        x: The point's X in the part's frame [mm].
+        y: Its Y.
+        z: Its Z.
         tie: Of places whose distance differs by no more than this, the last is taken [mm].
 
     Returns:
         The shortest distance [mm], the move and the fraction of its place.
     """
     least = math.inf
-    place_move, place_u = high_move, high_u
-    for move in range(low_move, high_move + 1):
-        low = low_u if move == low_move else 0.0
-        high = high_u if move == high_move else 1.0
-        here, u = nearest_on_move(path, move, low, high, x, y, z)
+    place_move, place_u = high
+    for move in range(low[0], high[0] + 1):
+        begin = low[1] if move == low[0] else 0.0
+        end = high[1] if move == high[0] else 1.0
+        here, u = nearest_on_move(path, move, begin, end, x, y, z)
         if here <= least + tie:
             place_move, place_u = move, u
         least = min(least, here)

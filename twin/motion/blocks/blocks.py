@@ -43,11 +43,11 @@ class Blocks(Columns):
         move: Number of the move in the whole program, -1 before the first, shape (n,).
         line: Source line, shape (n,).
         length: In path parameter x, shape (n,) [mm or deg]; 0 for dwells.
-        stretch: Path parameter per what the feed counts, almost always 1, shape (n,).
+        parameter_scale: Path parameter per what the feed counts, almost always 1, shape (n,).
         rapid: Whether the move is a rapid, shape (n,).
         feed: Shape (n,) [mm/s or deg/s]; infinite for rapids that the program gives none.
         acceleration: Programmed, shape (n,) [mm/s² or deg/s²]; infinite: the machine's.
-        deceleration: The same for slowing down.
+        deceleration: Programmed for slowing down, shape (n,) [mm/s² or deg/s²].
         rotary_alone: Only rotary axes move, shape (n,).
         corner: ``Corner`` code of the border before the block, shape (n,).
         tolerance: Of a continuous border before the block, shape (n,) [mm]; NaN: the machine's.
@@ -58,7 +58,7 @@ class Blocks(Columns):
     move: IntArray
     line: IntArray
     length: FloatArray
-    stretch: FloatArray
+    parameter_scale: FloatArray
     rapid: BoolArray
     feed: FloatArray
     acceleration: FloatArray
@@ -128,12 +128,12 @@ def _of_moves(moves: Moves, first: int, corner: int, tolerance: float) -> tuple[
     at_border[:-1][rapid] = Corner.EXACT_STOP
     at_border[1:][rapid] = Corner.EXACT_STOP
     shapes = geometry(kept)
-    stretch = length / np.maximum(moves.length, 1e-12)
+    scale = length / np.maximum(moves.length, 1e-12)
     blocks = Blocks(
         move=first + rows,
         line=kept.line,
         length=length[rows],
-        stretch=stretch[rows],
+        parameter_scale=scale[rows],
         rapid=rapid,
         feed=np.where(np.isnan(kept.feed), np.inf, kept.feed / SECONDS_PER_MINUTE),
         acceleration=np.where(np.isnan(kept.acceleration), np.inf, kept.acceleration),
@@ -162,7 +162,7 @@ def _of_dwell(dwell: Dwell, move: int, position: FloatArray) -> Blocks:
         move=np.array([move]),
         line=np.array([dwell.line]),
         length=zero,
-        stretch=np.ones(1),
+        parameter_scale=np.ones(1),
         rapid=np.zeros(1, np.bool_),
         feed=zero,
         acceleration=zero,

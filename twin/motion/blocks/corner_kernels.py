@@ -1,13 +1,13 @@
 """Rounding polynomials of borders, and how wide they may be.
 
-With t = y / width from -1 to 1, y being the distance from the border, the rounding of a knee is
-``knee width (smooth_ramp(t) - max(t, 0))``, the kink of a ramp, smoothed by the parabolic kernel
+With t = y / width from -1 to 1, y being the distance from the border, the rounding of a tangent_step is
+``tangent_step width (smooth_ramp(t) - max(t, 0))``, the kink of a ramp, smoothed by the parabolic kernel
 3/4 (1 - t²)::
 
     smooth_ramp(t) = (3 + 8 t + 6 t² - t⁴) / 16
 
-It is largest at the border, 3/16, and convex on either side. The rounding of a bend is
-``bend width² (smooth_square(t) - max(t, 0)²/2)`` with the quintic that meets 0 and t²/2 with two
+It is largest at the border, 3/16, and convex on either side. The rounding of a curvature_step is
+``curvature_step width² (smooth_square(t) - max(t, 0)²/2)`` with the quintic that meets 0 and t²/2 with two
 derivatives; it is odd::
 
     smooth_square(t) = (3 t + 8 t² + 6 t³ - t⁵) / 32
@@ -21,10 +21,10 @@ from twin.compilation.kernel import array_kernel, summing_kernel
 from twin.motion.blocks.blocks import BoolArray
 from twin.nc.canonical import FloatArray, IntArray
 
-MOST_NEIGHBOURS = 32
+MAX_NEIGHBOURS = 32
 """Borders to either side that a rounding may reach over."""
 
-MOST_STEPS = 50
+MAX_STEPS = 50
 """Of the search for a width; some four are usual."""
 
 NEARLY = 1e-6
@@ -33,8 +33,8 @@ NEARLY = 1e-6
 NARROWEST = 1e-4
 """A rounding narrower than this is none [mm or deg]."""
 
-KNEE_PEAK = 3.0 / 16.0
-BEND_PEAK = 0.01074
+TANGENT_PEAK = 3.0 / 16.0
+CURVATURE_PEAK = 0.01074
 """Largest value of ``smooth_square(t) - max(t, 0)²/2`` (0.010736)."""
 
 OVERLAP_POINTS = 16
@@ -76,9 +76,9 @@ def _between(
             t = abs(begin + h * point - place[other]) / width[other] if width[other] > 0.0 else 1.0
             if t < 1.0:
                 ramp = (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 16.0
-                bend = t * (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 32.0
-                # Between two points a bend lies within h²/8 of its second derivative, half at most.
-                square = bend * width[other] ** 2 + h * h / 16.0
+                curvature_step = t * (3.0 + t * (-8.0 + t * (6.0 - t * t))) / 32.0
+                # Between two points a curvature_step lies within h²/8 of its second derivative, half at most.
+                square = curvature_step * width[other] ** 2 + h * h / 16.0
                 used += per_width[other] * width[other] * ramp + per_square[other] * square
         most = max(most, used)
     return most
@@ -99,7 +99,7 @@ def _used(
         reached: The first border that reaches there and the one after the last.
         width: Of all roundings.
     """
-    ramps, slopes, bends = 0.0, 0.0, 0.0
+    ramps, slopes, curvature_steps = 0.0, 0.0, 0.0
     at, per_reach = place[i], 1.0 / width
     # To see that no index is negative helps the compiler; a slice would cost as much as the sum.
     first = max(0, reached[0])
@@ -110,9 +110,9 @@ def _used(
         flat = 1.0 - squared
         ramps += per_width[other] * (3.0 + t * (-8.0 + t * (6.0 - squared)))
         slopes += per_width[other] * (flat * flat)
-        bends += per_square[other]
-    bends *= BEND_PEAK * width
-    return width * (ramps / 16.0 + bends), slopes * 3.0 / 16.0 + 2.0 * bends
+        curvature_steps += per_square[other]
+    curvature_steps *= CURVATURE_PEAK * width
+    return width * (ramps / 16.0 + curvature_steps), slopes * 3.0 / 16.0 + 2.0 * curvature_steps
 
 
 @array_kernel
@@ -161,7 +161,7 @@ def _even_width(
     """
     high = min(place[i] - place[walls[0]], place[walls[1]] - place[i])
     width, below, above = min(guess, high), 0.0, math.inf
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         near = _reached(place, i, walls, width, near)
         used, slope = _used(place, per_width, per_square, i, near, width)
         if used > 1.0:
@@ -170,14 +170,14 @@ def _even_width(
             return high, near
         else:
             below = width
-        # What is used grows like a power of the width: the first for a knee alone, the second for
+        # What is used grows like a power of the width: the first for a tangent_step alone, the second for
         # many. Newton's step for such a power, with ``used ** -flatness`` by Padé.
         flatness = used / (slope * width)
         new = width * (2.0 + (1.0 - flatness) * (used - 1.0))
         new = min(high, new / (2.0 + (1.0 + flatness) * (used - 1.0)))
         if abs(new - width) <= NEARLY * width or below >= (1.0 - NEARLY) * above:
             return max(below, new) if new < above else below, near
-        # Where a bend comes within reach its share is there at once: no slope tells.
+        # Where a curvature step comes within reach its share is there at once: no slope tells.
         width = new if below < new < above else 0.5 * (below + above)
     return below, near
 
@@ -189,12 +189,15 @@ def _add_shares(
 ) -> None:  # fmt: skip
     """Add what one rounding uses of the tolerance at the borders that it reaches, in place."""
     at, per_reach = place[i], 1.0 / width
-    knee, bend = width * per_width / 16.0, width * width * per_square * BEND_PEAK
+    tangent_step, curvature_step = (
+        width * per_width / 16.0,
+        width * width * per_square * CURVATURE_PEAK,
+    )
     first = max(0, reached[0])
     for row in range(reached[1] - first):
         other = first + row
         t = abs(place[other] - at) * per_reach
-        excess[other] += knee * (3.0 + t * (-8.0 + t * (6.0 - t * t))) + bend
+        excess[other] += tangent_step * (3.0 + t * (-8.0 + t * (6.0 - t * t))) + curvature_step
 
 
 @summing_kernel
@@ -216,12 +219,12 @@ def _find_walls(rounded: BoolArray) -> tuple[IntArray, IntArray]:
     for i in range(count):
         if not rounded[i]:
             wall = i
-        before[i] = max(wall, i - MOST_NEIGHBOURS)
+        before[i] = max(wall, i - MAX_NEIGHBOURS)
     wall = count
     for i in range(count - 1, -1, -1):
         if not rounded[i]:
             wall = i
-        after[i] = min(wall, i + MOST_NEIGHBOURS)
+        after[i] = min(wall, i + MAX_NEIGHBOURS)
     return before, after
 
 

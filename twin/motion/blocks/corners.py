@@ -1,7 +1,7 @@
-"""What happens where one block meets the next: a stop, a knee, or a rounding.
+"""What happens where one block meets the next: a stop, a tangent_step, or a rounding.
 
-At a border the first derivatives of the axes by the path parameter x step by ``knee`` and the
-second ones by ``bend`` (a straight move into a tangent arc has only a bend). A continuous border is
+At a border the first derivatives of the axes by the path parameter x step by ``tangent_step`` and the
+second ones by ``curvature_step`` (a straight move into a tangent arc has only a curvature_step). A continuous border is
 rounded by adding to the path, over a width on both sides, a polynomial that takes away exactly
 these two steps; the sum is curvature-continuous, and roundings may overlap, so that a chain of
 short blocks becomes one smooth curve.
@@ -13,11 +13,11 @@ import numpy as np
 
 from twin.motion.blocks.blocks import Blocks, BoolArray
 from twin.motion.blocks.border_kernels import border_steps, border_velocities, tolerance_shares
-from twin.motion.blocks.corner_kernels import MOST_NEIGHBOURS, find_widths
+from twin.motion.blocks.corner_kernels import MAX_NEIGHBOURS, find_widths
 from twin.motion.limits import MotionLimits
 from twin.nc.canonical import Corner, FloatArray
 
-CONTEXT = 5 * MOST_NEIGHBOURS
+CONTEXT = 5 * MAX_NEIGHBOURS
 """Blocks on either side that the path along a block can depend on: roundings reach that far, their
 widths depend on others' widths thrice as far, and those on the tolerances as far again."""
 
@@ -27,14 +27,14 @@ class Borders:
     """The borders before each of n blocks.
 
     Attributes:
-        knee: Step of dq/dx of each axis, shape (n, k).
-        bend: Step of d²q/dx² of each axis, shape (n, k).
+        tangent_step: Step of dq/dx of each axis, shape (n, k).
+        curvature_step: Step of d²q/dx² of each axis, shape (n, k).
         width: How far a rounding reaches to either side, shape (n,) [mm or deg]; 0: none.
         entry: Highest velocity, shape (n,) [mm/s or deg/s].
     """
 
-    knee: FloatArray
-    bend: FloatArray
+    tangent_step: FloatArray
+    curvature_step: FloatArray
     width: FloatArray
     entry: FloatArray
 
@@ -42,23 +42,26 @@ class Borders:
 def find_borders(blocks: Blocks, limits: MotionLimits) -> Borders:
     """Decide how each border is passed; the first block's border counts as a stop."""
     shapes, axes = blocks.geometry, len(limits)
-    knee, bend = border_steps(shapes.drift, shapes.cosine, shapes.sine, shapes.angle, blocks.length)
+    tangent_step, curvature_step = border_steps(shapes.curves(), blocks.length)
     corner = blocks.corner.copy()
     corner[0] = Corner.EXACT_STOP
     rounded = corner == Corner.CONTINUOUS
     width = np.zeros(len(blocks))
     if np.any(rounded):
         per_width, per_square = tolerance_shares(
-            knee, bend, _tolerances(blocks, rounded, limits), limits.further_corner_tolerance
+            tangent_step,
+            curvature_step,
+            _tolerances(blocks, rounded, limits),
+            limits.further_corner_tolerance,
         )
         place = np.append(0.0, np.cumsum(blocks.length))
         width = find_widths(place, rounded, per_width, per_square)
     entry = border_velocities(
-        knee, bend, corner == Corner.EXACT_STOP, rounded, width,
+        tangent_step, curvature_step, corner == Corner.EXACT_STOP, rounded, width,
         np.broadcast_to(limits.junction_velocity_step, axes),
         np.broadcast_to(limits.junction_acceleration_step, axes),
     )  # fmt: skip
-    return Borders(knee, bend, width, entry)
+    return Borders(tangent_step, curvature_step, width, entry)
 
 
 def _tolerances(blocks: Blocks, rounded: BoolArray, limits: MotionLimits) -> FloatArray:
@@ -70,7 +73,7 @@ def _tolerances(blocks: Blocks, rounded: BoolArray, limits: MotionLimits) -> Flo
     own[~rounded] = np.inf
     strictest = own.copy()
     if np.ptp(own[rounded]) > 0.0:
-        for shift in range(1, MOST_NEIGHBOURS + 1):
+        for shift in range(1, MAX_NEIGHBOURS + 1):
             np.minimum(strictest[shift:], own[:-shift], out=strictest[shift:])
             np.minimum(strictest[:-shift], own[shift:], out=strictest[:-shift])
     return strictest

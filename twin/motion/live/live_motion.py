@@ -25,7 +25,7 @@ import numpy as np
 
 from twin.columns import join
 from twin.motion.limits import MotionLimits
-from twin.motion.live.overridden_plan import OverriddenPlan, Wishes
+from twin.motion.live.overridden_plan import OverriddenPlan, Overrides
 from twin.motion.pieces.pieces import pieces_of_chunks
 from twin.motion.planner import WatchedEnd
 from twin.motion.setpoints.sampling import at_end, sample, standing
@@ -85,7 +85,7 @@ class LiveMotion:
         self._plan = OverriddenPlan(
             pieces_of_chunks(self._program, limits, start - part_zero, largest_override)
         )
-        self._wanted = self._granted = Wishes()
+        self._wanted = self._granted = Overrides()
         self._dropped = False
         self._finished = False
         self._tick = 0
@@ -172,7 +172,7 @@ class LiveMotion:
         wanted = self._tick + count
         while self._tick < wanted and not self._finished:
             now = self._tick * self._period_s
-            if self._wanted != self._granted and self._plan.wish(self._wanted, now):
+            if self._wanted != self._granted and self._plan.override(self._wanted, now):
                 self._granted = self._wanted
             # A change that is not yet possible is tried again at every period.
             every = self._dropped or self._wanted != self._granted

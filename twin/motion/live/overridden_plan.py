@@ -1,4 +1,4 @@
-"""A plan that is made only as far as it is needed, and anew when the operator's wishes change."""
+"""A plan that is made only as far as it is needed, and anew when the operator's overrides change."""
 
 import dataclasses
 import math
@@ -9,17 +9,18 @@ import numpy as np
 from twin.motion.blocks.blocks import BoolArray
 from twin.motion.live.transition_kernels import find_transition
 from twin.motion.pieces.pieces import Pieces
-from twin.motion.profile.phase_kernels import put_brake
-from twin.motion.profile.phases import Phases, no_phases, phases_of, ways_on
-from twin.motion.profile.profile_kernels import STATE_AT_REST, find_phases
-from twin.motion.profile.reach_kernels import ROUNDING, SLOWEST, find_brake, find_reach
+from twin.motion.profile.backward_pass_kernels import ROUNDING, SLOWEST, backward_pass, find_brake
+from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, forward_pass
+from twin.motion.profile.phase_kernels import PhaseRows, write_brake
+from twin.motion.profile.phases import Phases, brakes_from, no_phases, phases_of
+from twin.motion.profile.state import Course, State
 from twin.motion.profile.windows import Window, windows
 from twin.motion.setpoints.sampling_kernels import state_at
 from twin.nc.canonical import FloatArray
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Wishes:
+class Overrides:
     """What the operator wants of the plan."""
 
     feed_override: float = 1.0
@@ -37,30 +38,30 @@ class Wishes:
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class _Drive:
-    """What a window of n stretches is driven by under the wishes.
+    """What a window of n segments is driven by under the overrides.
 
     Attributes:
         limits: As the window's, velocities as wanted.
         entry: As the window's, 0 where a block is to stop.
-        ways: From ``find_reach``.
-        block_end: Stretch before which a single block stops; -1: none.
-        closed: Whether each stretch must not be driven on, shape (n,).
+        brakes: From ``backward_pass``.
+        block_end: Segment before which a single block stops; -1: none.
+        closed: Whether each segment must not be driven on, shape (n,).
     """
 
     limits: FloatArray
     entry: FloatArray
-    ways: FloatArray
+    brakes: FloatArray
     block_end: int
     closed: BoolArray
 
-    def stop_from(self, stretch: int) -> int:
-        """The first stretch from one on that must not be driven on, or n."""
-        ahead = self.closed[stretch:]
-        return stretch + int(np.argmax(ahead)) if np.any(ahead) else len(self.closed)
+    def stop_from(self, segment: int) -> int:
+        """The first segment from one on that must not be driven on, or n."""
+        ahead = self.closed[segment:]
+        return segment + int(np.argmax(ahead)) if np.any(ahead) else len(self.closed)
 
 
 class OverriddenPlan:
-    """Phases under an operator's wishes.
+    """Phases under an operator's overrides.
 
     Args:
         parts: The program's pieces, in order.
@@ -75,13 +76,13 @@ class OverriddenPlan:
     def __init__(self, parts: Iterable[Pieces]) -> None:
         self._windows = windows(parts)
         self._state = STATE_AT_REST.copy()
-        self._wishes = Wishes()
+        self._wishes = Overrides()
         self.phases: list[Phases] = []
         self.standing_since = math.inf
         self.at_block_end = False
         self._window: Window
         self._drive: _Drive
-        self._stretches = 0
+        self._segments = 0
         self._empty = not self._open()
 
     @property
@@ -99,28 +100,28 @@ class OverriddenPlan:
     def plan_until(self, time: float) -> None:
         """Plan on to a time [s], or to the program's end."""
         while self._state[4] < time and not self.ended:
-            stretch = int(self._state[0])
+            segment = int(self._state[0])
             window, drive = self._window, self._drive
-            stop = drive.stop_from(stretch)
-            self.at_block_end = stretch == drive.block_end
+            stop = drive.stop_from(segment)
+            self.at_block_end = segment == drive.block_end
             if self.at_block_end:
                 self._stand_until(time)
-            elif stretch >= window.due:
+            elif segment >= window.due:
                 self._open()
-            elif self._wishes.held or stretch == stop:
+            elif self._wishes.held or segment == stop:
                 self._stand_until(time)
             else:
-                rows, stretches = find_phases(
-                    drive.limits, drive.entry, drive.ways, window.pause, min(stop, window.due),
+                rows, segments = forward_pass(
+                    drive.limits, drive.entry, drive.brakes, window.pause, min(stop, window.due),
                     time, self._state,
                 )  # fmt: skip
-                self._append(phases_of(window, rows, stretches))
+                self._append(phases_of(window, rows, segments))
 
-    def wish(self, wishes: Wishes, time: float) -> bool:
-        """Change the wishes; what is planned for later is dropped.
+    def override(self, overrides: Overrides, time: float) -> bool:
+        """Change the overrides; what is planned for later is dropped.
 
         Args:
-            wishes: What is wanted from now on.
+            overrides: What is wanted from now on.
             time: Now, up to which it is planned [s].
 
         Returns:
@@ -131,48 +132,45 @@ class OverriddenPlan:
         place = self._state_at(time)
         if place is None:
             return False
-        stretch, x, v, a, pause = place
-        window, drive = _drive(self._window, wishes, stretch, x)
-        tables = drive.limits, drive.entry, drive.ways[0]
-        brake = None
-        if a < 0.0 or find_brake(*tables, stretch, x, v, a, ROUNDING, 0) < 0:
-            brake = find_transition(window.limits, *tables, stretch, x, v, a)
-            if brake[0] < 0:
+        segment, x, v, a, pause = place
+        window, drive = _drive(self._window, overrides, segment, x)
+        course = Course(drive.limits, drive.entry, drive.brakes[0])
+        here = State(segment, x, v, a)
+        brake, x_end = None, 0.0
+        if a < 0.0 or find_brake(course, here, ROUNDING) < 0:
+            brake, x_end = find_transition(window.limits, course, here)
+            if brake.border < 0:
                 return False
-        self._wishes, self._window, self._drive = wishes, window, drive
+        self._wishes, self._window, self._drive = overrides, window, drive
         self.standing_since = math.inf
-        window.pause[stretch] = pause
-        self._state[:5] = stretch, x, v, a, time
+        window.pause[segment] = pause
+        self._state[:5] = segment, x, v, a, time
         self._state[5:] = STATE_AT_REST[5:]
         self.phases = [no_phases(window.pieces)]
         if brake is not None:
-            end, x_end, w, deceleration, jerk = brake
-            rows, stretches = np.zeros((3, 6)), np.zeros((3, 2), np.int64)
-            count, _, end_time, _ = put_brake(
-                rows, stretches, 0, window.limits[0], stretch, end, time, x, v, a, w,
-                deceleration, jerk,
-            )  # fmt: skip
-            self._append(phases_of(window, rows[:count], stretches[:count]))
-            self._state[:5] = end, x_end, w, 0.0, end_time
+            rows = PhaseRows(np.zeros((3, 6)), np.zeros((3, 2), np.int64))
+            count, end_time, _, _ = write_brake(rows, 0, window.limits[0], time, here, brake)
+            self._append(phases_of(window, rows.phases[:count], rows.segments[:count]))
+            self._state[:5] = brake.border - 1, x_end, brake.velocity, 0.0, end_time
         return True
 
     def _state_at(self, time: float) -> tuple[int, float, float, float, float] | None:
-        """Stretch, x, v, a at a time, and how long the stretch still pauses [s].
+        """Segment, x, v, a at a time, and how long the segment still pauses [s].
 
         None between two windows: the next begins with the next sample.
         """
         phases, window = self.phases[-1], self._window
         i, x, v, a, row = state_at(phases.rows, phases.rows_pieces, window.pieces.length, time)
         if row < 0 or self.standing_since <= time:
-            stretch, (x, v, a) = int(self._state[0]), self._state[1:4].tolist()
-            if stretch >= len(window.pause):
+            segment, (x, v, a) = int(self._state[0]), self._state[1:4].tolist()
+            if segment >= len(window.pause):
                 return None
-            return stretch, x, v, a, float(window.pause[stretch])
-        stretch, x = window.stretch_at(i, x)
-        pause = float(window.pause[stretch])
-        if window.limits[0, stretch] == 0.0:
+            return segment, x, v, a, float(window.pause[segment])
+        segment, x = window.segment_at(i, x)
+        pause = float(window.pause[segment])
+        if window.limits[0, segment] == 0.0:
             pause = max(0.0, float(phases.rows[row, :2].sum()) - time)
-        return stretch, x, v, a, pause
+        return segment, x, v, a, pause
 
     def _open(self) -> bool:
         """Go to the next window; whether there is one."""
@@ -183,15 +181,15 @@ class OverriddenPlan:
         known = np.zeros((4, 0))
         if self.phases:
             last = self._window
-            if len(last.pause) == self._stretches:
+            if len(last.pause) == self._segments:
                 self._state[[0, 5]] -= last.due
-                known = ways_on(self._drive.ways, last.due)
+                known = brakes_from(self._drive.brakes, last.due)
             else:
-                # The window has been parted since: stretches have other numbers.
+                # The window has been parted since: segments have other numbers.
                 piece, x = last.piece_at(int(self._state[0]), self._state[1])
-                self._state[:2] = window.stretch_at(piece - int(last.begins[last.due]), x)
+                self._state[:2] = window.segment_at(piece - int(last.begins[last.due]), x)
                 self._state[5:] = STATE_AT_REST[5:]
-        self._stretches = len(window.pause)
+        self._segments = len(window.pause)
         self._window, self._drive = _drive(
             window, self._wishes, int(self._state[0]), self._state[1], known
         )
@@ -200,10 +198,10 @@ class OverriddenPlan:
 
     def _stand_until(self, time: float) -> None:
         """Add a phase at rest; between two blocks it belongs to the one that has ended."""
-        stretch, x, now = int(self._state[0]), float(self._state[1]), float(self._state[4])
+        segment, x, now = int(self._state[0]), float(self._state[1]), float(self._state[4])
         self.standing_since = min(self.standing_since, now)
         lengths = self._window.pieces.length
-        piece, x = self._window.piece_at(stretch, x)
+        piece, x = self._window.piece_at(segment, x)
         if x == 0.0 and piece > 0 and lengths[piece] > 0.0:
             piece -= 1
             x = float(lengths[piece])
@@ -221,31 +219,31 @@ class OverriddenPlan:
 
 
 def _drive(
-    window: Window, wishes: Wishes, stretch: int, x: float, known: FloatArray | None = None
+    window: Window, overrides: Overrides, segment: int, x: float, known: FloatArray | None = None
 ) -> tuple[Window, _Drive]:
     """What a window is driven by from a place on; the window, parted where a block is to stop."""
     pieces = window.pieces
     block_end = -1
-    if wishes.single_block:
-        piece, _ = window.piece_at(stretch, x)
+    if overrides.single_block:
+        piece, _ = window.piece_at(segment, x)
         others = np.flatnonzero(pieces.line[piece:] != pieces.line[piece])
         if len(others) > 0:
             window = window.parted_at(piece + int(others[0]))
-            block_end, _ = window.stretch_at(piece + int(others[0]), 0.0)
+            block_end, _ = window.segment_at(piece + int(others[0]), 0.0)
     first = window.begins[:-1]
     rapid, feed = pieces.rapid[first], pieces.feed[first]
-    override = np.where(rapid, wishes.rapid_override, wishes.feed_override)
+    override = np.where(rapid, overrides.rapid_override, overrides.feed_override)
     limits, entry = window.limits.copy(), window.entry.copy()
     wanted = np.minimum(limits[1], override * np.where(rapid, limits[1], feed))
-    limits[1] = 0.0 if wishes.held else wanted
+    limits[1] = 0.0 if overrides.held else wanted
     closed = (limits[1] < SLOWEST) & (limits[0] > 0.0)
     if block_end >= 0:
         entry[block_end] = 0.0
         closed[block_end] = True
         known = None
-    ways = np.zeros((4, len(entry)))
-    known = np.zeros((4, 0)) if known is None else known[:, stretch:].copy()
-    known[[1, 3]] -= stretch
-    ways[:, stretch:] = find_reach(limits[:, stretch:], entry[stretch:], known)
-    ways[[1, 3]] += stretch
-    return window, _Drive(limits, entry, ways, block_end, closed)
+    brakes = np.zeros((4, len(entry)))
+    known = np.zeros((4, 0)) if known is None else known[:, segment:].copy()
+    known[[1, 3]] -= segment
+    brakes[:, segment:] = backward_pass(limits[:, segment:], entry[segment:], known)
+    brakes[[1, 3]] += segment
+    return window, _Drive(limits, entry, brakes, block_end, closed)

@@ -3,9 +3,10 @@
 import math
 
 from twin.compilation.kernel import array_kernel
-from twin.motion.profile.brake_kernels import brake_need
-from twin.motion.profile.reach_kernels import BISECTIONS, ROUNDING, SLOWEST, find_brake
-from twin.motion.profile.way_kernels import room_for_brake
+from twin.motion.profile.backward_pass_kernels import BISECTIONS, ROUNDING, SLOWEST, find_brake
+from twin.motion.profile.brake_kernels import brake_distance_from
+from twin.motion.profile.brake_margin_kernels import brake_margin
+from twin.motion.profile.state import Brake, Course, State
 from twin.nc.canonical import FloatArray
 
 
@@ -14,12 +15,12 @@ def _slowest_within(
     v: float, a: float, highest: float, deceleration: float, jerk: float, distance: float
 ) -> float:
     """The lowest w up to ``highest`` whose brake takes no more than ``distance``."""
-    if brake_need(v, a, 0.0, deceleration, jerk) <= distance:
+    if brake_distance_from(v, a, 0.0, deceleration, jerk) <= distance:
         return 0.0
     low, high = 0.0, highest
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        if brake_need(v, a, middle, deceleration, jerk) <= distance:
+        if brake_distance_from(v, a, middle, deceleration, jerk) <= distance:
             high = middle
         else:
             low = middle
@@ -27,33 +28,27 @@ def _slowest_within(
 
 
 @array_kernel
-def find_transition(
-    limits: FloatArray, wanted: FloatArray, entry: FloatArray, reach: FloatArray,
-    i: int, x: float, v: float, a: float,
-) -> tuple[int, float, float, float, float]:  # fmt: skip
+def find_transition(limits: FloatArray, wanted: Course, state: State) -> tuple[Brake, float]:
     """The brake that begins at once and ends in a state that is safe under the wanted ceilings.
 
-    Of all pieces the nearest one in which such a brake can end is taken, and in it the highest
-    velocity. The brake keeps the limits of all pieces that it passes.
+    Of all segments the nearest one in which such a brake can end is taken, and in it the highest
+    velocity. The brake keeps the limits of all segments that it passes.
 
     Args:
-        limits: As in ``find_brake``, with the velocities that must not be passed.
-        wanted: The same with the velocities that are wanted.
-        entry: As in ``find_brake``.
-        reach: Of ``wanted``.
-        i: Piece of the state.
-        x: Place within it.
-        v: Velocity.
-        a: Acceleration of either sign.
+        limits: Of a ``Course``, with the velocities that must not be passed.
+        wanted: The path with the velocities that are wanted.
+        state: Where the brake begins; its acceleration may have either sign.
 
     Returns:
-        Piece in which the brake ends, x there, velocity there, deceleration and jerk of the brake;
-        a piece of -1 where there is none.
+        The brake, which ends in the segment before its border, and x there; a border of -1 where
+        there is none.
     """
+    i, x, v, a = state
+    allowed = Course(limits, wanted.entry, wanted.controllable)
     before = -x
     deceleration, jerk, softest = math.inf, math.inf, math.inf
     for p in range(i, limits.shape[1]):
-        if limits[0, p] == 0.0 or (p > i and entry[p] < SLOWEST):
+        if limits[0, p] == 0.0 or (p > i and wanted.entry[p] < SLOWEST):
             break
         deceleration = min(deceleration, limits[3, p])
         jerk = min(jerk, limits[4, p])
@@ -61,24 +56,24 @@ def find_transition(
         after = before + limits[0, p]
         # A brake that is under way must at least be eased off.
         change = 0.5 * a * a / jerk
-        highest = min(wanted[1, p], v + change if a >= 0.0 else v - change)
+        highest = min(wanted.limits[1, p], v + change if a >= 0.0 else v - change)
         if a < -deceleration * (1.0 + ROUNDING) or highest < 0.0:
             break
-        if brake_need(v, a, 0.0, deceleration, jerk) < before:
+        if brake_distance_from(v, a, 0.0, deceleration, jerk) < before:
             break
-        if brake_need(v, a, highest, deceleration, jerk) <= after:
+        if brake_distance_from(v, a, highest, deceleration, jerk) <= after:
             low = _slowest_within(v, a, highest, deceleration, jerk, after)
-            if brake_need(v, a, highest, deceleration, jerk) < before:
+            if brake_distance_from(v, a, highest, deceleration, jerk) < before:
                 highest = _slowest_within(v, a, highest, deceleration, jerk, before)
             w, slack = highest, ROUNDING * (after + 1e-3)
             for step in range(BISECTIONS):
-                need = brake_need(v, a, w, deceleration, jerk)
+                need = brake_distance_from(v, a, w, deceleration, jerk)
                 end = min(max(0.0, need - before), limits[0, p])
                 # Between a stop and a third of the velocity the way grows with w.
                 fits = need <= after
-                safe = fits and find_brake(wanted, entry, reach, p, end, w, 0.0, 0.0, 0) >= 0
-                if safe and -slack <= room_for_brake(
-                    limits, entry, i, x, v, a, p + 1, w, deceleration, jerk, 1.0 + ROUNDING
+                safe = fits and find_brake(wanted, State(p, end, w, 0.0), 0.0) >= 0
+                if safe and -slack <= brake_margin(
+                    allowed, state, Brake(p + 1, w, deceleration, jerk), 1.0 + ROUNDING
                 ):
                     low = w
                     if step == 0:
@@ -96,7 +91,8 @@ def find_transition(
                 else:
                     w = 0.5 * (low + highest)
             if low >= 0.0:
-                end = brake_need(v, a, low, deceleration, jerk) - before
-                return p, min(max(0.0, end), limits[0, p]), low, deceleration, jerk
+                end = brake_distance_from(v, a, low, deceleration, jerk) - before
+                end = min(max(0.0, end), limits[0, p])
+                return Brake(p + 1, low, deceleration, jerk), end
         before = after
-    return -1, 0.0, 0.0, 0.0, 0.0
+    return Brake(-1, 0.0, 0.0, 0.0), 0.0

@@ -5,45 +5,53 @@ degree added by roundings. The ranges of either are known in closed form and are
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from twin.compilation.kernel import array_arithmetic_kernel, array_kernel
 from twin.nc.canonical import FloatArray, IntArray
+from twin.toolpath.geometry_kernels import Curves
 
 FLAT = 1e-9
 """Of the largest q' or q'': what is smaller is rounding and has no sign."""
 
 
+class DerivativeBounds(NamedTuple):
+    """Bounds of the path's derivatives by x along n pieces.
+
+    Attributes:
+        axes: Of abs(q'), abs(q''), abs(q''') of each axis, shape (n, 3, k).
+        curvature: Of the length of q'' of X Y Z together, shape (n,).
+        against: Whether q' q'' can be positive, and whether it can be negative, of each axis, shape
+            (n, 2, k).
+    """
+
+    axes: FloatArray
+    curvature: FloatArray
+    against: npt.NDArray[np.bool_]
+
+
 @array_arithmetic_kernel
 def bound_derivatives(
-    drift: FloatArray, cosine: FloatArray, sine: FloatArray, angle: FloatArray,
-    owner: IntArray, begin: FloatArray, fraction_per_length: FloatArray, length: FloatArray,
-    rounding: FloatArray,
-) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:  # fmt: skip
+    curves: Curves, owner: IntArray, begin: FloatArray, fraction_per_length: FloatArray,
+    length: FloatArray, rounding: FloatArray,
+) -> DerivativeBounds:  # fmt: skip
     """Bounds of the path's derivatives by x along pieces.
 
     Args:
-        drift: Columns of the moves' ``Geometry``, and so on to ``angle``; an arc turns by less than
-            a quarter along a piece.
-        cosine: See above.
-        sine: See above.
-        angle: See above.
+        curves: Of the moves; an arc turns by less than a quarter along a piece.
         owner: Move of each piece, shape (n,).
         begin: Path fraction of each piece's begin, shape (n,).
         fraction_per_length: Shape (n,).
         length: Shape (n,).
         rounding: Shape (n, k, 6).
-
-    Returns:
-        Bounds of abs(q'), abs(q''), abs(q''') of each axis, shape (n, 3, k); of the length of q''
-        of X Y Z together, shape (n,); whether q' q'' can be positive, and whether it can be
-        negative, shape (n, 2, k).
     """
+    drift, cosine, sine, angle = curves.drift, curves.cosine, curves.sine, curves.angle
     count, axes = len(owner), drift.shape[1]
     bounds = np.empty((count, 3, axes))
-    bend = np.empty(count)
+    curvature = np.empty(count)
     against = np.empty((count, 2, axes), np.bool_)
     for i in range(count):
         move = max(0, owner[i])
@@ -66,11 +74,11 @@ def bound_derivatives(
             low1, high1, low2, high2, low3, high3 = _polynomial_ranges(added, slope, length[i])
             if bent:
                 p, q = cosine[move, axis], sine[move, axis]
-                amplitude, way = math.hypot(p, q), math.copysign(1.0, turn)
+                amplitude, sense = math.hypot(p, q), math.copysign(1.0, turn)
                 x, x_end = p * c + q * s, p * c_end + q * s_end
                 y, y_end = q * c - p * s, q * c_end - p * s_end
-                across = _wave_range(x, x_end, way * y, way * y_end, amplitude)
-                along = _wave_range(y, y_end, -way * x, -way * x_end, amplitude)
+                across = _wave_range(x, x_end, sense * y, sense * y_end, amplitude)
+                along = _wave_range(y, y_end, -sense * x, -sense * x_end, amplitude)
                 radius += p * p
                 square = turn * turn
                 low1 += min(turn * along[0], turn * along[1])
@@ -92,10 +100,10 @@ def bound_derivatives(
             left, right = high2 > flat, low2 < -flat
             against[i, 0, axis] = (rises & left) | (falls & right)
             against[i, 1, axis] = (rises & right) | (falls & left)
-        bend[i] = math.sqrt(squares)
+        curvature[i] = math.sqrt(squares)
         if turn != 0.0 and not np.any(rounding[i]):
-            bend[i] = turn * turn * math.sqrt(radius)
-    return bounds, bend, against
+            curvature[i] = turn * turn * math.sqrt(radius)
+    return DerivativeBounds(bounds, curvature, against)
 
 
 @array_arithmetic_kernel

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from twin.compilation.kernel import array_kernel
-from twin.motion.pieces.rounding_kernels import add_roundings
+from twin.motion.pieces.rounding_kernels import Roundings, add_roundings
 from twin.nc.canonical import FloatArray, IntArray
 
 PIECE_ANGLE = math.radians(5.0)
@@ -23,7 +23,7 @@ grown by less than 1e-16 mm."""
 
 @array_kernel
 def cut_blocks(
-    length: FloatArray, angle: FloatArray, width: FloatArray, knee: FloatArray, bend: FloatArray,
+    length: FloatArray, angle: FloatArray, width: FloatArray, tangent_step: FloatArray, curvature_step: FloatArray,
 ) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
     """Cut blocks where a rounding begins or ends, and arcs into short angles.
 
@@ -31,8 +31,8 @@ def cut_blocks(
         length: Of all blocks, shape (n,).
         angle: Sweep of all blocks, 0 for lines, shape (n,) [rad].
         width: Of the rounding of the border before each block, shape (n,).
-        knee: Step of dq/dx there, shape (n, k).
-        bend: Step of d²q/dx² there, shape (n, k).
+        tangent_step: Step of dq/dx there, shape (n, k).
+        curvature_step: Step of d²q/dx² there, shape (n, k).
 
     Returns:
         Of each piece: its block, its begin from the block's begin, its length, and what its
@@ -72,11 +72,12 @@ def cut_blocks(
         owner[used], offset[used], extent[used] = i, begin, length[i] - begin
         used += 1
     owner, offset, extent = owner[:used], offset[:used], extent[:used]
-    rounding = np.empty((used, knee.shape[1], 6))
+    rounding = np.empty((used, tangent_step.shape[1], 6))
     if len(ends) == 0:
         rounding[:] = 0.0
     else:
-        add_roundings(place, owner, offset, extent, ends, sources, width, knee, bend, rounding)
+        roundings = Roundings(place, width, tangent_step, curvature_step)
+        add_roundings(roundings, owner, offset, extent, ends, sources, rounding)
     return owner, offset, extent, rounding
 
 

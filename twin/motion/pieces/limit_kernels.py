@@ -1,13 +1,14 @@
 """How fast pieces may be driven, from the bounds of the path's derivatives along them."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from twin.compilation.kernel import array_arithmetic_kernel
 from twin.motion.blocks.blocks import BoolArray
-from twin.motion.pieces.reachable_kernels import reach_velocities
+from twin.motion.pieces.bound_kernels import DerivativeBounds
+from twin.motion.pieces.reachable_velocity_kernels import Along, lower_to_reachable
 from twin.nc.canonical import FloatArray, IntArray
 
 CENTRIPETAL_SHARE = 0.95
@@ -17,92 +18,114 @@ CURVE_JERK_SHARE = 0.5
 """Of an axis's jerk that a curve may use at constant speed, and again at constant acceleration."""
 
 
+class BlockLimits(NamedTuple):
+    """What the program asks of m blocks.
+
+    Attributes:
+        velocity: Highest v, shape (m,).
+        acceleration: Highest a, shape (m,).
+        deceleration: Highest -a, shape (m,).
+        parameter_scale: Path parameter per what the feed counts, shape (m,).
+        rotary_alone: Whether only rotary axes move, shape (m,).
+    """
+
+    velocity: FloatArray
+    acceleration: FloatArray
+    deceleration: FloatArray
+    parameter_scale: FloatArray
+    rotary_alone: BoolArray
+
+
+class MachineLimits(NamedTuple):
+    """``MotionLimits``, for compiled code.
+
+    Attributes:
+        velocity: Of each axis, shape (k,).
+        acceleration: Of each axis, shape (k,).
+        jerk: Of each axis, shape (k,).
+        path: Acceleration and jerk of the path, and of one of rotary axes alone.
+    """
+
+    velocity: FloatArray
+    acceleration: FloatArray
+    jerk: FloatArray
+    path: tuple[float, float, float, float]
+
+
 @array_arithmetic_kernel
 def piece_limits(
-    block: tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray],
-    owner: IntArray, length: FloatArray, ceilings: FloatArray,
-    bounds: FloatArray, bend: FloatArray, against: npt.NDArray[np.bool_],
-    path: tuple[float, float, float, float],
-    axis_velocity: FloatArray, axis_acceleration: FloatArray, axis_jerk: FloatArray,
+    block: BlockLimits, owner: IntArray, length: FloatArray, ceilings: FloatArray,
+    bounds: DerivativeBounds, machine: MachineLimits,
 ) -> FloatArray:  # fmt: skip
     """What any instant of a piece may use.
 
     Args:
-        block: Of the m blocks: highest v that is asked for, highest a and -a, path parameter per
-            what the feed counts, whether only rotary axes move; shape (m,) each.
+        block: Of the blocks.
         owner: Block of each of n pieces, shape (n,).
         length: Of the pieces, 0 for dwells, shape (n,).
         ceilings: Highest v at the borders of the pieces, shape (n + 1,).
-        bounds: From ``bound_derivatives``, shape (n, 3, k).
-        bend: From ``bound_derivatives``, shape (n,).
-        against: From ``bound_derivatives``, shape (n, 2, k).
-        path: Acceleration and jerk of the path, and of one of rotary axes alone.
-        axis_velocity: Shape (k,).
-        axis_acceleration: Shape (k,).
-        axis_jerk: Shape (k,).
+        bounds: Of the pieces.
+        machine: Limits of the axes and the path.
 
     Returns:
         Rows velocity, acceleration, deceleration, jerk, shape (4, n).
     """
-    wanted, highest_a, highest_d, stretch, rotary_alone = block
-    count, axes = len(owner), len(axis_jerk)
+    wanted, highest_a, highest_d, scale, rotary_alone = block
+    path = machine.path
+    count, axes = len(owner), len(machine.jerk)
     out = np.zeros((4, count))
     speeding, braking, readiness = np.zeros(count), np.zeros(count), np.ones(count)
     curved = np.zeros(count, np.bool_)
     for i in range(count):
         row = max(0, owner[i])
-        path_a = stretch[row] * (path[2] if rotary_alone[row] else path[0])
-        path_j = stretch[row] * (path[3] if rotary_alone[row] else path[1])
+        path_a = scale[row] * (path[2] if rotary_alone[row] else path[0])
+        path_j = scale[row] * (path[3] if rotary_alone[row] else path[1])
         v, a, j = _straight_limits(
-            bounds[i], bend[i], wanted[row], path_a, path_j, stretch[row],
-            axis_velocity, axis_acceleration, axis_jerk,
-        )  # fmt: skip
+            bounds.axes[i], scale[row] * bounds.curvature[i], wanted[row], path_a, path_j, machine
+        )
         out[0, i], out[3, i] = v, j
-        out[1, i] = min(a, stretch[row] * highest_a[row])
-        out[2, i] = min(a, stretch[row] * highest_d[row])
-        speeding[i] = min(path_a, stretch[row] * highest_a[row])
-        braking[i] = min(path_a, stretch[row] * highest_d[row])
+        out[1, i] = min(a, scale[row] * highest_a[row])
+        out[2, i] = min(a, scale[row] * highest_d[row])
+        speeding[i] = min(path_a, scale[row] * highest_a[row])
+        braking[i] = min(path_a, scale[row] * highest_d[row])
         for axis in range(axes):
-            curved[i] |= bounds[i, 1, axis] > 0.0
+            curved[i] |= bounds.axes[i, 1, axis] > 0.0
         if length[i] > 0.0:
             # A ramp to v takes v / a without a jerk limit and a / j longer with it.
             readiness[i] = 1.0 / (1.0 + a * a / (v * j))
     if np.any(curved):
-        reach_velocities(
-            bounds, against, curved, length, out, ceilings, axis_acceleration,
-            speeding, braking, readiness,
-        )  # fmt: skip
-        _leave_room_for_curves(bounds, against, curved, out, axis_acceleration, axis_jerk)
+        along = Along(length, speeding, braking, readiness)
+        lower_to_reachable(bounds, curved, along, out, ceilings, machine.acceleration)
+        _leave_room_for_curves(bounds, curved, out, machine)
     return out
 
 
 @array_arithmetic_kernel
 def _straight_limits(
-    bounds: FloatArray, bend: float, wanted: float,
-    path_acceleration: float, path_jerk: float, stretch: float,
-    axis_velocity: FloatArray, axis_acceleration: FloatArray, axis_jerk: FloatArray,
+    bounds: FloatArray, curvature: float, wanted: float,
+    path_acceleration: float, path_jerk: float, machine: MachineLimits,
 ) -> tuple[float, float, float]:  # fmt: skip
     """What velocity, acceleration and jerk bound each by itself along a piece.
 
     Args:
         bounds: Of abs(q'), abs(q''), abs(q'''), shape (3, k).
-        bend: Of the length of q'' of X Y Z together.
+        curvature: Of the length of q'' of X Y Z together, by what the feed counts.
         wanted: Highest v that is asked for.
         path_acceleration: Of the path parameter.
         path_jerk: Of the path parameter.
-        stretch: Path parameter per what the feed counts.
-        axis_velocity: Shape (k,).
-        axis_acceleration: Shape (k,).
-        axis_jerk: Shape (k,).
+        machine: Limits of the axes.
 
     Returns:
         Highest v, as if a were 0; highest a and j, as if v were 0.
     """
+    axis_velocity, axis_acceleration, axis_jerk = (
+        machine.velocity, machine.acceleration, machine.jerk
+    )  # fmt: skip
     velocity, acceleration, jerk = wanted, path_acceleration, path_jerk
     # Each division waits for a limit that binds.
     square, cube = wanted * wanted, wanted * wanted * wanted
-    if square * stretch * bend > path_acceleration:
-        square = path_acceleration / (stretch * bend)
+    if square * curvature > path_acceleration:
+        square = path_acceleration / curvature
     for axis in range(len(axis_velocity)):
         first, second, third = bounds[0, axis], bounds[1, axis], bounds[2, axis]
         if first == second == 0.0:
@@ -126,19 +149,18 @@ def _straight_limits(
 
 @array_arithmetic_kernel
 def _leave_room_for_curves(
-    bounds: FloatArray, against: npt.NDArray[np.bool_], curved: BoolArray, limits: FloatArray,
-    axis_acceleration: FloatArray, axis_jerk: FloatArray,
-) -> None:  # fmt: skip
+    derivatives: DerivativeBounds, curved: BoolArray, limits: FloatArray, machine: MachineLimits
+) -> None:
     """Leave room in a and j for following the curve at v, in place.
 
     Args:
-        bounds: As in ``piece_limits``.
-        against: As in ``piece_limits``.
+        derivatives: Of the pieces.
         curved: Whether any q'' is not 0, shape (n,).
         limits: Rows velocity, acceleration, deceleration, jerk, shape (4, n).
-        axis_acceleration: Shape (k,).
-        axis_jerk: Shape (k,).
+        machine: Limits of the axes.
     """
+    bounds, against = derivatives.axes, derivatives.against
+    axis_acceleration, axis_jerk = machine.acceleration, machine.jerk
     for i in range(limits.shape[1]):
         if not curved[i]:
             continue

@@ -22,13 +22,13 @@ from twin.motion.blocks.corners import CONTEXT, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.motion.pieces.cut_kernels import cut_blocks, place_pieces
-from twin.motion.pieces.limit_kernels import piece_limits
+from twin.motion.pieces.limit_kernels import BlockLimits, MachineLimits, piece_limits
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 from twin.toolpath.geometry import Geometry
 
 BATCH = 2000
 """Blocks that are cut into pieces at a time: as many as are planned at a time."""
-MOST_ANGLE = 1024.0 * math.pi
+MAX_ANGLE = 1024.0 * math.pi
 """What their arcs turn together, but for the last [rad]: of helices with many turns each, a few."""
 
 
@@ -87,7 +87,7 @@ def pieces_of_chunks(
         ValueError: A move does not begin where the one before it ended.
     """
     blocks = blocks_of_chunks(chunks, start)
-    for surroundings in with_neighbours(blocks, BATCH, CONTEXT, MOST_ANGLE):
+    for surroundings in with_neighbours(blocks, BATCH, CONTEXT, MAX_ANGLE):
         yield _cut(surroundings, limits, largest_override)
 
 
@@ -96,21 +96,19 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
     borders = find_borders(blocks, limits)
     # The neighbours are cut as well: they tell how fast a piece can be reached and left.
     owner, offset, length, rounding = cut_blocks(
-        blocks.length, shapes.angle, borders.width, borders.knee, borders.bend
+        blocks.length, shapes.angle, borders.width, borders.tangent_step, borders.curvature_step
     )
     scale, begin, entry = place_pieces(blocks.length, blocks.move, borders.entry, owner, offset)
-    feed = blocks.feed * blocks.stretch
+    feed = blocks.feed * blocks.parameter_scale
     wanted = feed * np.where(blocks.rapid, 1.0, largest_override)
     velocity, acceleration, deceleration, jerk = piece_limits(
-        (wanted, blocks.acceleration, blocks.deceleration, blocks.stretch, blocks.rotary_alone),
-        owner, length, _ceilings(surroundings, entry),
-        *bound_derivatives(
-            shapes.drift, shapes.cosine, shapes.sine, shapes.angle,
-            owner, begin, scale, length, rounding,
+        BlockLimits(
+            wanted, blocks.acceleration, blocks.deceleration, blocks.parameter_scale,
+            blocks.rotary_alone,
         ),
-        (limits.path_acceleration, limits.path_jerk,
-         limits.rotary_path_acceleration, limits.rotary_path_jerk),
-        limits.velocity, limits.acceleration, limits.jerk,
+        owner, length, _ceilings(surroundings, entry),
+        bound_derivatives(shapes.curves(), owner, begin, scale, length, rounding),
+        _machine_limits(limits),
     )  # fmt: skip
     first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
     due = slice(first, last)
@@ -132,6 +130,15 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
         rounding=rounding[due],
         geometry=Picked(owner, shapes),
     )
+
+
+def _machine_limits(limits: MotionLimits) -> MachineLimits:
+    """Limits of the axes and the path, for compiled code."""
+    return MachineLimits(
+        limits.velocity, limits.acceleration, limits.jerk,
+        (limits.path_acceleration, limits.path_jerk,
+         limits.rotary_path_acceleration, limits.rotary_path_jerk),
+    )  # fmt: skip
 
 
 def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:

@@ -1,11 +1,12 @@
 """The polynomials that roundings add to pieces."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from twin.compilation.kernel import array_arithmetic_kernel
-from twin.motion.blocks.corner_kernels import MOST_NEIGHBOURS
+from twin.motion.blocks.corner_kernels import MAX_NEIGHBOURS
 from twin.nc.canonical import FloatArray, IntArray
 
 CARRIED = 8.0
@@ -19,7 +20,7 @@ places are sums."""
 
 @array_arithmetic_kernel
 def add_rounding(
-    coefficients: FloatArray, away: float, width: float, knee: FloatArray, bend: FloatArray,
+    coefficients: FloatArray, away: float, width: float, tangent_step: FloatArray, curvature_step: FloatArray,
     share: float = 1.0,
 ) -> None:  # fmt: skip
     """Add a border's rounding to the polynomials of a piece.
@@ -29,8 +30,8 @@ def add_rounding(
         away: From the border to the piece's begin, negative before the border [mm or deg]; the
             piece lies on one side of the border.
         width: Of the rounding [mm or deg].
-        knee: Step of dq/dx, shape (k,).
-        bend: Step of d²q/dx², shape (k,).
+        tangent_step: Step of dq/dx, shape (k,).
+        curvature_step: Step of d²q/dx², shape (k,).
         share: -1 to take the rounding away.
     """
     t, per_width = away / width, 1.0 / width
@@ -53,8 +54,8 @@ def add_rounding(
     ramp4 = scale * (-1.0 / 16.0)
     square4 = scale * (-5.0 * t / 32.0)
     square5 = scale * per_width * (-1.0 / 32.0)
-    for axis in range(len(knee)):
-        rise, turn = knee[axis], bend[axis] * width
+    for axis in range(len(tangent_step)):
+        rise, turn = tangent_step[axis], curvature_step[axis] * width
         if rise != 0.0 or turn != 0.0:
             c = coefficients[axis]
             c[0] += rise * ramp0 + turn * square0
@@ -67,7 +68,11 @@ def add_rounding(
 
 @array_arithmetic_kernel
 def add_at_end(
-    coefficients: FloatArray, width: float, knee: FloatArray, bend: FloatArray, side: float
+    coefficients: FloatArray,
+    width: float,
+    tangent_step: FloatArray,
+    curvature_step: FloatArray,
+    side: float,
 ) -> None:
     """Begin or end a border's rounding at the begin of a piece: ``add_rounding`` at t = -1 or 1.
 
@@ -76,15 +81,15 @@ def add_at_end(
     Args:
         coefficients: As in ``add_rounding``.
         width: As in ``add_rounding``.
-        knee: As in ``add_rounding``.
-        bend: As in ``add_rounding``.
+        tangent_step: As in ``add_rounding``.
+        curvature_step: As in ``add_rounding``.
         side: -1 where the rounding begins, 1 where it ends.
     """
     per_width = 1.0 / width
     square = per_width * per_width
     cube = square * per_width
-    for axis in range(len(knee)):
-        rise, turn = knee[axis], bend[axis] * width
+    for axis in range(len(tangent_step)):
+        rise, turn = tangent_step[axis], curvature_step[axis] * width
         if rise != 0.0 or turn != 0.0:
             c = coefficients[axis]
             c[3] += square * (0.25 * rise + side * 0.125 * turn)
@@ -92,27 +97,40 @@ def add_at_end(
             c[5] += side * cube * per_width * 0.03125 * turn
 
 
+class Roundings(NamedTuple):
+    """The borders before each of n blocks.
+
+    Attributes:
+        place: Where each block begins and, last, where the last one ends, shape (n + 1,).
+        width: Of the rounding, shape (n,); 0: none.
+        tangent_step: Step of dq/dx, shape (n, k).
+        curvature_step: Step of d²q/dx², shape (n, k).
+    """
+
+    place: FloatArray
+    width: FloatArray
+    tangent_step: FloatArray
+    curvature_step: FloatArray
+
+
 @array_arithmetic_kernel
 def add_roundings(
-    place: FloatArray, owner: IntArray, offset: FloatArray, extent: FloatArray,
-    ends: FloatArray, sources: IntArray,
-    width: FloatArray, knee: FloatArray, bend: FloatArray, rounding: FloatArray,
+    roundings: Roundings, owner: IntArray, offset: FloatArray, extent: FloatArray,
+    ends: FloatArray, sources: IntArray, rounding: FloatArray,
 ) -> None:  # fmt: skip
     """Write the sums of the roundings along each piece.
 
     Args:
-        place: As in ``_ends_by_block``.
+        roundings: Of the borders.
         owner: Block of each piece, shape (m,).
         offset: Its begin, from the block's, shape (m,).
         extent: Its length, shape (m,).
-        ends: From ``_ends_by_block``.
-        sources: From ``_ends_by_block``.
-        width: As in ``cut_blocks``, and so on to ``bend``.
-        knee: See above.
-        bend: See above.
+        ends: Where roundings begin and end, in order.
+        sources: Borders whose roundings they end.
         rounding: Result, shape (m, k, 6).
     """
-    count, axes = knee.shape
+    place, width, tangent_step, curvature_step = roundings
+    count, axes = tangent_step.shape
     active = np.zeros(count, np.bool_)
     used, passed = 0, 0
     since, narrowest = 0.0, math.inf
@@ -128,8 +146,8 @@ def add_roundings(
             if offset[piece] == 0.0 and width[i] > 0.0:
                 # Over the border: what is added beyond it has lost the kink.
                 for axis in range(axes):
-                    total[axis, 1] -= knee[i, axis]
-                    total[axis, 2] -= 0.5 * bend[i, axis]
+                    total[axis, 1] -= tangent_step[i, axis]
+                    total[axis, 2] -= 0.5 * curvature_step[i, axis]
         while passed < len(ends) and ends[passed] <= middle:
             other = max(0, sources[passed])
             begins = other > i
@@ -138,34 +156,40 @@ def add_roundings(
             narrowest = min(narrowest, width[other])
             if abs(here - ends[passed]) <= EXACT * here:
                 side = -1.0 if begins else 1.0
-                add_at_end(total, width[other], knee[other], bend[other], side)
+                add_at_end(total, width[other], tangent_step[other], curvature_step[other], side)
             else:
                 away = place[i] - place[other] + offset[piece]
                 if begins:
-                    add_rounding(total, away, width[other], knee[other], bend[other])
+                    add_rounding(
+                        total, away, width[other], tangent_step[other], curvature_step[other]
+                    )
                 else:
                     away = max(0.0, away)
-                    add_rounding(total, away, width[other], knee[other], bend[other], -1.0)
+                    add_rounding(
+                        total, away, width[other], tangent_step[other], curvature_step[other], -1.0
+                    )
             passed += 1
         if used == 0 or here + extent[piece] - since > CARRIED * narrowest:
             total[:] = 0.0
             since, narrowest = here, math.inf
-            for other in range(max(0, i - MOST_NEIGHBOURS), min(count, i + MOST_NEIGHBOURS + 1)):
+            for other in range(max(0, i - MAX_NEIGHBOURS), min(count, i + MAX_NEIGHBOURS + 1)):
                 if active[other]:
                     away = place[i] - place[other] + offset[piece]
                     if other <= i:
                         away = max(0.0, away)
                     narrowest = min(narrowest, width[other])
-                    add_rounding(total, away, width[other], knee[other], bend[other])
+                    add_rounding(
+                        total, away, width[other], tangent_step[other], curvature_step[other]
+                    )
 
 
 @array_arithmetic_kernel
-def shift_polynomials(before: FloatArray, way: float, after: FloatArray) -> None:
+def shift_polynomials(before: FloatArray, distance: float, after: FloatArray) -> None:
     """Count the x of polynomials from a place further on.
 
     Args:
         before: By powers of x, shape (k, 6).
-        way: From the old place to the new one.
+        distance: From the old place to the new one.
         after: Result, shape (k, 6).
     """
     for axis in range(len(before)):
@@ -175,12 +199,16 @@ def shift_polynomials(before: FloatArray, way: float, after: FloatArray) -> None
         )  # fmt: skip
         if c2 != 0.0 or c3 != 0.0 or c4 != 0.0 or c5 != 0.0:
             # Taylor's coefficients at the new place.
-            c0 += way * (c1 + way * (c2 + way * (c3 + way * (c4 + way * c5))))
-            c1 += way * (2.0 * c2 + way * (3.0 * c3 + way * (4.0 * c4 + way * 5.0 * c5)))
-            c2 += way * (3.0 * c3 + way * (6.0 * c4 + way * 10.0 * c5))
-            c3 += way * (4.0 * c4 + way * 10.0 * c5)
-            c4 += way * 5.0 * c5
+            c0 += distance * (
+                c1 + distance * (c2 + distance * (c3 + distance * (c4 + distance * c5)))
+            )
+            c1 += distance * (
+                2.0 * c2 + distance * (3.0 * c3 + distance * (4.0 * c4 + distance * 5.0 * c5))
+            )
+            c2 += distance * (3.0 * c3 + distance * (6.0 * c4 + distance * 10.0 * c5))
+            c3 += distance * (4.0 * c4 + distance * 10.0 * c5)
+            c4 += distance * 5.0 * c5
         else:
-            c0 += way * c1
+            c0 += distance * c1
         after[axis, 0], after[axis, 1], after[axis, 2] = c0, c1, c2
         after[axis, 3], after[axis, 4], after[axis, 5] = c3, c4, c5

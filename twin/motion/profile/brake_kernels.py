@@ -1,4 +1,4 @@
-"""Braking along the path: the quickest way from (v, a) to a lower velocity at a = 0.
+"""Braking along the path: the quickest change from (v, a) to a lower velocity at a = 0.
 
 The acceleration falls by the full jerk, stays at the full deceleration while it must, and comes
 back to zero by the full jerk. A state with a < 0 is one on a brake that began earlier, at a higher
@@ -7,24 +7,25 @@ velocity: the same formulas hold, as long as the new end leaves time to bring a 
 
 import math
 
-from twin.compilation.kernel import array_kernel
+from twin.compilation.kernel import kernel
+from twin.motion.profile.state import State
 from twin.nc.canonical import FloatArray
 
 
-@array_kernel
-def after_jerk(x: float, v: float, a: float, j: float, t: float) -> tuple[float, float, float]:
-    """Place, velocity and acceleration after t of jerk j."""
-    return x + ((j / 6.0 * t + 0.5 * a) * t + v) * t, v + (0.5 * j * t + a) * t, a + j * t
+@kernel
+def after_jerk(state: State, j: float, t: float) -> State:
+    """The state after t of jerk j; x counts on from the same segment."""
+    i, x, v, a = state
+    return State(i, x + ((j / 6.0 * t + 0.5 * a) * t + v) * t, v + (0.5 * j * t + a) * t, a + j * t)
 
 
-@array_kernel
+@kernel
 def brake_limits(limits: FloatArray, i: int, k: int) -> tuple[float, float, float]:
-    """Deceleration and jerk of a brake from stretch i to border k, and the way behind stretch i.
+    """Deceleration and jerk of a brake from segment i to border k, and the distance behind i.
 
     Args:
-        limits: Rows length, velocity, acceleration, deceleration, jerk of n stretches, shape
-            (5, n).
-        i: The stretch.
+        limits: Of a ``Course``.
+        i: The segment.
         k: The border.
     """
     deceleration, jerk, behind = limits[3, i], limits[4, i], 0.0
@@ -35,7 +36,7 @@ def brake_limits(limits: FloatArray, i: int, k: int) -> tuple[float, float, floa
     return deceleration, jerk, behind
 
 
-@array_kernel
+@kernel
 def time_to(distance: float, v: float, a: float, j: float, latest: float) -> float:
     """When x = v t + a t²/2 + j t³/6 reaches ``distance``, within [0, latest], x rising [s]."""
     low, high = 0.0, latest
@@ -56,9 +57,9 @@ def time_to(distance: float, v: float, a: float, j: float, latest: float) -> flo
     return t
 
 
-@array_kernel
+@kernel
 def brake_distance(v: float, w: float, deceleration: float, jerk: float) -> float:
-    """Shortest way from v to w <= v, a = 0 at both ends [mm or deg]."""
+    """Shortest distance from v to w <= v, a = 0 at both ends [mm or deg]."""
     drop = v - w
     if drop * jerk <= deceleration * deceleration:
         duration = 2.0 * math.sqrt(drop / jerk)
@@ -67,7 +68,7 @@ def brake_distance(v: float, w: float, deceleration: float, jerk: float) -> floa
     return 0.5 * (v + w) * duration
 
 
-@array_kernel
+@kernel
 def brake_time(v: float, w: float, deceleration: float, jerk: float) -> float:
     """Time of ``brake_distance`` [s]."""
     drop = v - w
@@ -76,9 +77,9 @@ def brake_time(v: float, w: float, deceleration: float, jerk: float) -> float:
     return drop / deceleration + deceleration / jerk
 
 
-@array_kernel
-def brake_need(v: float, a: float, w: float, deceleration: float, jerk: float) -> float:
-    """Way from (v, a) to the first a = 0 at which the velocity is w or less."""
+@kernel
+def brake_distance_from(v: float, a: float, w: float, deceleration: float, jerk: float) -> float:
+    """Distance from (v, a) to the first a = 0 at which the velocity is w or less."""
     lift_time = a / jerk
     top = v + 0.5 * a * lift_time
     lift = (v + a * lift_time / 3.0) * lift_time

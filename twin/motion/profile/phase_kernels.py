@@ -1,55 +1,82 @@
-"""Rows of phases: begin [s], duration [s], x, v, a, j, with their first and last piece."""
+"""Rows of phases: begin [s], duration [s], x, v, a, j, with their first and last segment."""
 
 import math
+from typing import NamedTuple
 
-from twin.compilation.kernel import array_kernel
+from twin.compilation.kernel import array_kernel, kernel
+from twin.motion.profile.brake_kernels import after_jerk
+from twin.motion.profile.state import Brake, State
 from twin.nc.canonical import FloatArray, IntArray
 
 
-@array_kernel
-def put_phase(
-    phases: FloatArray, pieces: IntArray, row: int,
-    first: int, last: int, begin: float, duration: float, x: float, v: float, a: float, j: float,
-) -> None:  # fmt: skip
-    """Write one row."""
-    pieces[row, 0] = first
-    pieces[row, 1] = last
-    phases[row, 0] = begin
-    phases[row, 1] = duration
-    phases[row, 2] = x
-    phases[row, 3] = v
-    phases[row, 4] = a
-    phases[row, 5] = j
+class PhaseRows(NamedTuple):
+    """Rows that are being written.
+
+    Attributes:
+        phases: Begin [s], duration [s], x, v, a, j, shape (m, 6).
+        segments: First and last segment of each phase, shape (m, 2).
+    """
+
+    phases: FloatArray
+    segments: IntArray
+
+
+@kernel
+def write_phase(
+    rows: PhaseRows, row: int, last: int, now: float, duration: float, state: State, j: float
+) -> None:
+    """Write one row.
+
+    Args:
+        rows: To write into.
+        row: Number of the row.
+        last: Segment in which the phase ends.
+        now: When it begins [s].
+        duration: [s]
+        state: Where it begins.
+        j: Jerk.
+    """
+    rows.segments[row, 0], rows.segments[row, 1] = state.segment, last
+    phase = rows.phases[row]
+    phase[0], phase[1] = now, duration
+    phase[2], phase[3], phase[4], phase[5] = state.x, state.v, state.a, j
 
 
 @array_kernel
-def put_brake(
-    phases: FloatArray, pieces: IntArray, row: int, lengths: FloatArray,
-    i: int, last: int, now: float, x: float, v: float, a: float,
-    w: float, deceleration: float, jerk: float,
-) -> tuple[int, int, float, float]:  # fmt: skip
-    """Write the brake from (v, a) to (w, 0): up to three rows, from piece i to piece ``last``.
+def write_brake(
+    rows: PhaseRows, row: int, lengths: FloatArray, now: float, state: State, brake: Brake
+) -> tuple[int, float, int, float]:
+    """Write a brake: up to three rows.
+
+    Args:
+        rows: To write into.
+        row: Number of the first row.
+        lengths: Of the segments.
+        now: When it begins [s].
+        state: Where it begins.
+        brake: Its rows end in the segment before its border.
 
     Returns:
-        Row to go on with, piece, time [s], x at the brake's end.
+        Row to go on with, time at the brake's end [s], segment and x there.
     """
+    k, w, deceleration, jerk = brake
+    _, _, v, a = state
     drop = v + a * a / (2.0 * jerk) - w
     hardest = min(deceleration, math.sqrt(drop * jerk)) if drop > 0.0 else 0.0
     hold = max(0.0, drop / hardest - hardest / jerk) if hardest > 0.0 else 0.0
     for step in range(3):
-        duration, j = max(0.0, (a + hardest) / jerk), -jerk
+        duration, j = max(0.0, (state.a + hardest) / jerk), -jerk
         if step == 1:
             duration, j = hold, 0.0
         elif step == 2:
             duration, j = hardest / jerk, jerk
         if duration > 0.0:
-            put_phase(phases, pieces, row, i, last, now, duration, x, v, a, j)
+            write_phase(rows, row, k - 1, now, duration, state, j)
             row += 1
             now += duration
-            x += ((j / 6.0 * duration + 0.5 * a) * duration + v) * duration
-            v += (0.5 * j * duration + a) * duration
-            a += j * duration
-            while x >= lengths[i] and i < last:
+            i, x, v, a = after_jerk(state, j, duration)
+            while x >= lengths[i] and i < k - 1:
                 x -= lengths[i]
                 i += 1
-    return row, i, now, x
+            state = State(i, x, v, a)
+    return row, now, state.segment, state.x

@@ -8,9 +8,9 @@ import numpy as np
 from twin.columns import join
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.pieces import Pieces, pieces_of_chunks
-from twin.motion.profile.profile_kernels import STATE_AT_REST, find_phases
-from twin.motion.profile.reach_kernels import find_reach
-from twin.motion.profile.stretch_kernels import place_phases
+from twin.motion.profile.backward_pass_kernels import backward_pass
+from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, forward_pass
+from twin.motion.profile.segment_kernels import place_phases
 from twin.motion.profile.windows import Window, windows
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 
@@ -35,11 +35,11 @@ class Phases:
         return join(self.parts)
 
     def joined(self) -> "Phases":
-        """The same over one part."""
+        """These phases over one part."""
         return Phases((self.pieces,), self.rows, self.rows_pieces)
 
     def by_part(self) -> Iterator["Phases"]:
-        """The same in turn over one part each; few pieces lie at the border of two."""
+        """These phases in turn, over one part each; few pieces lie at the border of two."""
         beyond = self.rows_pieces[:, 1] >= len(self.parts[0])
         if len(self.parts) == 1 or not np.any(beyond):
             yield Phases(self.parts[:1], self.rows, self.rows_pieces)
@@ -70,21 +70,21 @@ def plan_phases(
     state = STATE_AT_REST.copy()
     known = np.zeros((4, 0))
     for window in windows(pieces_of_chunks(chunks, limits, start)):
-        ways = find_reach(window.limits, window.entry, known)
-        rows, stretches = find_phases(
-            window.limits, window.entry, ways, window.pause, window.due, np.inf, state
+        brakes = backward_pass(window.limits, window.entry, known)
+        rows, segments = forward_pass(
+            window.limits, window.entry, brakes, window.pause, window.due, np.inf, state
         )
         if len(rows) > 0:
-            yield phases_of(window, rows, stretches)
-        known = ways_on(ways, window.due)
+            yield phases_of(window, rows, segments)
+        known = brakes_from(brakes, window.due)
         state[[0, 5]] -= window.due
 
 
-def phases_of(window: Window, rows: FloatArray, stretches: IntArray) -> Phases:
+def phases_of(window: Window, rows: FloatArray, segments: IntArray) -> Phases:
     """Phases by pieces; ``rows`` are overwritten."""
-    parts = window.parts_until(int(stretches[:, 1].max(initial=0)))
+    parts = window.parts_until(int(segments[:, 1].max(initial=0)))
     length = np.concatenate([part.length for part in parts])
-    return Phases(parts, rows, place_phases(rows, stretches, window.begins, length))
+    return Phases(parts, rows, place_phases(rows, segments, window.begins, length))
 
 
 def no_phases(pieces: Pieces) -> Phases:
@@ -92,9 +92,9 @@ def no_phases(pieces: Pieces) -> Phases:
     return Phases((pieces,), np.zeros((0, 6)), np.zeros((0, 2), np.int64))
 
 
-def ways_on(ways: FloatArray, due: int) -> FloatArray:
-    """What is known of the next window: the result of ``find_reach`` from ``due`` on."""
-    known = ways[:, due:].copy()
+def brakes_from(brakes: FloatArray, due: int) -> FloatArray:
+    """What is known of the next window: the result of ``backward_pass`` from ``due`` on."""
+    known = brakes[:, due:].copy()
     known[[1, 3]] -= due
     # The window's end was taken to be a stop.
     return known[:, :-1]

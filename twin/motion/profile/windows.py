@@ -1,4 +1,4 @@
-"""Windows: the stretches to drive next, and those that the planner looks ahead to.
+"""Windows: the segments to drive next, and those that the planner looks ahead to.
 
 A window is taken to end in a stop, so what is planned in it stays possible whatever follows. It
 holds two batches of blocks, counted from the start of the program, whatever chunks they come in.
@@ -11,27 +11,27 @@ import numpy as np
 
 from twin.columns import join
 from twin.motion.pieces.pieces import Pieces
-from twin.motion.profile.stretch_kernels import find_stretches, merge_limits
+from twin.motion.profile.segment_kernels import find_segments, merge_limits
 from twin.nc.canonical import FloatArray, IntArray
 
 LOOK_AHEAD = 2000
 """Blocks that are planned at a time, and that the planner sees at least beyond these."""
 
-MOST_PIECES = 32768
+MAX_PIECES = 32768
 """Of a batch: blocks of many turns are looked ahead to in smaller numbers."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Window:
-    """A run of n pieces as m stretches.
+    """A run of n pieces as m segments.
 
     Attributes:
         parts: The pieces of one batch, or of two.
-        begins: First piece of each stretch and, last, n; shape (m + 1,).
+        begins: First piece of each segment and, last, n; shape (m + 1,).
         limits: Rows length, velocity, acceleration, deceleration, jerk, shape (5, m).
         entry: Highest velocity at each border, the last 0, shape (m + 1,).
-        pause: How long each stretch waits, shape (m,) [s].
-        due: Stretches to drive now; the rest is looked ahead to.
+        pause: How long each segment waits, shape (m,) [s].
+        due: Segments to drive now; the rest is looked ahead to.
     """
 
     parts: tuple[Pieces, ...]
@@ -51,47 +51,47 @@ class Window:
         """All pieces."""
         return join(self.parts)
 
-    def parts_until(self, stretch: int) -> tuple[Pieces, ...]:
-        """The pieces up to the end of a stretch at least."""
-        beyond = int(self.begins[stretch + 1]) - len(self.parts[0])
+    def parts_until(self, segment: int) -> tuple[Pieces, ...]:
+        """The pieces up to the end of a segment at least."""
+        beyond = int(self.begins[segment + 1]) - len(self.parts[0])
         if beyond <= 0 or len(self.parts) == 1:
             return self.parts[:1]
         return self.parts[0], self.parts[1][:beyond]
 
     def joined(self) -> "Window":
-        """The same with all its pieces as one part."""
+        """This window with all its pieces as one part."""
         return dataclasses.replace(self, parts=(self.pieces,))
 
-    def piece_at(self, stretch: int, x: float) -> tuple[int, float]:
-        """The piece at x within a stretch, and x within the piece; n, 0 after the last."""
-        if stretch == len(self.pause):
+    def piece_at(self, segment: int, x: float) -> tuple[int, float]:
+        """The piece at x within a segment, and x within the piece; n, 0 after the last."""
+        if segment == len(self.pause):
             return len(self.pieces), 0.0
-        piece = int(self.begins[stretch])
-        while piece + 1 < self.begins[stretch + 1] and x >= self.pieces.length[piece]:
+        piece = int(self.begins[segment])
+        while piece + 1 < self.begins[segment + 1] and x >= self.pieces.length[piece]:
             x -= float(self.pieces.length[piece])
             piece += 1
         return piece, x
 
-    def stretch_at(self, piece: int, x: float) -> tuple[int, float]:
-        """The stretch at x within a piece, and x within the stretch."""
-        stretch = int(np.searchsorted(self.begins, piece, "right")) - 1
-        return stretch, x + float(self.pieces.length[self.begins[stretch] : piece].sum())
+    def segment_at(self, piece: int, x: float) -> tuple[int, float]:
+        """The segment at x within a piece, and x within the segment."""
+        segment = int(np.searchsorted(self.begins, piece, "right")) - 1
+        return segment, x + float(self.pieces.length[self.begins[segment] : piece].sum())
 
     def parted_at(self, piece: int) -> "Window":
-        """The same with a border between stretches before a piece."""
-        stretch, x = self.stretch_at(piece, 0.0)
-        if self.begins[stretch] == piece:
+        """This window with a border between segments before a piece."""
+        segment, x = self.segment_at(piece, 0.0)
+        if self.begins[segment] == piece:
             return self
-        limits = np.insert(self.limits, stretch, self.limits[:, stretch], axis=1)
-        limits[0, stretch] = x
-        limits[0, stretch + 1] -= x
+        limits = np.insert(self.limits, segment, self.limits[:, segment], axis=1)
+        limits[0, segment] = x
+        limits[0, segment + 1] -= x
         return dataclasses.replace(
             self,
-            begins=np.insert(self.begins, stretch + 1, piece),
+            begins=np.insert(self.begins, segment + 1, piece),
             limits=limits,
-            entry=np.insert(self.entry, stretch + 1, np.inf),
-            pause=np.insert(self.pause, stretch + 1, 0.0),
-            due=self.due + int(stretch < self.due),
+            entry=np.insert(self.entry, segment + 1, np.inf),
+            pause=np.insert(self.pause, segment + 1, 0.0),
+            due=self.due + int(segment < self.due),
         )
 
 
@@ -114,7 +114,7 @@ def windows(parts: Iterable[Pieces], look_ahead: int = LOOK_AHEAD) -> Iterator[W
         table = np.stack(
             [pieces.length, pieces.velocity, pieces.acceleration, pieces.deceleration, pieces.jerk]
         )
-        begins = find_stretches(table, pieces.entry, pieces.feed)
+        begins = find_segments(table, pieces.entry, pieces.feed)
         batch = _Batch(pieces, begins, merge_limits(table, pieces.entry, begins))
         if now is not None:
             yield _window([now, batch], len(now.begins) - 1)
@@ -140,7 +140,7 @@ def _window(batches: list[_Batch], due: int) -> Window:
 
 
 def _batches(parts: Iterable[Pieces], blocks: int) -> Iterator[Pieces]:
-    """Regroup pieces: so many blocks at a time, or ``MOST_PIECES`` if these are fewer."""
+    """Regroup pieces: so many blocks at a time, or ``MAX_PIECES`` if these are fewer."""
     waiting: list[Pieces] = []
     count, found = 0, 0
     for part in parts:
@@ -148,7 +148,7 @@ def _batches(parts: Iterable[Pieces], blocks: int) -> Iterator[Pieces]:
         first = 0
         while True:
             # The piece with which the first block too many begins, or the first piece too many.
-            room = first + MOST_PIECES - count
+            room = first + MAX_PIECES - count
             inside = first + np.flatnonzero(starts[first:room])
             end = min(len(part), room)
             if len(inside) > blocks - found:

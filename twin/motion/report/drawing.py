@@ -9,7 +9,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray
 from twin.units import SECONDS_PER_MINUTE
 
-MOST_RUNS = 3000
+MAX_RUNS = 3000
 """More than a picture has columns. Of a long program, the extremes of so many runs are drawn."""
 
 
@@ -23,9 +23,9 @@ class SpeedCurves:
 
     def __init__(self, axes: Axes, samples: int) -> None:
         self.axes = axes
-        self._run = max(1, -(-samples // MOST_RUNS))
+        self._run = max(1, -(-samples // MAX_RUNS))
         self._time: list[FloatArray] = []
-        self._way: list[FloatArray] = []
+        self._distance: list[FloatArray] = []
         self._values: list[FloatArray] = []
         self._gone = 0.0
         self._last: FloatArray | None = None
@@ -35,19 +35,19 @@ class SpeedCurves:
         position = setpoints.position[:, :3]
         before = position[:1] if self._last is None else self._last
         steps = np.linalg.norm(np.diff(position, axis=0, prepend=before), axis=1)
-        way = self._gone + np.cumsum(steps)
-        self._gone, self._last = float(way[-1]), position[-1:].copy()
+        distance = self._gone + np.cumsum(steps)
+        self._gone, self._last = float(distance[-1]), position[-1:].copy()
         speed = np.linalg.norm(setpoints.velocity[:, :3], axis=1)
         values = np.column_stack([speed, setpoints.velocity]) * SECONDS_PER_MINUTE
         first = np.arange(0, len(setpoints), self._run)
         if self._run == 1:
             self._time.append(setpoints.time)
-            self._way.append(way)
+            self._distance.append(distance)
             self._values.append(values)
             return
         lowest, highest = np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
         self._time.append(np.repeat(setpoints.time[first], 2))
-        self._way.append(np.repeat(way[first], 2))
+        self._distance.append(np.repeat(distance[first], 2))
         self._values.append(np.stack([lowest, highest], axis=1).reshape(-1, values.shape[1]))
 
     def draw(self, path: Path) -> None:
@@ -59,7 +59,7 @@ class SpeedCurves:
         import matplotlib as mpl
         from matplotlib.figure import Figure
 
-        time, way = np.concatenate(self._time), np.concatenate(self._way)
+        time, distance = np.concatenate(self._time), np.concatenate(self._distance)
         values = np.concatenate(self._values)
         rotary = self.axes.rotary()
         turning = rotary & np.any(values[:, 1:] != 0.0, axis=0)
@@ -75,9 +75,9 @@ class SpeedCurves:
                     panel.plot(time, values[:, axis + 1], label=name, linewidth=1.0)
                 panel.set(xlabel="time [s]", ylabel=f"axis speed [{unit}]")
                 panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-            panels[-1].plot(way, values[:, 0], color="black", linewidth=1.0)
+            panels[-1].plot(distance, values[:, 0], color="black", linewidth=1.0)
             panels[-1].set(
-                xlabel="way of X Y Z [mm]", ylabel="path speed [mm/min]", ylim=(0.0, None)
+                xlabel="path of X Y Z [mm]", ylabel="path speed [mm/min]", ylim=(0.0, None)
             )
             for panel in panels:
                 panel.margins(x=0.0)

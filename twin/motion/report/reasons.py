@@ -4,12 +4,12 @@ import dataclasses
 
 import numpy as np
 
-from twin.motion.blocks.border_kernels import KNEE_NOISE
+from twin.motion.blocks.border_kernels import STEP_NOISE
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.motion.pieces.limit_kernels import CENTRIPETAL_SHARE, CURVE_JERK_SHARE
 from twin.motion.pieces.pieces import Pieces
-from twin.motion.profile.reach_kernels import SLOWEST
+from twin.motion.profile.backward_pass_kernels import SLOWEST
 from twin.nc.canonical import FloatArray, IntArray
 
 FEED = "programmed feed"
@@ -49,11 +49,9 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
         limits: Of the axes and the path.
         names: Of the axes.
     """
-    shape = pieces.geometry.table
-    bounds, bend, _ = bound_derivatives(
-        shape.drift, shape.cosine, shape.sine, shape.angle,
-        pieces.geometry.row, pieces.begin, pieces.fraction_per_length, pieces.length,
-        pieces.rounding,
+    bounds, curvature, _ = bound_derivatives(
+        pieces.geometry.table.curves(), pieces.geometry.row, pieces.begin,
+        pieces.fraction_per_length, pieces.length, pieces.rounding,
     )  # fmt: skip
     first, second, third = bounds[:, 0], bounds[:, 1], bounds[:, 2]
     along_rotary = np.all(first[:, :3] == 0.0, axis=1)
@@ -64,7 +62,7 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
     with np.errstate(divide="ignore", over="ignore"):
         fastest = {
             FEED: pieces.feed,
-            "path acceleration in a curve": np.sqrt(path_acceleration / bend),
+            "path acceleration in a curve": np.sqrt(path_acceleration / curvature),
         }
         hardest = {"path acceleration": path_acceleration}
         smoothest = {"path jerk": path_jerk}
@@ -77,7 +75,7 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
             hardest[f"acceleration of {name}"] = limits.acceleration[axis] / first[:, axis]
             smoothest[f"jerk of {name}"] = limits.jerk[axis] / first[:, axis]
     names_of_bounds, bound = _least(fastest)
-    # What ``reach_velocities`` takes away.
+    # What ``lower_to_reachable`` takes away.
     beside = pieces.velocity < bound * (1.0 - CLEARLY)
     return Reasons(
         velocity=[
@@ -101,14 +99,14 @@ def _entries(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> li
     out = [""] * len(pieces)
     bounded = np.flatnonzero(np.isfinite(pieces.entry))
     steps = _steps(pieces, bounded)
-    for row, knee, turn in zip(bounded, *steps, strict=True):
+    for row, tangent, turn in zip(bounded, *steps, strict=True):
         if pieces.entry[row] < SLOWEST or row == 0:
             out[row] = STOP
             continue
-        by_knee = _allowed(limits.junction_velocity_step, knee)
+        by_tangent = _allowed(limits.junction_velocity_step, tangent)
         by_turn = np.sqrt(_allowed(limits.junction_acceleration_step, turn))
-        kind, bound = "velocity", by_knee
-        if by_turn.min() < by_knee.min():
+        kind, bound = "velocity", by_tangent
+        if by_turn.min() < by_tangent.min():
             kind, bound = "acceleration", by_turn
         out[row] = f"junction step of the {kind} of {names[int(np.argmin(bound))]}"
     return out
@@ -117,7 +115,7 @@ def _entries(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> li
 def _allowed(largest: FloatArray | float, step: FloatArray) -> FloatArray:
     """By how much each axis's step may be multiplied; infinite where it is rounding, shape (k,)."""
     out = np.full_like(step, np.inf)
-    np.divide(np.broadcast_to(largest, step.shape), step, out=out, where=step >= KNEE_NOISE)
+    np.divide(np.broadcast_to(largest, step.shape), step, out=out, where=step >= STEP_NOISE)
     return out
 
 

@@ -133,20 +133,22 @@ def _add(
             until = duration
             if piece < last:
                 until = min(duration, float(time_to(ahead, v, a, j, duration)))
-            way = ((j / 6.0 * until + 0.5 * a) * until + v) * until
+            distance = ((j / 6.0 * until + 0.5 * a) * until + v) * until
             row = rows[int(pieces.move[piece]), int(pieces.line[piece])]
             highest = float(pieces.velocity[piece])
             cause = _cause(v, a, j, highest, float(pieces.length[piece]))
             row.seconds[cause] += until - spent
             if cause != Cause.DWELL:
                 asked = highest if pieces.rapid[piece] else float(pieces.feed[piece])
-                row.ideal += (way - gone) / asked
-                row.lost_to[why.velocity[piece]] += (way - gone) * (1.0 / highest - 1.0 / asked)
+                row.ideal += (distance - gone) / asked
+                row.lost_to[why.velocity[piece]] += (distance - gone) * (
+                    1.0 / highest - 1.0 / asked
+                )
                 reason = SHORT if cause == Cause.SLOW else slow_place
-                row.lost_to[reason] += until - spent - (way - gone) / highest
+                row.lost_to[reason] += until - spent - (distance - gone) / highest
             if cause in (Cause.SPEEDING_UP, Cause.BRAKING):
                 ramps[(why.jerk if j != 0.0 else why.acceleration)[piece]] += until - spent
-            spent, gone = until, way
+            spent, gone = until, distance
             if until >= duration:
                 break
 

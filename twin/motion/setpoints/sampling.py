@@ -5,7 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from twin.motion.profile.phases import Phases
-from twin.motion.setpoints.sampling_kernels import sample_axes, sample_path
+from twin.motion.setpoints.sampling_kernels import (
+    AxisSamples,
+    PieceCurves,
+    sample_axes,
+    sample_path,
+)
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 
@@ -45,23 +50,19 @@ def _sample_part(
         if count == 0:
             return
         piece, path = piece[:count], path[:count]
-        fraction = np.zeros(count)
-        position, velocity, acceleration = (np.zeros((count, len(part_zero))) for _ in range(3))
-        shape = pieces.geometry.table
-        sample_axes(
-            shape.base, shape.drift, shape.cosine, shape.sine, shape.angle, shape.end,
-            pieces.geometry.row, pieces.begin, pieces.fraction_per_length, pieces.rounding,
-            part_zero,
-            piece, path, fraction, position, velocity, acceleration,
-        )  # fmt: skip
+        samples = AxisSamples(
+            np.zeros(count), *(np.zeros((count, len(part_zero))) for _ in range(3))
+        )
+        geometry = pieces.geometry
+        curves = PieceCurves(
+            geometry.row, pieces.begin, pieces.fraction_per_length, pieces.rounding
+        )
+        sample_axes(geometry.table.curves(), curves, part_zero, piece, path, samples)
         yield Setpoints(
             time=np.arange(tick, tick + count, dtype=np.float64) * period_s,
             line=pieces.line[piece],
             move=pieces.move[piece],
-            fraction=fraction,
-            position=position,
-            velocity=velocity,
-            acceleration=acceleration,
+            **samples._asdict(),
         )
         tick += count
 

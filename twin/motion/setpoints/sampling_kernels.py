@@ -1,9 +1,11 @@
 """Phases of constant jerk, read off at the ticks of the servo clock."""
 
 import math
+from typing import NamedTuple
 
 from twin.compilation.kernel import array_kernel
 from twin.nc.canonical import FloatArray, IntArray
+from twin.toolpath.geometry_kernels import Curves
 
 
 @array_kernel
@@ -81,36 +83,56 @@ def state_at(
     return 0, 0.0, 0.0, 0.0, -1
 
 
+class PieceCurves(NamedTuple):
+    """Where pieces lie on their moves.
+
+    Attributes:
+        move: Row of each piece's move in the geometry, shape (n,).
+        begin: As in ``Pieces``, and so on to ``rounding``.
+        fraction_per_length: Shape (n,).
+        rounding: Shape (n, k, 6).
+    """
+
+    move: IntArray
+    begin: FloatArray
+    fraction_per_length: FloatArray
+    rounding: FloatArray
+
+
+class AxisSamples(NamedTuple):
+    """What the axes do at m ticks: results of ``sample_axes``.
+
+    Attributes:
+        fraction: Of the move, shape (m,).
+        position: Shape (m, k), and so on to ``acceleration``.
+        velocity: Shape (m, k).
+        acceleration: Shape (m, k).
+    """
+
+    fraction: FloatArray
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+
+
 @array_kernel
 def sample_axes(
-    base: FloatArray, drift: FloatArray, cosine: FloatArray, sine: FloatArray,
-    angle: FloatArray, end: FloatArray,
-    owner: IntArray, begin: FloatArray, fraction_per_length: FloatArray, rounding: FloatArray,
-    origin: FloatArray,
-    piece: IntArray, path: FloatArray,
-    fraction: FloatArray, position: FloatArray, velocity: FloatArray, acceleration: FloatArray,
+    curves: Curves, pieces: PieceCurves, origin: FloatArray,
+    piece: IntArray, path: FloatArray, samples: AxisSamples,
 ) -> None:  # fmt: skip
     """The axes where the path is.
 
     Args:
-        base: Columns of the moves' ``Geometry``, and so on to ``end``.
-        drift: See above.
-        cosine: See above.
-        sine: See above.
-        angle: See above.
-        end: See above.
-        owner: Move of each piece.
-        begin: Columns of ``Pieces``.
-        fraction_per_length: See above.
-        rounding: See above.
+        curves: Of the moves.
+        pieces: Where they lie.
         origin: Machine coordinates of program zero, shape (k,).
         piece: From ``sample_path``, shape (m,).
         path: From ``sample_path``, shape (m, 3).
-        fraction: Result, shape (m,).
-        position: Result, shape (m, k), and so on to ``acceleration``.
-        velocity: See above.
-        acceleration: See above.
+        samples: Results.
     """
+    base, drift, cosine, sine, angle, end = curves
+    owner, begin, fraction_per_length, rounding = pieces
+    fraction, position, velocity, acceleration = samples
     width = base.shape[1]
     for row in range(len(piece)):
         i = piece[row]

@@ -1,16 +1,16 @@
-"""The words of a block that is being translated, sorted by what they do and in their order.
+"""The words of a block that is being compiled, sorted by what they do and in their order.
 
 ``Control.run`` does what is in force, then actions, words, early functions, the motion or what
-stands in its place, late functions; ``write_words`` writes the same. Where a block is doubtful it
-writes nothing: the general way alone says what is wrong.
+stands in its place, late functions; ``compile_words`` writes the same. Where a block is doubtful it
+compiles nothing: the interpreter tier alone says what is wrong.
 """
 
 import dataclasses
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.dialect import GCode, MCode
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.text.blocks import Word
@@ -44,13 +44,13 @@ class BlockWords:
         """Take the words that name axes; pairs of column and word.
 
         Raises:
-            NotTranslatableError: The machine lacks one of them.
+            UnsupportedError: The machine lacks one of them.
         """
         taken: list[tuple[int, Word]] = []
         for address in [each for each in self.words if each in self.control.dialect.axis_letters]:
             index = self.control.axis_index.get(address)
             if index is None:
-                raise NotTranslatableError
+                raise UnsupportedError
             taken.append((index, self.words.pop(address)))
         return taken
 
@@ -63,7 +63,7 @@ def sorted_words(control: "Control", words: Iterable[Word]) -> BlockWords:
     """Sort the words of a block.
 
     Raises:
-        NotTranslatableError: It is doubtful.
+        UnsupportedError: It is doubtful.
     """
     dialect = control.dialect
     found = BlockWords(control, [], [], {})
@@ -71,7 +71,7 @@ def sorted_words(control: "Control", words: Iterable[Word]) -> BlockWords:
     for word in words:
         if word.address in ("G", "M"):
             if isinstance(word.value, Expression) or word.value != int(word.value):
-                raise NotTranslatableError
+                raise UnsupportedError
             number = int(word.value)
             table = dialect.g if word.address == "G" else dialect.m
             code = table.get(number)
@@ -79,14 +79,14 @@ def sorted_words(control: "Control", words: Iterable[Word]) -> BlockWords:
                 code = MCode(meaning="machine function")
             name = word.text if code is None else code.group or word.text
             if code is None or name in seen:
-                raise NotTranslatableError
+                raise UnsupportedError
             seen.add(name)
             if isinstance(code, MCode):
                 found.functions.append((number, code))
             else:
                 found.codes.append((word, code))
         elif word.address in found.words:
-            raise NotTranslatableError
+            raise UnsupportedError
         else:
             found.words[word.address] = word
     order = {group: rank for rank, group in enumerate(dialect.groups)}
@@ -94,86 +94,88 @@ def sorted_words(control: "Control", words: Iterable[Word]) -> BlockWords:
     return found
 
 
-def write_words(control: "Control", words: Iterable[Word], writer: BlockWriter) -> None:
+def compile_words(control: "Control", words: Iterable[Word], assembler: Assembler) -> None:
     """Write a block of words.
 
     Raises:
-        NotTranslatableError: It is left to the general way.
+        UnsupportedError: It is left to the interpreter tier.
     """
     words = list(words)
     dialect = control.dialect
     if not _acts(control, words):
-        writer.words(words)
+        assembler.words(words)
         return
     block = sorted_words(control, words)
-    acting = [(word, code) for word, code in block.codes if code.translate is not None]
-    plain = [word for word, code in block.codes if code.translate is None or code.begins_cycle]
+    acting = [(word, code) for word, code in block.codes if code.compiler is not None]
+    moving_codes = [
+        word for word, code in block.codes if code.compiler is None or code.begins_cycle
+    ]
     if any(code.after is not None or code.once or code.alone for _, code in acting):
-        raise NotTranslatableError
+        raise UnsupportedError
     performing = [code for _, code in block.codes if code.perform is not None]
-    if len(performing) > 1 or (performing and performing[0].translate is None):
-        raise NotTranslatableError
+    if len(performing) > 1 or (performing and performing[0].compiler is None):
+        raise UnsupportedError
     if performing and any(code.begins_cycle for _, code in acting):
-        raise NotTranslatableError
+        raise UnsupportedError
     for word, code in acting:
         assert not isinstance(word.value, Expression)
         if code.group and not code.begins_cycle:
-            writer.step(Step.IN_FORCE, int(word.value))
+            assembler.emit(Opcode.ACTIVATE, int(word.value))
         if code.perform is None:
-            _translate(code, block, writer)
+            _compile(code, block, assembler)
     reserved = performing[0].takes if performing else ""
     for address in dialect.words:
-        translation = dialect.word_translations.get(address)
-        if address in block.words and address not in reserved and translation is not None:
-            translation(block, writer)
-    _write_functions(block, writer, late=False)
+        compiler = dialect.word_compilers.get(address)
+        if address in block.words and address not in reserved and compiler is not None:
+            compiler(block, assembler)
+    _compile_functions(block, assembler, late=False)
     feed = block.words.get("F")
     moving = [] if feed is None or "F" in reserved else [block.words.pop("F")]
     if performing:
-        writer.codes([*plain, *moving])
-        _translate(performing[0], block, writer)
+        assembler.codes([*moving_codes, *moving])
+        _compile(performing[0], block, assembler)
         if block.words:
-            raise NotTranslatableError
+            raise UnsupportedError
     else:
-        writer.words([*plain, *moving, *block.words.values()])
-    _write_functions(block, writer, late=True)
+        assembler.words([*moving_codes, *moving, *block.words.values()])
+    _compile_functions(block, assembler, late=True)
 
 
 def _acts(control: "Control", words: list[Word]) -> bool:
     """Whether the block does more than its plain words."""
     dialect, functions = control.dialect, 0
     for word in words:
-        if word.address in dialect.word_translations:
+        if word.address in dialect.word_compilers:
             return True
         if isinstance(word.value, Expression):
             continue
         if word.address == "G":
             code = dialect.g.get(int(word.value))
-            if code is not None and code.translate is not None:
+            if code is not None and code.compiler is not None:
                 return True
         elif word.address == "M":
             function = dialect.m.get(int(word.value))
             functions += 1
-            if function is not None and function.translate is not None:
+            if function is not None and function.compiler is not None:
                 return True
     return functions > 1
 
 
-def _translate(code: GCode | MCode, block: BlockWords, writer: BlockWriter) -> None:
-    if code.translate is None:
-        raise NotTranslatableError
-    code.translate(block, writer)
+def _compile(code: GCode | MCode, block: BlockWords, assembler: Assembler) -> None:
+    if code.compiler is None:
+        raise UnsupportedError
+    code.compiler(block, assembler)
 
 
-def _write_functions(block: BlockWords, writer: BlockWriter, *, late: bool) -> None:
+def _compile_functions(block: BlockWords, assembler: Assembler, *, late: bool) -> None:
     for number, code in block.functions:
         if code.late != late:
             continue
-        if code.ends or code.silent or (code.action is not None and code.translate is None):
-            raise NotTranslatableError
+        if code.ends or code.silent or (code.action is not None and code.compiler is None):
+            raise UnsupportedError
         if any(letter in block.words for letter in block.control.dialect.function_letters):
-            raise NotTranslatableError
-        if code.translate is not None:
-            code.translate(block, writer)
+            raise UnsupportedError
+        if code.compiler is not None:
+            code.compiler(block, assembler)
         starts = f"M{number}" in SPINDLE_STARTS
-        writer.step(Step.SPINDLE_FUNCTION if starts else Step.FUNCTION, number)
+        assembler.emit(Opcode.SPINDLE_FUNCTION if starts else Opcode.FUNCTION, number)

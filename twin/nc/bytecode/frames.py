@@ -5,13 +5,13 @@ from typing import NamedTuple
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.path.contour_registers import Contour
 
-LINE, PART, FURTHEST, STEPS_LEFT, DEPTH, CALLS, BLOCKS, MADE = range(8)
+LINE, PART, FURTHEST, INSTRUCTION_BUDGET, DEPTH, CALLS, BLOCKS, MADE = range(8)
 """Places in the progress: line and part that come next, from 0; the furthest place that was run;
 blocks that may still be run again; row of the local variables; parts that are being run for a
 caller; blocks run; moves made."""
 PROGRESS = 8
 
-BACK, FIRST, AGAIN, LAST, OWN, RESTORES = range(6)
+BACK, FIRST, AGAIN, LAST, OWNS_SCOPE, RESTORES = range(6)
 """Columns of the calls, as ``Return`` has them; ``LAST`` is ``NO_PLACE`` where a word ends the
 part, ``RESTORES`` is one of the following."""
 NOTHING_RESTORED, RESTORED_BY_CONTROL, RESTORED_HERE = range(3)
@@ -21,13 +21,13 @@ NO_PLACE = -1
 MOST_CALLS = 64
 """Parts within each other: more than any dialect allows."""
 
-ENDED, FULL, PAUSED, UNREAD, LEFT, OFF_PAGE = range(6)
+ENDED, FULL, PAUSED, UNCOMPILED_LINE, TRAPPED, OFF_PAGE = range(6)
 """Why a run ends: behind the last line; no room for a move; the caller has not been heard for
-long; at a line that is to be translated; at a block for the general way; at a line of
+long; at a line that is to be compiled; at a block for the interpreter tier; at a line of
 another page."""
 
 
-class Memory(NamedTuple):
+class VariableStore(NamedTuple):
     """The columns of ``Variables``.
 
     Attributes:
@@ -44,18 +44,18 @@ class Memory(NamedTuple):
 
 
 class Saved(NamedTuple):
-    """What was in force when each part was called, as in ``plain_state.State``.
+    """What was in force when each part was called, as in ``registers.State``.
 
     Attributes:
         modal: Shape (``MOST_CALLS``, 7).
-        in_force: Shape (``MOST_CALLS``, g).
+        active_codes: Shape (``MOST_CALLS``, g).
     """
 
     modal: FloatArray
-    in_force: IntArray
+    active_codes: IntArray
 
 
-class Routine(NamedTuple):
+class ExecutionState(NamedTuple):
     """How far a program has come.
 
     Attributes:
@@ -68,6 +68,6 @@ class Routine(NamedTuple):
 
     progress: IntArray
     calls: IntArray
-    memory: Memory
+    memory: VariableStore
     saved: Saved
     contour: Contour

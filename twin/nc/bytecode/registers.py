@@ -40,17 +40,17 @@ MODAL = 10
     RADIUS_GIVEN,
 ) = range(15)
 SIGNS = 15
-REMEMBERED = 18
-GIVEN = REMEMBERED + VALUES
-MATRIX = GIVEN + VALUES
+CYCLE_STATE = 18
+CYCLE_WORDS = CYCLE_STATE + VALUES
+MATRIX = CYCLE_WORDS + VALUES
 REGISTERS = MATRIX + 9
 """Places in the registers: F; S; the tool that comes next and the one that is in use; whether it has
 its offset; the polar origin, the last R and Q; the scale; angle and centre of the rotation in the
 plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; the
 signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
-``holes`` counts it, and the same of the words of the block; the matrix, row by row. NaN: none."""
-DOUBTFUL = -3
-"""A step or a move is left to the general way; neither ``NOT_PLAIN`` nor ``NO_ROOM``."""
+``drilling_cycle`` counts it, and the same of the words of the block; the matrix, row by row. NaN: none."""
+BAILOUT = -3
+"""An instruction or a move is left to the interpreter tier; neither ``UNSUPPORTED`` nor ``NO_ROOM``."""
 MOST_EVENTS = 16
 """Events of a block."""
 
@@ -58,7 +58,7 @@ NO_MOTION, RAPID_LINE, FEED_LINE, ARC = range(4)
 """Kinds of interpolation."""
 
 MOST_WORDS = 32
-"""Words of a plain block; longer ones are read by the general way."""
+"""Words of a plain block; longer ones are read by the interpreter tier."""
 CODES = 1000
 """G and M codes are below this number."""
 EARLY, LATE = range(2)
@@ -69,17 +69,17 @@ class BlockTables(NamedTuple):
     """What plain blocks mean in a dialect, on a machine.
 
     Attributes:
-        field: Which place of the modal state each G code sets, shape (``CODES``,); ``NOT_PLAIN``
+        field: Which place of the modal state each G code sets, shape (``CODES``,); ``UNSUPPORTED``
             for codes that do more.
         value: To what it sets it, shape (``CODES``,).
         group: Its modal group, shape (``CODES``,).
-        cycle: Which drilling cycle each G code begins, 0 where it ends one, ``NOT_PLAIN`` where it
+        cycle: Which drilling cycle each G code begins, 0 where it ends one, ``UNSUPPORTED`` where it
             does neither, shape (``CODES``,).
-        cycles: What is peculiar to each, as ``holes.Cycle`` has it, and behind that which of its
-            values a word with each plain role gives, ``NOT_PLAIN`` for none; 0 is no cycle, shape
-            (c, 7 + roles).
+        cycles: What is peculiar to each, as ``drilling_cycle.Cycle`` has it, and behind that which of its
+            values a word with each token kind gives, ``UNSUPPORTED`` for none; 0 is no cycle, shape
+            (c, 7 + token_kinds).
         function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
-            shape (``CODES``,); ``NOT_PLAIN`` for codes that do more than that.
+            shape (``CODES``,); ``UNSUPPORTED`` for codes that do more than that.
         kind: Kind of each interpolation, shape (i,).
         clockwise: Of arcs, shape (i,).
         mismatch: How far start and end radius of an arc may differ, shape (i,) [mm].
@@ -151,25 +151,25 @@ class State(NamedTuple):
 
     Attributes:
         modal: The modal state, shape (``MODAL``,).
-        in_force: G code set in each group during the run, ``NOT_PLAIN`` for none, shape (g,).
+        active_codes: G code set in each group during the run, ``UNSUPPORTED`` for none, shape (g,).
         programmed: Programmed position, shape (k,) [mm or deg].
         part: Part position, shape (k,) [mm or deg].
-        happened: Events that were reported, shape (1,).
+        event_count: Events that were reported, shape (1,).
         registers: Shape (``REGISTERS``,).
         shifts: In the order of ``frame.SHIFTS``, shape (s, k) [mm or deg].
         total: Their sum, from programmed to part coordinates, shape (k,) [mm or deg].
-        label: The coordinates that a block gives to the place where it stands, shape (k,).
+        target: The coordinates that a block gives to the place where it stands, shape (k,).
     """
 
     modal: FloatArray
-    in_force: IntArray
+    active_codes: IntArray
     programmed: FloatArray
     part: FloatArray
-    happened: IntArray
+    event_count: IntArray
     registers: FloatArray
     shifts: FloatArray
     total: FloatArray
-    label: FloatArray
+    target: FloatArray
 
 
 class Rows(NamedTuple):
@@ -180,14 +180,14 @@ class Rows(NamedTuple):
         values: Shape (n, 11).
         positions: Start, end and display, shape (n, 3, k).
         events: Moves before each event, its line, kind and number, shape (m, 4).
-        amounts: What it counts, NaN for nothing, shape (m,).
+        event_values: What it counts, NaN for nothing, shape (m,).
     """
 
     codes: IntArray
     values: FloatArray
     positions: FloatArray
     events: IntArray
-    amounts: FloatArray
+    event_values: FloatArray
 
     def first(self, count: int) -> "Rows":
         """The first moves, as columns again."""

@@ -95,7 +95,7 @@ def fill(contour: Contour, followed: Followed | None, position: list[float]) -> 
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Gone:
+class CompensationResult:
     """What a run has made of a contour.
 
     Attributes:
@@ -113,7 +113,7 @@ class Gone:
     came: bool
 
 
-def gone(contour: Contour, moves: Row, events: EventRows) -> tuple[Gone, EventRows]:
+def gone(contour: Contour, moves: Row, events: EventRows) -> tuple[CompensationResult, EventRows]:
     """Read the columns.
 
     Args:
@@ -125,18 +125,20 @@ def gone(contour: Contour, moves: Row, events: EventRows) -> tuple[Gone, EventRo
         What was made, and the events whose place is known.
     """
     counts = contour.counts
-    made, happened = len(moves.codes), len(events)
+    made, event_count = len(moves.codes), len(events)
     placed = int((events.before >= 0).sum())
     latest = segment(contour.latest) if counts[MOVED] else None
-    event_behind = happened > counts[MOVED_EVENTS]
+    event_behind = event_count > counts[MOVED_EVENTS]
     if made > counts[MOVED_ROWS]:
         latest = segment(Row(*(column[-1] for column in moves)))
         event_behind = placed > 0 and events.before[placed - 1] == made
     before = None if event_behind else latest
-    held_back = list(events.part(placed, happened))
+    held_back = list(events.part(placed, event_count))
     waiting = _waiting(contour, held_back)
-    came = latest is not None or happened > 0
-    return Gone(_followed(contour), waiting, latest, before, came), events.part(0, placed)
+    came = latest is not None or event_count > 0
+    return CompensationResult(_followed(contour), waiting, latest, before, came), events.part(
+        0, placed
+    )
 
 
 def _waiting(contour: Contour, held_back: list[Event]) -> list[Segment | Event]:

@@ -12,7 +12,7 @@ from twin.nc.geometry.planes import XY, Plane
 from twin.nc.text.expressions import ExpressionSyntax
 
 if TYPE_CHECKING:
-    from twin.nc.bytecode.assembler import BlockWriter
+    from twin.nc.bytecode.assembler import Assembler
     from twin.nc.bytecode.block_compiler import BlockWords
     from twin.nc.control.control import Control
     from twin.nc.text.blocks import Block, Statement, Word
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Action = Callable[["Control"], None]
 WordAction = Callable[["Control", "Word"], None]
-Translation = Callable[["BlockWords", "BlockWriter"], None]
+Compiler = Callable[["BlockWords", "Assembler"], None]
 """Writes as instructions what a code or a word does, taking the words that belong to it."""
 StatementAction = Callable[["Control", "Statement"], None]
 
@@ -77,7 +77,7 @@ class GCode:
         once: What it sets holds for its block only.
         alone: No other word may stand in its block.
         refused: Why the twin refuses a code that the control knows; empty: it does not.
-        translate: Writes what ``action`` or ``perform`` does for the fast way; None: it cannot.
+        compiler: Compiles what ``action`` or ``perform`` does ; None: it has no compiled form.
         ground: On what the meaning rests.
     """
 
@@ -91,7 +91,7 @@ class GCode:
     once: bool = False
     alone: bool = False
     refused: str = ""
-    translate: Translation | None = None
+    compiler: Compiler | None = None
     ground: Ground = "decision"
 
     @property
@@ -111,7 +111,7 @@ class MCode:
         ends: Ends the program.
         action: What it does besides being reported as a function.
         silent: It is not reported.
-        translate: Writes what ``action`` does for the fast way; None: it cannot.
+        compiler: Compiles what ``action`` does ; None: it has no compiled form.
         ground: On what the meaning rests.
     """
 
@@ -121,7 +121,7 @@ class MCode:
     ends: bool = False
     silent: bool = False
     action: Action | None = None
-    translate: Translation | None = None
+    compiler: Compiler | None = None
     ground: Ground = "decision"
 
 
@@ -227,7 +227,7 @@ class Dialect:
         signed: Addresses that are two words, one above and one below 0.
         series: Addresses that may stand several times in a block with a switch point, in order.
         words: Addresses with a modal meaning, and what they do.
-        word_translations: The same for the fast way, of those that it can do.
+        word_compilers: The compilers of those that have one.
         statements: Keywords of statements, and what they do.
         other_statement: What the others do, which begin with a name.
         word_meanings: What the addresses mean, for people.
@@ -246,11 +246,11 @@ class Dialect:
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
-        translate: Writes as instructions what one of its blocks does that is not plain words alone;
-            raises ``NotTranslatableError`` for what is left to the general way; None: all is.
+        compile_block: Compiles one of its blocks that is more than plain words;
+            raises ``UnsupportedError`` for what is left to the interpreter tier; None: all is.
         disturbed: Something that only this dialect remembers acts on plain blocks now, so that they
-            must go the general way; None: nothing can.
-        registers: What the fast way is given of its memory, by places in ``plain_state``.
+            the interpreter tier must run them; None: nothing can.
+        registers: What the compiled tier is given of its memory, by places in ``registers``.
         take_registers: Takes all of them back.
     """
 
@@ -272,7 +272,7 @@ class Dialect:
     signed: tuple[str, ...] = ()
     series: str = ""
     words: Mapping[str, WordAction]
-    word_translations: Mapping[str, Translation] = dataclasses.field(default_factory=dict)
+    word_compilers: Mapping[str, Compiler] = dataclasses.field(default_factory=dict)
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
     other_statement: StatementAction | None = None
     word_meanings: Mapping[str, str]
@@ -293,7 +293,7 @@ class Dialect:
     prepare: Action | None = None
     after_motion: Action | None = None
     finish: Action | None = None
-    translate: Callable[["Control", "Block", "BlockWriter"], None] | None = None
+    compile_block: Callable[["Control", "Block", "Assembler"], None] | None = None
     disturbed: Callable[["Control"], bool] | None = None
     registers: Callable[["Control"], Mapping[int, float]] = lambda _control: {}
     take_registers: Callable[["Control", list[float]], None] = lambda _control, _values: None

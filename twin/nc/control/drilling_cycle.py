@@ -1,6 +1,6 @@
 """Drilling cycles as numbers: what they remember of their words, and what they do at a hole.
 
-Both ways share these functions: the general way gives them lists, the compiled one columns. What is
+Both ways share these functions: the interpreter tier gives them lists, the compiled one columns. What is
 not given is NaN.
 """
 

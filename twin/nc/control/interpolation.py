@@ -1,4 +1,4 @@
-"""How axis words become a move, and which of these ways the fast way knows."""
+"""How axis words become a move, and which of these ways the compiled tier knows."""
 
 import dataclasses
 import math
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class PlainLine:
+class LineRule:
     """A block of plain axis words goes straight to their target.
 
     Attributes:
@@ -24,7 +24,7 @@ class PlainLine:
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class PlainArc:
+class ArcRule:
     """A block of plain axis words with I, J, K of the plane or R is an arc.
 
     Within these bounds nothing about it is doubtful: no error, no warning, no correction to report.
@@ -47,7 +47,7 @@ class PlainArc:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class PlainHole:
+class CycleRule:
     """A block of plain words drills.
 
     Attributes:
@@ -68,10 +68,10 @@ class Interpolation:
     Attributes:
         perform: Takes the block's words and moves.
         rapid: At the machine's own speed.
-        plain: What it does in a block of plain words, for the fast way; None: ``perform`` alone
+        rule: What it does in a block of plain words, for the compiled tier; None: ``perform`` alone
             knows.
     """
 
     perform: Callable[["Control"], None]
     rapid: bool = False
-    plain: PlainLine | PlainArc | PlainHole | None = None
+    rule: LineRule | ArcRule | CycleRule | None = None

@@ -180,7 +180,7 @@ class ControlMotion(ControlWords):
     def part_plane(self) -> Plane:
         """The working plane as the part sees it."""
         plane, frame = self.modal.plane, self.frame
-        if frame.plain:
+        if frame.is_identity:
             return plane
         normal, _ = frame.arc(plane.normal, 0.0)
         abscissa, _ = frame.arc(plane.abscissa, 0.0)

@@ -1,4 +1,4 @@
-"""The variables of a running program, kept as columns, which the fast way computes with as well."""
+"""The variables of a running program, kept as columns, which the compiled tier computes with as well."""
 
 from collections.abc import Callable, Mapping
 

@@ -7,8 +7,8 @@ import dataclasses
 import math
 import re
 
-from twin.nc.bytecode.assembler import BlockWriter
-from twin.nc.bytecode.block_compiler import write_words
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.block_compiler import compile_words
 from twin.nc.canonical import Corner
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
@@ -102,13 +102,13 @@ def excuse(line: str, previous: str) -> str | None:
     return None
 
 
-def translate(control: Control, block: Block, writer: BlockWriter) -> None:
-    """Write a block as instructions for the fast way.
+def compile_block(control: Control, block: Block, assembler: Assembler) -> None:
+    """Write a block as instructions for the compiled tier.
 
     Raises:
-        NotTranslatableError: It is left to the general way.
+        UnsupportedError: It is left to the interpreter tier.
     """
-    write_words(control, block.words, writer)
+    compile_words(control, block.words, assembler)
 
 
 DECISIONS = (
@@ -185,7 +185,7 @@ GOST = Dialect(
     start=(*codes.START, 64, 98),
     m=codes.M_CODES,
     words=codes.WORDS,
-    word_translations=codes.WORD_TRANSLATIONS,
+    word_compilers=codes.WORD_COMPILERS,
     word_meanings=codes.WORD_MEANINGS,
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
@@ -195,6 +195,6 @@ GOST = Dialect(
     ),
     memory=Periods,
     before_motion=recalculate_start,
-    translate=translate,
+    compile_block=compile_block,
     disturbed=lambda control: bool(_periods(control).by_axis),
 )

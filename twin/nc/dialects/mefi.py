@@ -6,15 +6,15 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 import dataclasses
 from collections.abc import Iterator
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
-from twin.nc.bytecode.block_compiler import write_words
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.block_compiler import compile_words
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
-from twin.nc.control.interpolation import Interpolation, PlainArc
+from twin.nc.control.interpolation import ArcRule, Interpolation
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso import codes, decisions
-from twin.nc.iso.circular import iso_arc_center, plain_arc, start_and_end
+from twin.nc.iso.circular import arc_rule, iso_arc_center, start_and_end
 from twin.nc.text.blocks import Block
 
 
@@ -101,11 +101,11 @@ def jump_with_repeat(control: Control) -> None:
     control.flow.jump(int(number), (target.column, target.width), "L")
 
 
-def translate(control: Control, block: Block, writer: BlockWriter) -> None:
-    """Write a block as instructions for the fast way, with its jump as ``jump_with_repeat`` does.
+def compile_block(control: Control, block: Block, assembler: Assembler) -> None:
+    """Write a block as instructions for the compiled tier, with its jump as ``jump_with_repeat`` does.
 
     Raises:
-        NotTranslatableError: It is left to the general way.
+        UnsupportedError: It is left to the interpreter tier.
     """
     jumps = [word for word in block.words if word.address == "G" and word.value == 73.0]
     targets = [word for word in block.words if jumps and word.address == "L"]
@@ -113,18 +113,18 @@ def translate(control: Control, block: Block, writer: BlockWriter) -> None:
     taken = (*jumps[:1], *targets[:1], *counts[:1])
     if counts:  # a cycle with pecks would take Q as its own
         if any(code.begins_cycle for code in _codes(control, block)):
-            raise NotTranslatableError
-        writer.step(Step.NO_PECKS)
-    write_words(control, [word for word in block.words if word not in taken], writer)
+            raise UnsupportedError
+        assembler.emit(Opcode.NO_PECKS)
+    compile_words(control, [word for word in block.words if word not in taken], assembler)
     if jumps:
         times = control.number(counts[0]) if counts else 1.0
         if not targets or times < 0.0 or times != int(times):
-            raise NotTranslatableError
+            raise UnsupportedError
         number, span = control.number(targets[0]), (targets[0].column, targets[0].width)
         if number != int(number):
-            raise NotTranslatableError
+            raise UnsupportedError
         place = control.flow.find_label(int(number), span, "L")
-        writer.jump_counted(place, repeat_counter(block), times)
+        assembler.jump_counted(place, repeat_counter(block), times)
 
 
 def _codes(control: Control, block: Block) -> Iterator[GCode]:
@@ -175,12 +175,12 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-def _plain(*, clockwise: bool) -> PlainArc:
-    return dataclasses.replace(plain_arc(clockwise=clockwise), signed_radius=False)
+def _arc_rule(*, clockwise: bool) -> ArcRule:
+    return dataclasses.replace(arc_rule(clockwise=clockwise), signed_radius=False)
 
 
-CLOCKWISE = Interpolation(clockwise_arc, plain=_plain(clockwise=True))
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=_plain(clockwise=False))
+CLOCKWISE = Interpolation(clockwise_arc, rule=_arc_rule(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=_arc_rule(clockwise=False))
 
 DECISIONS = (
     Decision(
@@ -273,7 +273,7 @@ MEFI = Dialect(
     start=codes.START,
     m=codes.M_CODES,
     words=codes.WORDS,
-    word_translations=codes.WORD_TRANSLATIONS,
+    word_compilers=codes.WORD_COMPILERS,
     word_meanings={
         **codes.WORD_MEANINGS,
         "R": "radius of an arc below 180 degrees; reference plane of a cycle",
@@ -288,6 +288,6 @@ MEFI = Dialect(
         Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
     ),
     memory=Dragging,
-    translate=translate,
+    compile_block=compile_block,
     disturbed=lambda control: _dragging(control).on,
 )

@@ -1,6 +1,6 @@
 """Arc geometry in a plane: centres from radii, tangents and points, and signed sweeps.
 
-The fast way (``plain_kernels``) compiles most of these functions as they stand here: what they use
+The compiled tier (``plain_kernels``) compiles most of these functions as they stand here: what they use
 must give the same bits either way, which ``math.hypot`` does not.
 """
 

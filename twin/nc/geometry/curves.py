@@ -1,6 +1,6 @@
 """Geometry of plane curves, lines and arcs, as plain functions over tuples.
 
-``elements.Element`` is a view of them for people; the fast way (``compiled.kernels.compensation``) compiles them as
+``elements.Element`` is a view of them for people; the compiled tier (``compiled.kernels.compensation``) compiles them as
 they stand here, so that both compute the same bits.
 """
 

@@ -29,7 +29,7 @@ class Frame:
         """Sum of all shifts, shape (k,) [mm or deg]."""
         self.matrix = IDENTITY
         """Mirror, rotation and scale of X, Y, Z."""
-        self.plain = True
+        self.is_identity = True
         """The matrix is the identity."""
 
     def shift(self, name: str) -> list[float]:
@@ -54,11 +54,11 @@ class Frame:
     def set_matrix(self, matrix: Matrix) -> None:
         """Replace mirror, rotation and scale."""
         self.matrix = matrix
-        self.plain = matrix == IDENTITY
+        self.is_identity = matrix == IDENTITY
 
     def to_part(self, programmed: list[float]) -> list[float]:
         """Part coordinates of a programmed position, shape (k,)."""
-        if self.plain:
+        if self.is_identity:
             return [value + shift for value, shift in zip(programmed, self.total, strict=True)]
         turned = [*self.turn((programmed[0], programmed[1], programmed[2])), *programmed[3:]]
         return [value + shift for value, shift in zip(turned, self.total, strict=True)]
@@ -66,13 +66,13 @@ class Frame:
     def to_programmed(self, part: list[float]) -> list[float]:
         """The inverse of ``to_part``."""
         values = [value - shift for value, shift in zip(part, self.total, strict=True)]
-        if self.plain:
+        if self.is_identity:
             return values
         return [*applied(inverse(self.matrix), (values[0], values[1], values[2])), *values[3:]]
 
     def point(self, programmed: Vector) -> Vector:
         """Part coordinates of a point of X, Y, Z."""
-        x, y, z = programmed if self.plain else self.turn(programmed)
+        x, y, z = programmed if self.is_identity else self.turn(programmed)
         return (x + self.total[0], y + self.total[1], z + self.total[2])
 
     def turn(self, vector: Vector) -> Vector:
@@ -81,16 +81,16 @@ class Frame:
 
     def unturn(self, vector: Vector) -> Vector:
         """The inverse of ``turn``."""
-        return vector if self.plain else applied(inverse(self.matrix), vector)
+        return vector if self.is_identity else applied(inverse(self.matrix), vector)
 
     @property
     def handedness(self) -> float:
         """-1 where the matrix mirrors, else 1."""
-        return 1.0 if self.plain else handedness(self.matrix)
+        return 1.0 if self.is_identity else handedness(self.matrix)
 
     def arc(self, normal: Vector, sweep: float) -> tuple[Vector, float]:
         """Normal and sweep of an arc as the part sees them; a mirror reverses the sense."""
-        if self.plain:
+        if self.is_identity:
             return normal, sweep
         return turned_unit(self.matrix, normal), sweep * self.handedness
 

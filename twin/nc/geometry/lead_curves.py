@@ -1,6 +1,6 @@
 """Geometry of the ways to and from a compensated contour, as plain functions over tuples.
 
-``leads`` is a view of them; the fast way (``lead_kernels``) compiles them as they stand here, as it
+``leads`` is a view of them; the compiled tier (``lead_kernels``) compiles them as they stand here, as it
 does those of ``curves``.
 """
 

@@ -1,6 +1,6 @@
 """Matrices of X, Y and Z as tuples of rows: what mirror, scale and rotation do to vectors.
 
-The fast way (``frame_kernels``) compiles these functions as they stand here, so that they use
+The compiled tier (``frame_kernels``) compiles these functions as they stand here, so that they use
 nothing whose bits could differ between the two, such as ``sum``.
 """
 

@@ -72,7 +72,7 @@ XY = Plane("XY (G17)", _X, _Y, _Z)
 ZX = Plane("ZX (G18)", _Z, _X, _Y)
 YZ = Plane("YZ (G19)", _Y, _Z, _X)
 PLANE_ORDER = (XY, ZX, YZ)
-"""Those along the axes, as the fast way numbers them."""
+"""Those along the axes, as the compiled tier numbers them."""
 PLANE_NAMES = tuple(plane.name for plane in PLANE_ORDER)
 """Their names, which they keep where a mirror or a rotation turns them."""
 

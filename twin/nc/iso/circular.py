@@ -3,7 +3,7 @@
 import dataclasses
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import PlainArc
+from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry.arcs import (
     SAME_POINT,
     Point,
@@ -198,9 +198,9 @@ def _iso_arc(control: Control, *, clockwise: bool) -> None:
     sweep_arc(control, target, center, clockwise=clockwise)
 
 
-def plain_arc(*, clockwise: bool, fits_radius: bool = False) -> PlainArc:
+def arc_rule(*, clockwise: bool, fits_radius: bool = False) -> ArcRule:
     """The bounds within which ``fitted_center`` has nothing to refuse."""
-    return PlainArc(
+    return ArcRule(
         clockwise=clockwise,
         mismatch=RADIUS_TOLERANCE,
         shift=CENTER_SHIFT,

@@ -2,28 +2,28 @@
 
 import re
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import FeedMode, GCode, MCode, Translation
-from twin.nc.control.interpolation import Interpolation, PlainLine
+from twin.nc.control.dialect import Compiler, FeedMode, GCode, MCode
+from twin.nc.control.interpolation import Interpolation, LineRule
 from twin.nc.geometry.planes import PLANE_ORDER, XY, YZ, ZX, Plane
 from twin.nc.iso.circular import (
+    arc_rule,
     clockwise_arc,
     counter_clockwise_arc,
     feed_line,
-    plain_arc,
     rapid_line,
 )
 from twin.nc.iso.cycles import CYCLES
 from twin.nc.iso.offsets import COMPENSATION, LENGTH, OFFSETS, PRESET, refuse_plane_change
 from twin.nc.text.blocks import Word
 
-RAPID = Interpolation(rapid_line, rapid=True, plain=PlainLine())
-FEED = Interpolation(feed_line, plain=PlainLine())
-CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True))
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=plain_arc(clockwise=False))
+RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
+FEED = Interpolation(feed_line, rule=LineRule())
+CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=arc_rule(clockwise=False))
 
 
 # Nothing is given back once it is taken (``++``): else dots could be shared out in endless ways.
@@ -61,16 +61,16 @@ def set_spindle(control: Control, word: Word) -> None:
         control.function("S", {"S": speed})
 
 
-def write_spindle(block: BlockWords, writer: BlockWriter) -> None:
-    """S, for the fast way."""
-    writer.word_value(block.words.pop("S"))
-    writer.step(Step.SPEED, 0 if block.starts_spindle() else 1)
+def compile_spindle(block: BlockWords, assembler: Assembler) -> None:
+    """S, for the compiled tier."""
+    assembler.word_value(block.words.pop("S"))
+    assembler.emit(Opcode.SPEED, 0 if block.starts_spindle() else 1)
 
 
-def write_tool(block: BlockWords, writer: BlockWriter) -> None:
-    """T, for the fast way."""
-    writer.word_value(block.words.pop("T"))
-    writer.step(Step.TOOL)
+def compile_tool(block: BlockWords, assembler: Assembler) -> None:
+    """T, for the compiled tier."""
+    assembler.word_value(block.words.pop("T"))
+    assembler.emit(Opcode.TOOL)
 
 
 def select_tool(control: Control, word: Word) -> None:
@@ -87,27 +87,27 @@ def change_tool(control: Control) -> None:
     control.tools.change()
 
 
-def write_tool_change(_block: BlockWords, writer: BlockWriter) -> None:
-    """M6, for the fast way."""
-    writer.step(Step.CHANGE_TOOL)
+def compile_tool_change(_block: BlockWords, assembler: Assembler) -> None:
+    """M6, for the compiled tier."""
+    assembler.emit(Opcode.CHANGE_TOOL)
 
 
-def write_dwell(letters: str) -> Translation:
-    """A dwell whose time stands in one of these words, for the fast way."""
+def compile_dwell(letters: str) -> Compiler:
+    """A dwell whose time stands in one of these words, for the compiled tier."""
 
-    def write(block: BlockWords, writer: BlockWriter) -> None:
+    def write(block: BlockWords, assembler: Assembler) -> None:
         words = [block.words.pop(letter) for letter in letters if letter in block.words]
         if len(words) != 1:
-            raise NotTranslatableError
-        writer.word_value(words[0])
-        writer.step(Step.DWELL)
+            raise UnsupportedError
+        assembler.word_value(words[0])
+        assembler.emit(Opcode.DWELL)
 
     return write
 
 
-def write_plane(plane: Plane) -> Translation:
-    """G17, G18, G19, for the fast way."""
-    return lambda _block, writer: writer.step(Step.PLANE, PLANE_ORDER.index(plane))
+def compile_plane(plane: Plane) -> Compiler:
+    """G17, G18, G19, for the compiled tier."""
+    return lambda _block, assembler: assembler.emit(Opcode.PLANE, PLANE_ORDER.index(plane))
 
 
 def dwell_seconds(control: Control) -> None:
@@ -127,7 +127,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=refuse_plane_change,
-        translate=write_plane(plane),
+        compiler=compile_plane(plane),
     )
 
 
@@ -163,7 +163,7 @@ DWELL = {
         meaning="dwell, seconds in P, X or F",
         perform=dwell_seconds,
         takes="F",
-        translate=write_dwell("PXF"),
+        compiler=compile_dwell("PXF"),
     )
 }
 
@@ -225,7 +225,7 @@ M_CODES = {
     3: MCode(meaning="spindle clockwise", group="spindle"),
     4: MCode(meaning="spindle counter-clockwise", group="spindle"),
     5: MCode(meaning="spindle stop", group="spindle", late=True),
-    6: MCode(meaning="tool change", action=change_tool, translate=write_tool_change),
+    6: MCode(meaning="tool change", action=change_tool, compiler=compile_tool_change),
     7: MCode(meaning="mist on"),
     8: MCode(meaning="coolant on", group="coolant"),
     9: MCode(meaning="coolant off", group="coolant", late=True),
@@ -233,7 +233,7 @@ M_CODES = {
 }
 
 WORDS = {"F": set_feed, "S": set_spindle, "T": select_tool}
-WORD_TRANSLATIONS = {"S": write_spindle, "T": write_tool}
+WORD_COMPILERS = {"S": compile_spindle, "T": compile_tool}
 
 WORD_MEANINGS = {
     "N": "block number",

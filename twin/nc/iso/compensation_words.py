@@ -1,53 +1,53 @@
-"""G40, G41 and G42 for the fast way: what the actions of ``offsets`` do, as steps."""
+"""G40, G41 and G42 for the compiled tier: what the actions of ``offsets`` do, as steps."""
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Step
-from twin.nc.control.dialect import Translation
+from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.dialect import Compiler
 from twin.nc.text.expressions import Expression
 
 
-def write_compensation(side: float) -> Translation:
+def compile_compensation(side: float) -> Compiler:
     """Compensation by the corrector D, else by the tool in the spindle."""
 
-    def write(block: BlockWords, writer: BlockWriter) -> None:
+    def write(block: BlockWords, assembler: Assembler) -> None:
         word, table = block.take("D"), block.control.tools.table
         if word is None:
-            writer.step(Step.TOOL_RADIUS)
+            assembler.emit(Opcode.TOOL_RADIUS)
         elif isinstance(word.value, Expression) or word.value not in table:
-            raise NotTranslatableError
+            raise UnsupportedError
         else:
-            writer.number(table[int(word.value)].radius)
-        writer.step(Step.COMPENSATE, int(side))
+            assembler.constant(table[int(word.value)].radius)
+        assembler.emit(Opcode.COMPENSATE, int(side))
 
     return write
 
 
-def write_compensation_by_tool(side: float) -> Translation:
+def compile_compensation_by_tool(side: float) -> Compiler:
     """Compensation by the tool in the spindle, where it has its offset."""
 
-    def write(block: BlockWords, writer: BlockWriter) -> None:
+    def write(block: BlockWords, assembler: Assembler) -> None:
         del block
-        writer.step(Step.TOOL_RADIUS, 1)
-        writer.step(Step.COMPENSATE, int(side))
+        assembler.emit(Opcode.TOOL_RADIUS, 1)
+        assembler.emit(Opcode.COMPENSATE, int(side))
 
     return write
 
 
-def write_compensation_by_radius(side: float) -> Translation:
+def compile_compensation_by_radius(side: float) -> Compiler:
     """Compensation by the radius D, else by the one that was given last."""
 
-    def write(block: BlockWords, writer: BlockWriter) -> None:
+    def write(block: BlockWords, assembler: Assembler) -> None:
         word = block.take("D")
         if word is not None:
-            writer.word_value(word)
-        writer.step(Step.PROGRAMMED_RADIUS, int(word is not None))
-        writer.step(Step.COMPENSATE, int(side))
+            assembler.word_value(word)
+        assembler.emit(Opcode.PROGRAMMED_RADIUS, int(word is not None))
+        assembler.emit(Opcode.COMPENSATE, int(side))
 
     return write
 
 
-def write_end_of_compensation(block: BlockWords, writer: BlockWriter) -> None:
+def compile_end_of_compensation(block: BlockWords, assembler: Assembler) -> None:
     """The next line leads out."""
     del block
-    writer.step(Step.END_COMPENSATION)
+    assembler.emit(Opcode.END_COMPENSATION)

@@ -9,7 +9,7 @@ was called, or with G99 to the reference plane; the plane cannot change before t
 
 from twin.nc.control.dialect import GCode
 from twin.nc.control.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, Cycle, Pecking, Retract
-from twin.nc.control.interpolation import PlainHole
+from twin.nc.control.interpolation import CycleRule
 from twin.nc.iso.drilling import cycle_code
 
 
@@ -30,7 +30,7 @@ def _cycle(
         dwells=dwell,
         retract=retract,
     )
-    return cycle_code(PlainHole(name, cycle, words), f"{meaning}: X Y Z {' '.join(words)}")
+    return cycle_code(CycleRule(name, cycle, words), f"{meaning}: X Y Z {' '.join(words)}")
 
 
 _BY_HAND = "the operator moves the axes by hand in it"

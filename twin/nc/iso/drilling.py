@@ -4,11 +4,11 @@ import math
 from collections.abc import Callable, Mapping
 from typing import NoReturn
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import GCode, Ground, Translation
+from twin.nc.control.dialect import Compiler, GCode, Ground
 from twin.nc.control.drilling_cycle import (
     BOTTOM,
     EVERY,
@@ -28,14 +28,14 @@ from twin.nc.control.drilling_cycle import (
     remember,
     write_acts,
 )
-from twin.nc.control.interpolation import Interpolation, PlainHole
+from twin.nc.control.interpolation import CycleRule, Interpolation
 
 _BESIDE = "ST"
-"""Words that may stand beside a cycle on the fast way: they change nothing of where the tool stands."""
+"""Words that may stand beside a cycle on the compiled tier: they change nothing of where the tool stands."""
 
 
 def cycle_code(
-    plain: PlainHole,
+    rule: CycleRule,
     meaning: str,
     target: Callable[[Control], list[float]] = Control.target,
     ground: Ground = "decision",
@@ -43,39 +43,39 @@ def cycle_code(
     """The code that calls a cycle.
 
     Args:
-        plain: The cycle and its words.
+        rule: The cycle and its words.
         meaning: For people.
         target: Takes the words that name the hole; its programmed position, shape (k,).
         ground: On what the meaning rests.
     """
-    cycle = plain.cycle
+    cycle = rule.cycle
 
     def call(control: Control) -> None:
         axis = control.modal.plane.axes[2]
         begin(control.hole_values, axis, control.programmed[axis], cycle.lasting)
         if not cycle.lasting:
-            _take_words(control, plain)
+            _take_words(control, rule)
 
     def perform(control: Control) -> None:
         if cycle.lasting:
-            _take_words(control, plain)
-        drill(control, _hole(control, plain), target(control))
+            _take_words(control, rule)
+        drill(control, _hole(control, rule), target(control))
 
     return GCode(
         meaning=meaning,
         group="cycle",
-        sets={"cycle": Interpolation(perform, plain=plain)},
+        sets={"cycle": Interpolation(perform, rule=rule)},
         action=call,
-        translate=_write_words(plain.words),
+        compiler=_compile_words(rule.words),
         ground=ground,
     )
 
 
-def _take_words(control: Control, plain: PlainHole) -> None:
+def _take_words(control: Control, rule: CycleRule) -> None:
     """Take the cycle's words, and that of the axis across the plane."""
-    cycle, given = plain.cycle, no_values()
+    cycle, given = rule.cycle, no_values()
     relative = dict.fromkeys((REFERENCE, BOTTOM), control.modal.incremental)
-    for address, value in {**plain.words, _across(control): cycle.across}.items():
+    for address, value in {**rule.words, _across(control): cycle.across}.items():
         word = control.take(address)
         if word is not None:
             in_mm = (LENGTHS >> value) & 1
@@ -85,21 +85,21 @@ def _take_words(control: Control, plain: PlainHole) -> None:
     remember(control.hole_values, given, relative[REFERENCE], relative[BOTTOM], cycle.lasting)
 
 
-def _write_words(words: Mapping[str, int]) -> Translation:
-    """The same for the fast way, where the words of axes stay with those of the hole."""
+def _compile_words(words: Mapping[str, int]) -> Compiler:
+    """The same for the compiled tier, where the words of axes stay with those of the hole."""
 
-    def write(block: BlockWords, writer: BlockWriter) -> None:
+    def write(block: BlockWords, assembler: Assembler) -> None:
         for address, value in words.items():
             word = block.take(address)
             if word is None:
                 continue
             if word.incremental:
-                raise NotTranslatableError
-            writer.word_value(word)
-            writer.step(Step.CYCLE_WORD, value)
-        others = block.words.keys() & block.control.dialect.word_translations.keys()
+                raise UnsupportedError
+            assembler.word_value(word)
+            assembler.emit(Opcode.CYCLE_WORD, value)
+        others = block.words.keys() & block.control.dialect.word_compilers.keys()
         if others - set(_BESIDE) or any(code.action for _, code in block.functions):
-            raise NotTranslatableError
+            raise UnsupportedError
 
     return write
 
@@ -109,28 +109,28 @@ def _across(control: Control) -> str:
     return control.settings.axes.names[control.modal.plane.axes[2]]
 
 
-def _hole(control: Control, plain: PlainHole) -> Hole:
+def _hole(control: Control, rule: CycleRule) -> Hole:
     """What the cycle does at a hole.
 
     Raises:
         ProgramError: A word is missing or wrong.
     """
     axis, to_reference = control.modal.plane.axes[2], control.modal.return_to_reference
-    hole = hole_of(plain.cycle, control.hole_values, axis, to_reference)
+    hole = hole_of(rule.cycle, control.hole_values, axis, to_reference)
     if hole.fault != Fault.NONE:
-        _refuse(control, plain, hole)
+        _refuse(control, rule, hole)
     return hole
 
 
-def _refuse(control: Control, plain: PlainHole, hole: Hole) -> NoReturn:
-    name = plain.name
-    addresses = {value: address for address, value in plain.words.items()}
-    addresses[plain.cycle.across] = _across(control)
+def _refuse(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
+    name = rule.name
+    addresses = {value: address for address, value in rule.words.items()}
+    addresses[rule.cycle.across] = _across(control)
     if hole.fault == Fault.MISSING:
         missing = [
             address
             for value, address in sorted(addresses.items())
-            if (plain.cycle.needed >> value) & 1 and math.isnan(control.hole_values[value])
+            if (rule.cycle.needed >> value) & 1 and math.isnan(control.hole_values[value])
         ]
         control.fail("cycle-word", f"{name} needs {' and '.join(missing)}")
     if hole.fault == Fault.PLANE:

@@ -1,6 +1,6 @@
 """A jog as the block that an operator would have typed for it."""
 
-from twin.nc.compiled.tables import FEED_FACTORS
+from twin.nc.compiled.decode_tables import FEED_FACTORS
 from twin.nc.control.dialect import Dialect, FeedMode
 
 

@@ -7,14 +7,14 @@ machine zero until the next work offset.
 
 from collections.abc import Iterable, Mapping
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import GCode, Translation
+from twin.nc.control.dialect import Compiler, GCode
 from twin.nc.control.state import integer_of
 from twin.nc.geometry.frame import SHIFTS
-from twin.nc.iso.compensation_words import write_compensation, write_end_of_compensation
+from twin.nc.iso.compensation_words import compile_compensation, compile_end_of_compensation
 from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import Expression
 
@@ -64,76 +64,76 @@ def _shift_by(control: Control, values: Mapping[str, float]) -> None:
     control.reframed()
 
 
-def write_shift(name: str, values: Iterable[float], writer: BlockWriter) -> None:
-    """A shift with fixed values, for the fast way."""
+def compile_shift(name: str, values: Iterable[float], assembler: Assembler) -> None:
+    """A shift with fixed values, for the compiled tier."""
     for value in values:
-        writer.number(value)
-    writer.step(Step.SHIFT, SHIFTS.index(name))
+        assembler.constant(value)
+    assembler.emit(Opcode.SHIFT, SHIFTS.index(name))
 
 
-def write_programmed_shift(name: str, block: BlockWords, writer: BlockWriter) -> None:
-    """A shift with the block's values, 0 for the axes that it leaves out, for the fast way."""
+def compile_programmed_shift(name: str, block: BlockWords, assembler: Assembler) -> None:
+    """A shift with the block's values, 0 for the axes that it leaves out, for the compiled tier."""
     words = dict(block.take_axes())
     for index in range(len(block.control.settings.axes)):
         if index in words:
-            writer.word_value(words[index])
-            writer.step(Step.TO_MILLIMETRES, index)
+            assembler.word_value(words[index])
+            assembler.emit(Opcode.TO_MILLIMETRES, index)
         else:
-            writer.number(0.0)
-    writer.step(Step.SHIFT, SHIFTS.index(name))
+            assembler.constant(0.0)
+    assembler.emit(Opcode.SHIFT, SHIFTS.index(name))
 
 
-def write_offset(name: str) -> Translation:
-    """A work offset of the job, for the fast way."""
+def compile_offset(name: str) -> Compiler:
+    """A work offset of the job, for the compiled tier."""
 
-    def write(block: BlockWords, writer: BlockWriter) -> None:
+    def write(block: BlockWords, assembler: Assembler) -> None:
         settings = block.control.settings
         values = settings.offsets.get(name)
         if values is None and name != "G54":
-            raise NotTranslatableError
+            raise UnsupportedError
         names = settings.axes.names
-        write_shift("offset", [(values or {}).get(axis, 0.0) for axis in names], writer)
-        write_shift("preset", [0.0] * len(names), writer)
-        writer.step(Step.REFRAME)
+        compile_shift("offset", [(values or {}).get(axis, 0.0) for axis in names], assembler)
+        compile_shift("preset", [0.0] * len(names), assembler)
+        assembler.emit(Opcode.REFRAME)
 
     return write
 
 
-def write_label(shift: str) -> Translation:
-    """New coordinates for where the machine stands, for the fast way."""
+def compile_set_position(shift: str) -> Compiler:
+    """New coordinates for where the machine stands, for the compiled tier."""
 
-    def write(block: BlockWords, writer: BlockWriter) -> None:
+    def write(block: BlockWords, assembler: Assembler) -> None:
         words = block.take_axes()
         if not words or any(word.incremental for _, word in words):
-            raise NotTranslatableError
-        writer.step(Step.BEGIN_LABEL)
+            raise UnsupportedError
+        assembler.emit(Opcode.BEGIN_TARGET)
         for index, word in words:
-            writer.word_value(word)
-            writer.step(Step.TO_MILLIMETRES, index)
-            writer.step(Step.LABEL, index)
-        writer.step(Step.RELABEL, SHIFTS.index(shift))
+            assembler.word_value(word)
+            assembler.emit(Opcode.TO_MILLIMETRES, index)
+            assembler.emit(Opcode.TARGET, index)
+        assembler.emit(Opcode.SET_POSITION, SHIFTS.index(shift))
 
     return write
 
 
-def _write_length(sign: float) -> Translation:
-    """G43 H, G44 H, for the fast way."""
+def _compile_length(sign: float) -> Compiler:
+    """G43 H, G44 H, for the compiled tier."""
 
-    def write(block: BlockWords, writer: BlockWriter) -> None:
+    def write(block: BlockWords, assembler: Assembler) -> None:
         word, tools = block.take("H"), block.control.tools
         if word is None or isinstance(word.value, Expression) or word.value not in tools.table:
-            raise NotTranslatableError
+            raise UnsupportedError
         longer = sign * tools.longer(tools.table[int(word.value)])
         axes = len(block.control.settings.axes)
-        write_shift("length", [longer if axis == 2 else 0.0 for axis in range(axes)], writer)
-        writer.step(Step.REFRAME)
+        compile_shift("length", [longer if axis == 2 else 0.0 for axis in range(axes)], assembler)
+        assembler.emit(Opcode.REFRAME)
 
     return write
 
 
-def _write_no_length(block: BlockWords, writer: BlockWriter) -> None:
-    write_shift("length", [0.0] * len(block.control.settings.axes), writer)
-    writer.step(Step.REFRAME)
+def _compile_no_length(block: BlockWords, assembler: Assembler) -> None:
+    compile_shift("length", [0.0] * len(block.control.settings.axes), assembler)
+    assembler.emit(Opcode.REFRAME)
 
 
 def preset(control: Control) -> None:
@@ -153,7 +153,7 @@ def _work_offset(number: int) -> GCode:
         meaning=f"work offset {name} of the job",
         group="offset",
         action=lambda control: select_offset(control, name, control.code_word(number)),
-        translate=write_offset(name),
+        compiler=compile_offset(name),
     )
 
 
@@ -163,7 +163,11 @@ OFFSETS = {
     ),
     **{number: _work_offset(number) for number in range(54, 60)},
 }
-PRESET = {92: GCode(meaning="preset the position", perform=preset, translate=write_label("preset"))}
+PRESET = {
+    92: GCode(
+        meaning="preset the position", perform=preset, compiler=compile_set_position("preset")
+    )
+}
 
 
 # --- tools
@@ -277,19 +281,19 @@ COMPENSATION = {
         meaning="radius compensation off",
         group="compensation",
         action=end_compensation,
-        translate=write_end_of_compensation,
+        compiler=compile_end_of_compensation,
     ),
     41: GCode(
         meaning="radius compensation, tool left of the contour",
         group="compensation",
         action=lambda control: _compensation_by_table(control, LEFT),
-        translate=write_compensation(LEFT),
+        compiler=compile_compensation(LEFT),
     ),
     42: GCode(
         meaning="radius compensation, tool right of the contour",
         group="compensation",
         action=lambda control: _compensation_by_table(control, RIGHT),
-        translate=write_compensation(RIGHT),
+        compiler=compile_compensation(RIGHT),
     ),
 }
 LENGTH = {
@@ -297,18 +301,18 @@ LENGTH = {
         meaning="tool length compensation",
         group="length",
         action=lambda control: length_by_table(control, 1.0),
-        translate=_write_length(1.0),
+        compiler=_compile_length(1.0),
     ),
     44: GCode(
         meaning="tool length compensation, reversed",
         group="length",
         action=lambda control: length_by_table(control, -1.0),
-        translate=_write_length(-1.0),
+        compiler=_compile_length(-1.0),
     ),
     49: GCode(
         meaning="tool length compensation off",
         group="length",
         action=lambda control: set_length(control, 0.0),
-        translate=_write_no_length,
+        compiler=_compile_no_length,
     ),
 }

@@ -1,4 +1,4 @@
-"""How far radius compensation has come between two blocks: what the fast way is given, and gives back."""
+"""How far radius compensation has come between two blocks: what the compiled tier is given, and gives back."""
 
 import dataclasses
 import enum

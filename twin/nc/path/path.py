@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 
 from twin.nc.canonical import Axes, Chunk, Motion
-from twin.nc.compiled.contour_columns import Gone
+from twin.nc.compiled.contour_columns import CompensationResult
 from twin.nc.geometry.planes import PLANE_NAMES, Plane
 from twin.nc.path.blends import Blend
 from twin.nc.path.compensation import Compensation, Refuse, Warn
@@ -68,7 +68,7 @@ class Path:
         self._before = move
         self._round(move)
 
-    def add_rows(self, moves: Row, events: EventRows, gone: Gone) -> None:
+    def add_rows(self, moves: Row, events: EventRows, gone: CompensationResult) -> None:
         """Moves as columns: of a path that was handed over, as compensation has let them go.
 
         Args:
@@ -99,7 +99,7 @@ class Path:
             return self._compensation.followed
         return None if self._leading_out is None else self._leading_out.followed
 
-    def _resume(self, gone: Gone) -> None:
+    def _resume(self, gone: CompensationResult) -> None:
         """Compensation has gone on by itself."""
         if gone.came:
             self._before = gone.before

@@ -1,6 +1,6 @@
 """What operators and functions of expressions compute, for every dialect. Truth is 1, falsehood 0.
 
-The fast way (``expression_kernels``) compiles these functions as they stand here, so that it
+The compiled tier (``expression_kernels``) compiles these functions as they stand here, so that it
 computes the same bits. Where a value is undefined Python raises ``ArithmeticError`` or
 ``ValueError``; the compiled ones give infinity or NaN there.
 """

@@ -35,17 +35,17 @@ for _shared in (
 
 
 @kernel
-def value_of(role: int, roles: IntArray, values: FloatArray) -> float:
-    """Value of the word with a role; 0 where there is none."""
-    for word in range(len(roles)):
-        if roles[word] == role:
+def value_of(token_kind: int, token_kinds: IntArray, values: FloatArray) -> float:
+    """Value of the word with a token_kind; 0 where there is none."""
+    for word in range(len(token_kinds)):
+        if token_kinds[word] == token_kind:
             return values[word]
     return 0.0
 
 
 @inlined_kernel
-def write_arc(
-    roles: IntArray,
+def emit_arc(
+    token_kinds: IntArray,
     values: FloatArray,
     seen: int,
     tables: BlockTables,
@@ -58,9 +58,9 @@ def write_arc(
     """Write the centre, normal and sweep of a row whose positions stand.
 
     Args:
-        roles: What each word's letter is, shape (w,).
+        token_kinds: What each word's letter is, shape (w,).
         values: The words' values, shape (w,).
-        seen: Which roles there are, as bits.
+        seen: Which token_kinds there are, as bits.
         tables: What blocks mean.
         constants: What stays as it is.
         state: Where the block begins.
@@ -86,7 +86,7 @@ def write_arc(
         in_plane = (1 << (AXIS + first_axis)) | (1 << (AXIS + second_axis))
         if has_first or has_second or not seen & in_plane:
             return False
-        radius = value_of(RADIUS, roles, values) * modal[UNIT]
+        radius = value_of(RADIUS, token_kinds, values) * modal[UNIT]
         larger = radius < 0.0
         if larger and not tables.signed_radius[interpolation]:
             return False
@@ -98,8 +98,8 @@ def write_arc(
         fits = True
         if not (has_first or has_second):
             return False
-        first = value_of(CENTER + first_axis, roles, values) * modal[UNIT]
-        second = value_of(CENTER + second_axis, roles, values) * modal[UNIT]
+        first = value_of(CENTER + first_axis, token_kinds, values) * modal[UNIT]
+        second = value_of(CENTER + second_axis, token_kinds, values) * modal[UNIT]
         if modal[CENTER_ABSOLUTE] != 0.0:
             if not (has_first and has_second):
                 return False

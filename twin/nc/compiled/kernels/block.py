@@ -11,35 +11,35 @@ from twin.nc.bytecode.registers import MOST_WORDS, BlockTables, Constants, Rows,
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.columns import copy, copy_rows
 from twin.nc.compiled.kernels.compensation import follow
-from twin.nc.compiled.kernels.words import run_words
+from twin.nc.compiled.kernels.words import execute_block
 from twin.nc.path.contour_registers import OFF, STAGE, Contour
 
 
-class Bench(NamedTuple):
+class Scratch(NamedTuple):
     """Room to work in.
 
     Attributes:
-        roles: Of words, shape (``MOST_WORDS``,).
+        token_kinds: Of words, shape (``MOST_WORDS``,).
         values: Of words, shape (``MOST_WORDS``,).
         modal: Modal state of the block.
-        kept: State before a block that runs often.
+        snapshot: State before a block that runs often.
         stack: Shape (``MOST_VALUES``,).
         slots: Variables that the block has set, shape (``MOST_STORES``,).
         before: What they held before, shape (``MOST_STORES``,).
     """
 
-    roles: IntArray
+    token_kinds: IntArray
     values: FloatArray
     modal: FloatArray
-    kept: State
+    snapshot: State
     stack: FloatArray
     slots: IntArray
     before: FloatArray
 
 
-def new_bench(state: State) -> Bench:
+def new_scratch(state: State) -> Scratch:
     """Room to work in, for a state of this size."""
-    return Bench(
+    return Scratch(
         np.zeros(MOST_WORDS, np.int64),
         np.zeros(MOST_WORDS),
         np.zeros_like(state.modal),
@@ -51,28 +51,28 @@ def new_bench(state: State) -> Bench:
 
 
 @kernel
-def copy_force(
-    modal: FloatArray, in_force: IntArray, to_modal: FloatArray, to_force: IntArray
+def copy_active_codes(
+    modal: FloatArray, active_codes: IntArray, to_modal: FloatArray, to_force: IntArray
 ) -> None:
     """Copy what is in force."""
     copy(modal, to_modal)
-    copy(in_force, to_force)
+    copy(active_codes, to_force)
 
 
 @kernel
 def copy_state(source: State, target: State) -> None:
     """Copy every column of a state."""
-    copy_force(source.modal, source.in_force, target.modal, target.in_force)
+    copy_active_codes(source.modal, source.active_codes, target.modal, target.active_codes)
     copy(source.programmed, target.programmed)
     copy(source.part, target.part)
     copy(source.registers, target.registers)
     copy(source.total, target.total)
     copy_rows(source.shifts, target.shifts)
-    target.happened[0] = source.happened[0]
+    target.event_count[0] = source.event_count[0]
 
 
 @inlined_kernel
-def run_times(
+def execute_repeatedly(
     times: int,
     line: int,
     words: int,
@@ -84,15 +84,15 @@ def run_times(
     state: State,
     rows: Rows,
     contour: Contour,
-    bench: Bench,
+    scratch: Scratch,
 ) -> int:
-    """Run the words on the bench.
+    """Run the words on the scratch.
 
     Args:
         times: How often; more than once only while nothing is compensated.
         line: The block's line, from 1.
         words: How many there are.
-        polar: As for ``run_words``.
+        polar: As for ``execute_block``.
         made: The next row.
         first_event: The block's first event that has not been seen to.
         tables: What words mean.
@@ -100,21 +100,21 @@ def run_times(
         state: What changes.
         rows: Room for the moves.
         contour: Radius compensation.
-        bench: The words.
+        scratch: The words.
 
     Returns:
-        The row after the block's moves, ``NOT_PLAIN``, ``DOUBTFUL`` or ``NO_ROOM``.
+        The row after the block's moves, ``UNSUPPORTED``, ``BAILOUT`` or ``NO_ROOM``.
     """
     after = made
     for _ in range(times):
-        after = run_words(
+        after = execute_block(
             line,
-            bench.roles[:words],
-            bench.values[:words],
+            scratch.token_kinds[:words],
+            scratch.values[:words],
             tables,
             constants,
             state,
-            bench.modal,
+            scratch.modal,
             rows,
             after,
             polar,
@@ -122,5 +122,5 @@ def run_times(
         if after < 0:
             return after
     if contour.counts[STAGE] != OFF:
-        return follow(made, after, first_event, state.happened[0], contour, rows)
+        return follow(made, after, first_event, state.event_count[0], contour, rows)
     return after

@@ -8,7 +8,7 @@ import numpy as np
 from numba.extending import register_jitable
 
 from twin.compilation.kernel import kernel
-from twin.nc.bytecode.registers import DOUBTFUL, Rows
+from twin.nc.bytecode.registers import BAILOUT, Rows
 from twin.nc.canonical import Shape
 from twin.nc.compiled.kernels.columns import copy, copy_rows
 from twin.nc.compiled.kernels.gouge import crosses_passed, gouges, pass_by
@@ -90,10 +90,10 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
         rows: The block's row is replaced by those that it lets go.
 
     Returns:
-        The row after those, or ``DOUBTFUL`` with the contour untouched.
+        The row after those, or ``BAILOUT`` with the contour untouched.
     """
     if made - row > 1:
-        return DOUBTFUL
+        return BAILOUT
     if made == row:
         hold_events(contour, rows, first_event, behind)
         return row
@@ -110,7 +110,7 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
         return _along_normal(row, first_event, early, behind, contour, rows)
     if stage == _STARTED:
         if is_arc:
-            return DOUBTFUL
+            return BAILOUT
         return take_lead(start, end, row, early, behind, contour, rows)
     curve = (False, start, end, (0.0, 0.0), 0.0)
     if is_arc:
@@ -118,11 +118,11 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
         center = (along_axis(value[:3], plane[0]), along_axis(value[:3], plane[1]))
         sense = dot((value[3], value[4], value[5]), (plane[2, 0], plane[2, 1], plane[2, 2]))
         if sense < IN_PLANE:
-            return DOUBTFUL
+            return BAILOUT
         curve = (True, start, end, center, value[6] * sense)
     aside = contour.aside[0]
     if not curves.leaves_room(curve, aside):
-        return DOUBTFUL
+        return BAILOUT
     element = curves.aside_of(curve, aside)
     if stage == _LEADING_IN:
         return lead_in(curve, element, row, first_event, early, behind, contour, rows)
@@ -142,7 +142,7 @@ def _along_normal(
         counts[PLACED], counts[MOVED_ROWS] = 1, row + 1
         return row + 1
     if waiting == MOST_WAITING:
-        return DOUBTFUL
+        return BAILOUT
     hold_events(contour, rows, first_event, early)
     take_move(contour, rows, row, early)
     copy(rows.codes[row], contour.waiting.codes[waiting])
@@ -174,18 +174,18 @@ def _go_on(
         held, before, begin, curve, element, turn, aside, counts[SQUARE] != 0
     )
     if not clear:
-        return DOUBTFUL
+        return BAILOUT
     part = curves.cut(before, begin, at)
     box = curves.box_of(part)
     corner = (True, before[2], element[1], curve[1], abs(turn) if aside < 0.0 else -abs(turn))
     if gouges(contour, part, box, held):
-        return DOUBTFUL
+        return BAILOUT
     if rolls:
         full = 1 if counts[PASSED] == len(contour.passed) else 0
         if curves.crossing_of(part, corner)[0] or crosses_passed(
             contour, corner, curves.box_of(corner), full
         ):
-            return DOUBTFUL
+            return BAILOUT
     hold_events(contour, rows, first_event, early)
     take_move(contour, rows, row, early)
     after = let_go(contour, before, part, at, rows, row, early)

@@ -7,11 +7,11 @@ from twin.compilation.kernel import kernel
 from twin.nc.bytecode.registers import (
     CORNER,
     CYCLE,
+    CYCLE_STATE,
+    CYCLE_WORDS,
     FEED_FACTOR,
-    GIVEN,
     INCREMENTAL,
     PLANE,
-    REMEMBERED,
     SPINDLE,
     TO_REFERENCE,
     UNIT,
@@ -24,9 +24,9 @@ from twin.nc.canonical import Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.compiled.kernels.columns import copy
 from twin.nc.compiled.kernels.effects import report
 from twin.nc.compiled.kernels.frame import turn_place
-from twin.nc.compiled.kernels.plane import straight_way
-from twin.nc.compiled.kernels.target import aim, goal_of
-from twin.nc.compiled.kernels.tokenizer import AXIS, NOT_PLAIN, RADIUS
+from twin.nc.compiled.kernels.plane import move_length
+from twin.nc.compiled.kernels.target import aim, axis_target
+from twin.nc.compiled.kernels.tokenizer import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.control import drilling_cycle
 from twin.nc.control.drilling_cycle import Act, Cycle, Hole
 from twin.nc.control.motion import LARGEST_COORDINATE
@@ -58,7 +58,7 @@ _STOP = int(Corner.EXACT_STOP)
 def drill(
     line: int,
     number: int,
-    roles: IntArray,
+    token_kinds: IntArray,
     values: FloatArray,
     seen: int,
     begins: bool,
@@ -77,49 +77,49 @@ def drill(
     Args:
         line: The block's line, from 1.
         number: Its N number.
-        roles: What each word's letter is, shape (w,).
+        token_kinds: What each word's letter is, shape (w,).
         values: The words' values, shape (w,).
-        seen: Which roles there are, as bits.
+        seen: Which token_kinds there are, as bits.
         begins: The block calls the cycle.
         anew: No cycle was in force before.
         tables: What blocks mean.
         constants: What stays; its ``over`` becomes where the tool stands.
-        state: Where the block begins; its label becomes where the path ends.
+        state: Where the block begins; its target becomes where the path ends.
         modal: The modal state with this block's codes.
         feed: F.
         rows: Room for moves and events.
         row: The next row.
-        polar: The label of ``state`` holds where the hole lies in the plane.
+        polar: The target of ``state`` holds where the hole lies in the plane.
 
     Returns:
-        The number of rows after it, ``NO_ROOM``, or ``NOT_PLAIN`` with the cycle untouched.
+        The number of rows after it, ``NO_ROOM``, or ``UNSUPPORTED`` with the cycle untouched.
     """
     axes = len(state.part)
     plane = constants.planes[int(modal[PLANE])]
-    taken, hole = _read_cycle(roles, values, begins, anew, tables, constants, state, modal)
+    taken, hole = _read_cycle(token_kinds, values, begins, anew, tables, constants, state, modal)
     if hole.fault != 0 or hole.stops > MOST_STOPS:
-        return NOT_PLAIN
+        return UNSUPPORTED
     rest = seen & ~taken
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
-        return NOT_PLAIN
+        return UNSUPPORTED
     if polar:
-        aim(plane, roles, values, rest, state, modal)
+        aim(plane, token_kinds, values, rest, state, modal)
     target = constants.over
     for axis in range(axes):
-        target[axis] = goal_of(axis, roles, values, rest, tables, state, modal, polar)
+        target[axis] = axis_target(axis, token_kinds, values, rest, tables, state, modal, polar)
         if not abs(target[axis]) <= LARGEST_COORDINATE:
-            return NOT_PLAIN
-    after = _write_hole(line, number, target, hole, constants, state, modal, feed, rows, row)
+            return UNSUPPORTED
+    after = _emit_hole(line, number, target, hole, constants, state, modal, feed, rows, row)
     if after >= 0:
         for value in range(drilling_cycle.VALUES):
-            state.registers[REMEMBERED + value] = constants.hole[0, value]
-            state.registers[GIVEN + value] = np.nan
+            state.registers[CYCLE_STATE + value] = constants.hole[0, value]
+            state.registers[CYCLE_WORDS + value] = np.nan
     return after
 
 
 @kernel
 def _read_cycle(
-    roles: IntArray,
+    token_kinds: IntArray,
     values: FloatArray,
     begins: bool,
     anew: bool,
@@ -133,7 +133,7 @@ def _read_cycle(
     The first row of ``constants.hole`` becomes what the cycle remembers.
 
     Returns:
-        The roles of those words as bits, and what is done at the hole.
+        The token_kinds of those words as bits, and what is done at the hole.
     """
     number = int(modal[CYCLE])
     row = tables.cycles[number]
@@ -143,22 +143,22 @@ def _read_cycle(
     across = int(constants.planes[int(modal[PLANE])][2])
     remembered, given = constants.hole[0], constants.hole[1]
     for value in range(drilling_cycle.VALUES):
-        remembered[value] = state.registers[REMEMBERED + value]
-        given[value] = state.registers[GIVEN + value]
+        remembered[value] = state.registers[CYCLE_STATE + value]
+        given[value] = state.registers[CYCLE_WORDS + value]
     if anew:
         remembered[drilling_cycle.START] = np.nan
     if begins:
         drilling_cycle.begin(remembered, across, state.programmed[across], cycle.lasting)
     taken = 0
     if begins or cycle.lasting:
-        for word in range(len(roles)):
-            role = roles[word]
-            value = int(row[_WORDS + role])
-            if role == AXIS + across:
+        for word in range(len(token_kinds)):
+            token_kind = token_kinds[word]
+            value = int(row[_WORDS + token_kind])
+            if token_kind == AXIS + across:
                 value = cycle.across
             if value >= 0:
                 given[value] = values[word]
-                taken |= 1 << role
+                taken |= 1 << token_kind
     for value in range(drilling_cycle.VALUES):
         if (drilling_cycle.LENGTHS >> value) & 1:
             given[value] *= modal[UNIT]
@@ -169,7 +169,7 @@ def _read_cycle(
 
 
 @kernel
-def _write_hole(
+def _emit_hole(
     line: int,
     number: int,
     target: FloatArray,
@@ -185,7 +185,7 @@ def _write_hole(
     if row + drilling_cycle.most_acts(hole.stops) + 2 > len(rows.codes):
         return NO_ROOM
     if np.isnan(feed) and not constants.feed_may_lack:
-        return NOT_PLAIN
+        return UNSUPPORTED
     pace = constants.default_feed if np.isnan(feed) else feed * modal[UNIT] * modal[FEED_FACTOR]
     axis = int(constants.planes[int(modal[PLANE])][2])
     here, part, goal = constants.room[0], constants.room[1], constants.room[2]
@@ -204,8 +204,8 @@ def _write_hole(
             speed = constants.rapid_feed if rapid else pace
             corner = _STOP if rapid else int(modal[CORNER])
             after = _go(goal, rapid, speed, corner, here, part, state, rows, after)
-            if after == NOT_PLAIN:
-                return NOT_PLAIN
+            if after == UNSUPPORTED:
+                return UNSUPPORTED
         else:
             kind, amount = FUNCTION_WITH_SPEED, state.registers[SPINDLE]
             if act == _DWELL:
@@ -217,7 +217,7 @@ def _write_hole(
         rows.codes[each, 2], rows.codes[each, 3] = line, number
         copy(constants.last_values, rows.values[each, 8:])
     copy(here, target)
-    copy(part, state.label)
+    copy(part, state.target)
     return after
 
 
@@ -237,14 +237,14 @@ def _go(
     position = rows.positions[row]
     for axis in range(len(goal)):
         if not abs(goal[axis]) <= LARGEST_COORDINATE:
-            return NOT_PLAIN
+            return UNSUPPORTED
         end = goal[axis] + state.total[axis]
         position[0, axis], position[1, axis], position[2, axis] = part[axis], end, goal[axis]
     turn_place(goal, state, position[1])
-    way = straight_way(position)
+    way = move_length(position)
     copy(goal, here)
     if way <= 0.0:
-        return row if way == 0.0 else NOT_PLAIN
+        return row if way == 0.0 else UNSUPPORTED
     copy(position[1], part)
     value, code = rows.values[row], rows.codes[row]
     value[:6] = np.nan

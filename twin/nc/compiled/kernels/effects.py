@@ -1,6 +1,6 @@
 """What blocks do besides moving and computing, compiled: events, tools, shifts of coordinates, polar moves.
 
-Each is what ``instructions.Step`` says of it; the state is kept before the first of a block.
+Each does what ``opcodes.Opcode`` says of it; the state is kept before the first of a block.
 """
 
 import numpy as np
@@ -9,9 +9,9 @@ from numba.extending import register_jitable
 from twin.compilation.kernel import kernel
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.registers import (
+    BAILOUT,
     CYCLE,
-    DOUBTFUL,
-    GIVEN,
+    CYCLE_WORDS,
     IN_SPINDLE,
     INCREMENTAL,
     OFFSET_ON,
@@ -56,13 +56,13 @@ _NO_EVENT = -1
 _PECKING = Cycle._fields.index("pecking")
 _LENGTH = SHIFTS.index("length")
 _LARGEST_NUMBER = 1e6
-"""Numbers of tools and of auxiliary functions above this are left to the general way."""
+"""Numbers of tools and of auxiliary functions above this are left to the interpreter tier."""
 
 
 @kernel
-def run_deed(
-    step: int,
-    argument: int,
+def run_effect(
+    opcode: int,
+    operand: int,
     stack: FloatArray,
     top: int,
     line: int,
@@ -73,11 +73,11 @@ def run_deed(
     rows: Rows,
     compensates: bool,
 ) -> int:
-    """Do one step.
+    """Run one instruction.
 
     Args:
-        step: Which.
-        argument: Its argument.
+        opcode: Which.
+        operand: Its operand.
         stack: Values.
         top: How many there are.
         line: The block's line, from 1.
@@ -89,133 +89,133 @@ def run_deed(
         compensates: Radius compensation is in force.
 
     Returns:
-        How many values are left, or ``DOUBTFUL``.
+        How many values are left, or ``BAILOUT``.
     """
     registers = state.registers
     value = stack[top - 1] if top > 0 else 0.0
-    kind, number, amount = _NO_EVENT, argument, np.nan
-    if step == opcodes.IN_FORCE:
-        state.in_force[tables.group[argument]] = argument
-    elif step == opcodes.PLANE:
+    kind, number, amount = _NO_EVENT, operand, np.nan
+    if opcode == opcodes.ACTIVATE:
+        state.active_codes[tables.group[operand]] = operand
+    elif opcode == opcodes.PLANE:
         doubtful = np.isnan(registers[POLAR_ABSCISSA]) or not np.isnan(registers[ROTATION])
         if compensates or doubtful:
-            return DOUBTFUL
-        state.modal[PLANE] = argument
+            return BAILOUT
+        state.modal[PLANE] = operand
         registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
-    elif step == opcodes.FUNCTION:
+    elif opcode == opcodes.FUNCTION:
         kind = FUNCTION_ALONE
-    elif step == opcodes.SPINDLE_FUNCTION:
+    elif opcode == opcodes.SPINDLE_FUNCTION:
         kind, amount = FUNCTION_WITH_SPEED, registers[SPINDLE]
-    elif step == opcodes.SPEED:
+    elif opcode == opcodes.SPEED:
         if value < 0.0:
-            return DOUBTFUL
+            return BAILOUT
         registers[SPINDLE] = value
-        if argument:
+        if operand:
             kind, amount = SPEED, value
         top -= 1
-    elif step == opcodes.TOOL:
+    elif opcode == opcodes.TOOL:
         if not 0.0 <= value <= _LARGEST_NUMBER or value != np.floor(value):
-            return DOUBTFUL
-        if argument and len(constants.tools) > 0 and _tool(constants, value) == DOUBTFUL:
-            return DOUBTFUL
+            return BAILOUT
+        if operand and len(constants.tools) > 0 and _tool(constants, value) == BAILOUT:
+            return BAILOUT
         registers[SELECTED] = value
         kind, number = TOOL, int(value)
         top -= 1
-    elif step == opcodes.AUXILIARY:
+    elif opcode == opcodes.AUXILIARY:
         if not 0.0 <= value < _LARGEST_NUMBER or value != np.floor(value):
-            return DOUBTFUL
+            return BAILOUT
         kind, number = AUXILIARY, int(value)
         top -= 1
-    elif step == opcodes.DWELL:
+    elif opcode == opcodes.DWELL:
         if value < 0.0:
-            return DOUBTFUL
+            return BAILOUT
         kind, amount = DWELL, value
         top -= 1
-    elif step == opcodes.CHANGE_TOOL:
+    elif opcode == opcodes.CHANGE_TOOL:
         registers[IN_SPINDLE] = registers[SELECTED]
-    elif step == opcodes.OFFSET_ON:
-        registers[OFFSET_ON] = argument
-    elif step == opcodes.TOOL_LENGTH:
+    elif opcode == opcodes.OFFSET_ON:
+        registers[OFFSET_ON] = operand
+    elif opcode == opcodes.TOOL_LENGTH:
         longer = 0.0
         if registers[OFFSET_ON] != 0.0:
             tool = _tool(constants, registers[IN_SPINDLE])
-            if tool == DOUBTFUL:
-                return DOUBTFUL
+            if tool == BAILOUT:
+                return BAILOUT
             longer = constants.longer[tool]
         state.shifts[_LENGTH, :] = 0.0
         state.shifts[_LENGTH, 2] = longer
         reframe(state)
-    elif step == opcodes.SHIFT:
+    elif opcode == opcodes.SHIFT:
         top -= len(state.part)
         for axis in range(len(state.part)):
-            state.shifts[argument, axis] = stack[top + axis]
-    elif step == opcodes.REFRAME:
+            state.shifts[operand, axis] = stack[top + axis]
+    elif opcode == opcodes.REFRAME:
         reframe(state)
-    elif step == opcodes.BEGIN_LABEL:
+    elif opcode == opcodes.BEGIN_TARGET:
         for axis in range(len(state.part)):
-            state.label[axis] = state.programmed[axis]
-    elif step == opcodes.LABEL:
-        state.label[argument] = value
+            state.target[axis] = state.programmed[axis]
+    elif opcode == opcodes.TARGET:
+        state.target[operand] = value
         top -= 1
-    elif step == opcodes.RELABEL:
+    elif opcode == opcodes.SET_POSITION:
         here = constants.over
-        to_part(state.label, state, here)
+        to_part(state.target, state, here)
         for axis in range(len(state.part)):
-            shift = state.shifts[argument, axis]
-            state.shifts[argument, axis] = shift + state.part[axis] - here[axis]
-            state.programmed[axis] = state.label[axis]
+            shift = state.shifts[operand, axis]
+            state.shifts[operand, axis] = shift + state.part[axis] - here[axis]
+            state.programmed[axis] = state.target[axis]
         add_up(state)
-    elif step == opcodes.POLAR_ORIGIN:
+    elif opcode == opcodes.POLAR_ORIGIN:
         if np.isnan(registers[POLAR_ABSCISSA]):
-            return DOUBTFUL
-        _set_polar_origin(stack, top, argument, constants, state)
-        top -= argument
-    elif step == opcodes.TO_MILLIMETRES:
-        stack[top - 1] = value * (state.modal[UNIT] if tables.linear[argument] else 1.0)
-    elif step == opcodes.NO_PECKS:
+            return BAILOUT
+        _set_polar_origin(stack, top, operand, constants, state)
+        top -= operand
+    elif opcode == opcodes.TO_MILLIMETRES:
+        stack[top - 1] = value * (state.modal[UNIT] if tables.linear[operand] else 1.0)
+    elif opcode == opcodes.NO_PECKS:
         if tables.cycles[int(state.modal[CYCLE]), _PECKING] != 0.0:
-            return DOUBTFUL
-    elif step == opcodes.TOOL_RADIUS:
+            return BAILOUT
+    elif opcode == opcodes.TOOL_RADIUS:
         tool = _tool(constants, registers[IN_SPINDLE])
-        if tool == DOUBTFUL:
-            return DOUBTFUL
-        offset = argument == 0 or registers[OFFSET_ON] != 0.0
+        if tool == BAILOUT:
+            return BAILOUT
+        offset = operand == 0 or registers[OFFSET_ON] != 0.0
         stack[top] = constants.radii[tool] if offset else 0.0
         top += 1
-    elif step == opcodes.FORGET_POLAR:
+    elif opcode == opcodes.FORGET_POLAR:
         registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
-    elif step == opcodes.CYCLE_WORD:
-        registers[GIVEN + argument] = value
+    elif opcode == opcodes.CYCLE_WORD:
+        registers[CYCLE_WORDS + operand] = value
         top -= 1
-    elif step == opcodes.PROGRAMMED_RADIUS and argument:
+    elif opcode == opcodes.PROGRAMMED_RADIUS and operand:
         registers[RADIUS_GIVEN] = value * state.modal[UNIT]
         stack[top - 1] = registers[RADIUS_GIVEN]
-    elif step == opcodes.PROGRAMMED_RADIUS:
+    elif opcode == opcodes.PROGRAMMED_RADIUS:
         stack[top] = registers[RADIUS_GIVEN]
         top += 1
-    elif step == opcodes.MIRROR:
+    elif opcode == opcodes.MIRROR:
         if abs(value) != 1.0:
-            return DOUBTFUL
-        registers[SIGNS + argument] = value
+            return BAILOUT
+        registers[SIGNS + operand] = value
         top -= 1
-    elif step == opcodes.SCALE:
+    elif opcode == opcodes.SCALE:
         if not SMALLEST_SCALE <= value <= LARGEST_SCALE:
-            return DOUBTFUL
+            return BAILOUT
         registers[SCALE] = value
         top -= 1
-    elif step == opcodes.ROTATE:
+    elif opcode == opcodes.ROTATE:
         if not np.isnan(registers[ROTATION]):
-            return DOUBTFUL
+            return BAILOUT
         registers[ROTATION] = stack[top - 3]
         registers[ROTATION_ABSCISSA] = stack[top - 2] * state.modal[UNIT]
         registers[ROTATION_ORDINATE] = stack[top - 1] * state.modal[UNIT]
         top -= 3
-    elif step == opcodes.END_ROTATION:
+    elif opcode == opcodes.END_ROTATION:
         registers[ROTATION] = np.nan
-    elif step == opcodes.TRANSFORM:
+    elif opcode == opcodes.TRANSFORM:
         if compensates:
-            return DOUBTFUL
+            return BAILOUT
         transform(constants, state)
     if kind != _NO_EVENT:
         report(rows, state, made, line, kind, number, amount)
@@ -224,11 +224,11 @@ def run_deed(
 
 @kernel
 def _tool(constants: Constants, number: float) -> int:
-    """Row of a tool that the job lists, or ``DOUBTFUL``."""
+    """Row of a tool that the job lists, or ``BAILOUT``."""
     for tool in range(len(constants.tools)):
         if constants.tools[tool] == number:
             return tool
-    return DOUBTFUL
+    return BAILOUT
 
 
 @kernel
@@ -260,7 +260,7 @@ def _along(position: FloatArray, axis: int) -> float:
 def polar_target(
     seen: int, radius_word: float, angle_word: float, constants: Constants, state: State
 ) -> bool:
-    """Where R and Q lead: ``state.label`` becomes abscissa and ordinate.
+    """Where R and Q lead: ``state.target`` becomes abscissa and ordinate.
 
     Args:
         seen: 1 with R, 2 with Q, 3 with both.
@@ -297,7 +297,7 @@ def polar_target(
     end = (origin[0] + radius * cosine, origin[1] + radius * sine)
     if arcs.distance(start, end) < arcs.SAME_POINT / 1000.0:
         end = start
-    state.label[0], state.label[1] = end
+    state.target[0], state.target[1] = end
     registers[POLAR_RADIUS], registers[POLAR_ANGLE] = radius, angle
     return True
 
@@ -307,8 +307,8 @@ def report(
     rows: Rows, state: State, before: int, line: int, kind: int, number: int, amount: float
 ) -> None:
     """Write an event."""
-    at = state.happened[0]
+    at = state.event_count[0]
     event = rows.events[at]
     event[0], event[1], event[2], event[3] = before, line, kind, number
-    rows.amounts[at] = amount
-    state.happened[0] = at + 1
+    rows.event_values[at] = amount
+    state.event_count[0] = at + 1

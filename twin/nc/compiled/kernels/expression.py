@@ -51,7 +51,7 @@ for _shared in (
 ):
     register_jitable(_shared)
 
-ONE: Mapping[Callable[..., float], int] = {
+UNARY_FUNCTIONS: Mapping[Callable[..., float], int] = {
     arithmetic.inverted_bits: 0,
     arithmetic.sine_of_degrees: 1,
     arithmetic.cosine_of_degrees: 2,
@@ -79,7 +79,7 @@ ONE: Mapping[Callable[..., float], int] = {
     math.log10: 24,
 }
 """Functions of one value, by number."""
-TWO: Mapping[Callable[..., float], int] = {
+BINARY_FUNCTIONS: Mapping[Callable[..., float], int] = {
     arithmetic.add: 0,
     arithmetic.subtract: 1,
     arithmetic.multiply: 2,
@@ -103,13 +103,16 @@ TWO: Mapping[Callable[..., float], int] = {
     math.pow: 20,
 }
 """Functions of two values."""
-THREE: Mapping[Callable[..., float], int] = {arithmetic.limited: 0, arithmetic.chosen: 1}
+TERNARY_FUNCTIONS: Mapping[Callable[..., float], int] = {
+    arithmetic.limited: 0,
+    arithmetic.chosen: 1,
+}
 """Functions of three values."""
 
 
 @arithmetic_kernel
-def of_one(function: int, a: float) -> float:
-    """The function of ``ONE`` with this number."""
+def unary(function: int, a: float) -> float:
+    """The function of ``UNARY_FUNCTIONS`` with this number."""
     if function == 0:
         return arithmetic.inverted_bits(a)
     if function == 1:
@@ -162,8 +165,8 @@ def of_one(function: int, a: float) -> float:
 
 
 @arithmetic_kernel
-def of_two(function: int, a: float, b: float) -> float:
-    """The function of ``TWO`` with this number."""
+def binary(function: int, a: float, b: float) -> float:
+    """The function of ``BINARY_FUNCTIONS`` with this number."""
     if function == 0:
         return arithmetic.add(a, b)
     if function == 1:
@@ -208,8 +211,8 @@ def of_two(function: int, a: float, b: float) -> float:
 
 
 @arithmetic_kernel
-def of_three(function: int, a: float, b: float, c: float) -> float:
-    """The function of ``THREE`` with this number."""
+def ternary(function: int, a: float, b: float, c: float) -> float:
+    """The function of ``TERNARY_FUNCTIONS`` with this number."""
     if function == 0:
         return arithmetic.limited(a, b, c)
     return arithmetic.chosen(a, b, c)

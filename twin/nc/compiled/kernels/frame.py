@@ -135,7 +135,7 @@ def transform(constants: Constants, state: State) -> None:
 
 
 @kernel
-def handed(state: State) -> float:
+def transfer(state: State) -> float:
     """-1 where the matrix mirrors, else 1."""
     if state.registers[TURNED] == 0.0:
         return 1.0

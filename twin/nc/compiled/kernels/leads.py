@@ -6,10 +6,10 @@ Warnings and refusals are left to them.
 from numba.extending import register_jitable
 
 from twin.compilation.kernel import kernel
-from twin.nc.bytecode.registers import DOUBTFUL, PLANE, Constants, Rows, State
+from twin.nc.bytecode.registers import BAILOUT, PLANE, Constants, Rows, State
 from twin.nc.canonical import Shape
 from twin.nc.compiled.kernels.columns import copy, copy_rows
-from twin.nc.compiled.kernels.frame import handed, put_part_plane
+from twin.nc.compiled.kernels.frame import put_part_plane, transfer
 from twin.nc.compiled.kernels.gouge import gouges
 from twin.nc.compiled.kernels.lookahead import (
     curve_of,
@@ -77,7 +77,7 @@ def begin_compensation(
         return True
     counts[PLANE_NUMBER] = int(state.modal[PLANE])
     put_part_plane(constants.planes[counts[PLANE_NUMBER]], state, contour.plane)
-    contour.aside[0] = side * handed(state) * radius
+    contour.aside[0] = side * transfer(state) * radius
     counts[STAGE], counts[PLACED], counts[PASSED], counts[OLDEST] = _STARTED, 0, 0, 0
     counts[SQUARE] = 1 if constants.square_corners else 0
     counts[INDIRECT] = 1 if constants.indirect_leads else 0
@@ -95,7 +95,7 @@ def end_compensation(row: int, events: int, contour: Contour, rows: Rows) -> int
         rows: Where the moves go.
 
     Returns:
-        The row after those, or ``DOUBTFUL`` with the contour untouched.
+        The row after those, or ``BAILOUT`` with the contour untouched.
     """
     counts = contour.counts
     stage = counts[STAGE]
@@ -110,7 +110,7 @@ def end_compensation(row: int, events: int, contour: Contour, rows: Rows) -> int
         element = curve_of(contour.curves[ELEMENT])
         part = curves.cut(element, begin, element[2])
         if gouges(contour, part, curves.box_of(part), curve_of(contour.curves[CONTOUR])):
-            return DOUBTFUL
+            return BAILOUT
         after = let_go(contour, element, part, element[2], rows, row, events)
     counts[STAGE] = _LEADING_OUT if stage == _FOLLOWING else _OFF
     counts[WAITING] = counts[PASSED] = counts[OLDEST] = counts[PLACED] = 0
@@ -155,7 +155,7 @@ def lead_in(
         rows: The element's row is replaced by those that lead to it.
 
     Returns:
-        The row after those, or ``DOUBTFUL`` with the contour untouched.
+        The row after those, or ``BAILOUT`` with the contour untouched.
     """
     aside = contour.aside[0]
     begin, touch, turns, arc = (contour.start[0], contour.start[1]), element[1], False, curve
@@ -165,7 +165,7 @@ def lead_in(
             touch = arc[1]
     lead = (False, begin, touch, (0.0, 0.0), 0.0)
     if lead_curves.depth_of(lead, curve, abs(aside)) > 0.0:
-        return DOUBTFUL
+        return BAILOUT
     hold_events(contour, rows, first_event, early)
     take_move(contour, rows, row, early)
     after = let_go(contour, lead, lead, touch, rows, row, early)
@@ -190,10 +190,10 @@ def lead_out(row: int, early: int, behind: int, contour: Contour, rows: Rows) ->
         rows: Where the moves go.
 
     Returns:
-        The row after the moves, or ``DOUBTFUL`` with the contour untouched.
+        The row after the moves, or ``BAILOUT`` with the contour untouched.
     """
     if rows.codes[row, 1] == _ARC:
-        return DOUBTFUL
+        return BAILOUT
     plane, position = contour.plane, rows.positions[row]
     stand = contour.position if row == 0 else rows.positions[row - 1, 1]
     here = (along_axis(stand, plane[0]), along_axis(stand, plane[1]))
@@ -207,7 +207,7 @@ def lead_out(row: int, early: int, behind: int, contour: Contour, rows: Rows) ->
     begin = arc[1] if turns else here
     lead = (False, begin, end, (0.0, 0.0), 0.0)
     if leads and lead_curves.depth_of(lead, contour_end, abs(contour.aside[0])) > 0.0:
-        return DOUBTFUL
+        return BAILOUT
     take_move(contour, rows, row, early)
     if turns:
         last = row + 1

@@ -34,18 +34,18 @@ SHORTEST = 1e-7
 """A move that goes less far [mm or deg], but does go, is left to the control to measure."""
 _RESTING = 1e-10
 """An axis that goes less far rests; a few of them are still below what moves the control."""
-DOUBTFUL_WAY = -1.0
+UNCERTAIN = -1.0
 
 
 @inlined_kernel
-def straight_way(position: FloatArray) -> float:
+def move_length(position: FloatArray) -> float:
     """How far the axis goes that goes farthest: one of X, Y, Z, or where these rest another.
 
     Args:
         position: Start and end of the move, shape (3, k); what rests ends where it starts.
 
     Returns:
-        0 where nothing moves, or ``DOUBTFUL_WAY``.
+        0 where nothing moves, or ``UNCERTAIN``.
     """
     spatial, other = 0.0, 0.0
     for axis in range(position.shape[1]):
@@ -60,4 +60,4 @@ def straight_way(position: FloatArray) -> float:
         for axis in range(position.shape[1]):
             if axis < 3 or way == 0.0:
                 position[1, axis] = position[0, axis]
-    return DOUBTFUL_WAY if 0.0 < way < SHORTEST else way
+    return UNCERTAIN if 0.0 < way < SHORTEST else way

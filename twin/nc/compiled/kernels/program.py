@@ -1,4 +1,4 @@
-"""The compiled run through a program: lines of text, translated blocks, parts that are called.
+"""The compiled run through a program: lines of text, compiled blocks, parts that are called.
 
 It stops before a block that it does not know or that something is wrong with, with everything as it
 was before that block.
@@ -13,24 +13,24 @@ from twin.nc.bytecode.frames import (
     ENDED,
     FULL,
     FURTHEST,
-    LEFT,
+    INSTRUCTION_BUDGET,
     LINE,
     MADE,
     OFF_PAGE,
     PART,
     PAUSED,
-    STEPS_LEFT,
-    UNREAD,
-    Routine,
+    TRAPPED,
+    UNCOMPILED_LINE,
+    ExecutionState,
 )
-from twin.nc.bytecode.opcodes import GENERAL, PART_BITS, UNKNOWN, Step, Table
+from twin.nc.bytecode.opcodes import INTERPRETED, NOT_COMPILED, PART_BITS, BytecodeTable, Opcode
 from twin.nc.bytecode.registers import MOST_EVENTS, MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.canonical import IntArray
-from twin.nc.compiled.kernels.block import Bench, copy_state, run_times
+from twin.nc.compiled.kernels.block import Scratch, copy_state, execute_repeatedly
 from twin.nc.compiled.kernels.cycle import NO_ROOM
-from twin.nc.compiled.kernels.opcodes import DONE, run_steps
+from twin.nc.compiled.kernels.dispatch import DONE, dispatch_loop
 from twin.nc.compiled.kernels.tokenizer import (
-    NOT_PLAIN,
+    UNSUPPORTED,
     ByteArray,
     LineTables,
     line_end,
@@ -40,7 +40,7 @@ from twin.nc.compiled.kernels.variables import end_parts
 from twin.nc.path.contour_registers import OFF, ROOM, STAGE
 from twin.nc.text.lexer import LONGEST_LINE
 
-_BLOCK = int(Step.BLOCK)
+_BLOCK = int(Opcode.BLOCK)
 _PART_MASK = (1 << PART_BITS) - 1
 
 
@@ -54,12 +54,12 @@ def run_program(
     constants: Constants,
     state: State,
     rows: Rows,
-    table: Table,
-    routine: Routine,
-    bench: Bench,
+    table: BytecodeTable,
+    routine: ExecutionState,
+    scratch: Scratch,
     most: int,
 ) -> int:
-    """Run blocks until one is for the general way or for the translator, or the rows are full.
+    """Run blocks until one is for the interpreter tier or for the line compiler, or the rows are full.
 
     Args:
         data: A page of the program as UTF-8.
@@ -70,9 +70,9 @@ def run_program(
         constants: What stays.
         state: What changes with moves.
         rows: Room for the moves.
-        table: What translated lines do.
+        table: What compiled lines do.
         routine: How far the program has come.
-        bench: Room to work in.
+        scratch: Room to work in.
         most: Lines and blocks after which it pauses.
 
     Returns:
@@ -88,62 +88,64 @@ def run_program(
             return ENDED
         compensates = contour.counts[STAGE] != OFF
         room = ROOM if compensates else 1
-        if progress[MADE] + room > len(rows.codes) or state.happened[0] + MOST_EVENTS > len(
+        if progress[MADE] + room > len(rows.codes) or state.event_count[0] + MOST_EVENTS > len(
             rows.events
         ):
             return FULL
         row = int(np.int64(table.first[line]))
-        if row == GENERAL:
-            return LEFT
-        if row == UNKNOWN:
+        if row == INTERPRETED:
+            return TRAPPED
+        if row == NOT_COMPILED:
             at = line - first_line
             if at < 0 or at >= len(starts) - 1:
                 return OFF_PAGE
             begin = int(starts[at])
             end = line_end(data, begin, int(starts[at + 1]))
             if progress[PART] > 0 or end - begin > LONGEST_LINE:
-                return UNREAD
-            words = read_words(data, begin, end, line_tables, bench.roles, bench.values)
-            if words == NOT_PLAIN:
-                return UNREAD
+                return UNCOMPILED_LINE
+            words = read_words(data, begin, end, line_tables, scratch.token_kinds, scratch.values)
+            if words == UNSUPPORTED:
+                return UNCOMPILED_LINE
             if words == 0:
                 progress[LINE] = line + 1
                 continue
             place = line << PART_BITS
-            steps_left = progress[STEPS_LEFT] - (place <= progress[FURTHEST])
-            if steps_left < 0:
-                return LEFT
+            budget = progress[INSTRUCTION_BUDGET] - (place <= progress[FURTHEST])
+            if budget < 0:
+                return TRAPPED
             if compensates:
-                copy_state(state, bench.kept)
-            made = run_times(
+                copy_state(state, scratch.snapshot)
+            made = execute_repeatedly(
                 ONCE,
                 line + 1,
                 words,
                 NO,
                 progress[MADE],
-                state.happened[0],
+                state.event_count[0],
                 tables,
                 constants,
                 state,
                 rows,
                 contour,
-                bench,
+                scratch,
             )
             if made < 0:
                 if compensates:
-                    copy_state(bench.kept, state)
-                return FULL if made == NO_ROOM else UNREAD if made == NOT_PLAIN else LEFT
+                    copy_state(scratch.snapshot, state)
+                return (
+                    FULL if made == NO_ROOM else UNCOMPILED_LINE if made == UNSUPPORTED else TRAPPED
+                )
             progress[FURTHEST] = max(progress[FURTHEST], place)
-            progress[STEPS_LEFT], progress[MADE] = steps_left, made
+            progress[INSTRUCTION_BUDGET], progress[MADE] = budget, made
             progress[BLOCKS] += 1
             progress[LINE] = line + 1
             continue
         for _part in range(progress[PART]):
-            row = int(np.int64(table.argument[row])) if table.step[row] == _BLOCK else 0
-        if table.step[row] != _BLOCK:
+            row = int(np.int64(table.operand[row])) if table.opcode[row] == _BLOCK else 0
+        if table.opcode[row] != _BLOCK:
             progress[LINE], progress[PART] = line + 1, 0
             continue
-        result = run_steps(row, table, tables, constants, state, rows, routine, bench)
+        result = dispatch_loop(row, table, tables, constants, state, rows, routine, scratch)
         if result != DONE:
             return result
     return PAUSED
@@ -166,19 +168,19 @@ def unread_lines(
         starts: The same.
         first_line: The same.
         line_tables: The same.
-        first: First row of each translated line.
+        first: First row of each compiled line.
         line: The line before them, from 0.
         most: How many lines are looked at.
     """
-    roles, values = np.zeros(MOST_WORDS, np.int64), np.zeros(MOST_WORDS)
+    token_kinds, values = np.zeros(MOST_WORDS, np.int64), np.zeros(MOST_WORDS)
     last = min(line + 1 + most, first_line + len(starts) - 1)
     found, count = np.zeros(most, np.int64), 0
     for each in range(line + 1, last):
         begin = starts[each - first_line]
         end = line_end(data, begin, starts[each - first_line + 1])
-        if first[each] != UNKNOWN or end - begin > LONGEST_LINE:
+        if first[each] != NOT_COMPILED or end - begin > LONGEST_LINE:
             continue
-        if read_words(data, begin, end, line_tables, roles, values) == NOT_PLAIN:
+        if read_words(data, begin, end, line_tables, token_kinds, values) == UNSUPPORTED:
             found[count] = each
             count += 1
     return found[:count]

@@ -10,9 +10,9 @@ from twin.nc.compiled.kernels.tokenizer import AXIS
 
 
 @inlined_kernel
-def goal_of(
+def axis_target(
     axis: int,
-    roles: IntArray,
+    token_kinds: IntArray,
     values: FloatArray,
     seen: int,
     tables: BlockTables,
@@ -22,10 +22,10 @@ def goal_of(
 ) -> float:
     """Where the block wants an axis, as programmed; a polar block has aimed already."""
     if polar and axis < 3:
-        return state.label[axis]
+        return state.target[axis]
     if not seen & (1 << (AXIS + axis)):
         return state.programmed[axis]
-    value = value_of(AXIS + axis, roles, values)
+    value = value_of(AXIS + axis, token_kinds, values)
     value *= modal[UNIT] if tables.linear[axis] else 1.0
     return value + state.programmed[axis] if modal[INCREMENTAL] != 0.0 else value
 
@@ -33,22 +33,22 @@ def goal_of(
 @kernel
 def aim(
     plane: IntArray,
-    roles: IntArray,
+    token_kinds: IntArray,
     values: FloatArray,
     seen: int,
     state: State,
     modal: FloatArray,
 ) -> None:
-    """Abscissa and ordinate of the label and the height of the block, as ``Plane.world`` has them."""
-    abscissa, ordinate = state.label[0], state.label[1]
+    """Abscissa and ordinate of the target and the height of the block, as ``Plane.world`` has them."""
+    abscissa, ordinate = state.target[0], state.target[1]
     x, y, z = state.programmed[0], state.programmed[1], state.programmed[2]
     across = plane[2]
     if seen & (1 << (AXIS + across)):
-        value = value_of(AXIS + across, roles, values) * modal[UNIT]
+        value = value_of(AXIS + across, token_kinds, values) * modal[UNIT]
         height = value + state.programmed[across] if modal[INCREMENTAL] != 0.0 else value
         x = height if across == 0 else x
         y = height if across == 1 else y
         z = height if across == 2 else z
     axes = directions(plane)
     height = axes[2][0] * x + axes[2][1] * y + axes[2][2] * z
-    place(axes, (abscissa, ordinate), height, state.label)
+    place(axes, (abscissa, ordinate), height, state.target)

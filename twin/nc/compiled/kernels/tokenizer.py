@@ -1,7 +1,7 @@
 """The bytes of a plain line to words: letters with plain numbers, and comments passed over.
 
 A line is plain when the reading of lines (``line_reader``) would find nothing in it but words of
-the letters that ``PlainTables`` names, each with a plain number, and comments. Whatever else it
+the letters that ``DecodeTables`` names, each with a plain number, and comments. Whatever else it
 holds, right or wrong, is left to that reader: it alone makes diagnostics.
 """
 
@@ -16,7 +16,7 @@ from twin.nc.canonical import FloatArray, IntArray
 
 ByteArray = npt.NDArray[np.uint8]
 
-NOT_PLAIN = -1
+UNSUPPORTED = -1
 
 OTHER, NUMBER, CODE, FEED, FUNCTION, RADIUS, CENTER, AXIS = 0, 1, 2, 3, 4, 5, 6, 9
 """What a letter is: N, G, F, M, R; I, J, K from ``CENTER`` on; axes by their column from ``AXIS``."""
@@ -37,13 +37,13 @@ class LineTables(NamedTuple):
     """How a dialect's lines are read.
 
     Attributes:
-        roles: What each letter is, shape (26,).
+        token_kinds: What each letter is, shape (26,).
         openings: First bytes of each kind of comment, 0 where there is none, shape (c, 2).
         closings: The same of what ends it; 0, 0: the end of the line.
         whole_line: It can only begin its line, shape (c,).
     """
 
-    roles: IntArray
+    token_kinds: IntArray
     openings: ByteArray
     closings: ByteArray
     whole_line: npt.NDArray[np.bool_]
@@ -64,7 +64,12 @@ def line_end(data: ByteArray, begin: int, following: int) -> int:
 
 @kernel
 def read_words(
-    data: ByteArray, begin: int, end: int, tables: LineTables, roles: IntArray, values: FloatArray
+    data: ByteArray,
+    begin: int,
+    end: int,
+    tables: LineTables,
+    token_kinds: IntArray,
+    values: FloatArray,
 ) -> int:
     """Read a line.
 
@@ -73,11 +78,11 @@ def read_words(
         begin: First byte of the line.
         end: Behind its last byte.
         tables: How the dialect's lines are read.
-        roles: Filled with what each word's letter is, shape (``MOST_WORDS``,).
+        token_kinds: Filled with what each word's letter is, shape (``MOST_WORDS``,).
         values: Filled with the words' values, shape (``MOST_WORDS``,).
 
     Returns:
-        How many words it has, or ``NOT_PLAIN``.
+        How many words it has, or ``UNSUPPORTED``.
     """
     count, at = 0, begin
     while True:
@@ -87,16 +92,16 @@ def read_words(
         letter = data[at] & _TO_UPPER
         if not _LETTER_A <= letter <= _LETTER_Z:
             at = _skip_comment(data, begin, at, end, tables)
-            if at == NOT_PLAIN:
-                return NOT_PLAIN
+            if at == UNSUPPORTED:
+                return UNSUPPORTED
             continue
-        role = tables.roles[letter - _LETTER_A]
-        if role == OTHER or count == MOST_WORDS or (role == NUMBER and count > 0):
-            return NOT_PLAIN
+        token_kind = tables.token_kinds[letter - _LETTER_A]
+        if token_kind == OTHER or count == MOST_WORDS or (token_kind == NUMBER and count > 0):
+            return UNSUPPORTED
         value, at = _read_number(data, skip_blanks(data, at + 1, end), end)
-        if at == NOT_PLAIN:
-            return NOT_PLAIN
-        roles[count], values[count] = role, value
+        if at == UNSUPPORTED:
+            return UNSUPPORTED
+        token_kinds[count], values[count] = token_kind, value
         count += 1
 
 
@@ -110,7 +115,7 @@ def skip_blanks(data: ByteArray, at: int, end: int) -> int:
 
 @kernel
 def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
-    """A number and the place behind it; ``NOT_PLAIN`` where there is none or it is very long."""
+    """A number and the place behind it; ``UNSUPPORTED`` where there is none or it is very long."""
     negative = at < end and data[at] == _MINUS
     if negative or (at < end and data[at] == _PLUS):
         at += 1
@@ -119,11 +124,11 @@ def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
         byte = data[at]
         if byte == _POINT:
             if fraction:
-                return 0.0, NOT_PLAIN
+                return 0.0, UNSUPPORTED
             fraction = True
         elif _DIGIT_0 <= byte <= _DIGIT_9:
             if mantissa > _EXACT_MANTISSA:
-                return 0.0, NOT_PLAIN
+                return 0.0, UNSUPPORTED
             mantissa = 10 * mantissa + byte - _DIGIT_0
             digits += 1
             decimals += fraction
@@ -131,39 +136,39 @@ def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
             break
         at += 1
     if digits == 0 or decimals >= len(_POWERS):
-        return 0.0, NOT_PLAIN
+        return 0.0, UNSUPPORTED
     value = mantissa / _POWERS[decimals]
     return (-value if negative else value), at
 
 
 @kernel
 def _skip_comment(data: ByteArray, begin: int, at: int, end: int, tables: LineTables) -> int:
-    """The place behind the comment that begins here; ``NOT_PLAIN`` where none does."""
+    """The place behind the comment that begins here; ``UNSUPPORTED`` where none does."""
     for kind in range(len(tables.openings)):
         behind = _behind(data, at, end, tables.openings[kind])
-        if behind == NOT_PLAIN:
+        if behind == UNSUPPORTED:
             continue
         if tables.whole_line[kind] and skip_blanks(data, begin, end) != at:
             continue
         closing = tables.closings[kind]
         for place in range(behind, end):
             if data[place] < _BLANK and data[place] != _TAB:
-                return NOT_PLAIN
+                return UNSUPPORTED
             if closing[0] != 0:
                 closed = _behind(data, place, end, closing)
-                if closed != NOT_PLAIN:
+                if closed != UNSUPPORTED:
                     return closed
-        return end if closing[0] == 0 else NOT_PLAIN
-    return NOT_PLAIN
+        return end if closing[0] == 0 else UNSUPPORTED
+    return UNSUPPORTED
 
 
 @kernel
 def _behind(data: ByteArray, at: int, end: int, mark: ByteArray) -> int:
-    """The place behind a mark of one or two bytes; ``NOT_PLAIN`` where it does not stand here."""
+    """The place behind a mark of one or two bytes; ``UNSUPPORTED`` where it does not stand here."""
     if at >= end or data[at] != mark[0]:
-        return NOT_PLAIN
+        return UNSUPPORTED
     if mark[1] == 0:
         return at + 1
     if at + 1 < end and data[at + 1] == mark[1]:
         return at + 2
-    return NOT_PLAIN
+    return UNSUPPORTED

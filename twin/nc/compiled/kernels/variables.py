@@ -1,4 +1,4 @@
-"""Variables of the compiled run, as the general way finds them in ``Variables``."""
+"""Variables of the compiled run, as the interpreter tier finds them in ``Variables``."""
 
 import math
 
@@ -14,9 +14,9 @@ from twin.nc.bytecode.frames import (
     LAST,
     LINE,
     NO_PLACE,
-    OWN,
+    OWNS_SCOPE,
     PART,
-    Memory,
+    VariableStore,
 )
 from twin.nc.bytecode.opcodes import PART_BITS
 from twin.nc.canonical import IntArray
@@ -36,13 +36,13 @@ def slot_of_number(numbered: IntArray, index: float) -> int:
 
 
 @kernel
-def own_value(memory: Memory, depth: int, slot: int) -> float:
+def own_value(memory: VariableStore, depth: int, slot: int) -> float:
     """What the program has given a variable; NaN: nothing."""
     return memory.common[slot] if slot >= 0 else memory.local[depth, ~slot]
 
 
 @kernel
-def load(memory: Memory, depth: int, slot: int) -> float:
+def load(memory: VariableStore, depth: int, slot: int) -> float:
     """Value of a variable, the job's where it has none of its own; NaN: none at all."""
     value = own_value(memory, depth, slot)
     if np.isnan(value):
@@ -51,7 +51,7 @@ def load(memory: Memory, depth: int, slot: int) -> float:
 
 
 @kernel
-def store(memory: Memory, depth: int, slot: int, value: float) -> None:
+def store(memory: VariableStore, depth: int, slot: int, value: float) -> None:
     """Give a variable a value; NaN takes it away."""
     if slot >= 0:
         memory.common[slot] = value
@@ -76,7 +76,7 @@ def end_parts(progress: IntArray, calls: IntArray) -> None:
         else:
             to = call[BACK]
             progress[CALLS] -= 1
-            progress[DEPTH] -= call[OWN]
+            progress[DEPTH] -= call[OWNS_SCOPE]
         progress[LINE], progress[PART] = to >> PART_BITS, to & _PART_MASK
 
 

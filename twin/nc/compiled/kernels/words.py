@@ -29,21 +29,21 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
-from twin.nc.compiled.kernels.arc import write_arc
+from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.columns import copy
 from twin.nc.compiled.kernels.cycle import drill
 from twin.nc.compiled.kernels.effects import report
 from twin.nc.compiled.kernels.frame import turn_place
-from twin.nc.compiled.kernels.plane import straight_way
-from twin.nc.compiled.kernels.target import aim, goal_of
+from twin.nc.compiled.kernels.plane import move_length
+from twin.nc.compiled.kernels.target import aim, axis_target
 from twin.nc.compiled.kernels.tokenizer import (
     AXIS,
     CODE,
     FEED,
     FUNCTION,
-    NOT_PLAIN,
     NUMBER,
     RADIUS,
+    UNSUPPORTED,
 )
 from twin.nc.control.motion import LARGEST_COORDINATE
 from twin.nc.path.event_columns import FUNCTION_ALONE
@@ -55,9 +55,9 @@ _STOP = int(Corner.EXACT_STOP)
 
 
 @inlined_kernel
-def run_words(
+def execute_block(
     line: int,
-    roles: IntArray,
+    token_kinds: IntArray,
     values: FloatArray,
     tables: BlockTables,
     constants: Constants,
@@ -71,7 +71,7 @@ def run_words(
 
     Args:
         line: Its line, from 1.
-        roles: What each word's letter is, shape (w,).
+        token_kinds: What each word's letter is, shape (w,).
         values: The words' values, shape (w,).
         tables: What blocks mean.
         constants: What stays.
@@ -79,28 +79,28 @@ def run_words(
         modal: Room for the modal state, shape (``MODAL``,).
         rows: Room for the move.
         row: Its row.
-        polar: The label of ``state`` holds where the move goes in the plane.
+        polar: The target of ``state`` holds where the move goes in the plane.
 
     Returns:
-        The number of rows after it, or ``NOT_PLAIN`` or ``NO_ROOM`` with the state untouched.
+        The number of rows after it, or ``UNSUPPORTED`` or ``NO_ROOM`` with the state untouched.
     """
     copy(state.modal, modal)
     number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
-    function, begins = NOT_PLAIN, 0
+    function, begins = UNSUPPORTED, 0
     feed = state.registers[PROGRAMMED_FEED]
-    for word in range(len(roles)):
-        role, value = roles[word], values[word]
-        if role == NUMBER:
+    for word in range(len(token_kinds)):
+        token_kind, value = token_kinds[word], values[word]
+        if token_kind == NUMBER:
             if word > 0 or not 0.0 <= value <= LARGEST_LABEL or value != np.floor(value):
-                return NOT_PLAIN
+                return UNSUPPORTED
             number = int(value)
-        elif role == CODE:
+        elif token_kind == CODE:
             if not 0.0 <= value < CODES or value != np.floor(value):
-                return NOT_PLAIN
+                return UNSUPPORTED
             code = int(value)
             group = 1 << tables.group[code]
-            if tables.field[code] == NOT_PLAIN or groups & group:
-                return NOT_PLAIN
+            if tables.field[code] == UNSUPPORTED or groups & group:
+                return UNSUPPORTED
             groups |= group
             modal[tables.field[code]] = tables.value[code]
             cycle = tables.cycle[code]
@@ -109,20 +109,20 @@ def run_words(
             elif cycle > 0:
                 begins = cycle
         else:
-            if seen & (1 << role) or not abs(value) <= LARGEST_COORDINATE:
-                return NOT_PLAIN
-            seen |= 1 << role
-            if role == FEED:
+            if seen & (1 << token_kind) or not abs(value) <= LARGEST_COORDINATE:
+                return UNSUPPORTED
+            seen |= 1 << token_kind
+            if token_kind == FEED:
                 if not value > 0.0:
-                    return NOT_PLAIN
+                    return UNSUPPORTED
                 feed = value
-            elif role == FUNCTION:
+            elif token_kind == FUNCTION:
                 if not 0.0 <= value < CODES or value != np.floor(value):
-                    return NOT_PLAIN
+                    return UNSUPPORTED
                 function = int(value)
-                if tables.function[function] == NOT_PLAIN:
-                    return NOT_PLAIN
-    after, happened = row, state.happened[0]
+                if tables.function[function] == UNSUPPORTED:
+                    return UNSUPPORTED
+    after, event_count = row, state.event_count[0]
     anew = modal[CYCLE] == 0.0
     if begins:
         modal[CYCLE] = begins
@@ -131,15 +131,15 @@ def run_words(
     plane = constants.planes[int(modal[PLANE])]
     in_plane = seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))) != 0
     if polar and in_plane:
-        return NOT_PLAIN
-    early = function != NOT_PLAIN and tables.function[function] == EARLY
+        return UNSUPPORTED
+    early = function != UNSUPPORTED and tables.function[function] == EARLY
     if early:
         report(rows, state, row, line, FUNCTION_ALONE, function, np.nan)
     if drills and moves:
         after = drill(
             line,
             number,
-            roles,
+            token_kinds,
             values,
             seen,
             begins != 0,
@@ -157,7 +157,7 @@ def run_words(
         after = _move(
             line,
             number,
-            roles,
+            token_kinds,
             values,
             seen,
             tables,
@@ -170,19 +170,19 @@ def run_words(
             polar,
         )
     if after < 0:
-        state.happened[0] = happened
+        state.event_count[0] = event_count
         return after
-    if function != NOT_PLAIN and not early:
+    if function != UNSUPPORTED and not early:
         report(rows, state, after, line, FUNCTION_ALONE, function, np.nan)
-    for word in range(len(roles)):
-        if roles[word] == CODE:
+    for word in range(len(token_kinds)):
+        if token_kinds[word] == CODE:
             code = int(values[word])
-            state.in_force[tables.group[code]] = code
+            state.active_codes[tables.group[code]] = code
     copy(modal, state.modal)
     state.registers[PROGRAMMED_FEED] = feed
     if moves:
         if drills:
-            copy(state.label, state.part)
+            copy(state.target, state.part)
             copy(constants.over, state.programmed)
         else:
             copy(rows.positions[row, 1], state.part)
@@ -196,7 +196,7 @@ def run_words(
 def _move(
     line: int,
     number: int,
-    roles: IntArray,
+    token_kinds: IntArray,
     values: FloatArray,
     seen: int,
     tables: BlockTables,
@@ -208,34 +208,34 @@ def _move(
     row: int,
     polar: bool,
 ) -> int:
-    """Write the block's move; the number of rows after it, or ``NOT_PLAIN``."""
+    """Write the block's move; the number of rows after it, or ``UNSUPPORTED``."""
     kind = tables.kind[int(modal[INTERPOLATION])]
     if kind == NO_MOTION:
-        return NOT_PLAIN
+        return UNSUPPORTED
     is_arc = kind == ARC
     if polar and is_arc:
-        return NOT_PLAIN
+        return UNSUPPORTED
     if not is_arc and (seen >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1):
-        return NOT_PLAIN
+        return UNSUPPORTED
     axes = len(state.part)
     position = rows.positions[row]
     if polar:
-        aim(constants.planes[int(modal[PLANE])], roles, values, seen, state, modal)
+        aim(constants.planes[int(modal[PLANE])], token_kinds, values, seen, state, modal)
     for axis in range(axes):
-        target = goal_of(axis, roles, values, seen, tables, state, modal, polar)
+        target = axis_target(axis, token_kinds, values, seen, tables, state, modal, polar)
         if not abs(target) <= LARGEST_COORDINATE:
-            return NOT_PLAIN
+            return UNSUPPORTED
         position[0, axis] = state.part[axis]
         position[1, axis] = target + state.total[axis]
         position[2, axis] = target
     turn_place(position[2], state, position[1])
     if is_arc:
-        if not write_arc(roles, values, seen, tables, constants, state, modal, rows, row):
-            return NOT_PLAIN
+        if not emit_arc(token_kinds, values, seen, tables, constants, state, modal, rows, row):
+            return UNSUPPORTED
     else:
-        way = straight_way(position)
+        way = move_length(position)
         if way <= 0.0:
-            return row if way == 0.0 else NOT_PLAIN
+            return row if way == 0.0 else UNSUPPORTED
         rows.values[row, :6] = np.nan
         rows.values[row, 6] = 0.0
     pace = constants.rapid_feed
@@ -249,7 +249,7 @@ def _move(
             turning = turning and not (moves and tables.linear[axis])
         if np.isnan(feed):
             if not constants.feed_may_lack:
-                return NOT_PLAIN
+                return UNSUPPORTED
             pace = constants.default_rotary_feed if turning else constants.default_feed
         else:
             pace = (feed if turning else feed * modal[UNIT]) * modal[FEED_FACTOR]

@@ -2,7 +2,7 @@
 
 from twin.nc.canonical import Corner
 from twin.nc.control.dialect import HEADING, Comment, Dialect, FeedMode, Mark, MCode, Syntax
-from twin.nc.dialects.codesys import actions, program, subprograms, translation, words
+from twin.nc.dialects.codesys import actions, block_compiler, program, subprograms, words
 from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
@@ -127,7 +127,7 @@ CODESYS = Dialect(
     given_variable=program.given_variable,
     place_switches=words.place_switches,
     library=subprograms.with_files,
-    translate=translation.translate,
+    compile_block=block_compiler.compile_block,
     disturbed=lambda control: bool(program.variables(control).periods),
     registers=program.registers,
     take_registers=program.take_registers,

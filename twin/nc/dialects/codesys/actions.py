@@ -2,14 +2,14 @@
 
 import math
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Action
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
-from twin.nc.iso.offsets import LEFT, RIGHT, compensate, write_programmed_shift
+from twin.nc.iso.offsets import LEFT, RIGHT, compensate, compile_programmed_shift
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Word
 
@@ -19,15 +19,15 @@ FIRST_ADDITIONAL = 4
 """Number of the first of them, A (manual)."""
 
 
-def write_no_shift(block: BlockWords, writer: BlockWriter) -> None:
+def compile_no_shift(block: BlockWords, assembler: Assembler) -> None:
     """G53.
 
     Raises:
-        NotTranslatableError: It has words.
+        UnsupportedError: It has words.
     """
     if block.words:
-        raise NotTranslatableError
-    write_shift(block, writer)
+        raise UnsupportedError
+    compile_shift(block, assembler)
 
 
 def dwell(control: Control) -> None:
@@ -38,10 +38,10 @@ def dwell(control: Control) -> None:
     control.dwell(control.number(word))
 
 
-def write_shift(block: BlockWords, writer: BlockWriter) -> None:
+def compile_shift(block: BlockWords, assembler: Assembler) -> None:
     """G54; G53, which has no axes."""
-    write_programmed_shift("offset", block, writer)
-    writer.step(Step.REFRAME)
+    compile_programmed_shift("offset", block, assembler)
+    assembler.emit(Opcode.REFRAME)
 
 
 def free_plane(control: Control) -> None:

@@ -1,7 +1,7 @@
 """Arcs of CODESYS SoftMotion: radius, centre with the 10 % rule, opening angle, any plane."""
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import Interpolation, PlainArc
+from twin.nc.control.interpolation import ArcRule, Interpolation
 from twin.nc.geometry.arcs import (
     SAME_POINT,
     Point,
@@ -149,8 +149,8 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-def _plain(*, clockwise: bool) -> PlainArc:
-    return PlainArc(
+def _arc_rule(*, clockwise: bool) -> ArcRule:
+    return ArcRule(
         clockwise=clockwise,
         mismatch_share=CENTER_SHARE,
         shift=SHIFT_WARNING,
@@ -158,5 +158,5 @@ def _plain(*, clockwise: bool) -> PlainArc:
     )
 
 
-CLOCKWISE = Interpolation(clockwise_arc, plain=_plain(clockwise=True))
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, plain=_plain(clockwise=False))
+CLOCKWISE = Interpolation(clockwise_arc, rule=_arc_rule(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=_arc_rule(clockwise=False))

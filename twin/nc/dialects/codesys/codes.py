@@ -1,7 +1,7 @@
 """G codes of CODESYS SoftMotion."""
 
 from twin.nc.control.dialect import GCode
-from twin.nc.control.interpolation import Interpolation, PlainLine
+from twin.nc.control.interpolation import Interpolation, LineRule
 from twin.nc.dialects.codesys import actions, jumps, program, words
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
@@ -14,7 +14,10 @@ from twin.nc.dialects.codesys.curves import (
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
 from twin.nc.iso import codes, offsets
 from twin.nc.iso.circular import rapid_line
-from twin.nc.iso.compensation_words import write_compensation_by_radius, write_end_of_compensation
+from twin.nc.iso.compensation_words import (
+    compile_compensation_by_radius,
+    compile_end_of_compensation,
+)
 from twin.nc.path.blends import BlendKind
 
 
@@ -33,12 +36,12 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=offsets.refuse_plane_change,
-        translate=codes.write_plane(plane),
+        compiler=codes.compile_plane(plane),
         ground="manual",
     )
 
 
-RAPID = Interpolation(rapid_line, rapid=True, plain=PlainLine(words.own_rapid_feed))
+RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule(words.own_rapid_feed))
 
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
@@ -51,7 +54,7 @@ CODES: dict[int, GCode] = {
     4: GCode(
         meaning="dwell, seconds in T",
         perform=actions.dwell,
-        translate=codes.write_dwell("T"),
+        compiler=codes.compile_dwell("T"),
         ground="manual",
     ),
     5: _motion("point of a spline in X Y", FLAT_SPLINE),
@@ -94,21 +97,21 @@ CODES: dict[int, GCode] = {
         meaning="radius compensation off",
         group="compensation",
         action=offsets.end_compensation,
-        translate=write_end_of_compensation,
+        compiler=compile_end_of_compensation,
         ground="manual",
     ),
     41: GCode(
         meaning="radius compensation left, radius D",
         group="compensation",
         action=actions.left_of_contour,
-        translate=write_compensation_by_radius(offsets.LEFT),
+        compiler=compile_compensation_by_radius(offsets.LEFT),
         ground="manual",
     ),
     42: GCode(
         meaning="radius compensation right, radius D",
         group="compensation",
         action=actions.right_of_contour,
-        translate=write_compensation_by_radius(offsets.RIGHT),
+        compiler=compile_compensation_by_radius(offsets.RIGHT),
         ground="manual",
     ),
     43: GCode(
@@ -138,13 +141,13 @@ CODES: dict[int, GCode] = {
     53: GCode(
         meaning="coordinate shift off",
         perform=actions.reset_shift,
-        translate=actions.write_no_shift,
+        compiler=actions.compile_no_shift,
         ground="manual",
     ),
     54: GCode(
         meaning="coordinate shift, absolute",
         perform=actions.shift_absolutely,
-        translate=actions.write_shift,
+        compiler=actions.compile_shift,
         ground="manual",
     ),
     55: GCode(
@@ -153,7 +156,7 @@ CODES: dict[int, GCode] = {
     56: GCode(
         meaning="set the reference here",
         perform=actions.set_reference,
-        translate=offsets.write_label("offset"),
+        compiler=offsets.compile_set_position("offset"),
         ground="manual",
     ),
     60: GCode(

@@ -131,7 +131,7 @@ def read_variable(control: Control, name: str, _index: float | None) -> float:
 
 
 def registers(control: Control) -> dict[int, float]:
-    """What the fast way is given of the memory."""
+    """What the compiled tier is given of the memory."""
     return {RADIUS_GIVEN: variables(control).tool_radius}
 
 

@@ -4,21 +4,21 @@ from twin.nc.control.control import Control
 from twin.nc.control.dialect import Comment, Dialect, Mark, MCode, Syntax
 from twin.nc.dialects.fagor8070 import (
     arcs,
+    block_compiler,
     corners,
     frames,
     memory,
     statements,
     subroutines,
-    translation,
     variables,
 )
 from twin.nc.dialects.fagor8070.codes import (
     CODES,
     INSTEAD,
     auxiliary,
+    compile_auxiliary,
+    compile_plain_dwell,
     plain_dwell,
-    write_auxiliary,
-    write_plain_dwell,
 )
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import with_globals
@@ -73,7 +73,7 @@ FAGOR8070 = Dialect(
         6: MCode(
             meaning="tool change",
             action=frames.change_tool,
-            translate=frames.write_tool_change,
+            compiler=frames.compile_tool_change,
             ground="manual",
         ),
         17: MCode(
@@ -105,12 +105,12 @@ FAGOR8070 = Dialect(
         "G159": frames.numbered_offset,
         "G263": arcs.set_circle_radius,
     },
-    word_translations={
-        "S": codes.write_spindle,
-        "T": frames.write_tool,
-        "D": frames.write_tool_offset,
-        "H": write_auxiliary,
-        "G04": write_plain_dwell,
+    word_compilers={
+        "S": codes.compile_spindle,
+        "T": frames.compile_tool,
+        "D": frames.compile_tool_offset,
+        "H": compile_auxiliary,
+        "G04": compile_plain_dwell,
     },
     statements=statements.STATEMENTS,
     other_statement=statements.other_statement,
@@ -168,7 +168,7 @@ FAGOR8070 = Dialect(
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,
     finish=statements.warn_of_missing_end,
-    translate=translation.translate,
+    compile_block=block_compiler.compile_block,
     disturbed=acts_on_plain_blocks,
     registers=memory.registers,
     take_registers=memory.take_registers,

@@ -7,7 +7,7 @@ one it is the polar radius.
 import math
 
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import Interpolation, PlainLine
+from twin.nc.control.interpolation import Interpolation, LineRule
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 from twin.nc.geometry.arcs import (
@@ -22,9 +22,9 @@ from twin.nc.geometry.arcs import (
     turned,
 )
 from twin.nc.iso.circular import (
+    arc_rule,
     center_of_radius,
     fitted_center,
-    plain_arc,
     radius_center,
     start_and_end,
     sweep_arc,
@@ -260,11 +260,11 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-RAPID = Interpolation(rapid_line, rapid=True, plain=PlainLine())
-FEED = Interpolation(feed_line, plain=PlainLine())
-CLOCKWISE = Interpolation(clockwise_arc, plain=plain_arc(clockwise=True, fits_radius=True))
+RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
+FEED = Interpolation(feed_line, rule=LineRule())
+CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True, fits_radius=True))
 COUNTER_CLOCKWISE = Interpolation(
-    counter_clockwise_arc, plain=plain_arc(clockwise=False, fits_radius=True)
+    counter_clockwise_arc, rule=arc_rule(clockwise=False, fits_radius=True)
 )
 TANGENT = Interpolation(tangent_arc)
 THREE_POINTS = Interpolation(three_point_arc)

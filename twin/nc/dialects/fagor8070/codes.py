@@ -2,23 +2,23 @@
 
 from collections.abc import Mapping
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.canonical import Corner
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import (
     Action,
+    Compiler,
     FeedMode,
     GCode,
-    Translation,
 )
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
 from twin.nc.dialects.fagor8070.cycles import CYCLES
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
 from twin.nc.iso import codes, cycles, offsets
-from twin.nc.iso.compensation_words import write_compensation_by_tool, write_end_of_compensation
+from twin.nc.iso.compensation_words import compile_compensation_by_tool, compile_end_of_compensation
 from twin.nc.text.blocks import Word
 
 
@@ -30,17 +30,17 @@ def dwell(control: Control) -> None:
     control.dwell(control.number(word))
 
 
-def write_plain_dwell(block: BlockWords, writer: BlockWriter) -> None:
-    """G04 1.5, for the fast way.
+def compile_plain_dwell(block: BlockWords, assembler: Assembler) -> None:
+    """G04 1.5, for the compiled tier.
 
     Raises:
-        NotTranslatableError: It does not stand alone.
+        UnsupportedError: It does not stand alone.
     """
     word = block.words.pop("G04")
     if block.words or block.codes or block.functions:
-        raise NotTranslatableError
-    writer.word_value(word)
-    writer.step(Step.DWELL)
+        raise UnsupportedError
+    assembler.word_value(word)
+    assembler.emit(Opcode.DWELL)
 
 
 def plain_dwell(control: Control, word: Word) -> None:
@@ -55,10 +55,10 @@ def auxiliary(control: Control, word: Word) -> None:
     control.function(f"H{control.number(word):g}", {})
 
 
-def write_auxiliary(block: BlockWords, writer: BlockWriter) -> None:
-    """H, for the fast way."""
-    writer.word_value(block.words.pop("H"))
-    writer.step(Step.AUXILIARY)
+def compile_auxiliary(block: BlockWords, assembler: Assembler) -> None:
+    """H, for the compiled tier."""
+    assembler.word_value(block.words.pop("H"))
+    assembler.emit(Opcode.AUXILIARY)
 
 
 def _compensate(side: float) -> Action:
@@ -87,12 +87,12 @@ def forget_polar_values(action: Action | None) -> Action:
     return both
 
 
-def _and_forget_polar(translation: Translation | None) -> Translation:
-    assert translation is not None
+def _and_forget_polar(compiler: Compiler | None) -> Compiler:
+    assert compiler is not None
 
-    def both(block: BlockWords, writer: BlockWriter) -> None:
-        translation(block, writer)
-        writer.step(Step.FORGET_POLAR)
+    def both(block: BlockWords, assembler: Assembler) -> None:
+        compiler(block, assembler)
+        assembler.emit(Opcode.FORGET_POLAR)
 
     return both
 
@@ -120,7 +120,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=frames.change_plane,
-        translate=codes.write_plane(plane),
+        compiler=codes.compile_plane(plane),
         ground="seed",
     )
 
@@ -131,7 +131,7 @@ def _do(
     *,
     group: str = "",
     takes: str = "",
-    translate: Translation | None = None,
+    compiler: Compiler | None = None,
 ) -> GCode:
     if takes:
         return GCode(
@@ -139,14 +139,14 @@ def _do(
             group=group,
             perform=action,
             takes=takes,
-            translate=translate,
+            compiler=compiler,
             ground="manual",
         )
-    return GCode(meaning=meaning, group=group, action=action, translate=translate, ground="manual")
+    return GCode(meaning=meaning, group=group, action=action, compiler=compiler, ground="manual")
 
 
-def _decided(meaning: str, action: Action, *, translate: Translation | None = None) -> GCode:
-    return GCode(meaning=meaning, perform=action, translate=translate)
+def _decided(meaning: str, action: Action, *, compiler: Compiler | None = None) -> GCode:
+    return GCode(meaning=meaning, perform=action, compiler=compiler)
 
 
 def _refused(meaning: str, reason: str, numbers: Mapping[int, None] | range) -> dict[int, GCode]:
@@ -179,7 +179,7 @@ CODES: dict[int, GCode] = {
     4: GCode(
         meaning="dwell, seconds in K or right behind",
         perform=dwell,
-        translate=codes.write_dwell("K"),
+        compiler=codes.compile_dwell("K"),
         ground="manual",
     ),
     5: _g("round corner", "corner", corner=Corner.CONTINUOUS),
@@ -190,15 +190,15 @@ CODES: dict[int, GCode] = {
     10: _do(
         "mirror off",
         transformations.mirror_off,
-        translate=transformations.write_mirror_off,
+        compiler=transformations.compile_mirror_off,
     ),
-    11: _do("mirror X", transformations.mirror_x, translate=transformations.write_mirror(0)),
-    12: _do("mirror Y", transformations.mirror_y, translate=transformations.write_mirror(1)),
-    13: _do("mirror Z", transformations.mirror_z, translate=transformations.write_mirror(2)),
+    11: _do("mirror X", transformations.mirror_x, compiler=transformations.compile_mirror(0)),
+    12: _do("mirror Y", transformations.mirror_y, compiler=transformations.compile_mirror(1)),
+    13: _do("mirror Z", transformations.mirror_z, compiler=transformations.compile_mirror(2)),
     14: _decided(
         "mirror the given axes: X-1",
         transformations.mirror_axes,
-        translate=transformations.write_mirror_axes,
+        compiler=transformations.compile_mirror_axes,
     ),
     17: _plane("plane X Y", XY),
     18: _plane("plane Z X", ZX),
@@ -207,7 +207,7 @@ CODES: dict[int, GCode] = {
     30: _do(
         "polar origin: I J, or where the tool stands",
         polar.set_polar_origin,
-        translate=polar.write_polar_origin,
+        compiler=polar.compile_polar_origin,
     ),
     31: _do("temporary polar origin at the arc's centre", polar.temporary_polar_origin),
     33: GCode(meaning="threading", refused="the twin's spindle has no angle", ground="manual"),
@@ -218,19 +218,19 @@ CODES: dict[int, GCode] = {
         "radius compensation off",
         offsets.end_compensation,
         group="compensation",
-        translate=write_end_of_compensation,
+        compiler=compile_end_of_compensation,
     ),
     41: _do(
         "compensation, tool left",
         _compensate(offsets.LEFT),
         group="compensation",
-        translate=write_compensation_by_tool(offsets.LEFT),
+        compiler=compile_compensation_by_tool(offsets.LEFT),
     ),
     42: _do(
         "compensation, tool right",
         _compensate(offsets.RIGHT),
         group="compensation",
-        translate=write_compensation_by_tool(offsets.RIGHT),
+        compiler=compile_compensation_by_tool(offsets.RIGHT),
     ),
     **_refused("tangential control", "the twin has no axis that turns the tool", range(45, 46)),
     50: _g("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
@@ -240,7 +240,7 @@ CODES: dict[int, GCode] = {
             f"work offset G{number} of the job",
             forget_polar_values(offsets.OFFSETS[number].action),
             group="offset",
-            translate=_and_forget_polar(offsets.OFFSETS[number].translate),
+            compiler=_and_forget_polar(offsets.OFFSETS[number].compiler),
         )
         for number in range(54, 60)
     },
@@ -253,12 +253,12 @@ CODES: dict[int, GCode] = {
         "scale S, about part zero",
         transformations.scale,
         takes="S",
-        translate=transformations.write_scale,
+        compiler=transformations.compile_scale,
     ),
     73: GCode(
         meaning="rotation by Q about I J; alone: off",
         perform=transformations.rotate,
-        translate=transformations.write_rotation,
+        compiler=transformations.compile_rotation,
         ground="manual",
     ),
     74: GCode(meaning="home search", refused="the twin starts homed", ground="manual"),
@@ -268,7 +268,7 @@ CODES: dict[int, GCode] = {
     92: GCode(
         meaning="preset part zero",
         perform=forget_polar_values(offsets.preset),
-        translate=_and_forget_polar(offsets.write_label("preset")),
+        compiler=_and_forget_polar(offsets.compile_set_position("preset")),
         ground="manual",
     ),
     93: GCode(
@@ -304,7 +304,7 @@ CODES: dict[int, GCode] = {
     158: GCode(
         meaning="incremental offset",
         perform=frames.incremental_offset,
-        translate=frames.write_increment,
+        compiler=frames.compile_increment,
         ground="manual",
     ),
     **_refused("multiple machining", "write the positions one by one", range(160, 166)),

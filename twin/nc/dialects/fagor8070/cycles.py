@@ -31,7 +31,7 @@ from twin.nc.control.drilling_cycle import (
     Pecking,
     Retract,
 )
-from twin.nc.control.interpolation import Interpolation, PlainHole
+from twin.nc.control.interpolation import CycleRule, Interpolation
 from twin.nc.dialects.fagor8070.pockets import call_pocket, mill_pocket
 from twin.nc.dialects.fagor8070.polar import take_goal
 from twin.nc.iso.drilling import cycle_code
@@ -60,9 +60,9 @@ def _drilling(
         clearance=clearance,
         retract=retract,
     )
-    plain = PlainHole(f"G{number}", cycle, {**words, "I": BOTTOM})
+    rule = CycleRule(f"G{number}", cycle, {**words, "I": BOTTOM})
     meaning = f"{meaning}: Z I {' '.join(words)}"
-    return cycle_code(plain, meaning, lambda control: take_goal(control, arc=False).target, ground)
+    return cycle_code(rule, meaning, lambda control: take_goal(control, arc=False).target, ground)
 
 
 def _pocket(

@@ -1,18 +1,18 @@
 """Planes, offsets and tools of the Fagor CNC 8070."""
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar, reset_polar_origin
 from twin.nc.geometry.planes import Plane, Vector, cross
 from twin.nc.iso.offsets import (
+    compile_programmed_shift,
     refuse_plane_change,
     select_offset,
     set_length,
     tool_numbered,
-    write_programmed_shift,
 )
 from twin.nc.text.blocks import Word
 
@@ -91,37 +91,37 @@ def select_tool(control: Control, word: Word) -> None:
     control.function(f"T{number}", {})
 
 
-def write_tool_offset(block: BlockWords, writer: BlockWriter) -> None:
-    """D0, D1, for the fast way.
+def compile_tool_offset(block: BlockWords, assembler: Assembler) -> None:
+    """D0, D1, for the compiled tier.
 
     Raises:
-        NotTranslatableError: It is neither.
+        UnsupportedError: It is neither.
     """
     value = block.words.pop("D").value
     if value not in (0.0, 1.0):
-        raise NotTranslatableError
-    writer.step(Step.OFFSET_ON, int(value == 1.0))
-    writer.step(Step.TOOL_LENGTH)
+        raise UnsupportedError
+    assembler.emit(Opcode.OFFSET_ON, int(value == 1.0))
+    assembler.emit(Opcode.TOOL_LENGTH)
 
 
-def write_tool(block: BlockWords, writer: BlockWriter) -> None:
-    """T, for the fast way."""
-    writer.word_value(block.words.pop("T"))
-    writer.step(Step.TOOL, 1)
+def compile_tool(block: BlockWords, assembler: Assembler) -> None:
+    """T, for the compiled tier."""
+    assembler.word_value(block.words.pop("T"))
+    assembler.emit(Opcode.TOOL, 1)
 
 
-def write_tool_change(_block: BlockWords, writer: BlockWriter) -> None:
-    """M06, for the fast way."""
-    writer.step(Step.CHANGE_TOOL)
-    writer.step(Step.OFFSET_ON, 1)
-    writer.step(Step.TOOL_LENGTH)
+def compile_tool_change(_block: BlockWords, assembler: Assembler) -> None:
+    """M06, for the compiled tier."""
+    assembler.emit(Opcode.CHANGE_TOOL)
+    assembler.emit(Opcode.OFFSET_ON, 1)
+    assembler.emit(Opcode.TOOL_LENGTH)
 
 
-def write_increment(block: BlockWords, writer: BlockWriter) -> None:
-    """G158, for the fast way."""
-    write_programmed_shift("increment", block, writer)
-    writer.step(Step.REFRAME)
-    writer.step(Step.FORGET_POLAR)
+def compile_increment(block: BlockWords, assembler: Assembler) -> None:
+    """G158, for the compiled tier."""
+    compile_programmed_shift("increment", block, assembler)
+    assembler.emit(Opcode.REFRAME)
+    assembler.emit(Opcode.FORGET_POLAR)
 
 
 def change_tool(control: Control) -> None:

@@ -83,7 +83,7 @@ def acts_on_plain_blocks(control: Control) -> bool:
 
 
 def registers(control: Control) -> dict[int, float]:
-    """What the fast way is given of it; no polar origin while G53 is in force (E1530)."""
+    """What the compiled tier is given of it; no polar origin while G53 is in force (E1530)."""
     memory = memory_of(control)
     abscissa, ordinate = memory.origin
     angle, center = (math.nan, (0.0, 0.0)) if memory.rotation is None else memory.rotation

@@ -3,11 +3,11 @@
 import dataclasses
 from collections.abc import Iterable
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords, sorted_words
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import Interpolation, PlainHole
+from twin.nc.control.interpolation import CycleRule, Interpolation
 from twin.nc.control.state import integer_of
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.geometry.arcs import (
@@ -67,19 +67,19 @@ def set_polar_origin(control: Control) -> None:
     forget_polar(control)
 
 
-def write_polar_origin(block: BlockWords, writer: BlockWriter) -> None:
-    """G30, for the fast way.
+def compile_polar_origin(block: BlockWords, assembler: Assembler) -> None:
+    """G30, for the compiled tier.
 
     Raises:
-        NotTranslatableError: Only one of I and J is given, or the block does more.
+        UnsupportedError: Only one of I and J is given, or the block does more.
     """
     words = [block.take("I"), block.take("J")]
     given = [word for word in words if word is not None]
     if len(given) == 1 or block.words or len(block.codes) > 1:
-        raise NotTranslatableError
+        raise UnsupportedError
     for word in given:
-        writer.word_value(word)
-    writer.step(Step.POLAR_ORIGIN, len(given))
+        assembler.word_value(word)
+    assembler.emit(Opcode.POLAR_ORIGIN, len(given))
 
 
 def is_polar(control: Control, words: Iterable[Word]) -> bool:
@@ -110,36 +110,36 @@ def _words_of_cycle(control: Control, words: Iterable[Word]) -> set[str]:
         if word.address == "G" and not isinstance(word.value, Expression):
             code = control.dialect.g.get(integer_of(word.value))
             cycle = None if code is None else code.sets.get("cycle")
-            if isinstance(cycle, Interpolation) and isinstance(cycle.plain, PlainHole):
-                letters.update(cycle.plain.words)
+            if isinstance(cycle, Interpolation) and isinstance(cycle.rule, CycleRule):
+                letters.update(cycle.rule.words)
     return letters
 
 
-def write_polar(control: Control, words: Iterable[Word], writer: BlockWriter) -> None:
-    """Write a polar block for the fast way.
+def compile_polar(control: Control, words: Iterable[Word], assembler: Assembler) -> None:
+    """Write a polar block for the compiled tier.
 
     Raises:
-        NotTranslatableError: It does more than that.
+        UnsupportedError: It does more than that.
     """
     block = sorted_words(control, words)
     cycles = [(word, code) for word, code in block.codes if code.begins_cycle]
     block.codes = [pair for pair in block.codes if pair not in cycles]
     for _, code in cycles:
-        if code.translate is None:
-            raise NotTranslatableError
-        code.translate(block, writer)
+        if code.compiler is None:
+            raise UnsupportedError
+        code.compiler(block, assembler)
     radius, angle, feed = block.take("R"), block.take("Q"), block.take("F")
     addresses = control.dialect.axis_letters
     if (
         block.functions
         or block.words.keys() - addresses
-        or any(code.translate or code.action or code.perform for _, code in block.codes)
+        or any(code.compiler or code.action or code.perform for _, code in block.codes)
         or any(word is not None and word.incremental for word in (radius, angle))
     ):
-        raise NotTranslatableError
+        raise UnsupportedError
     codes = [word for word, _ in block.codes]
-    writer.codes(codes if feed is None else [*codes, feed])
-    writer.polar(radius, angle, [*(word for word, _ in cycles), *block.words.values()])
+    assembler.codes(codes if feed is None else [*codes, feed])
+    assembler.polar(radius, angle, [*(word for word, _ in cycles), *block.words.values()])
 
 
 def refuse_origin_by_g93(control: Control) -> None:

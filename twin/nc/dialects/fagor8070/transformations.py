@@ -1,10 +1,10 @@
-"""Mirror, scale and rotation of the Fagor CNC 8070, and the same for the fast way."""
+"""Mirror, scale and rotation of the Fagor CNC 8070, and the same for the compiled tier."""
 
-from twin.nc.bytecode.assembler import BlockWriter, NotTranslatableError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Step
+from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import Translation
+from twin.nc.control.dialect import Compiler
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE, rotated, stretched
@@ -93,68 +93,68 @@ def _update(control: Control) -> None:
     forget_polar(control)
 
 
-# --- for the fast way
+# --- for the compiled tier
 
 
-def write_mirror_off(_block: BlockWords, writer: BlockWriter) -> None:
+def compile_mirror_off(_block: BlockWords, assembler: Assembler) -> None:
     """G10."""
     for index in range(3):
-        writer.number(1.0)
-        writer.step(Step.MIRROR, index)
-    _write_update(writer)
+        assembler.constant(1.0)
+        assembler.emit(Opcode.MIRROR, index)
+    _compile_update(assembler)
 
 
-def write_mirror(index: int) -> Translation:
+def compile_mirror(index: int) -> Compiler:
     """G11, G12, G13."""
 
-    def write(_block: BlockWords, writer: BlockWriter) -> None:
-        writer.number(-1.0)
-        writer.step(Step.MIRROR, index)
-        _write_update(writer)
+    def write(_block: BlockWords, assembler: Assembler) -> None:
+        assembler.constant(-1.0)
+        assembler.emit(Opcode.MIRROR, index)
+        _compile_update(assembler)
 
     return write
 
 
-def write_mirror_axes(block: BlockWords, writer: BlockWriter) -> None:
+def compile_mirror_axes(block: BlockWords, assembler: Assembler) -> None:
     """G14.
 
     Raises:
-        NotTranslatableError: It names no axis, or one that no mirror turns.
+        UnsupportedError: It names no axis, or one that no mirror turns.
     """
     words = block.take_axes()
     if not words or any(index > 2 for index, _ in words):
-        raise NotTranslatableError
+        raise UnsupportedError
     for index, word in words:
-        writer.word_value(word)
-        writer.step(Step.MIRROR, index)
-    _write_update(writer)
+        assembler.word_value(word)
+        assembler.emit(Opcode.MIRROR, index)
+    _compile_update(assembler)
 
 
-def write_scale(block: BlockWords, writer: BlockWriter) -> None:
+def compile_scale(block: BlockWords, assembler: Assembler) -> None:
     """G72."""
-    writer.word_value(block.take("S"), 1.0)
-    writer.step(Step.SCALE)
-    _write_update(writer)
+    assembler.word_value(block.take("S"), 1.0)
+    assembler.emit(Opcode.SCALE)
+    _compile_update(assembler)
 
 
-def write_rotation(block: BlockWords, writer: BlockWriter) -> None:
+def compile_rotation(block: BlockWords, assembler: Assembler) -> None:
     """G73.
 
     Raises:
-        NotTranslatableError: It has a centre without an angle.
+        UnsupportedError: It has a centre without an angle.
     """
     angle, center = block.take("Q"), [block.take("I"), block.take("J")]
     if angle is None:
         if center != [None, None]:
-            raise NotTranslatableError
-        writer.step(Step.END_ROTATION)
+            raise UnsupportedError
+        assembler.emit(Opcode.END_ROTATION)
     else:
         for word in (angle, *center):
-            writer.word_value(word)
-        writer.step(Step.ROTATE)
-    _write_update(writer)
+            assembler.word_value(word)
+        assembler.emit(Opcode.ROTATE)
+    _compile_update(assembler)
 
 
-def _write_update(writer: BlockWriter) -> None:
-    writer.step(Step.TRANSFORM)
-    writer.step(Step.FORGET_POLAR)
+def _compile_update(assembler: Assembler) -> None:
+    assembler.emit(Opcode.TRANSFORM)
+    assembler.emit(Opcode.FORGET_POLAR)

@@ -1,0 +1,1 @@
+"""Logs of real machines, in the forms that controls write them: one reader for every command."""

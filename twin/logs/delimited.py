@@ -1,0 +1,133 @@
+"""Tables of text: CSV with any separator, decimal commas, a preamble, TwinCAT Scope, halsampler.
+
+What separates the cells and where the numbers begin is seen from the file. A table without a heading
+(LinuxCNC's ``halsampler``) has columns that are named by their numbers.
+
+TwinCAT Scope View exports a block of properties per channel, each row as ``key; value; key; value``;
+where channels share a time column, the key stands over the time column and one value over each
+channel. Times are milliseconds since the start, or ticks of 100 ns (Beckhoff, TE13xx, "Export to csv").
+"""
+
+import csv
+import re
+from pathlib import Path
+
+import numpy as np
+
+from twin.errors import UsageError
+from twin.logs.channels import Channel, RawLog, is_number
+from twin.logs.units import UNITS
+
+_SEPARATORS = (";", "\t", ",")
+_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
+_PREAMBLE = 200
+"""Rows that may stand before the numbers."""
+_TICKS = 1e12
+"""A time above this is in ticks of 100 ns since 1601, not in milliseconds since the start."""
+_TICK_S, _MILLISECOND_S = 1e-7, 1e-3
+_END = "EOF"
+
+
+def read_delimited(path: Path, text: str) -> RawLog:
+    """Read a table of text.
+
+    Args:
+        path: The file, for messages.
+        text: Its content.
+
+    Raises:
+        UsageError: It holds no table of numbers, or rows of unequal length.
+    """
+    try:
+        rows = _rows(text)
+    except csv.Error as error:
+        raise UsageError(f"{path}: is not a log: {error}") from error
+    start = _first_row_of_numbers(rows)
+    if rows and rows[0][0] == "Name":
+        return _twincat(path, rows[:start], rows[start:])
+    heading, units = _heading(rows[:start], rows[start:])
+    if not heading:
+        raise UsageError(
+            f"{path}: is empty; a log has a heading such as time_s,X_commanded,X_actual"
+        )
+    body = rows[start:]
+    if len(body) < 2 or any(len(row) != len(heading) for row in body):
+        raise UsageError(f"{path}: needs two rows or more, each with {len(heading)} values")
+    columns = list(zip(*body, strict=True))
+    return RawLog(
+        path,
+        tuple(
+            Channel(name, columns[index], unit=units[index]) for index, name in enumerate(heading)
+        ),
+    )
+
+
+def _rows(text: str) -> list[list[str]]:
+    lines = text.splitlines()
+    sample = "\n".join(lines[:_PREAMBLE])
+    separator = next((mark for mark in _SEPARATORS if mark in sample), None)
+    if separator is None:
+        rows = [line.split() for line in lines]
+    else:
+        rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator)]
+    if separator != ",":
+        rows = [
+            [cell.replace(",", ".") if _DECIMAL_COMMA.fullmatch(cell) else cell for cell in row]
+            for row in rows
+        ]
+    return [row for row in rows if any(row) and row != [_END]]
+
+
+def _first_row_of_numbers(rows: list[list[str]]) -> int:
+    """Where two rows of numbers in turn begin; under rows of properties, where a time begins one."""
+    if rows and rows[0][0] == "Name":
+        return next((index for index, row in enumerate(rows) if is_number(row[0])), len(rows))
+    numeric = [_is_numeric(row) for row in rows[:_PREAMBLE]]
+    for index in range(len(numeric)):
+        if all(numeric[index : index + 2]):
+            return index
+    return min(1, len(rows))
+
+
+def _is_numeric(row: list[str]) -> bool:
+    cells = [cell for cell in row if cell]
+    return bool(cells) and 2 * sum(map(is_number, cells)) >= len(cells)
+
+
+def _heading(above: list[list[str]], body: list[list[str]]) -> tuple[list[str], list[str]]:
+    """Names and units of the columns, from the rows above the numbers."""
+    width = len(body[0]) if body else len(above[-1]) if above else 0
+    units = [""] * width
+    if len(above) > 1 and len(above[-1]) == width and _are_units(above[-1]):
+        units = [cell.strip("[]()") for cell in above.pop()]
+    if not above:
+        return [str(number) for number in range(1, width + 1)], units
+    heading = above[-1]
+    return heading, (units + [""] * len(heading))[: len(heading)]
+
+
+def _are_units(row: list[str]) -> bool:
+    return all(cell.strip("[]()") in UNITS or not cell for cell in row)
+
+
+def _twincat(path: Path, above: list[list[str]], body: list[list[str]]) -> RawLog:
+    names = next((row for row in reversed(above) if row[0] == "Name"), [])
+    symbols = next((row for row in reversed(above) if row[0] == "SymbolName"), names)
+    channels, time = [], None
+    for column, name in enumerate(names):
+        if name == "Name":
+            time = column
+            continue
+        cells = [(row[time or 0], row[column]) for row in body if column < len(row) and row[column]]
+        if time is None or not cells or not all(is_number(cell[0]) for cell in cells):
+            raise UsageError(f"{path}: channel '{name}' has no time column; export it with one")
+        clock = np.array([float(cell[0]) for cell in cells])
+        scale = _TICK_S if clock[0] > _TICKS else _MILLISECOND_S
+        alias = symbols[column] if column < len(symbols) else name
+        begin = clock[0] if scale == _TICK_S else 0.0
+        channels.append(
+            Channel(name, [cell[1] for cell in cells], (clock - begin) * scale, (alias,))
+        )
+    if not channels:
+        raise UsageError(f"{path}: has no channels under its rows of properties")
+    return RawLog(path, tuple(channels))

@@ -1,0 +1,196 @@
+"""A log of a machine: what its axes were told and what they did, in the shop's units."""
+
+import codecs
+import dataclasses
+import difflib
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from twin.errors import UsageError
+from twin.logs.channels import Channel, RawLog, joined_names
+from twin.logs.column_map import (
+    QUANTITIES,
+    AxisColumns,
+    ColumnMap,
+    ColumnTable,
+    guessed_map,
+    template,
+)
+from twin.logs.delimited import read_delimited
+from twin.logs.traces import (
+    CODESYS_FIRST_LINE,
+    read_codesys_trace,
+    read_edge_capture,
+    read_sinumerik_trace,
+)
+from twin.logs.units import factor, kind_of, time_factor
+from twin.nc.canonical import FloatArray, IntArray
+from twin.units import AxisKind
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class AxisLog:
+    """One axis of a log; columns of shape (n,).
+
+    Attributes:
+        kind: ``linear`` [mm, N] or ``rotary`` [deg, N m].
+        command: Commanded position [mm or deg].
+        actual: Actual position [mm or deg].
+        more: The other columns by their role in ``AxisColumns`` [mm or deg, per s, per s², N or
+            N m, as logged for ``current``].
+        columns: Where all of them came from.
+    """
+
+    kind: AxisKind
+    command: FloatArray
+    actual: FloatArray
+    more: Mapping[str, FloatArray]
+    columns: AxisColumns
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class MachineLog:
+    """A log.
+
+    Attributes:
+        name: Its file.
+        time: As logged, which may jump, shape (n,) [s].
+        axes: By name.
+        line: Program line of every sample, 0 where none is known, shape (n,).
+    """
+
+    name: str
+    time: FloatArray
+    axes: Mapping[str, AxisLog]
+    line: IntArray
+
+
+def read_raw_log(path: Path, *, tick_s: float | None = None) -> RawLog:
+    """Read a file of any known form.
+
+    Args:
+        path: The file.
+        tick_s: What a time stamp counts, where a trace does not say it [s].
+
+    Raises:
+        UsageError: The file cannot be read, or is of no known form.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}") from error
+    text = _decoded(content, path)
+    start = text.lstrip()[:1]
+    if text.lstrip().startswith(CODESYS_FIRST_LINE):
+        return read_codesys_trace(path, text, tick_s)
+    if start == "<":
+        return read_sinumerik_trace(path, text)
+    if start in ("{", "["):
+        return read_edge_capture(path, text)
+    return read_delimited(path, text)
+
+
+def _decoded(content: bytes, path: Path) -> str:
+    """UTF-8 or UTF-16 as its mark says, else the code page that controls in Europe write."""
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return content.decode("utf-16", errors="replace")
+    if b"\0" in content:
+        raise UsageError(f"{path}: is not a log: it is no text")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("cp1252", errors="replace")
+
+
+def read_machine_log(
+    path: Path,
+    columns: ColumnMap | None = None,
+    *,
+    period_s: float | None = None,
+    units_needed: bool = False,
+) -> MachineLog:
+    """Read a log of any known form.
+
+    Args:
+        path: The file.
+        columns: What its columns are; by default what its headings say.
+        period_s: Between the samples of a log without a clock [s].
+        units_needed: Without a map, refuse headings that say no unit.
+
+    Raises:
+        UsageError: The file cannot be read, or what its columns are is not known; the message holds
+            a map to fill in.
+    """
+    tick = None
+    if columns is not None and columns.time is not None and columns.time.column is None:
+        tick = time_factor(columns.time.unit, columns.where)
+    raw = read_raw_log(path, tick_s=tick)
+    meant = columns or guessed_map(raw, units_needed=units_needed)
+    if not meant.axes:
+        raise UsageError(
+            f"{path}: has the columns {joined_names(raw.names)}; its headings do not say which is "
+            "commanded and which is actual position, and in which unit (as X_command_mm and "
+            f"X_actual_mm do). A map does, --columns MAP.toml:\n{template(raw)}"
+        )
+    period = period_s or meant.period_s or raw.period_s
+    time = _clock(raw, meant, period)
+    axes = {name: _axis(raw, meant.where, name, table, time) for name, table in meant.axes.items()}
+    line = np.zeros(len(time), np.int64)
+    if meant.line is not None and (channel := raw.find(meant.line)) is not None:
+        line = channel.numbers(path).astype(np.int64)
+    return MachineLog(str(path), time, axes, line)
+
+
+def _clock(raw: RawLog, meant: ColumnMap, period_s: float | None) -> FloatArray:
+    """The time of every row, (n,) [s]."""
+    first = _channel(raw, meant.where, "command", next(iter(meant.axes.values())).command)
+    if meant.time is not None and meant.time.column is not None:
+        column = ColumnTable(column=meant.time.column, unit=meant.time.unit)
+        channel = _channel(raw, meant.where, "time", column)
+        return channel.numbers(raw.path) * time_factor(meant.time.unit, meant.where)
+    if first.time is not None:
+        return first.time
+    if period_s is None:
+        raise UsageError(
+            f"{raw.path}: has the columns {joined_names(raw.names)}: no time, unless a column "
+            "time_s is there or a period is given"
+        )
+    return period_s * np.arange(len(first.cells), dtype=np.float64)
+
+
+def _channel(raw: RawLog, where: str, role: str, column: ColumnTable) -> Channel:
+    found = raw.find(column.column)
+    if found is not None:
+        return found
+    near = difflib.get_close_matches(str(column.column), raw.names, n=1)
+    hint = f"; did you mean '{near[0]}'?" if near else ""
+    raise UsageError(
+        f"{raw.path}: has no column '{column.column}', which {where} names as {role}{hint}; it has "
+        f"{joined_names(raw.names)}"
+    )
+
+
+def _axis(raw: RawLog, where: str, name: str, table: AxisColumns, time: FloatArray) -> AxisLog:
+    kind = kind_of(table.command.unit)
+    values: dict[str, FloatArray] = {}
+    for role, quantity in QUANTITIES.items():
+        column: ColumnTable | None = getattr(table, role)
+        if column is None:
+            continue
+        place = f"{where}: columns.{name}.{role}"
+        scale = factor(quantity, kind, column.unit, place)
+        channel = _channel(raw, where, f"{role} of {name}", column)
+        numbers = (channel.numbers(raw.path) * column.scale + column.offset) * scale
+        clock = time if channel.time is None else channel.time
+        if len(clock) != len(numbers):
+            raise UsageError(f"{place}: has {len(numbers)} values, its time {len(clock)}")
+        taken = clock + column.delay_s
+        if len(taken) != len(time) or not np.array_equal(taken, time):
+            numbers = np.interp(time, taken, numbers)
+        values[role] = numbers
+    command = values.pop("command")
+    actual = values.pop("actual") if "actual" in values else command - values["following_error"]
+    values.pop("following_error", None)
+    return AxisLog(kind, command, actual, values, table)

@@ -1,0 +1,274 @@
+"""What the compiled tier through plain blocks knows: tables made of a dialect's declaration.
+
+Nothing is said here of any dialect: a code, a letter or an interpolation that the declaration does
+not describe completely is not plain.
+"""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from twin.nc.bytecode.registers import (
+    ARC,
+    CENTER_ABSOLUTE,
+    CODES,
+    CORNER,
+    CYCLE,
+    EARLY,
+    FEED_FACTOR,
+    FEED_LINE,
+    INCREMENTAL,
+    INTERPOLATION,
+    LATE,
+    MODAL,
+    NO_MOTION,
+    NOTHING,
+    PLANE,
+    RAPID_LINE,
+    TO_REFERENCE,
+    UNIT,
+    BlockTables,
+)
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.compiled.kernels.tokenizer import (
+    AXIS,
+    CENTER,
+    CODE,
+    FEED,
+    FUNCTION,
+    NUMBER,
+    OTHER,
+    RADIUS,
+    UNSUPPORTED,
+    LineTables,
+)
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import Comment, Dialect, FeedMode, GCode, Modal
+from twin.nc.control.drilling_cycle import Cycle
+from twin.nc.control.interpolation import ArcRule, CycleRule, Interpolation, LineRule
+from twin.nc.control.settings import ControlSettings
+from twin.nc.functions import SPINDLE_STARTS
+from twin.nc.geometry.planes import PLANE_ORDER
+from twin.nc.iso import codes
+
+FEED_FACTORS = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
+"""By what F is multiplied to count per minute; other modes need more than F."""
+
+_FIELDS: Mapping[str, int] = {
+    "interpolation": INTERPOLATION,
+    "incremental": INCREMENTAL,
+    "center_absolute": CENTER_ABSOLUTE,
+    "unit": UNIT,
+    "corner": CORNER,
+    "feed_mode": FEED_FACTOR,
+    "return_to_reference": TO_REFERENCE,
+}
+"""The fields of ``Modal`` that plain codes may set, and their places."""
+
+
+class DecodeTables:
+    """The tables of one dialect on one machine.
+
+    Attributes:
+        lines: How lines are read.
+        blocks: What blocks mean.
+        groups: The modal groups in the order of their numbers in ``blocks``.
+        token_kinds: What the letters of plain words are.
+        rapid_feed: What ``LineRule`` says of rapids.
+    """
+
+    def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
+        self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
+        self._interpolations = _interpolations(dialect)
+        self._places = {id(each): float(at) for at, each in enumerate(self._interpolations)}
+        self._cycles = _cycles(dialect)
+        self.rapid_feed = _rapid_feed(self._interpolations)
+        self.token_kinds = _token_kinds(dialect, settings)
+        self.lines = _line_tables(dialect, self.token_kinds)
+        self.blocks = self._block_tables(dialect, settings)
+
+    def modal(self, modal: Modal) -> FloatArray:
+        """The modal state as the kernel keeps it, shape (``MODAL``,)."""
+        state = np.zeros(MODAL)
+        if modal.plane in PLANE_ORDER:
+            state[PLANE] = PLANE_ORDER.index(modal.plane)
+        state[CYCLE] = float(self._number_of_cycle(modal.cycle))
+        for name, place in _FIELDS.items():
+            value = self._number(name, getattr(modal, name))
+            state[place] = 0.0 if value is None else value
+        return state
+
+    def cycle(self, number: float) -> Interpolation | None:
+        """The drilling cycle with a number."""
+        return self._cycles[int(number)]
+
+    @property
+    def cycle_letters(self) -> set[str]:
+        """Letters of the words of drilling cycles."""
+        plain = [each.rule for each in self._cycles if each is not None]
+        return {letter for each in plain if isinstance(each, CycleRule) for letter in each.words}
+
+    def knows_cycle(self, cycle: Interpolation | None) -> bool:
+        """Whether the kernel can drill it."""
+        return any(each is cycle for each in self._cycles)
+
+    def _number_of_cycle(self, cycle: object) -> int:
+        """Its number; 0 where the kernel knows none."""
+        return next((at for at, each in enumerate(self._cycles) if each is cycle), 0)
+
+    def _number(self, name: str, value: object) -> float | None:
+        """A value of the modal state as a number; None where the kernel has none for it."""
+        if isinstance(value, FeedMode):
+            return FEED_FACTORS.get(value)
+        if name == "interpolation":
+            return self._places.get(id(value))
+        assert isinstance(value, (bool, int, float))
+        return float(value)
+
+    def _block_tables(self, dialect: Dialect, settings: ControlSettings) -> BlockTables:
+        field = np.full(CODES, UNSUPPORTED, np.int64)
+        value = np.zeros(CODES)
+        group = np.zeros(CODES, np.int64)
+        cycle = np.full(CODES, UNSUPPORTED, np.int64)
+        for number, code in dialect.g.items():
+            group[number] = self.groups.index(code.group)
+            if "cycle" in code.sets:
+                cycle[number] = self._number_of_cycle(code.sets["cycle"])
+            meant = self._meaning(code)
+            if meant is not None:
+                field[number], value[number] = meant
+        plain = [each.rule if each else None for each in self._interpolations]
+        arcs = [each if isinstance(each, ArcRule) else ArcRule(clockwise=False) for each in plain]
+        return BlockTables(
+            field=field,
+            value=value,
+            group=group,
+            cycle=cycle,
+            cycles=_cycle_rows(self._cycles, self.token_kinds),
+            function=_functions(dialect),
+            kind=np.array([_kind(each) for each in self._interpolations]),
+            clockwise=np.array([arc.clockwise for arc in arcs]),
+            mismatch=np.array([arc.mismatch for arc in arcs]),
+            mismatch_share=np.array([arc.mismatch_share for arc in arcs]),
+            shift=np.array([arc.shift for arc in arcs]),
+            fits_radius=np.array([arc.fits_radius for arc in arcs]),
+            signed_radius=np.array([arc.signed_radius for arc in arcs]),
+            linear=np.array([kind == "linear" for kind in settings.axes.kinds]),
+        )
+
+    def _meaning(self, code: GCode) -> tuple[int, float] | None:
+        """Which place a code sets, and to what; None for a code that does more than that."""
+        if code.begins_cycle:
+            return (NOTHING, 0.0) if self._number_of_cycle(code.sets["cycle"]) else None
+        does = (code.action, code.perform, code.after)
+        if any(does) or code.once or code.alone or code.refused or not code.group:
+            return None
+        sets = {name: value for name, value in code.sets.items() if name != "cycle"}
+        if len(sets) > 1:
+            return None
+        for name, value in sets.items():
+            number = self._number(name, value) if name in _FIELDS else None
+            return None if number is None else (_FIELDS[name], number)
+        return NOTHING, 0.0
+
+
+def _interpolations(dialect: Dialect) -> list[Interpolation | None]:
+    """None, which stands for any that is not plain, then the plain ones of the dialect."""
+    found: list[Interpolation | None] = [None]
+    for code in dialect.g.values():
+        value = code.sets.get("interpolation")
+        if (
+            isinstance(value, Interpolation)
+            and value.rule is not None
+            and all(value is not each for each in found)
+        ):
+            found.append(value)
+    return found
+
+
+def _cycles(dialect: Dialect) -> list[Interpolation | None]:
+    """None, then the drilling cycles of the dialect."""
+    begun = (code.sets.get("cycle") for code in dialect.g.values())
+    return [None, *(each for each in begun if isinstance(each, Interpolation) and _drills(each))]
+
+
+def _drills(interpolation: Interpolation) -> bool:
+    return isinstance(interpolation.rule, CycleRule)
+
+
+def _cycle_rows(cycles: list[Interpolation | None], token_kinds: Mapping[str, int]) -> FloatArray:
+    parts = len(Cycle._fields)
+    rows = np.full((len(cycles), parts + 1 + max(token_kinds.values())), float(UNSUPPORTED))
+    rows[:, :parts] = 0.0
+    for row, each in zip(rows, cycles, strict=True):
+        if each is not None and isinstance(each.rule, CycleRule):
+            row[:parts] = each.rule.cycle
+            for letter in each.rule.words.keys() & token_kinds.keys():
+                row[parts + token_kinds[letter]] = each.rule.words[letter]
+    return rows
+
+
+def _rapid_feed(
+    interpolations: list[Interpolation | None],
+) -> Callable[[Control], float] | None:
+    plain = [each.rule for each in interpolations if each is not None and each.rapid]
+    return next((each.rapid_feed for each in plain if isinstance(each, LineRule)), None)
+
+
+def _functions(dialect: Dialect) -> IntArray:
+    """M codes that are only reported; a spindle's start carries its speed, and is not plain."""
+    function = np.full(CODES, EARLY if dialect.any_m else UNSUPPORTED, np.int64)
+    for number, code in dialect.m.items():
+        only_told = code.action is None and not code.silent and not code.ends
+        function[number] = (LATE if code.late else EARLY) if only_told else UNSUPPORTED
+    for start in SPINDLE_STARTS:
+        function[int(start[1:])] = UNSUPPORTED
+    return function
+
+
+def _kind(interpolation: Interpolation | None) -> int:
+    if interpolation is None:
+        return NO_MOTION
+    if isinstance(interpolation.rule, ArcRule):
+        return ARC
+    return RAPID_LINE if interpolation.rapid else FEED_LINE
+
+
+def _line_tables(dialect: Dialect, token_kinds: Mapping[str, int]) -> LineTables:
+    by_letter = np.full(26, OTHER, np.int64)
+    for letter, token_kind in token_kinds.items():
+        by_letter[ord(letter) - ord("A")] = token_kind
+    comments = dialect.syntax.comments
+    return LineTables(
+        by_letter,
+        _marks([comment.opening for comment in comments]),
+        _marks([comment.closing for comment in comments]),
+        _whole_line(comments),
+    )
+
+
+def _token_kinds(dialect: Dialect, settings: ControlSettings) -> dict[str, int]:
+    """Letters with a plain meaning; those that a dialect uses otherwise as well have none."""
+    center = {letter: CENTER + index for index, letter in enumerate("IJK")}
+    axes = {name: AXIS + index for index, name in enumerate(settings.axes.names)}
+    token_kinds = {
+        letter: token_kind
+        for letter, token_kind in {"R": RADIUS, **center, **axes}.items()
+        if letter in dialect.motion_words and (token_kind < AXIS or letter in dialect.axis_letters)
+    }
+    taken = {*dialect.words, *dialect.references, *dialect.signed, *dialect.series}
+    token_kinds = {
+        letter: token_kind for letter, token_kind in token_kinds.items() if letter not in taken
+    }
+    if dialect.words.get("F") is codes.set_feed:
+        token_kinds["F"] = FEED
+    return {**token_kinds, "N": NUMBER, "G": CODE, "M": FUNCTION}
+
+
+def _marks(texts: list[str]) -> np.ndarray[tuple[int, int], np.dtype[np.uint8]]:
+    """Texts of one or two ASCII characters, shape (n, 2); 0 where there is none."""
+    return np.array([[*text.encode("ascii"), 0, 0][:2] for text in texts], np.uint8).reshape(-1, 2)
+
+
+def _whole_line(comments: tuple[Comment, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    return np.array([comment.whole_line for comment in comments], np.bool_)

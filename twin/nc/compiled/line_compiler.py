@@ -1,0 +1,131 @@
+"""Compiles lines that are not plain into bytecode, when a run comes to them."""
+
+import numpy as np
+
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.opcodes import INTERPRETED, LARGEST_PART, Bytecode, Opcode
+from twin.nc.compiled.decode_tables import DecodeTables
+from twin.nc.compiled.kernels.expression import BINARY_FUNCTIONS, TERNARY_FUNCTIONS, UNARY_FUNCTIONS
+from twin.nc.compiled.kernels.program import unread_lines
+from twin.nc.compiled.kernels.tokenizer import CODE, FUNCTION, NUMBER
+from twin.nc.compiled.line_templates import LineTemplates
+from twin.nc.control.control import Control
+from twin.nc.text.blocks import Block
+from twin.nc.text.diagnostics import ProgramError
+
+_MEANINGS = (NUMBER, CODE, FUNCTION)
+"""Roles of words whose value says what a block is."""
+_AHEAD = 1000
+"""Lines that are looked at for further ones of known shapes: one call for many of them."""
+
+
+class LineCompiler:
+    """Compiles the program of one control.
+
+    Attributes:
+        bytecode: What was compiled.
+    """
+
+    def __init__(self, control: Control, tables: DecodeTables) -> None:
+        self._control = control
+        self._lines = tables.lines
+        self.bytecode = Bytecode(len(control.flow.lines))
+        letters = [
+            letter
+            for letter, token_kind in tables.token_kinds.items()
+            if token_kind not in _MEANINGS
+        ]
+        self._templates = LineTemplates({*letters, *tables.cycle_letters})
+        self._assembler = Assembler(
+            self.bytecode,
+            control.variables,
+            tables.token_kinds,
+            (UNARY_FUNCTIONS, BINARY_FUNCTIONS, TERNARY_FUNCTIONS),
+            NUMBER,
+            control.dialect.live_variables,
+        )
+
+    def compile(self, line: int) -> bool:
+        """Compile a line, from 0; False where the interpreter tier must run all of it."""
+        bytecode = self.bytecode
+        if self._control.dialect.compile_block is None:
+            return False
+        bytecode.make_room()
+        lines = self._control.flow.lines
+        key, numbers = self._templates.split(lines[line])
+        if self._copy(line, key, numbers):
+            page = lines.page_of(line)
+            ahead = unread_lines(
+                page.data,
+                page.starts,
+                page.lines.start,
+                self._lines,
+                bytecode.table.first,
+                line,
+                _AHEAD,
+            )
+            for each in ahead.tolist():
+                self._copy(each, *self._templates.split(lines[each]))
+            return True
+        first = bytecode.rows
+        known = self._compile_line(line)
+        if known:
+            rows = slice(first, bytecode.rows)
+            self._templates.keep(key, numbers, bytecode.table, rows, self._assembler.columns)
+        return known
+
+    def _copy(self, line: int, key: tuple[str, ...], numbers: list[float]) -> bool:
+        """Compile a line from the template of its shape; False where there was none."""
+        template = self._templates.find(key, numbers)
+        if template is None:
+            return False
+        row = self.bytecode.add_rows(
+            template.opcodes,
+            template.operands,
+            template.immediates,
+            np.array(numbers),
+            template.places,
+        )
+        self.bytecode.begins(line, row)
+        return True
+
+    def _compile_line(self, line: int) -> bool:
+        bytecode = self.bytecode
+        blocks = self._control.flow.quiet_blocks(line)
+        if blocks is None or len(blocks) > LARGEST_PART:
+            bytecode.begins(line, INTERPRETED)
+            return False
+        first, before = bytecode.rows, None
+        any_known = not blocks
+        for block in blocks:
+            if before is not None:
+                bytecode.lead_here(before)
+            before = bytecode.rows
+            known = self._compile_block(block)
+            if not known:
+                bytecode.take_back(before)
+                bytecode.add(Opcode.BLOCK)
+                bytecode.add(Opcode.TRAP)
+            any_known = any_known or known
+        if not blocks:
+            bytecode.add(Opcode.NEXT)
+        if not any_known:
+            bytecode.take_back(first)
+        bytecode.begins(line, first if any_known else INTERPRETED)
+        return any_known
+
+    def _compile_block(self, block: Block) -> bool:
+        control = self._control
+        before = control.block, control.report.line
+        control.block = block
+        try:
+            self._assembler.begin(block)
+            if not (block.skippable and control.settings.block_skip):
+                assert control.dialect.compile_block is not None
+                control.dialect.compile_block(control, block, self._assembler)
+        except (UnsupportedError, ProgramError):
+            return False
+        finally:
+            control.block, control.report.line = before
+        self._assembler.end()
+        return True

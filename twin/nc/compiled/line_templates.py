@@ -1,0 +1,110 @@
+"""Lines that differ in their numbers alone are compiled alike: once, for all of them.
+
+A post-processor's program may hold a hundred thousand lines such as ``X[P1+2.5]``; reading each as
+an expression would cost more than running it.
+"""
+
+import dataclasses
+import re
+from collections.abc import Iterable
+
+import numpy as np
+
+from twin.nc.bytecode.opcodes import BytecodeTable, Opcode
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.compiled.kernels.tokenizer import CODE, FUNCTION
+from twin.nc.text.expressions import LARGEST_NUMBER, NUMBER
+
+_LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)
+_SHARED = (Opcode.SNAPSHOT, Opcode.CYCLE_WORD)
+"""Opcodes of lines that may share a template, besides those that compute and move."""
+_MOST_TEMPLATES = 1000
+"""Templates that are kept: a program that has more gains nothing by them."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Template:
+    """What the lines of one shape do.
+
+    Attributes:
+        opcodes: Shape (n,).
+        operands: Shape (n,).
+        immediates: Of the line that was compiled, shape (n,).
+        places: Rows whose number is the line's own, in the order of its text, shape (m,).
+    """
+
+    opcodes: IntArray
+    operands: IntArray
+    immediates: FloatArray
+    places: IntArray
+
+
+class LineTemplates:
+    """The templates of one program's lines."""
+
+    def __init__(self, letters: Iterable[str]) -> None:
+        """Know no template yet.
+
+        Args:
+            letters: Those of words whose value does not change what the block is.
+        """
+        # A word with its number, or a number that belongs to no name.
+        self._number = re.compile(
+            rf"((?<![\w.$#])[{''.join(letters)}][ \t]*[-+]?{NUMBER}|(?<![\w.$#]){NUMBER})",
+            re.IGNORECASE,
+        )
+        self._templates: dict[tuple[str, ...], Template] = {}
+
+    def split(self, text: str) -> tuple[tuple[str, ...], list[float]]:
+        """A line without its numbers, and these."""
+        label = _LABEL.match(text)
+        pieces = self._number.split(text if label is None else text[label.end() :])
+        words = pieces[1::2]
+        numbers = [0.0 if label is None else float(label[1])]
+        for at, word in enumerate(words):
+            letter = word[0] if word[0].isalpha() else ""
+            numbers.append(float(word[1:] if letter else word))
+            pieces[2 * at + 1] = letter
+        if label is not None:
+            return ("N", *pieces), numbers
+        return tuple(pieces), numbers[1:]
+
+    def find(self, key: tuple[str, ...], numbers: list[float]) -> Template | None:
+        """The template for a line that was split, or None."""
+        template = self._templates.get(key)
+        if template is None or any(not abs(number) <= LARGEST_NUMBER for number in numbers):
+            return None
+        return template
+
+    def keep(
+        self,
+        key: tuple[str, ...],
+        numbers: list[float],
+        table: BytecodeTable,
+        rows: slice,
+        columns: list[int],
+    ) -> None:
+        """Remember what a line does, where its numbers are all that it does not share.
+
+        Args:
+            key: The line without its numbers.
+            numbers: Its numbers.
+            table: The instructions.
+            rows: Those of the line.
+            columns: Where the word stands that each of the rows of a line of one block belongs to.
+        """
+        opcodes, operands = table.opcode[rows].copy(), table.operand[rows].copy()
+        own = np.flatnonzero(
+            (opcodes == Opcode.CONSTANT)
+            | ((opcodes == Opcode.WORD_CONSTANT) & ~np.isin(operands, (CODE, FUNCTION)))
+        )
+        shared = len(columns) == len(opcodes) and (
+            ((opcodes <= Opcode.RUN) | np.isin(opcodes, _SHARED)).all()
+            and (opcodes[1:] != Opcode.BLOCK).all()
+            and len(self._templates) < _MOST_TEMPLATES
+        )
+        if not shared:
+            return
+        own = own[np.argsort(np.array(columns)[own], kind="stable")]
+        if table.immediate[rows][own].tolist() == numbers:
+            self._templates[key] = Template(opcodes, operands, table.immediate[rows].copy(), own)

@@ -1,0 +1,244 @@
+"""The compiled tier: plain and compiled blocks go past the control's words, in one compiled loop.
+
+The control stays the one place that knows what a program means. It hands its state to the loop,
+the loop runs blocks as far as they are plain, and the control takes the state back; where a
+dialect remembers something that acts on such blocks, they go the interpreter tier.
+"""
+
+import math
+
+import numpy as np
+
+from twin.nc.bytecode.frames import FULL, OFF_PAGE, PAUSED, TRAPPED, UNCOMPILED_LINE
+from twin.nc.bytecode.registers import (
+    CYCLE,
+    CYCLE_STATE,
+    CYCLE_WORDS,
+    IN_SPINDLE,
+    MATRIX,
+    PROGRAMMED_FEED,
+    REGISTERS,
+    ROTATION,
+    SCALE,
+    SELECTED,
+    SIGNS,
+    SPINDLE,
+    TURNED,
+    Constants,
+    Rows,
+    State,
+)
+from twin.nc.canonical import FloatArray
+from twin.nc.compiled.contour_columns import fill, gone, new_contour
+from twin.nc.compiled.decode_tables import FEED_FACTORS, DecodeTables
+from twin.nc.compiled.kernels.block import new_scratch
+from twin.nc.compiled.kernels.cycle import MOST_STOPS
+from twin.nc.compiled.kernels.program import run_program
+from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
+from twin.nc.compiled.line_compiler import LineCompiler
+from twin.nc.compiled.state_transfer import StateTransfer, put_into_force
+from twin.nc.control.control import Control
+from twin.nc.control.drilling_cycle import most_acts, no_values
+from twin.nc.geometry.planes import PLANE_ORDER
+from twin.nc.path.contour_registers import Row
+from twin.nc.path.event_columns import EventRows
+from twin.nc.path.move_columns import CHUNK
+from twin.nc.text.lines import Page
+
+_PLANES = np.array([plane.axes for plane in PLANE_ORDER])
+_WORTHWHILE = 4
+"""Blocks that a run must have to pay for handing the state over and back."""
+_LONGEST_PAUSE = 256
+"""Blocks after which a new run is tried, where plain blocks are rare."""
+_MOST = 200_000
+"""Blocks after which a run without moves lets an interruption through."""
+
+
+class VirtualMachine:
+    """Runs plain blocks, and those that were compiled, for a control.
+
+    Attributes:
+        full: The path has no room for the next block's moves.
+    """
+
+    def __init__(self, control: Control) -> None:
+        axes = len(control.settings.axes)
+        self._control = control
+        self._lines = control.flow.lines
+        self._page = Page(0, b"")
+        self._tables = DecodeTables(control.dialect, control.settings)
+        self._line_compiler = LineCompiler(control, self._tables)
+        self._rows = Rows(
+            np.zeros((CHUNK, 5), np.int64),
+            np.zeros((CHUNK, 11)),
+            np.zeros((CHUNK, 3, axes)),
+            np.zeros((CHUNK, 4), np.int64),
+            np.zeros(CHUNK),
+        )
+        table = control.tools.table
+        self._tools = np.array([float(number) for number in table])
+        self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
+        self._radii = np.array([tool.radius for tool in table.values()])
+        self._hole = np.zeros((4, most_acts(MOST_STOPS)))
+        self._contour = new_contour(axes)
+        self._bench = new_scratch(self._state())
+        self._pause = 1
+        self._wait = 0
+        self.full = False
+
+    def run(self) -> bool:
+        """Run the blocks that come next as far as possible; False when one is for the control."""
+        self.full = False
+        if self._wait > 0:
+            self._wait -= 1
+            return False
+        control = self._control
+        room = CHUNK - len(control.path)
+        if room <= 0 or not self._may_run():
+            return False
+        state, rows = self._state(), self._rows.first(room)
+        fill(self._contour, control.path.followed, control.path.position)
+        transfer = StateTransfer(control, state, self._contour)
+        why = self._run(state, rows, transfer)
+        self.full = why == FULL and room - transfer.made < CHUNK
+        worthwhile = transfer.blocks >= _WORTHWHILE
+        if why == TRAPPED:
+            self._wait = 1 if worthwhile else self._pause
+        self._pause = 1 if worthwhile or why != TRAPPED else min(2 * self._pause, _LONGEST_PAUSE)
+        if not transfer.gone_on:
+            return self.full
+        transfer.give_back()
+        self._give_back(state, rows.first(transfer.made))
+        return True
+
+    def _run(self, state: State, rows: Rows, transfer: StateTransfer) -> int:
+        """Run; why the run ended."""
+        line_compiler, constants = self._line_compiler, self._constants()
+        bytecode = line_compiler.bytecode
+        while True:
+            why = run_program(
+                self._page.data,
+                self._page.starts,
+                self._page.lines.start,
+                self._tables.lines,
+                self._tables.blocks,
+                constants,
+                state,
+                rows,
+                bytecode.table,
+                transfer.routine,
+                self._bench,
+                _MOST,
+            )
+            if why == OFF_PAGE:
+                self._page = self._lines.page_of(transfer.line)
+            elif why == UNCOMPILED_LINE:
+                if not line_compiler.compile(transfer.line):
+                    return TRAPPED
+            elif why != PAUSED:
+                return why
+
+    def _may_run(self) -> bool:
+        control = self._control
+        modal, disturbed = control.modal, control.dialect.disturbed
+        return (
+            self._tables.knows_cycle(modal.cycle)
+            and modal.plane in PLANE_ORDER
+            and modal.feed_mode in FEED_FACTORS
+            and modal.correct_center
+            and control.path.hands_over
+            and math.isnan(control.rapid_acceleration)
+            and math.isnan(control.rapid_deceleration)
+            and not (control.axis_limits or control.axis_accelerations)
+            and (disturbed is None or not disturbed(control))
+        )
+
+    def _constants(self) -> Constants:
+        control, rapid = self._control, self._tables.rapid_feed
+        return Constants(
+            default_feed=control.settings.default_feed,
+            default_rotary_feed=control.settings.default_rotary_feed,
+            feed_may_lack=control.report.has_said("no-feed"),
+            rapid_feed=control.rapid_feed,
+            own_rapid_feed=math.nan if rapid is None else rapid(control),
+            last_values=np.array(
+                [control.modal.corner_tolerance, control.acceleration, control.deceleration]
+            ),
+            planes=_PLANES,
+            tools=self._tools,
+            longer=self._longer,
+            radii=self._radii,
+            square_corners=control.modal.square_corners,
+            indirect_leads=control.modal.indirect_leads,
+            over=np.zeros(len(control.part)),
+            room=np.zeros((3, len(control.part))),
+            hole=self._hole,
+        )
+
+    def _state(self) -> State:
+        control = self._control
+        return State(
+            modal=self._tables.modal(control.modal),
+            active_codes=np.full(len(self._tables.groups), UNSUPPORTED, np.int64),
+            programmed=np.array(control.programmed),
+            part=np.array(control.part),
+            event_count=np.zeros(1, np.int64),
+            registers=self._registers(),
+            shifts=np.array(control.frame.shifts),
+            total=np.array(control.frame.total),
+            target=np.zeros(len(control.part)),
+        )
+
+    def _registers(self) -> FloatArray:
+        control = self._control
+        registers = np.zeros(REGISTERS)
+        registers[CYCLE_STATE:CYCLE_WORDS], registers[CYCLE_WORDS:MATRIX] = (
+            control.hole_values,
+            math.nan,
+        )
+        registers[SCALE], registers[ROTATION], registers[SIGNS:CYCLE_STATE] = 1.0, math.nan, 1.0
+        registers[TURNED] = not control.frame.is_identity
+        registers[MATRIX:] = np.ravel(control.frame.matrix)
+        tools = control.tools
+        for place, value in (
+            (PROGRAMMED_FEED, control.feed),
+            (SPINDLE, control.spindle),
+            (SELECTED, tools.selected),
+            (IN_SPINDLE, tools.spindle),
+        ):
+            registers[place] = math.nan if value is None else value
+        for place, number in control.dialect.registers(control).items():
+            registers[place] = number
+        return registers
+
+    def _take_registers(self, registers: list[float]) -> None:
+        control = self._control
+        control.feed, speed, selected, in_spindle = (
+            None if math.isnan(registers[place]) else registers[place]
+            for place in (PROGRAMMED_FEED, SPINDLE, SELECTED, IN_SPINDLE)
+        )
+        control.spindle = speed
+        control.tools.selected = None if selected is None else int(selected)
+        control.tools.spindle = None if in_spindle is None else int(in_spindle)
+        control.dialect.take_registers(control, registers)
+
+    def _give_cycle_back(self, state: State) -> None:
+        cycle = self._tables.cycle(state.modal[CYCLE])
+        values = state.registers[CYCLE_STATE:CYCLE_WORDS].tolist()
+        self._control.modal.cycle = cycle
+        self._control.hole_values = no_values() if cycle is None else values
+
+    def _give_back(self, state: State, rows: Rows) -> None:
+        control = self._control
+        put_into_force(control, state.active_codes)
+        self._give_cycle_back(state)
+        self._take_registers(state.registers.tolist())
+        control.frame.set_shifts(state.shifts.tolist())
+        a, b, c, d, e, f, g, h, i = state.registers[MATRIX:].tolist()
+        control.frame.set_matrix(((a, b, c), (d, e, f), (g, h, i)))
+        event_count = int(state.event_count[0])
+        events = EventRows(rows.events[:event_count], rows.event_values[:event_count])
+        moves = Row(rows.codes, rows.values, rows.positions)
+        gone_on, placed = gone(self._contour, moves, events)
+        control.path.add_rows(moves, placed, gone_on)
+        control.came_to(state.programmed.tolist(), state.part.tolist(), gone_on.latest)
