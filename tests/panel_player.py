@@ -66,7 +66,7 @@ class Player:
         self.page = page
 
     @property
-    def machine(self):  # noqa: ANN201 (the room of the session, which rewinding replaces)
+    def machine(self):
         """The machine as it is."""
         return self.room.session.room
 

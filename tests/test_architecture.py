@@ -18,7 +18,18 @@ MAY_IMPORT = {
     "compare": {"nc", "toolpath", "motion", "logs"},
     "cutting": {"nc", "toolpath", "motion"},
     "render": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "logs"},
-    "training": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "render", "logs"},
+    "web": set(),
+    "training": {
+        "nc",
+        "toolpath",
+        "motion",
+        "machine",
+        "compare",
+        "cutting",
+        "render",
+        "logs",
+        "web",
+    },
 }
 ROOMS = set(MAY_IMPORT)
 NO_MUJOCO = ROOMS - {"machine", "render", "training"}

@@ -1,7 +1,9 @@
 """Who may come in: hosts, origins, tokens, cookies, and what every answer says to the browser."""
 
+import contextlib
 import http.client
 import re
+from typing import NamedTuple
 
 import pytest
 from starlette.responses import PlainTextResponse
@@ -12,9 +14,17 @@ from twin.web.doorkeeper import Doorkeeper
 from twin.web.guard import Guard
 from twin.web.server import WebServer
 
+GUESS = "guess"
+
 
 async def inside(scope, receive, send) -> None:
     await PlainTextResponse(f"inside as {scope['twin_role']}")(scope, receive, send)
+
+
+class Answer(NamedTuple):
+    status: int
+    content: str
+    headers: dict[str, str]
 
 
 class House:
@@ -26,18 +36,17 @@ class House:
 
     def ask(self, path="/operator/", method="GET", body=None, **headers):
         line = http.client.HTTPConnection("127.0.0.1", self.server.port, timeout=10)
-        line.request(method, path, body=body, headers=headers)
-        answer = line.getresponse()
-        answer.content = answer.read().decode()
-        line.close()
-        return answer
+        with contextlib.closing(line):
+            line.request(method, path, body=body, headers=headers)
+            answer = line.getresponse()
+            return Answer(answer.status, answer.read().decode(), dict(answer.getheaders()))
 
     def enter(self, role="operator", token=None, **headers):
         token = self.doorkeeper.tokens[role] if token is None else token
         return self.ask(f"/enter/{role}", "POST", token, **({"Origin": self.own} | headers))
 
     def cookie(self, role="operator") -> str:
-        return self.enter(role).getheader("Set-Cookie").split(";")[0]
+        return self.enter(role).headers["Set-Cookie"].split(";")[0]
 
 
 @pytest.fixture
@@ -67,7 +76,7 @@ def test_without_a_token_there_is_only_the_page_that_hands_one_in(house):
 def test_a_token_is_handed_in_once_and_kept_where_no_script_reads_it(house):
     answer = house.enter()
     assert answer.status == 204
-    kept = answer.getheader("Set-Cookie")
+    kept = answer.headers["Set-Cookie"]
     assert house.doorkeeper.tokens["operator"] not in kept
     for word in ("Secure", "HttpOnly", "SameSite=Strict", "Path=/operator"):
         assert word in kept
@@ -98,8 +107,8 @@ def test_a_name_that_is_not_this_computers_is_refused(house):
 def test_guesses_are_braked_and_those_who_are_in_stay_in(house, monkeypatch):
     cookie = house.cookie()
     for _ in range(doorkeeper.GUESSES):
-        assert house.enter(token="guess").status in (401, 429)
-    assert house.enter(token="guess").status == 429
+        assert house.enter(token=GUESS).status in (401, 429)
+    assert house.enter(token=GUESS).status == 429
     assert house.enter().status == 429
     assert house.ask(Cookie=cookie).status == 200
     monkeypatch.setattr(doorkeeper, "GUESSES_S", 0.0)
@@ -108,13 +117,13 @@ def test_guesses_are_braked_and_those_who_are_in_stay_in(house, monkeypatch):
 
 def test_every_answer_tells_the_browser_to_trust_nobody_else(house):
     for answer in (house.ask(), house.ask(Cookie=house.cookie()), house.ask("/x"), house.enter()):
-        policy = answer.getheader("Content-Security-Policy")
+        policy = answer.headers["Content-Security-Policy"]
         assert "default-src 'none'" in policy
         assert "unsafe" not in policy
-        assert answer.getheader("Referrer-Policy") == "no-referrer"
-        assert answer.getheader("X-Frame-Options") == "DENY"
-        assert answer.getheader("X-Content-Type-Options") == "nosniff"
-        assert answer.getheader("Server") is None
+        assert answer.headers.get("Referrer-Policy") == "no-referrer"
+        assert answer.headers.get("X-Frame-Options") == "DENY"
+        assert answer.headers.get("X-Content-Type-Options") == "nosniff"
+        assert answer.headers.get("Server") is None
 
 
 @pytest.mark.parametrize("method", ["PUT", "DELETE", "TRACE", "OPTIONS"])

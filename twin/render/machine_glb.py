@@ -6,6 +6,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import trimesh
+from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from twin.cutting.tools import ToolPlan
@@ -161,7 +162,7 @@ def _mesh(model: mujoco.MjModel, geom: int) -> trimesh.Trimesh | None:
         mesh.unmerge_vertices()
     else:
         return None
-    mesh.visual = trimesh.visual.TextureVisuals(material=_material(model, geom))
+    mesh.visual = TextureVisuals(material=_material(model, geom))
     return mesh
 
 

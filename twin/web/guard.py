@@ -86,7 +86,11 @@ class Guard:
     async def _entry(self, what: str, scope: Scope, receive: Receive) -> Response:
         """The script of the entry page, or a token that is handed in."""
         if scope["method"] != "POST":
-            return FileResponse(ASSETS / "enter.js") if what == "enter.js" else Response(status_code=404)
+            return (
+                FileResponse(ASSETS / "enter.js")
+                if what == "enter.js"
+                else Response(status_code=404)
+            )
         body = b""
         more = True
         while more and len(body) <= _TOKEN_LIMIT:

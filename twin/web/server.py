@@ -8,7 +8,7 @@ import socket
 import ssl
 import threading
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import uvicorn
 from starlette.types import ASGIApp
@@ -35,9 +35,9 @@ LONGEST_MESSAGE = 16384
 class BoundedProtocol(H11Protocol):
     """HTTP with an end to lines that say nothing, or only little by little."""
 
-    _waiting: "collections.OrderedDict[BoundedProtocol, None]" = collections.OrderedDict()
+    _waiting: ClassVar["collections.OrderedDict[BoundedProtocol, None]"] = collections.OrderedDict()
 
-    def connection_made(self, transport: asyncio.Transport) -> None:  # pyright: ignore[reportIncompatibleMethodOverride] (as uvicorn's own)
+    def connection_made(self, transport: asyncio.Transport) -> None:
         """A line was opened."""
         super().connection_made(transport)
         self._waiting[self] = None

@@ -8,6 +8,7 @@ import pytest
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import Words
 from twin.training.server.driver import HELD_S, Driver
+from twin.training.session.log import Who
 from twin.training.session.score import score_sheet
 from twin.training.session.session import Session
 
@@ -25,7 +26,7 @@ def run_for(driver: Driver, seconds: float) -> None:
         driver._step(0.01)
 
 
-def ask(driver: Driver, name: str, who="operator", **given) -> None:
+def ask(driver: Driver, name: str, who: Who = "operator", **given: object) -> None:
     driver.ask({"do": name, **given}, who, PAGE)
     driver._step(0.0)
 
@@ -168,7 +169,9 @@ def test_only_the_trainer_breaks_things_and_repair_takes_everything_back(driver)
     ask(driver, "repair", "trainer")
     machine = driver.session.room.machine.machine
     sound = driver.session.scene.preparation.machine
-    assert [machine.axis(n) for n in machine.axes.names] == [sound.axis(n) for n in sound.axes.names]
+    assert [machine.axis(n) for n in machine.axes.names] == [
+        sound.axis(n) for n in sound.axes.names
+    ]
     assert np.array_equal(tables.zero, zero)
     assert not driver.session.room.faults
 

@@ -52,7 +52,9 @@ def test_a_page_that_follows_has_the_stock_as_it_is_cut():
 def test_words_are_sent_when_they_change():
     driver = Driver(Session(read_scene(scene_path("fagor_first_steps"))))
     changes = Changes()
-    assert {"program", "mode", "alarm", "verdicts"} <= set(changes.since_last(panel_words(driver.look)))
+    assert {"program", "mode", "alarm", "verdicts"} <= set(
+        changes.since_last(panel_words(driver.look))
+    )
     assert not changes.since_last(panel_words(driver.look))
     driver.ask({"do": "mode", "mode": "jog"}, "operator", 1)
     driver._step(0.01)
@@ -64,7 +66,10 @@ def test_the_panel_is_asked_for_and_given():
     seats = Seats()
     first, second, trainer = seats.sit("operator"), seats.sit("operator"), seats.sit("trainer")
     watcher = seats.sit("watcher")
-    assert first and second and trainer and watcher
+    assert first is not None
+    assert second is not None
+    assert trainer is not None
+    assert watcher is not None
     start, stop = {"do": "cycle_start"}, {"do": "emergency_stop"}
     assert [seats.may(one, start) for one in (first, second, trainer, watcher)] == [True, False, True, False]  # fmt: skip
     assert [seats.may(one, stop) for one in (first, second, trainer, watcher)] == [True, True, True, False]  # fmt: skip

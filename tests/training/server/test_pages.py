@@ -28,7 +28,7 @@ INSIDE = """() => [...document.querySelectorAll(
   const box = one.getBoundingClientRect(), out = [];
   if (box.width < 1 || box.height < 1) out.push("no size");
   if (box.left < -0.5 || box.top < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5) out.push("off the page");
-  if (one.matches("button, .chip, td") && (one.scrollWidth > one.clientWidth + 1 || one.scrollHeight > one.clientHeight + 1)) out.push("cut off");
+  if (one.matches("button, .chip, td, .key") && (one.scrollWidth > one.clientWidth + 1 || one.scrollHeight > one.clientHeight + 1)) out.push("cut off");
   for (let up = one.parentElement; up; up = up.parentElement) {
     const outer = up.getBoundingClientRect();
     if (getComputedStyle(up).overflow !== "visible" && (box.right > outer.right + 1 || box.bottom > outer.bottom + 1)) out.push(`beyond ${up.id}`);

@@ -1,6 +1,6 @@
 // The desk: modes, start and stop, jog keys, dials, spindle and coolant, the emergency stop.
 
-import { act_on, key, light, make, write } from "./parts.js";
+import { act_on, key, label_key, light, make, write } from "./parts.js";
 
 const STEPS = [0.01, 0.1, 1, 10, null];
 const JOG_FEED = { mm: 2000, deg: 1800 };
@@ -151,7 +151,7 @@ export class Desk {
     if (axes !== this.axes) {
       this.axes = axes;
       this.add_axes(now.axes, words);
-      for (const [name, button] of Object.entries(this.keys)) write(button, words.label(name));
+      for (const [name, button] of Object.entries(this.keys)) label_key(button, words.label(name));
       for (const [name, { less, more }] of Object.entries(this.dials)) {
         less.setAttribute("aria-label", `${words.label(`${name}_override`)} −`);
         more.setAttribute("aria-label", `${words.label(`${name}_override`)} +`);

@@ -13,7 +13,7 @@ const LANGUAGE_NAMES = { en: "English", ru: "Русский", it: "Italiano", cs
 
 const scene = await (await fetch("scene.json")).json();
 const now = { role: location.pathname.split("/")[1] };
-let words, tool = null, follow = "start", queued = false;
+let words, told = null, tool = null, follow = "start", queued = false;
 const changed = new Set();
 
 const base = new URL("./", location.href).pathname;
@@ -24,13 +24,18 @@ const view = new View(document.getElementById("canvas"), base, (what, detail) =>
 const line = new Connection(hear, (down) => {
   document.body.dataset.line = down ? "down" : "up";
   if (down) banner("connection_lost");
-  else if (document.body.dataset.view !== "failed") document.getElementById("banner").hidden = true;
+  else if (document.body.dataset.view !== "failed") {
+    told = null;
+    document.getElementById("banner").hidden = true;
+  }
 });
 const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, view);
 
 function banner(name, detail = "") {
+  told = [name, detail];
+  if (!words) return;
   const element = document.getElementById("banner");
-  element.textContent = `${words ? words.label(name) : name} ${detail}`;
+  element.textContent = `${words.label(name)} ${detail}`;
   element.hidden = false;
 }
 
@@ -102,6 +107,7 @@ async function speak(language) {
     });
     return button;
   }));
+  if (told) banner(...told);
   for (const name of Object.keys(now)) changed.add(name);
   show_soon();
 }

@@ -20,6 +20,13 @@ export function key(label, act, { lamp = "cyan", atOnce = false, name = null, cl
   return button;
 }
 
+/** Put a word on a key, in smaller letters where its longest part is too long for the key. */
+export function label_key(button, text) {
+  write(button, text);
+  const longest = Math.max(...text.split(/[\s-]/).map((part) => part.length));
+  button.style.setProperty("--fit", Math.min(1, 8.2 / longest));
+}
+
 /** Let a button act: when it is let go, or at once; by the keyboard too. */
 export function act_on(button, act, atOnce = false) {
   button.addEventListener("mousedown", (event) => event.preventDefault());

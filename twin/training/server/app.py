@@ -215,9 +215,7 @@ class RoomApp:
             look = self._driver.look
             self._stock.note(self._driver.seen)
             patch, epoch, version = self._stock.patch(epoch, version)
-            words = changes.since_last(
-                self._translated(panel_words(look)) | self.seats.words(page)
-            )
+            words = changes.since_last(self._translated(panel_words(look)) | self.seats.words(page))
             messages: list[bytes | str] = [state_message(look, cutting=patch is not None)]
             if words:
                 messages.append(json.dumps(words, ensure_ascii=False))

@@ -145,7 +145,9 @@ class Driver:
                 done = True
                 accepted = self.session.submit(command, who)
                 if accepted and _moves_while_held(command):
+                    # From here on: what it took to begin the motion is no silence of the page.
                     self._holder = page
+                    self._beats[page] = time.perf_counter()
         if done:
             self._shown = -1.0
             self._changed()

@@ -23,7 +23,14 @@ PATCHES_KEPT = 512
 LEVELS = 65535
 """Heights travel as so many steps between the blank's underside and its top."""
 
-_STATE_ALONE = ("time_s", "position", "machine_position", "distance_to_go", "following_error", "load")
+_STATE_ALONE = (
+    "time_s",
+    "position",
+    "machine_position",
+    "distance_to_go",
+    "following_error",
+    "load",
+)
 _IN_STATE = frozenset({*_STATE_ALONE, "feed", "speed", "trail", "moving"})
 
 
@@ -36,13 +43,7 @@ def state_message(look: Look, cutting: bool) -> bytes:
     4 the spindle turns, 8 coolant, 16 material is being cut.
     """
     now = look.now
-    flags = (
-        now.moving
-        | now.touches << 1
-        | now.spindle.turns << 2
-        | now.coolant << 3
-        | cutting << 4
-    )
+    flags = now.moving | now.touches << 1 | now.spindle.turns << 2 | now.coolant << 3 | cutting << 4
     rows = [getattr(now, name) for name in _STATE_ALONE[1:]]
     numbers = [now.time_s, now.speed, now.feed, now.spindle.speed or 0.0, *now.trail]
     for row in rows:

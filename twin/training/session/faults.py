@@ -25,7 +25,9 @@ def inject(room: Observed, fault: FaultTable) -> None:
     else:
         sound = room.scene.preparation.machine.axis(fault.axis)
         room.machine.change(fault.axis, **_axis_change(fault, sound))
-        room.faults[:] = [one for one in room.faults if (one.kind, one.axis) != (fault.kind, fault.axis)]
+        room.faults[:] = [
+            one for one in room.faults if (one.kind, one.axis) != (fault.kind, fault.axis)
+        ]
     room.faults.append(fault)
 
 

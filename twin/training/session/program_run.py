@@ -336,8 +336,8 @@ class ProgramRunCopy:
 
     def made_again(self) -> ProgramRun:
         """The run as it was when it was copied."""
-        *made_of, soft_limits = self.recipe
-        run = ProgramRun(*made_of, soft_limits=soft_limits)
+        source, dialect, settings, machine, soft_limits = self.recipe
+        run = ProgramRun(source, dialect, settings, machine, soft_limits=soft_limits)
         for what, *given in self.journal:
             if what == "drive":
                 times, count, feed, rapid, single = given

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from twin.cutting.tools import default_cell
 from twin.errors import TwinError, UsageError
+from twin.job.job_file import StockTable, ToolTable
 from twin.machine.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.machine.live import LiveMachine
-from twin.cutting.tools import default_cell
-from twin.job.job_file import StockTable, ToolTable
 from twin.machine.model import spindle_over_table_mm
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
@@ -358,7 +358,7 @@ class Room:
 
     def fail(self, message: str) -> None:
         """Something went wrong within the program that simulates: the axes brake, nothing ends."""
-        self.machine.raise_alarm("external", message)
+        self.machine.raise_alarm("emergency-stop", message)
         self.raise_alarm("internal", message)
 
     def _begin_in_alarm(self, code: str) -> None:
