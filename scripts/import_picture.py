@@ -17,9 +17,9 @@ ROOT = Path(__file__).resolve().parent.parent
 FLOORS: Mapping[str, tuple[str, ...]] = {
     "twin": (
         "errors units version",
-        "columns files compilation",
+        "columns files compilation web",
         "nc job",
-        "toolpath",
+        "toolpath logs",
         "motion",
         "recording",
         "machine compare cutting",
@@ -35,11 +35,11 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "canonical geometry",
         "functions text",
         "path",
-        "control",
         "bytecode",
+        "control",
         "iso",
         "compiled dialects",
-        "interpreter describe",
+        "interpreter",
         "jsonl",
     ),
     "twin.motion": (
@@ -51,7 +51,32 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "planner",
         "live report",
     ),
-    "twin.training": ("scene", "session", "panel", "server"),
+    "twin.compare": (
+        "figures statistics_kernels",
+        "statistics",
+        "circular contour",
+        "comparison",
+        "trace verdict tracks",
+        "result baseline_text track_comparison",
+        "baseline report",
+    ),
+    "twin.render": (
+        "drawing",
+        "scene",
+        "doctor frames hud machine_glb",
+        "encoder gauge",
+        "still",
+        "film inspection_still",
+    ),
+    "twin.run": (
+        "stages progress run_folder",
+        "placement outcome",
+        "preparation",
+        "dry_run machining messages replay",
+        "run",
+        "results",
+    ),
+    "twin.training": ("scene", "session", "server"),
 }
 """Of each folder with rooms, its rooms from the ground up; those of one floor know nothing of each
 other. An import leads down, never up."""

@@ -15,9 +15,9 @@ from twin.machine.config import Machine
 from twin.machine.model import build_spec
 from twin.machine.tool_shape import COLLISION_GROUP, VISUAL_GROUP
 from twin.nc.canonical import FloatArray
-from twin.render.placement import ROTARY_TABLE, SPINDLE_NOSE, Placement, place
-from twin.render.tool_body import PREFIX, ToolBodies
-from twin.render.work_holding import add_work_holding
+from twin.render.scene.placement import ROTARY_TABLE, SPINDLE_NOSE, Placement, place
+from twin.render.scene.tool_body import PREFIX, ToolBodies
+from twin.render.scene.work_holding import add_work_holding
 from twin.units import MM
 
 COLLISION_PREFIX = "collision "

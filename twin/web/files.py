@@ -6,7 +6,7 @@ from twin.errors import UsageError
 
 ASSETS = Path(__file__).resolve().parent / "assets"
 THREE = ASSETS / "three"
-"""Put there by the build hook of this project; not committed."""
+"""Put there by ``scripts/fetch_three.py``; not committed."""
 
 
 def require_three() -> None:
@@ -18,5 +18,5 @@ def require_three() -> None:
     if not (THREE / "three.module.js").is_file():
         raise UsageError(
             "three.js is missing, which a checkout fetches when it is set up: "
-            "run scripts/setup.sh, or python hatch_build.py"
+            "run scripts/setup.sh, or python scripts/fetch_three.py"
         )

@@ -18,7 +18,9 @@ pytestmark = [
     pytest.mark.skipif(
         importlib.util.find_spec("playwright") is None, reason="no playwright to lead the browser"
     ),
-    pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run hatch_build.py"),
+    pytest.mark.skipif(
+        not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py"
+    ),
 ]
 
 SIZES = [(1024, 768, 1), (1280, 720, 1), (1366, 768, 1), (1920, 1080, 1), (1280, 720, 2), (820, 1180, 2), (1180, 820, 2)]  # fmt: skip

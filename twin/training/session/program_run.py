@@ -22,8 +22,8 @@ from twin.machine.travel import soft_limit_alarm
 from twin.motion.live.live_motion import LiveMotion
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves
-from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
+from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import PROGRAM_STOPS, TOOL_CHANGE
 from twin.nc.text.blocks import Block
@@ -100,7 +100,7 @@ class ProgramRun:
         self._journal: list[tuple[Any, ...]] = []
         self._machine = machine
         self._limits = motion_limits(machine)
-        self._control = Control(dialect, settings, source)
+        self._control = Executor(dialect, settings, source)
         self._control.prepare()
         self._soft_limits = soft_limits
         self.dropped = False
@@ -235,7 +235,7 @@ class ProgramRun:
         try:
             while most > 0 and not enough and self.ending is None:
                 most -= 1
-                block = None if control.ended else control.flow.next()
+                block = None if control.ended else control.program_counter.next()
                 if block is None:
                     control.finish()
                     self.ending = "end"
