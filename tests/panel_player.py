@@ -13,7 +13,7 @@ from twin.training.scene.scene_file import Scene, StepTable
 from twin.training.server.launch import OpenRoom, open_room
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, BrowserContext, Page
 
 PATIENCE_S = 90.0
 STEPS = (10.0, 1.0, 0.1, 0.01)
@@ -43,9 +43,11 @@ def browser() -> Iterator["Browser"]:
         opened.close()
 
 
-def open_page(room: OpenRoom, context: object, role: str = "operator", query: str = "") -> "Page":
+def open_page(
+    room: OpenRoom, context: "Browser | BrowserContext", role: str = "operator", query: str = ""
+) -> "Page":
     """Open the page of a role and wait for its panel; what its scripts say wrong is an error."""
-    page: Page = context.new_page()  # pyright: ignore[reportAttributeAccessIssue] (a browser or a context)
+    page = context.new_page()
     page.set_default_timeout(1e3 * PATIENCE_S)
     place, token = room.addresses[role].split("#")
     page.goto(f"{place}{query}#{token}")
@@ -53,7 +55,7 @@ def open_page(room: OpenRoom, context: object, role: str = "operator", query: st
     return page
 
 
-def without_view(page: "Page") -> None:
+def without_view(page: "Page | BrowserContext") -> None:
     """Leave the view out: drawing by a processor is what costs."""
     page.route("**/view_worker.js", lambda route: route.abort())
 

@@ -106,7 +106,7 @@ def room_process() -> Iterator[RoomProcess]:
     process.start()
     there.close()
     try:
-        yield RoomProcess(here)
+        yield RoomProcess(here)  # pyright: ignore[reportArgumentType] (Windows names it otherwise)
     finally:
         here.close()
         process.join(timeout=10.0)

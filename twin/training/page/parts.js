@@ -22,9 +22,9 @@ export function key(label, act, { lamp = "cyan", atOnce = false, name = null, cl
 
 /** Put a word on a key, in smaller letters where its longest part is too long for the key. */
 export function label_key(button, text) {
-  write(button, text);
-  const longest = Math.max(...text.split(/[\s-]/).map((part) => part.length));
-  button.style.setProperty("--fit", Math.min(1, 8.2 / longest));
+  const span = make("span", {}, text);
+  span.style.setProperty("--longest", Math.max(...text.split(/[\s-]/).map((part) => part.length)));
+  button.replaceChildren(span);
 }
 
 /** Let a button act: when it is let go, or at once; by the keyboard too. */
