@@ -39,14 +39,18 @@ class House:
         with contextlib.closing(line):
             line.request(method, path, body=body, headers=headers)
             answer = line.getresponse()
-            return Answer(answer.status, answer.read().decode(), dict(answer.getheaders()))
+            return Answer(
+                answer.status,
+                answer.read().decode(),
+                {name.lower(): value for name, value in answer.getheaders()},
+            )
 
     def enter(self, role="operator", token=None, **headers):
         token = self.doorkeeper.tokens[role] if token is None else token
         return self.ask(f"/enter/{role}", "POST", token, **({"Origin": self.own} | headers))
 
     def cookie(self, role="operator") -> str:
-        return self.enter(role).headers["Set-Cookie"].split(";")[0]
+        return self.enter(role).headers["set-cookie"].split(";")[0]
 
 
 @pytest.fixture
@@ -76,7 +80,7 @@ def test_without_a_token_there_is_only_the_page_that_hands_one_in(house):
 def test_a_token_is_handed_in_once_and_kept_where_no_script_reads_it(house):
     answer = house.enter()
     assert answer.status == 204
-    kept = answer.headers["Set-Cookie"]
+    kept = answer.headers["set-cookie"]
     assert house.doorkeeper.tokens["operator"] not in kept
     for word in ("Secure", "HttpOnly", "SameSite=Strict", "Path=/operator"):
         assert word in kept
@@ -117,13 +121,13 @@ def test_guesses_are_braked_and_those_who_are_in_stay_in(house, monkeypatch):
 
 def test_every_answer_tells_the_browser_to_trust_nobody_else(house):
     for answer in (house.ask(), house.ask(Cookie=house.cookie()), house.ask("/x"), house.enter()):
-        policy = answer.headers["Content-Security-Policy"]
+        policy = answer.headers["content-security-policy"]
         assert "default-src 'none'" in policy
         assert "unsafe" not in policy
-        assert answer.headers.get("Referrer-Policy") == "no-referrer"
-        assert answer.headers.get("X-Frame-Options") == "DENY"
-        assert answer.headers.get("X-Content-Type-Options") == "nosniff"
-        assert answer.headers.get("Server") is None
+        assert answer.headers.get("referrer-policy") == "no-referrer"
+        assert answer.headers.get("x-frame-options") == "DENY"
+        assert answer.headers.get("x-content-type-options") == "nosniff"
+        assert answer.headers.get("server") is None
 
 
 @pytest.mark.parametrize("method", ["PUT", "DELETE", "TRACE", "OPTIONS"])
