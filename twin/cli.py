@@ -8,6 +8,7 @@ import typer
 from twin.command_line.calibration import calibrate
 from twin.command_line.knowledge import dialects, doctor, explain
 from twin.command_line.machines import machine_app
+from twin.command_line.monitoring import serve
 from twin.command_line.pictures import render
 from twin.command_line.programs import interpret, plan, run
 from twin.command_line.training import train
@@ -53,6 +54,7 @@ for command in (
     calibrate,
     export,
     train,
+    serve,
     dialects,
     explain,
     doctor,
