@@ -206,13 +206,3 @@ def arc_rule(*, clockwise: bool, fits_radius: bool = False) -> ArcRule:
         shift=CENTER_SHIFT,
         fits_radius=fits_radius,
     )
-
-
-def rapid_line(control: Control) -> None:
-    """G0: straight to the target at the machine's own speed."""
-    control.line_to(control.target(), rapid=True)
-
-
-def feed_line(control: Control) -> None:
-    """G1: straight to the target with the feed."""
-    control.line_to(control.target(), rapid=False)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from mujoco.studio import messages, viewer_handle
 
-from twin.nc.iso.jogging import jog_block
+from twin.nc.iso.base import jog_block
 from twin.training.panel.panel import Panel
 from twin.training.panel.studio import PanelPlugin, RoomPlugin
 from twin.training.scene.scene_file import Scene

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.nc.nc_running import ROOT, good, shipped
+from tests.nc.running import ROOT, good, shipped
 from twin.nc.canonical import Axes, Moves, Shape, concatenate
 from twin.nc.interpreter import Interpretation
 

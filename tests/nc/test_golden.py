@@ -1,6 +1,6 @@
 """Golden files: the canonical moves of every shipped program and of every rule.
 
-``python -m tests.nc.test_nc_golden`` writes them anew; look at the difference before committing.
+``python -m tests.nc.test_golden`` writes them anew; look at the difference before committing.
 """
 
 import json
@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tests.nc.nc_running import ROOT, WITH_TABLES, all_records, shipped
+from tests.nc.running import ROOT, WITH_TABLES, all_records, shipped
 from twin.nc.dialects import DIALECTS, dialect_named, recognise
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import read_source

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.nc.nc_running import bad, good
+from tests.nc.running import bad, good
 from twin.nc.canonical import FloatArray, Moves, Shape
 from twin.nc.control.settings import ToolData
 

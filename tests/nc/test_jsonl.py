@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.nc.nc_running import ROOT, SETTINGS, all_records, shipped
+from tests.nc.running import ROOT, SETTINGS, all_records, shipped
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.jsonl import json_lines, text_lines

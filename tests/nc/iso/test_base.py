@@ -1,10 +1,10 @@
 """A jog as a block: the same move on every control, whatever its F counts."""
 
 import pytest
-from nc_running import run
 
+from tests.nc.running import run
 from twin.nc.dialects import DIALECTS, dialect_named
-from twin.nc.iso.jogging import jog_block
+from twin.nc.iso.base import jog_block
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)

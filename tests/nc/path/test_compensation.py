@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.nc.nc_running import Outcome, bad, good
-from tests.nc.test_nc_same_part import sampled
+from tests.nc.dialects.test_same_part import sampled
+from tests.nc.running import Outcome, bad, good
 from twin.nc.canonical import FloatArray
 from twin.nc.control.settings import ToolData
 

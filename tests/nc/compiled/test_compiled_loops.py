@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.nc.nc_routines import MAKERS, program
-from tests.nc.nc_running import SETTINGS, WITH_TABLES, bad
-from tests.nc.test_nc_compiled import ALWAYS, assert_same, seen
+from tests.nc.compiled.loop_programs import MAKERS, program
+from tests.nc.compiled.test_both_tiers import ALWAYS, assert_same, seen
+from tests.nc.running import SETTINGS, WITH_TABLES, bad
 from twin.nc.control.executor import Executor
 from twin.nc.dialects import DIALECTS
 from twin.nc.text.expressions import LARGEST_NUMBER

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tests.nc.nc_running import ROOT, run
+from tests.nc.running import ROOT, run
 from twin.errors import UsageError
 from twin.nc.control.settings import ToolData
 from twin.nc.text.explain import explain, findings, overview

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.nc.nc_running import good
+from tests.nc.running import good
 from twin.nc.canonical import Moves, Shape
 from twin.nc.control.settings import ToolData
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.nc.nc_running import SETTINGS, bad, good
+from tests.nc.running import SETTINGS, bad, good
 from twin.nc.canonical import Motion, concatenate
 from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.codesys.subprograms import with_files

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.nc.nc_running import good
+from tests.nc.running import good
 from twin.nc.canonical import Shape
 
 coordinates = st.integers(-200_000, 200_000).map(lambda value: value / 1000.0)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.nc.nc_running import SETTINGS
+from tests.nc.running import SETTINGS
 from twin.nc.canonical import Moves, concatenate
 from twin.nc.dialects.fagor8070 import FAGOR8070
 from twin.nc.dialects.fagor8070.library import with_globals

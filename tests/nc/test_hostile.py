@@ -6,8 +6,8 @@ import tracemalloc
 
 import pytest
 
-from tests.nc import nc_fuzz
-from tests.nc.nc_running import SETTINGS, bad
+from tests.nc import fuzz
+from tests.nc.running import SETTINGS, bad
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.diagnostics import ProgramError
@@ -107,10 +107,10 @@ def test_legacy_code_pages(tmp_path, dialect: str, page: str, text: str) -> None
 
 @pytest.mark.parametrize("seed", range(4))
 def test_nonsense_gives_moves_or_a_diagnostic(seed: int) -> None:
-    nc_fuzz.main(500, seed)
+    fuzz.main(500, seed)
 
 
 def test_mutation_changes_programs() -> None:
     random_ = random.Random(3)  # noqa: S311 (nonsense needs no cryptography)
     data = b"G0 X1\nG1 Y2 F100\n"
-    assert sum(nc_fuzz.mutated(random_, data) != data for _ in range(100)) > 90
+    assert sum(fuzz.mutated(random_, data) != data for _ in range(100)) > 90

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from tests.nc.nc_running import SETTINGS
+from tests.nc.running import SETTINGS
 from twin.nc.dialects import DIALECTS
 from twin.nc.interpreter import Interpretation
 from twin.nc.iso.base import is_ellipsis

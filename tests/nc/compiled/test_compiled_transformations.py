@@ -7,9 +7,9 @@ from random import Random
 import numpy as np
 import pytest
 
-from tests.nc.nc_running import SETTINGS, WITH_TABLES, good
-from tests.nc.nc_transformations import program
-from tests.nc.test_nc_compiled import assert_same, general_blocks
+from tests.nc.compiled.test_both_tiers import assert_same, general_blocks
+from tests.nc.compiled.transformation_programs import program
+from tests.nc.running import SETTINGS, WITH_TABLES, good
 from twin.nc.canonical import FloatArray, Shape
 from twin.nc.control.settings import ToolData
 from twin.nc.geometry.matrices import IDENTITY, applied, inverse, product, rotated, stretched

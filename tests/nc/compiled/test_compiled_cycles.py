@@ -5,9 +5,9 @@ from random import Random
 
 import pytest
 
-from tests.nc.nc_holes import program
-from tests.nc.nc_running import WITH_TABLES
-from tests.nc.test_nc_compiled import assert_same, general_blocks
+from tests.nc.compiled.cycle_programs import program
+from tests.nc.compiled.test_both_tiers import assert_same, general_blocks
+from tests.nc.running import WITH_TABLES
 from twin.nc.text.source import source_from_text
 
 JOB = dataclasses.replace(WITH_TABLES, step_limit=2000)

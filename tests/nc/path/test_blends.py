@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.nc.nc_running import bad, good
+from tests.nc.running import bad, good
 from twin.nc.canonical import FloatArray, Moves, Shape
 from twin.nc.geometry.arcs import distance
 from twin.nc.geometry.elements import Element

@@ -6,9 +6,9 @@ from random import Random
 
 import pytest
 
-from tests.nc.nc_contours import program, switched
-from tests.nc.nc_running import WITH_TABLES
-from tests.nc.test_nc_compiled import ALWAYS, assert_same, general_blocks, seen
+from tests.nc.compiled.contour_programs import program, switched
+from tests.nc.compiled.test_both_tiers import ALWAYS, assert_same, general_blocks, seen
+from tests.nc.running import WITH_TABLES
 from twin.nc.canonical import Function
 from twin.nc.dialects import DIALECTS
 from twin.nc.text.source import source_from_text

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.nc.nc_running import ROOT
+from tests.nc.running import ROOT
 from twin.errors import UsageError
 from twin.nc.dialects import DIALECTS, dialect_named, recognise
 from twin.nc.text.source import read_source, source_from_text

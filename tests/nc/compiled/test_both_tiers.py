@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.nc.nc_fuzz import REAL, mutated
-from tests.nc.nc_running import ROOT, SETTINGS, WITH_TABLES
+from tests.nc.fuzz import REAL, mutated
+from tests.nc.running import ROOT, SETTINGS, WITH_TABLES
 from twin.nc.canonical import Chunk, Event, Moves, concatenate
 from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings

@@ -2,7 +2,7 @@
 
 Those in a folder ``strict`` earn a warning, which counts as an error there.
 
-``python -m tests.nc.test_nc_bad`` writes the expected diagnostics anew; look at the difference.
+``python -m tests.nc.test_bad`` writes the expected diagnostics anew; look at the difference.
 """
 
 import dataclasses
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.nc.nc_running import ROOT, SETTINGS
+from tests.nc.running import ROOT, SETTINGS
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
@@ -21,7 +21,7 @@ from twin.nc.text.source import source_from_bytes
 WITH_TOOL = dataclasses.replace(SETTINGS, tools={1: ToolData(5.0, 60.0)})
 BAD = sorted((ROOT / "tests" / "bad").rglob("*.nc"))
 MADE_ELSEWHERE = {"line-too-long"}
-"""Too large for a file here; ``test_nc_hostile`` makes it."""
+"""Too large for a file here; ``test_hostile`` makes it."""
 
 
 def diagnostic_of(path: Path) -> str:

@@ -11,7 +11,7 @@ import time
 
 import numpy as np
 
-from tests.nc.nc_running import ROOT, SETTINGS
+from tests.nc.running import ROOT, SETTINGS
 from twin.nc.canonical import Chunk, Moves, Shape
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.settings import ToolData

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from tests.nc.nc_running import good
+from tests.nc.running import good
 from twin.nc.canonical import Moves, Shape
 from twin.nc.control.settings import ToolData
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.nc.nc_running import MILL, Outcome, bad, good
+from tests.nc.running import MILL, Outcome, bad, good
 from twin.nc.canonical import Axes, Corner, Dwell, Function, Shape
 from twin.nc.control.settings import ToolData
 

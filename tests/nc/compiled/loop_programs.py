@@ -7,7 +7,7 @@ import abc
 from collections.abc import Callable
 from random import Random
 
-from tests.nc.nc_effects import EFFECTS
+from tests.nc.compiled.effect_words import EFFECTS
 
 NUMBERS = ["0", "1", "2", "3", ".5", "7.25", "10", "45", "90", "0.001", "360", "12.", "1000000"]
 
