@@ -3,8 +3,8 @@ import pytest
 
 from tests.compare.paths import UP, arc, line, moves_of
 from tests.compare.runs import compare, setpoints
-from twin.compare.arcs import POLAR_ARCS, plane_axes
-from twin.compare.circle import CirclePath, circle_figures, hysteresis_um
+from twin.compare.circular.arcs import POLAR_ARCS, plane_axes
+from twin.compare.circular.circle import CirclePath, circle_figures, hysteresis_um
 from twin.nc.canonical import FloatArray
 
 RADIUS = 25.0
