@@ -22,7 +22,7 @@ Decision: the Fagor 8070's default (CIRINERR) for every dialect that states none
 to 0.001 mm stay far below it.
 """
 RADIUS_SHARE = 0.001
-"""The same as a share of the radius (the 8070's CIRINFACT, 0.1 %): the larger limit counts."""
+"""How far they may differ as a share of the radius (the 8070's CIRINFACT, 0.1 %): the larger limit counts."""
 
 CENTER_SHIFT = 0.1
 """How far a centre may be moved to fit both points [mm], or ten times ``RADIUS_SHARE``.

@@ -86,7 +86,7 @@ def _take_words(control: Control, rule: CycleRule) -> None:
 
 
 def _compile_words(words: Mapping[str, int]) -> Compiler:
-    """The same for the compiled tier, where the words of axes stay with those of the hole."""
+    """Compile those words; the words of axes stay with those of the hole."""
 
     def write(block: BlockWords, assembler: Assembler) -> None:
         for address, value in words.items():

@@ -27,7 +27,7 @@ Emit = Callable[[Segment], None]
 Refuse = Callable[[Segment, str, str], NoReturn]
 """Told the segment, the code and the message; raises."""
 Warn = Callable[[Segment, str, str], None]
-"""The same for a warning."""
+"""Told of the segment, the code and the message of a warning."""
 
 LARGEST_SQUARE = 90.0 + 1e-9
 """Square corners are extended up to this turn, beyond it rolled around [deg]."""
