@@ -165,16 +165,16 @@ def circle_figures(*paths: CirclePath) -> CircleFigures:
     )
 
 
-def hysteresis_um(one: CirclePath, other: CirclePath, *, step_deg: float = 1.0) -> float:
+def hysteresis_um(one: CirclePath, other: CirclePath) -> float:
     """H: greatest difference between the two directions at the same angle [µm].
 
-    Both paths are read every ``step_deg`` by interpolation between their neighbouring bins.
+    Either path is a chain of straight pieces over the angle. The difference of two such chains is
+    greatest where one of them bends, so that reading both at the bends of both finds it exactly,
+    however narrow the peak is that a reversal leaves.
     """
-    angles = np.deg2rad(np.arange(0.0, 360.0, step_deg))
-    read = [
-        np.interp(angles, *path.mean()[np.argsort(path.mean()[:, 0])].T, period=2.0 * np.pi)
-        for path in (one, other)
-    ]
+    paths = [path.mean() for path in (one, other)]
+    bends = np.concatenate([path[:, 0] for path in paths])
+    read = [np.interp(bends, path[:, 0], path[:, 1], period=2.0 * np.pi) for path in paths]
     return float(np.abs(read[0] - read[1]).max()) * UM_PER_MM
 
 
