@@ -23,7 +23,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "motion",
         "recording",
         "machine compare cutting",
-        "render",
+        "render calibrate",
         "run",
         "api check training",
         "commands",
