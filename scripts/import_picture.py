@@ -17,13 +17,13 @@ ROOT = Path(__file__).resolve().parent.parent
 FLOORS: Mapping[str, tuple[str, ...]] = {
     "twin": (
         "errors units version",
-        "columns files compilation",
+        "columns files compilation web",
         "nc job",
         "toolpath logs",
         "motion",
         "recording",
         "machine compare cutting",
-        "render",
+        "render calibrate",
         "run",
         "api check training",
         "commands",
@@ -64,7 +64,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
     "twin.render": (
         "drawing",
         "scene",
-        "doctor frames hud",
+        "doctor frames hud machine_glb",
         "encoder gauge",
         "still",
         "film inspection_still",
@@ -77,7 +77,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "run",
         "results",
     ),
-    "twin.training": ("scene", "session", "panel", "server"),
+    "twin.training": ("scene", "session", "server"),
 }
 """Of each folder with rooms, its rooms from the ground up; those of one floor know nothing of each
 other. An import leads down, never up."""
