@@ -74,3 +74,9 @@ def test_rooms_of_numbers_load_without_mujoco_or_opengl() -> None:
         "assert 'mujoco' not in sys.modules and 'OpenGL' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_folder_is_seen_at_a_glance() -> None:
+    folders = {path.parent for path in MODULES.values()}
+    crowded = {folder.name: n for folder in folders if (n := len(list(folder.glob("*.py")))) > 22}
+    assert not crowded, f"folders that want rooms of their own: {crowded}"
