@@ -5,8 +5,8 @@ import numpy as np
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.opcodes import INTERPRETED, LARGEST_PART, Bytecode, Opcode
 from twin.nc.compiled.decode_tables import DecodeTables
+from twin.nc.compiled.entries import unread_lines
 from twin.nc.compiled.kernels.expression import BINARY_FUNCTIONS, TERNARY_FUNCTIONS, UNARY_FUNCTIONS
-from twin.nc.compiled.kernels.program import unread_lines
 from twin.nc.compiled.kernels.tokenizer import CODE, FUNCTION, NUMBER
 from twin.nc.compiled.line_templates import LineTemplates
 from twin.nc.control.control import Control

@@ -31,9 +31,9 @@ from twin.nc.bytecode.registers import (
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.contour_columns import fill, gone, new_contour
 from twin.nc.compiled.decode_tables import FEED_FACTORS, DecodeTables
+from twin.nc.compiled.entries import run_program
 from twin.nc.compiled.kernels.block import new_scratch
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
-from twin.nc.compiled.kernels.program import run_program
 from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
 from twin.nc.compiled.line_compiler import LineCompiler
 from twin.nc.compiled.state_transfer import StateTransfer, put_into_force

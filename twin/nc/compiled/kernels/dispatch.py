@@ -5,7 +5,7 @@ Each does what ``opcodes.Opcode`` says of it.
 
 import numpy as np
 
-from twin.compilation.kernel import NONE_YET, inlined_kernel
+from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.frames import (
     AGAIN,
@@ -61,7 +61,7 @@ DONE = -1
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@inlined_kernel
+@inlined
 def dispatch_loop(
     row: int,
     table: BytecodeTable,
@@ -91,7 +91,7 @@ def dispatch_loop(
     budget = progress[INSTRUCTION_BUDGET] - (place <= progress[FURTHEST])
     behind = (line + 1) << PART_BITS if table.operand[row] == 0 else place + 1
     going, range_end, restores = behind, NO_PLACE, NOTHING_RESTORED
-    top, words, stores, own, why = NONE_YET, NONE_YET, 0, 0, TRAPPED
+    top, words, stores, own, why = 0, 0, 0, 0, TRAPPED
     contour, first_event = routine.contour, state.event_count[0]
     has_snapshot = compensates = contour.counts[STAGE] != OFF
     if compensates:

@@ -7,7 +7,7 @@ was before that block.
 import numpy as np
 import numpy.typing as npt
 
-from twin.compilation.kernel import NO, ONCE, array_kernel, kernel
+from twin.compilation.compilable import compilable
 from twin.nc.bytecode.frames import (
     BLOCKS,
     ENDED,
@@ -44,7 +44,7 @@ _BLOCK = int(Opcode.BLOCK)
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@kernel
+@compilable
 def run_program(
     data: ByteArray,
     starts: IntArray,
@@ -116,10 +116,10 @@ def run_program(
             if compensates:
                 copy_state(state, scratch.snapshot)
             made = execute_repeatedly(
-                ONCE,
+                1,
                 line + 1,
                 words,
-                NO,
+                False,
                 progress[MADE],
                 state.event_count[0],
                 tables,
@@ -151,7 +151,7 @@ def run_program(
     return PAUSED
 
 
-@array_kernel
+@compilable
 def unread_lines(
     data: ByteArray,
     starts: IntArray,
