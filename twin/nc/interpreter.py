@@ -106,9 +106,12 @@ class Interpretation:
 
     def _virtual_machine(self) -> "VirtualMachine":
         self.before_compiled_tier()
+        import os
+
+        from twin.nc.compiled.entries import COLD, hot
         from twin.nc.compiled.virtual_machine import VirtualMachine
 
-        return VirtualMachine(self._control)
+        return VirtualMachine(self._control, COLD if os.environ.get("COLDTEST") else hot())
 
     def _compiled_after(self) -> int:
         """Blocks and moves after which the compiled tier begins."""

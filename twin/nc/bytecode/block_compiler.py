@@ -9,8 +9,8 @@ import dataclasses
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.dialect import GCode, MCode
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.text.blocks import Word
@@ -120,7 +120,7 @@ def compile_words(control: "Control", words: Iterable[Word], assembler: Assemble
     for word, code in acting:
         assert not isinstance(word.value, Expression)
         if code.group and not code.begins_cycle:
-            assembler.emit(Opcode.ACTIVATE, int(word.value))
+            assembler.emit(opcodes.ACTIVATE, int(word.value))
         if code.perform is None:
             _compile(code, block, assembler)
     reserved = performing[0].takes if performing else ""
@@ -178,4 +178,4 @@ def _compile_functions(block: BlockWords, assembler: Assembler, *, late: bool) -
         if code.compiler is not None:
             code.compiler(block, assembler)
         starts = f"M{number}" in SPINDLE_STARTS
-        assembler.emit(Opcode.SPINDLE_FUNCTION if starts else Opcode.FUNCTION, number)
+        assembler.emit(opcodes.SPINDLE_FUNCTION if starts else opcodes.FUNCTION, number)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twin.nc.bytecode.bytecode import number_of_place, place_of_number
 from twin.nc.bytecode.frames import (
     AGAIN,
     BACK,
@@ -27,7 +28,6 @@ from twin.nc.bytecode.frames import (
     Saved,
     VariableStore,
 )
-from twin.nc.bytecode.opcodes import number_of_place, place_of_number
 from twin.nc.bytecode.registers import State
 from twin.nc.canonical import IntArray
 from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED

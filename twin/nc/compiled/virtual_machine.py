@@ -31,7 +31,7 @@ from twin.nc.bytecode.registers import (
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.contour_columns import fill, gone, new_contour
 from twin.nc.compiled.decode_tables import FEED_FACTORS, DecodeTables
-from twin.nc.compiled.entries import run_program
+from twin.nc.compiled.entries import Kernels
 from twin.nc.compiled.kernels.block import new_scratch
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
 from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
@@ -61,13 +61,15 @@ class VirtualMachine:
         full: The path has no room for the next block's moves.
     """
 
-    def __init__(self, control: Control) -> None:
+    def __init__(self, control: Control, kernels: Kernels) -> None:
+        """Run for a control, at the speed of these kernels."""
         axes = len(control.settings.axes)
         self._control = control
+        self._kernels = kernels
         self._lines = control.flow.lines
         self._page = Page(0, b"")
         self._tables = DecodeTables(control.dialect, control.settings)
-        self._line_compiler = LineCompiler(control, self._tables)
+        self._line_compiler = LineCompiler(control, self._tables, kernels)
         self._rows = Rows(
             np.zeros((CHUNK, 5), np.int64),
             np.zeros((CHUNK, 11)),
@@ -116,7 +118,7 @@ class VirtualMachine:
         line_compiler, constants = self._line_compiler, self._constants()
         bytecode = line_compiler.bytecode
         while True:
-            why = run_program(
+            why = self._kernels.run_program(
                 self._page.data,
                 self._page.starts,
                 self._page.lines.start,

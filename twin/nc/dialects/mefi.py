@@ -6,9 +6,9 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 import dataclasses
 from collections.abc import Iterator
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import compile_words
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
 from twin.nc.control.interpolation import ArcRule, Interpolation
@@ -114,7 +114,7 @@ def compile_block(control: Control, block: Block, assembler: Assembler) -> None:
     if counts:  # a cycle with pecks would take Q as its own
         if any(code.begins_cycle for code in _codes(control, block)):
             raise UnsupportedError
-        assembler.emit(Opcode.NO_PECKS)
+        assembler.emit(opcodes.NO_PECKS)
     compile_words(control, [word for word in block.words if word not in taken], assembler)
     if jumps:
         times = control.number(counts[0]) if counts else 1.0

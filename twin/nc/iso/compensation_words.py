@@ -1,8 +1,8 @@
 """G40, G41 and G42 for the compiled tier: what the actions of ``offsets`` do, as steps."""
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.dialect import Compiler
 from twin.nc.text.expressions import Expression
 
@@ -13,12 +13,12 @@ def compile_compensation(side: float) -> Compiler:
     def write(block: BlockWords, assembler: Assembler) -> None:
         word, table = block.take("D"), block.control.tools.table
         if word is None:
-            assembler.emit(Opcode.TOOL_RADIUS)
+            assembler.emit(opcodes.TOOL_RADIUS)
         elif isinstance(word.value, Expression) or word.value not in table:
             raise UnsupportedError
         else:
             assembler.constant(table[int(word.value)].radius)
-        assembler.emit(Opcode.COMPENSATE, int(side))
+        assembler.emit(opcodes.COMPENSATE, int(side))
 
     return write
 
@@ -28,8 +28,8 @@ def compile_compensation_by_tool(side: float) -> Compiler:
 
     def write(block: BlockWords, assembler: Assembler) -> None:
         del block
-        assembler.emit(Opcode.TOOL_RADIUS, 1)
-        assembler.emit(Opcode.COMPENSATE, int(side))
+        assembler.emit(opcodes.TOOL_RADIUS, 1)
+        assembler.emit(opcodes.COMPENSATE, int(side))
 
     return write
 
@@ -41,8 +41,8 @@ def compile_compensation_by_radius(side: float) -> Compiler:
         word = block.take("D")
         if word is not None:
             assembler.word_value(word)
-        assembler.emit(Opcode.PROGRAMMED_RADIUS, int(word is not None))
-        assembler.emit(Opcode.COMPENSATE, int(side))
+        assembler.emit(opcodes.PROGRAMMED_RADIUS, int(word is not None))
+        assembler.emit(opcodes.COMPENSATE, int(side))
 
     return write
 
@@ -50,4 +50,4 @@ def compile_compensation_by_radius(side: float) -> Compiler:
 def compile_end_of_compensation(block: BlockWords, assembler: Assembler) -> None:
     """The next line leads out."""
     del block
-    assembler.emit(Opcode.END_COMPENSATION)
+    assembler.emit(opcodes.END_COMPENSATION)

@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable, Mapping
 from typing import NoReturn
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Compiler, GCode, Ground
 from twin.nc.control.drilling_cycle import (
@@ -96,7 +96,7 @@ def _compile_words(words: Mapping[str, int]) -> Compiler:
             if word.incremental:
                 raise UnsupportedError
             assembler.word_value(word)
-            assembler.emit(Opcode.CYCLE_WORD, value)
+            assembler.emit(opcodes.CYCLE_WORD, value)
         others = block.words.keys() & block.control.dialect.word_compilers.keys()
         if others - set(_BESIDE) or any(code.action for _, code in block.functions):
             raise UnsupportedError

@@ -7,9 +7,9 @@ machine zero until the next work offset.
 
 from collections.abc import Iterable, Mapping
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Compiler, GCode
 from twin.nc.control.state import integer_of
@@ -68,7 +68,7 @@ def compile_shift(name: str, values: Iterable[float], assembler: Assembler) -> N
     """A shift with fixed values, for the compiled tier."""
     for value in values:
         assembler.constant(value)
-    assembler.emit(Opcode.SHIFT, SHIFTS.index(name))
+    assembler.emit(opcodes.SHIFT, SHIFTS.index(name))
 
 
 def compile_programmed_shift(name: str, block: BlockWords, assembler: Assembler) -> None:
@@ -77,10 +77,10 @@ def compile_programmed_shift(name: str, block: BlockWords, assembler: Assembler)
     for index in range(len(block.control.settings.axes)):
         if index in words:
             assembler.word_value(words[index])
-            assembler.emit(Opcode.TO_MILLIMETRES, index)
+            assembler.emit(opcodes.TO_MILLIMETRES, index)
         else:
             assembler.constant(0.0)
-    assembler.emit(Opcode.SHIFT, SHIFTS.index(name))
+    assembler.emit(opcodes.SHIFT, SHIFTS.index(name))
 
 
 def compile_offset(name: str) -> Compiler:
@@ -94,7 +94,7 @@ def compile_offset(name: str) -> Compiler:
         names = settings.axes.names
         compile_shift("offset", [(values or {}).get(axis, 0.0) for axis in names], assembler)
         compile_shift("preset", [0.0] * len(names), assembler)
-        assembler.emit(Opcode.REFRAME)
+        assembler.emit(opcodes.REFRAME)
 
     return write
 
@@ -106,12 +106,12 @@ def compile_set_position(shift: str) -> Compiler:
         words = block.take_axes()
         if not words or any(word.incremental for _, word in words):
             raise UnsupportedError
-        assembler.emit(Opcode.BEGIN_TARGET)
+        assembler.emit(opcodes.BEGIN_TARGET)
         for index, word in words:
             assembler.word_value(word)
-            assembler.emit(Opcode.TO_MILLIMETRES, index)
-            assembler.emit(Opcode.TARGET, index)
-        assembler.emit(Opcode.SET_POSITION, SHIFTS.index(shift))
+            assembler.emit(opcodes.TO_MILLIMETRES, index)
+            assembler.emit(opcodes.TARGET, index)
+        assembler.emit(opcodes.SET_POSITION, SHIFTS.index(shift))
 
     return write
 
@@ -126,14 +126,14 @@ def _compile_length(sign: float) -> Compiler:
         longer = sign * tools.longer(tools.table[int(word.value)])
         axes = len(block.control.settings.axes)
         compile_shift("length", [longer if axis == 2 else 0.0 for axis in range(axes)], assembler)
-        assembler.emit(Opcode.REFRAME)
+        assembler.emit(opcodes.REFRAME)
 
     return write
 
 
 def _compile_no_length(block: BlockWords, assembler: Assembler) -> None:
     compile_shift("length", [0.0] * len(block.control.settings.axes), assembler)
-    assembler.emit(Opcode.REFRAME)
+    assembler.emit(opcodes.REFRAME)
 
 
 def preset(control: Control) -> None:

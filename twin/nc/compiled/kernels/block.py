@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.compilable import compilable, inlined
-from twin.nc.bytecode.opcodes import MOST_STORES, MOST_VALUES
+from twin.nc.bytecode.bytecode import MOST_STORES, MOST_VALUES
 from twin.nc.bytecode.registers import MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.columns import copy, copy_rows

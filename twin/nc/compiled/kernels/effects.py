@@ -1,6 +1,6 @@
 """What blocks do besides moving and computing, compiled: events, tools, shifts of coordinates, polar moves.
 
-Each does what ``opcodes.Opcode`` says of it; the state is kept before the first of a block.
+Each does what ``opcodes`` says of it; the state is kept before the first of a block.
 """
 
 import numpy as np

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from twin.compilation.compilable import compilable
+from twin.nc.bytecode.bytecode import PART_BITS
 from twin.nc.bytecode.frames import (
     AGAIN,
     BACK,
@@ -18,7 +19,6 @@ from twin.nc.bytecode.frames import (
     PART,
     VariableStore,
 )
-from twin.nc.bytecode.opcodes import PART_BITS
 from twin.nc.canonical import IntArray
 
 NO_SLOT = np.iinfo(np.int64).min

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.canonical import Corner
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import (
@@ -40,7 +40,7 @@ def compile_plain_dwell(block: BlockWords, assembler: Assembler) -> None:
     if block.words or block.codes or block.functions:
         raise UnsupportedError
     assembler.word_value(word)
-    assembler.emit(Opcode.DWELL)
+    assembler.emit(opcodes.DWELL)
 
 
 def plain_dwell(control: Control, word: Word) -> None:
@@ -58,7 +58,7 @@ def auxiliary(control: Control, word: Word) -> None:
 def compile_auxiliary(block: BlockWords, assembler: Assembler) -> None:
     """H, for the compiled tier."""
     assembler.word_value(block.words.pop("H"))
-    assembler.emit(Opcode.AUXILIARY)
+    assembler.emit(opcodes.AUXILIARY)
 
 
 def _compensate(side: float) -> Action:
@@ -92,7 +92,7 @@ def _and_forget_polar(compiler: Compiler | None) -> Compiler:
 
     def both(block: BlockWords, assembler: Assembler) -> None:
         compiler(block, assembler)
-        assembler.emit(Opcode.FORGET_POLAR)
+        assembler.emit(opcodes.FORGET_POLAR)
 
     return both
 

@@ -3,9 +3,9 @@
 import dataclasses
 from collections.abc import Iterable
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.block_compiler import BlockWords, sorted_words
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule, Interpolation
 from twin.nc.control.state import integer_of
@@ -79,7 +79,7 @@ def compile_polar_origin(block: BlockWords, assembler: Assembler) -> None:
         raise UnsupportedError
     for word in given:
         assembler.word_value(word)
-    assembler.emit(Opcode.POLAR_ORIGIN, len(given))
+    assembler.emit(opcodes.POLAR_ORIGIN, len(given))
 
 
 def is_polar(control: Control, words: Iterable[Word]) -> bool:
