@@ -9,8 +9,8 @@ def dialects(
     name: Annotated[str | None, typer.Argument(help="One of them.", show_default=False)] = None,
 ) -> None:
     """Print the dialects, or what one of them understands, refuses and decided."""
-    from twin.nc.describe import describe, overview
     from twin.nc.dialects import dialect_named
+    from twin.nc.dialects.pages import describe, overview
 
     typer.echo(overview() if name is None else describe(dialect_named(name)))
 

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from twin.nc.bytecode import opcodes
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.control.flow import Place
+from twin.nc.text.blocks import Location
 
 MOST_INSTRUCTIONS = 1 << 19
 """Rows that are kept; a program that needs more is compiled anew from there on."""
@@ -18,7 +18,7 @@ MOST_ROWS = 200
 MOST_VALUES = MOST_ROWS
 """Values that wait on the stack: no row adds more than one."""
 PART_BITS = 20
-"""A place as one number: the line, and in these bits the part."""
+"""A location as one number: the line, and in these bits the part."""
 LARGEST_PART = (1 << PART_BITS) - 1
 NOT_COMPILED, INTERPRETED = 0, -1
 """Instead of a line's first row: not compiled yet; always run by the interpreter tier."""
@@ -134,11 +134,11 @@ class Bytecode:
             self._rows = len(_ALWAYS)
 
 
-def number_of_place(place: Place) -> int:
-    """A place as one number, in the order of the program."""
-    return place.line << PART_BITS | place.part
+def number_of_location(location: Location) -> int:
+    """A location as one number, in the order of the program."""
+    return location.line << PART_BITS | location.part
 
 
-def place_of_number(number: int) -> Place:
-    """The inverse of ``number_of_place``."""
-    return Place(number >> PART_BITS, number & LARGEST_PART)
+def location_of_number(number: int) -> Location:
+    """The inverse of ``number_of_location``."""
+    return Location(number >> PART_BITS, number & LARGEST_PART)

@@ -47,7 +47,7 @@ RUN = 19
 RUN_REPEATEDLY = 20
 """Run them as often as the topmost value says, at most ``immediate`` times."""
 JUMP = 21
-"""Go on at the place ``operand``."""
+"""Go on at the location ``operand``."""
 JUMP_IF = 22
 """The same where the topmost value is not 0."""
 JUMP_UNLESS = 23
@@ -68,11 +68,11 @@ OWN_VARIABLES = 29
 RESTORE_CODES = 30
 """Its end puts back into force what is in force now."""
 CALL = 31
-"""Run the part that begins at the place ``operand``."""
+"""Run the part that begins at the location ``operand``."""
 RANGE = 32
-"""The range that is repeated next ends at the place ``operand``."""
+"""The range that is repeated next ends at the location ``operand``."""
 REPEAT = 33
-"""Run the range that begins at the place ``operand`` as often as the topmost value says."""
+"""Run the range that begins at the location ``operand`` as often as the topmost value says."""
 CHECK_RETURN = 34
 """There must be a part that can be returned from."""
 RETURN = 35

@@ -2,8 +2,8 @@
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
-from twin.nc.control.dialect import Compiler
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Compiler
 from twin.nc.text.expressions import Expression
 
 

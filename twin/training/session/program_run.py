@@ -19,8 +19,8 @@ from twin.machine.travel import soft_limit_alarm
 from twin.motion.live.live_motion import LiveMotion
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves
-from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
+from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import PROGRAM_STOPS, TOOL_CHANGE
 from twin.nc.text.blocks import Block
@@ -87,7 +87,7 @@ class ProgramRun:
         """
         self._machine = machine
         self._limits = motion_limits(machine)
-        self._control = Control(dialect, settings, source)
+        self._control = Executor(dialect, settings, source)
         self._control.prepare()
         self._soft_limits = soft_limits
         self.dropped = False
@@ -151,7 +151,7 @@ class ProgramRun:
         control = self._control
         try:
             while len(control.path) < MOVES_AT_ONCE and self.ending is None:
-                block = None if control.ended else control.flow.next()
+                block = None if control.ended else control.program_counter.next()
                 if block is None:
                     control.finish()
                     self.ending = "end"

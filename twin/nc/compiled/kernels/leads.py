@@ -24,6 +24,7 @@ from twin.nc.compiled.kernels.plane import along_axis, place
 from twin.nc.geometry import curves, lead_curves
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.curves import Curve
+from twin.nc.path.compensation_state import Stage
 from twin.nc.path.contour_registers import (
     CONTOUR,
     ELEMENT,
@@ -38,7 +39,6 @@ from twin.nc.path.contour_registers import (
     WAITING,
     Contour,
 )
-from twin.nc.path.followed import Stage
 
 _OFF, _STARTED, _LEADING_IN = int(Stage.OFF), int(Stage.STARTED), int(Stage.LEADING_IN)
 _FOLLOWING, _LEADING_OUT = int(Stage.FOLLOWING), int(Stage.LEADING_OUT)

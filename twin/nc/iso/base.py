@@ -4,10 +4,11 @@ import re
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Compiler, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import Compiler, FeedMode, GCode, MCode
-from twin.nc.control.interpolation import Interpolation, LineRule
+from twin.nc.control.interpolation import LineRule
+from twin.nc.control.modal import FeedMode
 from twin.nc.geometry.planes import PLANE_ORDER, XY, YZ, ZX, Plane
 from twin.nc.iso.circular import (
     arc_rule,
@@ -16,7 +17,7 @@ from twin.nc.iso.circular import (
     feed_line,
     rapid_line,
 )
-from twin.nc.iso.cycles import CYCLES
+from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import COMPENSATION, LENGTH, OFFSETS, PRESET, refuse_plane_change
 from twin.nc.text.blocks import Word
 

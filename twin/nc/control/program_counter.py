@@ -3,71 +3,62 @@
 import dataclasses
 import re
 from collections.abc import Callable, Container, Iterator
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text.blocks import Block
+from twin.nc.control.modal import SavedModal
+from twin.nc.text.blocks import Block, Location
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.lines import Lines
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 
-if TYPE_CHECKING:
-    from twin.nc.control.dialect import Modal
-
 _LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
 _CACHED_LINES = 10_000
 """Lines whose blocks are remembered once a program has jumped."""
 
 
-class Place(NamedTuple):
-    """A block of the program: its line, from 0, and its part of the line."""
-
-    line: int
-    part: int
-
-
 @dataclasses.dataclass(slots=True)
-class Return:
+class CallFrame:
     """What happens when a called part of the program ends.
 
     Attributes:
         back: Where to go on.
         first: Where it begins.
         again: How often the part still runs anew before that.
-        last: Its last block where it ends by place; None where it ends by a word.
-        own_variables: It has local variables of its own, which its end forgets.
+        last: Its last block where it ends by its location; None where it ends by a word.
+        owns_scope: It has local variables of its own, which its end forgets.
         restores: What is put back into force at its end; None: nothing.
     """
 
-    back: "Place"
-    first: "Place"
+    back: Location
+    first: Location
     again: int = 0
-    last: "Place | None" = None
-    own_variables: bool = False
-    restores: "tuple[Modal, dict[str, int]] | None" = None
+    last: Location | None = None
+    owns_scope: bool = False
+    restores: SavedModal | None = None
 
 
 class Progress(NamedTuple):
     """How far a program has come.
 
     Attributes:
-        place: What comes next.
-        furthest: The furthest place that was run.
-        steps_left: Blocks that may still be run again.
+        location: What comes next.
+        furthest: The furthest location that was run.
+        instruction_budget: Blocks that may still be run again.
     """
 
-    place: Place
-    furthest: Place
-    steps_left: int
+    location: Location
+    furthest: Location
+    instruction_budget: int
 
 
-class Flow:
+class ProgramCounter:
     """The program counter.
 
     Attributes:
-        place: The block that comes next.
+        location: The block that comes next.
         calls: The parts of the program that are being run for a caller, the innermost last.
     """
 
@@ -77,7 +68,7 @@ class Flow:
         lexer: Lexer,
         step_limit: int,
         report: Reporter,
-        leave: Callable[[Return], None],
+        leave: Callable[[CallFrame], None],
     ) -> None:
         """Stand before the program.
 
@@ -94,15 +85,15 @@ class Flow:
         self._leave = leave
         self._step_limit = step_limit
         self._steps_left = step_limit
-        self._furthest = Place(-1, 0)
-        self._labels: dict[int | str, list[Place]] | None = None
+        self._furthest = Location(-1, 0)
+        self._labels: dict[int | str, list[Location]] | None = None
         self._cache: dict[int, tuple[Block, ...]] = {}
         self._jumped = False
         self._told_to_end = False
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
-        self.place = Place(0, 0)
-        self.calls: list[Return] = []
+        self.location = Location(0, 0)
+        self.calls: list[CallFrame] = []
 
     @property
     def lines(self) -> Lines:
@@ -127,15 +118,15 @@ class Flow:
         """
         while self.calls and self._past_end(self.calls[-1]):
             self.end_part()
-        line, part = self.place
+        line, part = self.location
         while line < len(self._lines):
             blocks = self._blocks(line)
             if part < len(blocks):
-                self.place = Place(line, part + 1)
-                self._count(Place(line, part))
+                self.location = Location(line, part + 1)
+                self._count(Location(line, part))
                 return blocks[part]
             line, part = line + 1, 0
-        self.place = Place(line, 0)
+        self.location = Location(line, 0)
         if not self._told_to_end:
             self._run_out()
         return None
@@ -147,16 +138,16 @@ class Flow:
 
     def progress(self) -> Progress:
         """How far the program has come."""
-        line, part = self.place
+        line, part = self.location
         if part > 0 and line == self._here_line and part >= len(self._here):
             line, part = line + 1, 0
-        return Progress(Place(line, part), self._furthest, self._steps_left)
+        return Progress(Location(line, part), self._furthest, self._steps_left)
 
-    def resume(self, progress: Progress, calls: list[Return]) -> None:
+    def resume(self, progress: Progress, calls: list[CallFrame]) -> None:
         """The program has gone on past here, into these calls."""
-        self.place, self._furthest, self._steps_left = progress
+        self.location, self._furthest, self._steps_left = progress
         self.calls = calls
-        self._jumped = self._jumped or self.place <= self._furthest
+        self._jumped = self._jumped or self.location <= self._furthest
 
     def quiet_blocks(self, line: int) -> tuple[Block, ...] | None:
         """A line's blocks, read before it is run; None where there is something to say of it."""
@@ -175,10 +166,10 @@ class Flow:
             self._here, self._here_line = blocks, line
         return blocks
 
-    def _past_end(self, call: Return) -> bool:
-        return call.last is not None and self.place > call.last
+    def _past_end(self, call: CallFrame) -> bool:
+        return call.last is not None and self.location > call.last
 
-    def call(self, call: Return, deepest: int, column: int, width: int) -> None:
+    def call(self, call: CallFrame, deepest: int, column: int, width: int) -> None:
         """Run a part of the program for the block that asks for it.
 
         Raises:
@@ -189,34 +180,34 @@ class Flow:
             self._report.fail("call-depth", message, column, width)
         self._jumped = True
         self.calls.append(call)
-        self.place = call.first
+        self.location = call.first
 
     def end_part(self) -> None:
         """The innermost called part has ended: run it again, or go back to its caller."""
         call = self.calls[-1]
         if call.again > 0:
             call.again -= 1
-            self.place = call.first
+            self.location = call.first
             return
         self.calls.pop()
-        self.place = call.back
+        self.location = call.back
         self._leave(call)
 
-    def go(self, place: Place) -> None:
-        """Go on at a place."""
+    def go(self, location: Location) -> None:
+        """Go on at a location."""
         self._jumped = True
-        self.place = place
+        self.location = location
 
     def end(self) -> None:
         """Go on behind the last line, which ends the program here."""
         self._told_to_end = True
-        self.place = Place(len(self._lines), 0)
+        self.location = Location(len(self._lines), 0)
 
     def seek(self, wanted: Callable[[Block], bool]) -> bool:
         """Go on at the next block that is wanted; stay where it is when there is none."""
         for block in self._ahead():
             if wanted(block):
-                self.place = Place(block.line - 1, block.part)
+                self.location = Location(block.line - 1, block.part)
                 return True
         return False
 
@@ -225,7 +216,7 @@ class Flow:
         return next(self._ahead(), None)
 
     def _ahead(self) -> Iterator[Block]:
-        line, part = self.place
+        line, part = self.location
         for number in range(line, len(self._lines)):
             for block in self._readable_blocks(number):
                 if number > line or block.part >= part:
@@ -250,7 +241,7 @@ class Flow:
         fail_at: tuple[int, int],
         word: str,
         within: Container[int] | None = None,
-    ) -> Place:
+    ) -> Location:
         """Where the block with an N number or a name stands; arguments as for ``jump``.
 
         ``within``, where it is given, holds the lines, from 0, that may have it.
@@ -258,14 +249,14 @@ class Flow:
         Raises:
             ProgramError: No block or more than one has it.
         """
-        places = self.labels().get(label, [])
+        locations = self.labels().get(label, [])
         if within is not None:
-            places = [place for place in places if place.line in within]
-        if len(places) != 1:
-            self._refuse_label(label, len(places), fail_at, word)
-        return places[0]
+            locations = [location for location in locations if location.line in within]
+        if len(locations) != 1:
+            self._refuse_label(label, len(locations), fail_at, word)
+        return locations[0]
 
-    def labels(self) -> dict[int | str, list[Place]]:
+    def labels(self) -> dict[int | str, list[Location]]:
         """Where every N number and every name of a block stands."""
         if self._labels is None:
             self._labels = {}
@@ -274,7 +265,7 @@ class Flow:
                     for block in self._readable_blocks(line):
                         label = block.name or block.number
                         if label != NO_BLOCK_NUMBER:
-                            self._labels.setdefault(label, []).append(Place(line, block.part))
+                            self._labels.setdefault(label, []).append(Location(line, block.part))
         return self._labels
 
     def _readable_blocks(self, line: int) -> tuple[Block, ...]:
@@ -300,13 +291,13 @@ class Flow:
         self._here, self._here_line = blocks, line
         return blocks
 
-    def _count(self, place: Place) -> None:
-        if place > self._furthest:
-            self._furthest = place
+    def _count(self, location: Location) -> None:
+        if location > self._furthest:
+            self._furthest = location
             return
         self._steps_left -= 1
         if self._steps_left < 0:
-            self._report.line = place.line + 1
+            self._report.line = location.line + 1
             self._report.fail(
                 "endless-program",
                 f"more than {self._step_limit} blocks were repeated",

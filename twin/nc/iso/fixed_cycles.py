@@ -7,10 +7,10 @@ block without a hole drills where the tool stands; the tool returns to the heigh
 was called, or with G99 to the reference plane; the plane cannot change before the cycle has ended.
 """
 
-from twin.nc.control.dialect import GCode
-from twin.nc.control.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, Cycle, Pecking, Retract
+from twin.nc.control.codes import GCode
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.iso.drilling import cycle_code
+from twin.nc.path.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, Cycle, Pecking, Retract
 
 
 def _cycle(

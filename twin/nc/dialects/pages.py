@@ -1,13 +1,14 @@
 """What a dialect understands, as a page made from its declaration.
 
-``python -m twin.nc.describe`` writes the pages beside the dialects' modules; a test keeps them so.
+``python -m twin.nc.dialects.pages`` writes the pages beside the dialects' modules; a test keeps them so.
 """
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from twin.files.atomic import write_text
-from twin.nc.control.dialect import Dialect, GCode
+from twin.nc.control.codes import GCode
+from twin.nc.control.dialect import Dialect
 from twin.nc.dialects import DIALECTS
 
 _GROUND = {
@@ -35,7 +36,7 @@ def describe(dialect: Dialect) -> str:
     start = ", ".join(f"G{number}" for number in sorted(dialect.start))
     sections = [
         f"# {dialect.title} (`{dialect.name}`)",
-        "Made from the declaration in this folder by `python -m twin.nc.describe`.",
+        "Made from the declaration in this folder by `python -m twin.nc.dialects.pages`.",
         f"Units: {dialect.units}.",
         f"Comments: {_comments(dialect)}. Files are read as UTF-8, else as {dialect.code_page}.",
         f"In force when a program starts: {start}.",
@@ -144,7 +145,7 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def page_of(dialect: Dialect) -> Path:
     """Where the dialect's page lies."""
-    return Path(__file__).with_name("dialects") / f"{dialect.name}.md"
+    return Path(__file__).with_name(f"{dialect.name}.md")
 
 
 def write_pages() -> None:

@@ -3,6 +3,7 @@
 import dataclasses
 import enum
 
+from twin.nc.canonical import Event
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.curves import Box
 from twin.nc.geometry.elements import Element
@@ -67,3 +68,22 @@ class Followed:
     start: Point
     here: list[float]
     passed: list[Passed]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class CompensationResult:
+    """What a run has made of a contour.
+
+    Attributes:
+        followed: How far it has come, or None.
+        waiting: Moves and events at the end of the held move, in order.
+        latest: The last programmed move, or None where there was none.
+        before: The same, unless an event came behind it.
+        came: Something came at all.
+    """
+
+    followed: Followed | None
+    waiting: list[Segment | Event]
+    latest: Segment | None
+    before: Segment | None
+    came: bool
