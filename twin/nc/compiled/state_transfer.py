@@ -69,7 +69,7 @@ class StateTransfer:
             self._calls[row] = _numbers(call)
 
     @property
-    def routine(self) -> ExecutionState:
+    def execution(self) -> ExecutionState:
         """For the kernel; the columns of variables may have grown since it was asked for last."""
         variables = self._control.variables
         memory = VariableStore(
