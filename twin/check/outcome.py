@@ -83,6 +83,6 @@ def died(task: str) -> CheckOutcome:
     return CheckOutcome(
         program=task,
         verdict="error",
-        exit_code=ExitCode.FAILED,
+        exit_code=ExitCode.CRASH,
         findings=(Finding("process-died", message, task),),
     )

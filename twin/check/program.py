@@ -2,6 +2,7 @@
 
 import dataclasses
 import time
+import traceback
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from twin.check.variation import Variant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
-from twin.errors import ExitCode, TwinError
+from twin.errors import ExitCode, TwinError, UsageError
 from twin.job.job_file import Job
 from twin.machine.alarms import Alarm
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
@@ -28,6 +29,12 @@ def run_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         outcome = _run(variant, settings)
     except TwinError as error:
         outcome = _not_run(path, error)
+    except OSError as error:
+        outcome = _not_run(path, UsageError(f"{error.filename or path}: {error.strerror or error}"))
+    except MemoryError:
+        outcome = _not_run(path, UsageError("not enough memory; a coarser stock.cell needs less"))
+    except Exception:  # noqa: BLE001 - a defect at one program is told with it, the others run on
+        outcome = _crashed(path)
     return dataclasses.replace(outcome, wall_s=time.perf_counter() - began, changes=variant.changes)
 
 
@@ -64,7 +71,7 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         differing = _baseline_reasons(preparation, None, settings)
         return _not_run(path, error, _findings(preparation, differing))
     if settings.reports is not None:
-        from twin.compare.report import write_report
+        from twin.compare.report.report import write_report
         from twin.run.results import report_of, result_of
 
         page = report_of(run, outcome, result_of(run, outcome))
@@ -116,6 +123,17 @@ def _not_run(path: Path, error: TwinError, differing: tuple[Finding, ...] = ()) 
         verdict="alarm" if error.exit_code is ExitCode.ALARM else "error",
         exit_code=error.exit_code,
         findings=(finding, *differing),
+    )
+
+
+def _crashed(path: Path) -> CheckOutcome:
+    message = "the twin has met a defect of its own, which says nothing about the program"
+    text = f"{path}: error crash: {message}\n{traceback.format_exc().rstrip()}"
+    return CheckOutcome(
+        program=str(path),
+        verdict="error",
+        exit_code=ExitCode.CRASH,
+        findings=(Finding("crash", message, str(path), text=text),),
     )
 
 

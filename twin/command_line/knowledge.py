@@ -26,8 +26,15 @@ def explain(
     typer.echo(explanations.overview() if code is None else explanations.explain(code))
 
 
-def doctor() -> None:
-    """Say what this computer can do: libraries, off-screen pictures, video."""
+def doctor(
+    compile_now: Annotated[
+        bool,
+        typer.Option(
+            "--compile", help="Compile all kernels first: into the installation, for images."
+        ),
+    ] = False,
+) -> None:
+    """Say what this computer can do: libraries, compiled kernels, off-screen pictures, video."""
     from twin.commands.doctor import print_doctor
 
-    raise typer.Exit(print_doctor())
+    raise typer.Exit(print_doctor(compile_now=compile_now))

@@ -14,7 +14,7 @@ import hashlib
 import os
 import pickle
 import secrets
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -162,11 +162,6 @@ class KernelCache(_Cache):
         about = "\n".join((self._name, *map(str, arguments), str(result), *processor))
         stem = self._name.rpartition(".")[2]
         return f"{stem}-{hashlib.sha256(about.encode()).hexdigest()[:24]}{_SUFFIX}"
-
-
-def kernels_in(root: Path) -> Iterator[Path]:
-    """The files of all kernels that a folder holds."""
-    return root.glob(f"*/*{_SUFFIX}")
 
 
 def _processor(target_context: Any) -> tuple[str, ...]:

@@ -24,6 +24,16 @@ _FORGOTTEN_AFTER_S = 60 * _DAY_S
 """Kernels that nobody has loaded for so long belong to a version that is gone."""
 
 
+_chosen: list[Path] = []
+
+
+def keep_in(folder: Path) -> None:
+    """Keep what this process compiles in a folder of the caller's choice, and look there first."""
+    _chosen[:] = [folder]
+    for remembered in (trusted_folders, writable_folder):
+        remembered.cache_clear()
+
+
 @functools.cache
 def trusted_folders() -> tuple[Path, ...]:
     """The user's folders that kernels may be loaded from, the first choice first."""
@@ -51,7 +61,7 @@ def writable_folder() -> Path:
 
 def lasts() -> bool:
     """Whether what is compiled here is found again by the next process."""
-    return writable_folder() in _candidates()
+    return writable_folder() in list(_candidates())
 
 
 def is_trusted(folder: Path) -> bool:
@@ -94,6 +104,7 @@ def remove_forgotten(root: Path) -> None:
 
 
 def _candidates() -> Iterator[Path]:
+    yield from _chosen
     if chosen := os.environ.get("NUMBA_CACHE_DIR"):
         yield Path(chosen) / "mill-twin"
     user_cache = os.environ.get("XDG_CACHE_HOME")

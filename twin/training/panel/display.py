@@ -12,8 +12,8 @@ from twin.cutting.height_map import HeightMap
 from twin.machine.model import build_spec
 from twin.machine.tool_shape import COLLISION_GROUP, VISUAL_GROUP
 from twin.nc.canonical import FloatArray
-from twin.render.placement import ROTARY_TABLE, Joints, place
-from twin.render.work_holding import add_work_holding
+from twin.render.scene.placement import ROTARY_TABLE, Joints, place
+from twin.render.scene.work_holding import add_work_holding
 from twin.training.session.room import Room
 from twin.units import MM
 

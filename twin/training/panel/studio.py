@@ -17,7 +17,7 @@ from mujoco.studio import (
     ux,  # pyright: ignore[reportAttributeAccessIssue] (a compiled module, put there at run time)
 )
 
-from twin.render.placement import ROTARY_TABLE
+from twin.render.scene.placement import ROTARY_TABLE
 from twin.training.panel.display import STOCK_GROUP, Display
 from twin.training.panel.panel import Panel
 from twin.training.panel.request import Request

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from twin.nc.canonical import FloatArray
-from twin.render.placement import Frame
+from twin.render.scene.placement import Frame
 
 MOST = 240
 """Points that are kept: the page draws no more than a thousand extra bodies."""

@@ -10,7 +10,7 @@ from twin.job.job_file import StockTable, ToolTable
 from twin.machine.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
-from twin.run.stock_alarm import stock_alarm
+from twin.run.machining import stock_alarm
 from twin.toolpath.part_frame import PartFrame
 
 CONTACT_MM = 0.02
