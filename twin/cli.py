@@ -5,6 +5,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from twin.command_line.calibration import calibrate
 from twin.command_line.knowledge import dialects, doctor, explain
 from twin.command_line.machines import machine_app
 from twin.command_line.pictures import render
@@ -49,6 +50,7 @@ for command in (
     check,
     sweep,
     compare,
+    calibrate,
     export,
     train,
     dialects,
