@@ -13,13 +13,13 @@ from twin.compare.trace import Trace
 from twin.compare.verdict import judge
 from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import CutResult, Cutter
-from twin.cutting.fixtures import FixtureGuard
 from twin.cutting.part import write_stl
 from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
 from twin.cutting.spindle import Spindle, speaks_of_spindle
 from twin.errors import ConfigError
 from twin.machine.alarms import Alarm
-from twin.machine.model import build_spec, spindle_over_table_mm
+from twin.machine.head_shape import HeadShape
+from twin.machine.model import build_spec, clearance_model, spindle_over_table_mm
 from twin.machine.motion_limits import motion_limits
 from twin.machine.simulate import Simulation, simulate
 from twin.machine.travel import soft_limit_alarm
@@ -35,7 +35,7 @@ from twin.run.placement import part_zero
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.stages import StageClock
-from twin.run.stock_alarm import fixture_alarm, stock_alarm
+from twin.run.stock_alarm import stock_alarm
 from twin.toolpath.part_frame import PartFrame
 from twin.version import __version__
 
@@ -113,7 +113,7 @@ class Run:
             self.part_zero,
             apart=[part.lines for part in tolerance.blocks],
         )
-        cutter, guard = self._cutter(dry_run.summary), self._guard(dry_run.summary)
+        cutter = self._cutter(dry_run.summary)
         track = _Track(self.part_zero, preparation.start)
         self._spindle = Spindle(held_to_program=dry_run.speaks_of_spindle)
         alarm, near_miss = dry_run.alarm, None
@@ -122,9 +122,7 @@ class Run:
                 simulation = self._simulation(comparison, dry_run.summary)
                 for simulated in self.clock.watch("simulate", simulation):
                     with self.clock.stage("cut"):
-                        clear, touched = _keep_clear(guard, simulated)
-                        samples, alarm = self._cut(cutter, clear, dry_run.summary)
-                        alarm = alarm or touched
+                        samples, alarm = self._cut(cutter, simulated, dry_run.summary)
                     track.add(samples)
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
@@ -230,15 +228,16 @@ class Run:
         job = self.preparation.job.file
         if job.stock is None:
             return None
-        return Cutter(job.stock, summary.tools, self.part_frame, self.part_zero, halts=True)
-
-    def _guard(self, summary: ProgramSummary) -> FixtureGuard | None:
-        """What keeps the cutter off the fixtures; without a turning table nobody knows where."""
         machine = self.preparation.machine
-        if not machine.file.fixtures or machine.part_frame.rotary is None:
-            return None
-        height = summary.tools.tools[0].length - spindle_over_table_mm(machine)
-        return FixtureGuard(machine.file.fixtures, summary.tools, self.part_frame, height)
+        head = HeadShape(machine, clearance_model(machine, self.spec))
+        return Cutter(
+            job.stock,
+            summary.tools,
+            self.part_frame,
+            self.part_zero,
+            halts=True,
+            head=head.above_tip,
+        )
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:
         return nullcontext() if out is None else record(out / "recording.h5", self.header())
@@ -271,15 +270,6 @@ class Run:
 
 def _text_to_keep(source: Source) -> str:
     return source.text if source.lines.size <= LONGEST_TEXT else ""
-
-
-def _keep_clear(guard: FixtureGuard | None, samples: Samples) -> tuple[Samples, Alarm | None]:
-    """What is left of a chunk where the cutter touched a fixture, and the alarm."""
-    found = None if guard is None else guard.look(samples)
-    if found is None:
-        return samples, None
-    row, event, name = found
-    return samples[: row + 1], fixture_alarm(event, name)
 
 
 class _Track:

@@ -86,7 +86,8 @@ class Room:
         self.part_frame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
         self.work = None
         if job.stock is not None:
-            self.work = Workpiece(job.stock, job.tools[0], self.part_frame, zero)
+            head = self.machine.head.above_tip
+            self.work = Workpiece(job.stock, job.tools[0], self.part_frame, zero, head)
         self.mode: Mode = file.start.mode
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
