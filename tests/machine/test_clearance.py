@@ -111,7 +111,7 @@ def test_a_twentieth_of_a_millimetre_is_seen_and_no_alarm_is_false(one: str, two
         under = [0.0, 0.0, 0.0]
         if reach.parent.name != nose.name:
             under = [0.0, reach.pos[1] + 0.6, 0.0]
-        spec.geom(two).pos = [under[0], under[1], spec.geom(two).pos[2] - 3.0]
+        spec.geom(two).pos = np.array([under[0], under[1], spec.geom(two).pos[2] - 3.0])
     for step in (0.05, 0.5):
         for gap in (-0.05, 0.05):
             clearance, model = alone(spec, MACHINE, one, two)
@@ -186,7 +186,8 @@ def test_any_way_with_a_turning_table_agrees_with_the_closed_form(
     stops: list[tuple[float, float, float, float]], samples: int
 ) -> None:
     clearance, _ = alone(SPEC, MACHINE, "cutter", "jaw")
-    corners = np.array(stops) + [0.0, 0.0, -620.0 + 100.0, 0.0]
+    corners = np.array(stops)
+    corners[:, 2] += -620.0 + 100.0
     share = np.linspace(0.0, 1.0, samples, endpoint=False)[:, None]
     way = np.concatenate([a + share * (b - a) for a, b in itertools.pairwise(corners)])
     least = box_gap(way).min()
@@ -198,7 +199,7 @@ def test_any_way_with_a_turning_table_agrees_with_the_closed_form(
 
 def test_a_tool_that_stands_on_a_jaw_may_be_driven_off_it() -> None:
     clearance, _ = alone(SPEC, MACHINE, "cutter", "jaw")
-    down = np.zeros((100, 4)) + [0.0, 60.0, -490.0, 0.0]
+    down = np.tile([0.0, 60.0, -490.0, 0.0], (100, 1))
     down[:, 2] -= np.linspace(-1.0, 1.0, 100)
     assert watch(clearance, down)
     clearance.acknowledge(down[-1])
@@ -208,7 +209,7 @@ def test_a_tool_that_stands_on_a_jaw_may_be_driven_off_it() -> None:
 
 def test_the_nearest_of_holder_and_head_is_told_but_not_that_of_the_cutter() -> None:
     clearance, _ = alone(SPEC, MACHINE, "cutter", "holder's nut", "jaw")
-    position = np.zeros((400, 4)) + [0.0, 60.0 - 10.0 - 23.0, -620.0 + 100.0 - 30.0, 0.0]
+    position = np.tile([0.0, 60.0 - 10.0 - 23.0, -620.0 + 100.0 - 30.0, 0.0], (400, 1))
     position[:, 2] += np.linspace(30.0, 0.0, 400)
     assert watch(clearance, position) == ""
     assert clearance.near_miss is not None

@@ -26,7 +26,7 @@ import numpy as np
 from twin.machine.alarms import Alarm, NearMiss
 from twin.machine.config import Machine
 from twin.machine.relative_motion import RelativeMotion
-from twin.machine.tool_shape import COLLISION_GROUP, CUTTING_PARTS, TOOL_SIDE
+from twin.machine.tool_shape import COLLISION_GROUP, CUTTER, CUTTING_PARTS, TOOL_SIDE
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.units import MM
@@ -306,8 +306,8 @@ class Clearance:
         return clearance, _Plane(clearance, normal, place, float(self._planes.reach[pair]), slack)
 
     def _names(self, pair: int) -> tuple[str, str]:
-        one, two = self._pairs[pair]
-        return self._model.geom(one).name, self._model.geom(two).name
+        one, two = (self._model.geom(geom).name for geom in self._pairs[pair])
+        return CUTTER if one in CUTTING_PARTS else one, two
 
     def _remember(self, way: "_Way", row: int, clearance: float, pair: int) -> None:
         if self.near_miss is None or clearance < self.near_miss.clearance_mm:

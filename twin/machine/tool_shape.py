@@ -136,14 +136,15 @@ MATERIALS = {
 """Colours of holder, cutter and fixtures where the machine's model has no materials so called."""
 
 _HOLDER = ("tool_flange", "tool_nut")
+CUTTER = "cutter"
 _COLLISION_NAMES = {
     "tool_flange": "holder's flange",
     "tool_nut": "holder's nut",
     "tool_shank": "tool's shank",
-    "tool_cutter": "cutter",
+    "tool_cutter": CUTTER,
 }
 _END = "cutter's end"
-CUTTING_PARTS = ("cutter", _END)
+CUTTING_PARTS = (CUTTER, _END)
 """Geoms that may go into the stock, and into nothing else."""
 TOOL_NAMES = (*_COLLISION_NAMES.values(), _END)
 """Geoms that come and go with the tool."""
