@@ -14,14 +14,16 @@ from twin.columns import join
 from twin.files.shipped import machine_file, machine_names
 from twin.job.fixture import FixtureTable
 from twin.machine.circle_path import CirclePath
+from twin.machine.clearance import Clearance
 from twin.machine.config import read_machine
 from twin.machine.drives import feedforward_name
 from twin.machine.live import LiveMachine
-from twin.machine.model import build_spec, physics_model, spindle_over_table_mm
+from twin.machine.model import build_spec, clearance_model, physics_model, spindle_over_table_mm
 from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.simulate import simulate
 from twin.machine.tool_shape import DefaultTool
 from twin.motion.setpoints.setpoints import Setpoints
+from twin.recording.reader import Samples
 
 CHUNK = 16384
 """Setpoints per chunk, as the planner gives them."""
@@ -71,8 +73,9 @@ def _watching() -> Iterator[Row]:
     machine = read_machine(machine_file("mill4")).with_fixtures(jaws)
     spec = build_spec(machine)
     model = physics_model(machine, spec)
+    clearance = Clearance(machine, clearance_model(machine, spec))
     table = -spindle_over_table_mm(machine) + DefaultTool().length
-    for task, turns, z in (("between jaws", 0.0, 20.0), ("over jaws, C turning", 90.0, 61.0)):
+    for task, turns, z in (("between jaws", 0.0, 30.0), ("over jaws, C turning", 90.0, 61.0)):
         points = _circle("mill4")
         place = points.position.copy()
         place[:, 2] = table + z
@@ -81,11 +84,17 @@ def _watching() -> Iterator[Row]:
         speed[:, 3] = turns
         points = dataclasses.replace(points, position=place, velocity=speed)
         chunks = [points[i : i + CHUNK] for i in range(0, len(points), CHUNK)]
+        samples = list(simulate(machine, model, chunks))
+
+        def watch(samples: list[Samples] = samples) -> None:
+            clearance.begin()
+            assert not any(clearance.look(chunk) for chunk in samples)
+
         watched, bare = _paired(
-            lambda chunks=chunks: [len(samples) for samples in simulate(machine, spec, chunks)],
+            watch,
             lambda chunks=chunks: [len(samples) for samples in simulate(machine, model, chunks)],
         )
-        share = 100.0 * (watched - bare) / bare
+        share = 100.0 * watched / bare
         yield Row("machine", f"watching for collisions {task}", share, "% of the simulation")
 
 

@@ -12,6 +12,8 @@ import numpy as np
 from twin.nc.canonical import FloatArray
 from twin.units import MM
 
+_STILL = 1e-9
+"""Turning of an axis that stands: it trembles by rounding [rad]."""
 _PARALLEL = 1e-9
 """Sine of an angle below which two directions are parallel, and length below which a point lies on
 an axis [m]."""
@@ -150,7 +152,7 @@ class RelativeMotion:
                 place = place + _applied(turn, along[:, None]) * moved
                 continue
             anchor = model.jnt_pos[number][:, None]
-            if np.ptp(moved) == 0.0:
+            if np.ptp(moved) < _STILL:
                 moved = moved[:1]
             place = place + _applied(turn, anchor)
             turn = _product(turn, _turned(along, moved))
