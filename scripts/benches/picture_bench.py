@@ -21,9 +21,9 @@ from twin.job.job_file import StockTable, ToolTable, VideoTable
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples, open_recording
-from twin.render.canvas import Canvas, Pixels
+from twin.render.drawing.canvas import Canvas, Pixels
 from twin.render.film import film
-from twin.render.stage import Scene
+from twin.render.scene.stage import Scene
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.replay import scene_of

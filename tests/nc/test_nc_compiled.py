@@ -9,7 +9,7 @@ import pytest
 from tests.nc.nc_fuzz import REAL, mutated
 from tests.nc.nc_running import ROOT, SETTINGS, WITH_TABLES
 from twin.nc.canonical import Chunk, Event, Moves, concatenate
-from twin.nc.control.control import Control
+from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.interpreter import Interpretation
@@ -104,13 +104,13 @@ def general_blocks(
 ) -> int:
     """How many blocks the interpreter tier runs where the compiled tier is taken from the start."""
     lines: list[int] = []
-    general = Control.run
+    general = Executor.run
 
-    def counted(control: Control, block: Block) -> None:
+    def counted(control: Executor, block: Block) -> None:
         lines.append(block.line)
         general(control, block)
 
-    monkeypatch.setattr(Control, "run", counted)
+    monkeypatch.setattr(Executor, "run", counted)
     seen(source_from_text(text), dialect, job, ALWAYS)
     return len(lines)
 
@@ -239,4 +239,4 @@ def test_the_fast_way_is_taken() -> None:
         interpretation = Interpretation(source_from_text(text), dialect_named(dialect), SETTINGS)
         interpretation._control.prepare()
         assert VirtualMachine(interpretation._control).run()
-        assert interpretation._control.flow.place.line == 151, dialect
+        assert interpretation._control.program_counter.location.line == 151, dialect

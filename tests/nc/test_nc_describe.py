@@ -1,7 +1,7 @@
 import pytest
 
-from twin.nc.describe import describe, overview, page_of
 from twin.nc.dialects import DIALECTS
+from twin.nc.dialects.pages import describe, overview, page_of
 
 
 @pytest.mark.parametrize("name", DIALECTS)

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.nc.nc_running import bad, good
-from twin.nc.path import even_axes
+from twin.nc.path import synchronous_axes
 
 POINTS = st.lists(st.tuples(st.integers(-50, 50), st.integers(-50, 50)), min_size=2, max_size=8)
 
@@ -48,7 +48,7 @@ def test_a_program_may_end_before_the_axis_arrives() -> None:
 
 
 def test_too_many_moves_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(even_axes, "MOST_MOVES", 3)
+    monkeypatch.setattr(synchronous_axes, "MOST_MOVES", 3)
     error = bad("N1 G71 L6 F5 " + " ".join(f"N{n} G1 X{n}" for n in range(2, 9)), "codesys")
     assert error.code == "even-axis"
 

@@ -8,7 +8,7 @@ import pytest
 from tests.nc.nc_running import SETTINGS
 from twin.nc.dialects import DIALECTS
 from twin.nc.interpreter import Interpretation
-from twin.nc.iso.codes import is_ellipsis
+from twin.nc.iso.base import is_ellipsis
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import source_from_bytes
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from tests.nc.nc_routines import MAKERS, program
 from tests.nc.nc_running import SETTINGS, WITH_TABLES, bad
 from tests.nc.test_nc_compiled import ALWAYS, assert_same, seen
-from twin.nc.control.control import Control
+from twin.nc.control.executor import Executor
 from twin.nc.dialects import DIALECTS
 from twin.nc.text.expressions import LARGEST_NUMBER
 from twin.nc.text.source import source_from_text
@@ -177,7 +177,7 @@ def test_the_compiled_run_takes_every_form(form: str) -> None:
     result = assert_same(source_from_text(text), dialect, job)
     assert result.error is None
     assert len(result.moves) >= 900
-    with mock.patch.object(Control, "run", autospec=True, side_effect=Control.run) as general:
+    with mock.patch.object(Executor, "run", autospec=True, side_effect=Executor.run) as general:
         seen(source_from_text(text), dialect, job, ALWAYS)
     assert general.call_count < 10
 

@@ -15,8 +15,8 @@ from twin.machine.config import Machine, read_machine
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, RecordingHeader, Samples, open_recording, record
-from twin.render.gl import BACKENDS, probe
-from twin.render.stage import Scene
+from twin.render.drawing.gl import BACKENDS, probe
+from twin.render.scene.scene import Scene
 
 MODEL = """
 <mujoco>

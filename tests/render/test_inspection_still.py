@@ -9,7 +9,7 @@ from twin.cutting.recut import COMMANDED, inspect_recorded
 from twin.errors import RenderError
 from twin.recording.form import STEPS
 from twin.render.inspection_still import inspection_still
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 
 
 def test_a_slot_cut_too_deep_is_blue(scene: Scene, tmp_path: Path) -> None:

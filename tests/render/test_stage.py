@@ -13,12 +13,13 @@ from twin.job.job_file import StockTable, ToolTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, open_recording
-from twin.render.canvas import DRAFT, FINAL, Pixels
-from twin.render.placement import tip_position
-from twin.render.replay import deal
-from twin.render.stage import Scene, Stage, stage
+from twin.render.drawing.canvas import DRAFT, FINAL, Pixels
+from twin.render.frames import deal
+from twin.render.scene.placement import tip_position
+from twin.render.scene.scene import Scene
+from twin.render.scene.stage import Stage, stage
+from twin.render.scene.tool_body import fluted
 from twin.render.still import moment
-from twin.render.tool_body import fluted
 
 SIZE = (320, 240)
 
@@ -140,7 +141,7 @@ def test_stock_turns_with_the_table(scene: Scene) -> None:
 
 
 def test_trail_grows(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("twin.render.stage.TRAIL_MM", (2.0, 2.0))
+    monkeypatch.setattr("twin.render.scene.stage.TRAIL_MM", (2.0, 2.0))
 
     def visible(play: Stage) -> int:
         names = [
@@ -176,7 +177,7 @@ def test_trail_shows_the_error(
     machine: Machine,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("twin.render.stage.TRAIL_MM", (2.0, 2.0))
+    monkeypatch.setattr("twin.render.scene.stage.TRAIL_MM", (2.0, 2.0))
     feeds = dataclasses.replace(SUMMARY, rapid=np.zeros(4, np.bool_))
     colours = []
     for error in (0.0, 25.0):

@@ -14,9 +14,9 @@ from twin.errors import RenderError
 from twin.machine.config import Machine
 from twin.recording.form import STEPS
 from twin.recording.reader import open_recording
+from twin.render.frames import deal
 from twin.render.gauge import Gauge
-from twin.render.replay import deal
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 from twin.render.still import Shot, moment, stills
 
 

@@ -3,9 +3,10 @@
 from pathlib import Path
 
 from twin.recording.reader import open_recording
+from twin.run.dry_run import DryRun
 from twin.run.progress import Progress
 from twin.run.results import STILL_NAME
-from twin.run.run import DryRun, Run
+from twin.run.run import Run
 
 FILM_STEM = "video"
 

@@ -22,7 +22,7 @@ from twin.job.job_file import VideoTable
 from twin.render.encoder import FORMATS
 from twin.render.film import film
 from twin.render.inspection_still import inspection_still
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 from twin.render.still import Shot, moment, stills
 from twin.run.progress import shown_progress
 from twin.run.replay import event_time, open_scene

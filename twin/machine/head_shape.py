@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 
 from twin.machine.config import Machine
+from twin.machine.model import build_spec, clearance_model
 from twin.machine.tool_shape import (
     COLLISION_GROUP,
     TOOL_NAMES,
@@ -84,6 +85,15 @@ class HeadShape:
             dataclasses.replace(solid, above=solid.above + tool.length) for solid in self._solids
         )
         return (*flange, *raised)
+
+
+def head_shape(machine: Machine) -> HeadShape:
+    """The solids around a machine's spindle.
+
+    Raises:
+        ConfigError: The model is wrong.
+    """
+    return HeadShape(machine, clearance_model(machine, build_spec(machine)))
 
 
 def _solid(model: mujoco.MjModel, data: mujoco.MjData, geom: int, nose: FloatArray) -> HeadSolid:

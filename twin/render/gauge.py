@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.recording.reader import Samples
 from twin.render.hud import Display, Reading
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 from twin.units import SECONDS_PER_MINUTE, UM_PER_MM
 
 

@@ -9,7 +9,7 @@ from twin.cutting.recut import recut
 from twin.errors import UsageError
 from twin.machine.model import build_spec
 from twin.recording.reader import Recording, open_recording
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 from twin.run.preparation import Preparation, prepare_recorded
 
 EVENTS = ("end", "worst", "alarm", "rapid", "gouge")

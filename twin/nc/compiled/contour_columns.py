@@ -9,6 +9,7 @@ from twin.nc.canonical import Corner, Event, Motion, Shape
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.elements import element_from
 from twin.nc.geometry.planes import PLANE_NAMES, Plane
+from twin.nc.path.compensation_state import NECK, CompensationResult, Followed, Passed, Stage
 from twin.nc.path.contour_registers import (
     BOX,
     CONTOUR,
@@ -34,7 +35,6 @@ from twin.nc.path.contour_registers import (
     Row,
 )
 from twin.nc.path.event_columns import EventRows
-from twin.nc.path.followed import NECK, Followed, Passed, Stage
 from twin.nc.path.move_columns import Segment
 
 
@@ -92,25 +92,6 @@ def fill(contour: Contour, followed: Followed | None, position: list[float]) -> 
         if each.contour is not None:
             row[CURVE : 2 * CURVE] = _column(each.contour.curve)
         row[LINE], row[BOX:] = each.line, each.box
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class CompensationResult:
-    """What a run has made of a contour.
-
-    Attributes:
-        followed: How far it has come, or None.
-        waiting: Moves and events at the end of the held move, in order.
-        latest: The last programmed move, or None where there was none.
-        before: The same, unless an event came behind it.
-        came: Something came at all.
-    """
-
-    followed: Followed | None
-    waiting: list[Segment | Event]
-    latest: Segment | None
-    before: Segment | None
-    came: bool
 
 
 def gone(contour: Contour, moves: Row, events: EventRows) -> tuple[CompensationResult, EventRows]:

@@ -30,17 +30,18 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.contour_columns import fill, gone, new_contour
-from twin.nc.compiled.decode_tables import FEED_FACTORS, DecodeTables
+from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.kernels.block import new_scratch
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
 from twin.nc.compiled.kernels.program import run_program
 from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
 from twin.nc.compiled.line_compiler import LineCompiler
 from twin.nc.compiled.state_transfer import StateTransfer, put_into_force
-from twin.nc.control.control import Control
-from twin.nc.control.drilling_cycle import most_acts, no_values
+from twin.nc.control.executor import Executor
+from twin.nc.control.modal import FEED_FACTORS
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.contour_registers import Row
+from twin.nc.path.drilling_cycle import most_acts, no_values
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import CHUNK
 from twin.nc.text.lines import Page
@@ -61,10 +62,10 @@ class VirtualMachine:
         full: The path has no room for the next block's moves.
     """
 
-    def __init__(self, control: Control) -> None:
+    def __init__(self, control: Executor) -> None:
         axes = len(control.settings.axes)
         self._control = control
-        self._lines = control.flow.lines
+        self._lines = control.program_counter.lines
         self._page = Page(0, b"")
         self._tables = DecodeTables(control.dialect, control.settings)
         self._line_compiler = LineCompiler(control, self._tables)
@@ -154,7 +155,7 @@ class VirtualMachine:
         )
 
     def _constants(self) -> Constants:
-        control, rapid = self._control, self._tables.rapid_feed
+        control, rapid = self._control, self._control.dialect.rapid_feed
         return Constants(
             default_feed=control.settings.default_feed,
             default_rotary_feed=control.settings.default_rotary_feed,

@@ -1,9 +1,9 @@
 """G40, G41 and G42 for the compiled tier: what the actions of ``offsets`` do, as steps."""
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
 from twin.nc.bytecode.opcodes import Opcode
-from twin.nc.control.dialect import Compiler
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Compiler
 from twin.nc.text.expressions import Expression
 
 

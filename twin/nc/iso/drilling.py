@@ -5,11 +5,12 @@ from collections.abc import Callable, Mapping
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
 from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Compiler, GCode, Ground, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import Compiler, GCode, Ground
-from twin.nc.control.drilling_cycle import (
+from twin.nc.control.interpolation import CycleRule
+from twin.nc.path.drilling_cycle import (
     BOTTOM,
     EVERY,
     FACTOR,
@@ -28,7 +29,6 @@ from twin.nc.control.drilling_cycle import (
     remember,
     write_acts,
 )
-from twin.nc.control.interpolation import CycleRule, Interpolation
 
 _BESIDE = "ST"
 """Words that may stand beside a cycle on the compiled tier: they change nothing of where the tool stands."""
@@ -97,8 +97,8 @@ def _compile_words(words: Mapping[str, int]) -> Compiler:
                 raise UnsupportedError
             assembler.word_value(word)
             assembler.emit(Opcode.CYCLE_WORD, value)
-        others = block.words.keys() & block.control.dialect.word_compilers.keys()
-        if others - set(_BESIDE) or any(code.action for _, code in block.functions):
+        others = block.words.keys() & block.acting_letters
+        if others - set(_BESIDE) or block.functions_act:
             raise UnsupportedError
 
     return write

@@ -1,7 +1,7 @@
 """A jog as the block that an operator would have typed for it."""
 
-from twin.nc.compiled.decode_tables import FEED_FACTORS
-from twin.nc.control.dialect import Dialect, FeedMode
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.modal import FEED_FACTORS, FeedMode
 
 
 def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
@@ -14,7 +14,6 @@ def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
         feed: [mm/min or deg/min]
     """
     mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
-    assert isinstance(mode, FeedMode)
     return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / FEED_FACTORS[mode])}"
 
 

@@ -8,10 +8,10 @@ machine zero until the next work offset.
 from collections.abc import Iterable, Mapping
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
 from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Compiler, GCode
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import Compiler, GCode
 from twin.nc.control.state import integer_of
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.iso.compensation_words import compile_compensation, compile_end_of_compensation

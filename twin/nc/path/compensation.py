@@ -18,7 +18,7 @@ from twin.nc.canonical import Corner
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.elements import Element, crossing, crossings, turn_between
 from twin.nc.geometry.planes import Plane
-from twin.nc.path.followed import NECK, Followed, Passed, Stage
+from twin.nc.path.compensation_state import NECK, Followed, Passed, Stage
 from twin.nc.path.leads import LeadOut, around, lead_depth
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.segments import element_of, level_arc

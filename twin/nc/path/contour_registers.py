@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.path.followed import Stage
+from twin.nc.path.compensation_state import Stage
 
 (
     STAGE,

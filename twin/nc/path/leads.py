@@ -6,7 +6,7 @@ from twin.nc.geometry import lead_curves
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.elements import Element, element_from
 from twin.nc.geometry.planes import Plane
-from twin.nc.path.followed import Followed, Stage
+from twin.nc.path.compensation_state import Followed, Stage
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

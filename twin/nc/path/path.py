@@ -8,20 +8,19 @@ import math
 from collections.abc import Callable
 
 from twin.nc.canonical import Axes, Chunk, Motion
-from twin.nc.compiled.contour_columns import CompensationResult
 from twin.nc.geometry.planes import PLANE_NAMES, Plane
 from twin.nc.path.blends import Blend
 from twin.nc.path.compensation import Compensation, Refuse, Warn
+from twin.nc.path.compensation_state import CompensationResult, Followed, Stage
 from twin.nc.path.contour_registers import Row
-from twin.nc.path.even_axes import MOST_MOVES, EvenAxes
 from twin.nc.path.event_columns import EventRows
-from twin.nc.path.followed import Followed, Stage
 from twin.nc.path.lead_out import lead_out
 from twin.nc.path.leads import LeadOut
 from twin.nc.path.loops import Loops
 from twin.nc.path.move_columns import MoveColumns, Segment
 from twin.nc.path.rounding import Rounding
 from twin.nc.path.splines import Spline
+from twin.nc.path.synchronous_axes import MOST_MOVES, EvenAxes
 
 
 class Path:

@@ -28,6 +28,7 @@ from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
 from twin.nc.path.compensation import LARGEST_SQUARE, STRAIGHT_ON
+from twin.nc.path.compensation_state import Stage
 from twin.nc.path.contour_registers import (
     CONTOUR,
     ELEMENT,
@@ -41,7 +42,6 @@ from twin.nc.path.contour_registers import (
     WAITING,
     Contour,
 )
-from twin.nc.path.followed import Stage
 from twin.nc.path.segments import IN_PLANE
 
 for _shared in (

@@ -26,6 +26,7 @@ from twin.nc.compiled.kernels.plane import along_axis, place
 from twin.nc.geometry import arcs, curves, lead_curves
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.curves import Curve
+from twin.nc.path.compensation_state import Stage
 from twin.nc.path.contour_registers import (
     CONTOUR,
     ELEMENT,
@@ -40,7 +41,6 @@ from twin.nc.path.contour_registers import (
     WAITING,
     Contour,
 )
-from twin.nc.path.followed import Stage
 
 for _shared in (
     arcs.turned,

@@ -10,6 +10,7 @@ from twin.nc.compiled.kernels.columns import copy, copy_rows
 from twin.nc.compiled.kernels.plane import along_axis, place
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.curves import Curve
+from twin.nc.path.compensation_state import Stage
 from twin.nc.path.contour_registers import (
     CONTOUR,
     MOVED,
@@ -21,7 +22,6 @@ from twin.nc.path.contour_registers import (
     Contour,
     Row,
 )
-from twin.nc.path.followed import Stage
 
 _LEADING_IN, _FOLLOWING = int(Stage.LEADING_IN), int(Stage.FOLLOWING)
 _ARC = int(Shape.ARC)

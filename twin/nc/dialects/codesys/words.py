@@ -2,8 +2,8 @@
 
 import math
 
+from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import WordAction
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.text.blocks import Word
 

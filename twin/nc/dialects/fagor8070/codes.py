@@ -1,23 +1,20 @@
 """G codes of the Fagor CNC 8070."""
 
 from collections.abc import Mapping
+from typing import Unpack
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
 from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.canonical import Corner
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Action, Compiler, GCode, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import (
-    Action,
-    Compiler,
-    FeedMode,
-    GCode,
-)
+from twin.nc.control.modal import FeedMode, ModalChanges
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
 from twin.nc.dialects.fagor8070.cycles import CYCLES
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
-from twin.nc.iso import codes, cycles, offsets
+from twin.nc.iso import base, fixed_cycles, offsets
 from twin.nc.iso.compensation_words import compile_compensation_by_tool, compile_end_of_compensation
 from twin.nc.text.blocks import Word
 
@@ -97,11 +94,11 @@ def _and_forget_polar(compiler: Compiler | None) -> Compiler:
     return both
 
 
-def _g(meaning: str, group: str = "", **sets: object) -> GCode:
+def _g(meaning: str, group: str = "", **sets: Unpack[ModalChanges]) -> GCode:
     return GCode(meaning=meaning, group=group, sets=sets, ground="manual")
 
 
-def _motion(meaning: str, interpolation: object, *, seed: bool = False) -> GCode:
+def _motion(meaning: str, interpolation: Interpolation, *, seed: bool = False) -> GCode:
     return GCode(
         meaning=meaning,
         group="motion",
@@ -110,7 +107,7 @@ def _motion(meaning: str, interpolation: object, *, seed: bool = False) -> GCode
     )
 
 
-def _once(meaning: str, **sets: object) -> GCode:
+def _once(meaning: str, **sets: Unpack[ModalChanges]) -> GCode:
     return GCode(meaning=meaning, sets=sets, once=True, ground="manual")
 
 
@@ -120,7 +117,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=frames.change_plane,
-        compiler=codes.compile_plane(plane),
+        compiler=base.compile_plane(plane),
         ground="seed",
     )
 
@@ -179,7 +176,7 @@ CODES: dict[int, GCode] = {
     4: GCode(
         meaning="dwell, seconds in K or right behind",
         perform=dwell,
-        compiler=codes.compile_dwell("K"),
+        compiler=base.compile_dwell("K"),
         ground="manual",
     ),
     5: _g("round corner", "corner", corner=Corner.CONTINUOUS),
@@ -284,7 +281,7 @@ CODES: dict[int, GCode] = {
         meaning="constant cutting speed", refused="a mill's radius is the tool's", ground="manual"
     ),
     97: _g("constant spindle speed", "spindle"),
-    **cycles.RETURN,
+    **fixed_cycles.RETURN,
     **_refused("probing", _PROBE, range(100, 105)),
     108: _g("feed blending at the start of the block", "feed blending"),
     109: _g("feed blending at the end of the block", "feed blending"),

@@ -1,0 +1,110 @@
+"""What the tool does to the stock along a run, and the alarms of what must not meet it."""
+
+from pathlib import Path
+
+import numpy as np
+
+from twin.cutting.cut import CutResult, Cutter
+from twin.cutting.events import CutEvent
+from twin.cutting.part import write_stl
+from twin.cutting.program_summary import ProgramSummary
+from twin.cutting.spindle import Spindle
+from twin.job.job_file import StockTable, ToolTable
+from twin.machine.alarms import Alarm
+from twin.machine.config import Machine
+from twin.machine.head_shape import head_shape
+from twin.nc.canonical import Chunk, FloatArray
+from twin.recording.form import Samples
+from twin.toolpath.part_frame import PartFrame
+
+
+class Machining:
+    """Cuts the stock of a run chunk by chunk."""
+
+    def __init__(
+        self,
+        machine: Machine,
+        stock: StockTable | None,
+        summary: ProgramSummary,
+        part_frame: PartFrame,
+        part_zero: FloatArray,
+        *,
+        speaks_of_spindle: bool,
+    ) -> None:
+        """Lay the blank on the table.
+
+        Args:
+            machine: What is above the tool is its.
+            stock: The blank; None where nothing is cut.
+            summary: What is in the spindle when, and which moves are rapids.
+            part_frame: How the part turns under the tool.
+            part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+            speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
+        """
+        self._summary = summary
+        self._spindle = Spindle(held_to_program=speaks_of_spindle)
+        self._cutter: Cutter | None = None
+        if stock is not None:
+            head = head_shape(machine).above_tip
+            self._cutter = Cutter(
+                stock, summary.tools, part_frame, part_zero, halts=True, head=head
+            )
+
+    def expect(self, chunk: Chunk) -> None:
+        """Take note of a chunk of the program, before its samples come."""
+        self._spindle.expect(chunk)
+
+    def add(self, samples: Samples) -> tuple[Samples, Alarm | None]:
+        """Cut along a chunk.
+
+        Returns:
+            The samples up to the first alarm, and that alarm.
+        """
+        cutter = self._cutter
+        if cutter is None:
+            return samples, None
+        rapid = self._summary.is_rapid(samples.setpoint.move)
+        cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
+        if cutter.halted is None:
+            return samples, None
+        alarm = stock_alarm(cutter.halted, cutter.tool)
+        end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
+        return samples[:end], alarm
+
+    def finish(self, out: Path | None) -> CutResult | None:
+        """What the cut came to; the part is written as ``part.stl`` into a folder, if one is given.
+
+        Returns:
+            None without a stock.
+
+        Raises:
+            OSError: The part cannot be written.
+        """
+        if self._cutter is None:
+            return None
+        if out is not None:
+            write_stl(self._cutter.map, out / "part.stl")
+        return self._cutter.result()
+
+
+def stock_alarm(event: CutEvent, tool: ToolTable) -> Alarm:
+    """The alarm of what met the stock: a rapid, a feed with the spindle off, shank, holder, head.
+
+    Args:
+        event: What the cutter noted.
+        tool: What was in the spindle.
+    """
+    depth = f"{event.depth_mm:.2f} mm deep"
+    if event.what == "rapid":
+        message = f"a rapid drives tool {tool.number} {depth} into the stock"
+        return Alarm("rapid-into-stock", event.line, event.time_s, "", message)
+    if event.what == "standing":
+        message = f"tool {tool.number} feeds {depth} into the stock with the spindle off"
+        return Alarm("spindle-off", event.line, event.time_s, "", message)
+    if event.what == "flute":
+        message = f"the shank of tool {tool.number} meets the part above its flutes ({depth})"
+    elif event.what in ("shank", "holder"):
+        message = f"the {event.what} of tool {tool.number} meets the part ({depth})"
+    else:
+        message = f"the {event.what} meets the part ({depth})"
+    return Alarm("collision", event.line, event.time_s, "", message)
