@@ -98,14 +98,14 @@ class StockContact:
             head: What is above its holder; None: nothing.
         """
         self._edge = dataclasses.astuple(edge)
-        flute = min(tool.flute, tool.below_holder)
         shank = tool.diameter if tool.shank is None else tool.shank
-        wide = shank > tool.diameter
         self._uprights: list[Upright] = [
-            _Cylinder("shank" if wide else "flute", 0.5 * shank, flute),
             _Cylinder("holder", 0.5 * max(tool.holder, shank), tool.below_holder),
             *(() if head is None else head(tool)),
         ]
+        if tool.flute < tool.below_holder:
+            name = "shank" if shank > tool.diameter else "flute"
+            self._uprights.append(_Cylinder(name, 0.5 * shank, tool.flute))
         self._most = {
             solid.name: BRUSH_MM if solid.name == "flute" else SCRAPE_MM for solid in self._uprights
         } | {EDGE: BRUSH_MM}

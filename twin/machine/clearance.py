@@ -37,7 +37,7 @@ SHORTEST_WAY = 0.02
 """A way between two samples that is shorter is not halved any more [mm]."""
 WORSE = 0.1
 """What has met, and was acknowledged, may overlap by so much more before it is an alarm again [mm]."""
-NEAR_STEP = 0.05
+NEAR_STEP = 0.01
 """A near miss is told of to this [mm]."""
 _FAR = 10.0
 """Distances beyond this are not measured [m]."""
