@@ -29,7 +29,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "commands",
         "command_line",
         "cli",
-        "__init__ __main__ pytest_plugin",
+        "__init__ __main__",
     ),
     "twin.nc": (
         "canonical geometry",
