@@ -73,6 +73,7 @@ def write_programs(machine: Machine, folder: Path) -> list[Path]:
         job = [f'program = "{path.name}"', f'dialect = "{dialect}"']
         job += [f'machine = "{machine.file.name}"', "", "[part_zero]"]
         job += [f"{axis} = {_zero(machine, axis):.6f}" for axis in SPATIAL_AXES]
+        job += ["", "[start]", f"Z = {_CLEAR}"]
         write_text(path.with_suffix(".toml"), "\n".join(job) + "\n")
         written.append(path)
     return written
