@@ -15,7 +15,7 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from twin.nc.iso.jogging import jog_block
+from twin.nc.iso.base import jog_block
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.scene.fault_table import FAULT_DEFAULTS
 from twin.training.scene.modes import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
