@@ -26,6 +26,8 @@ _CLEAR = 100.0
 """Lowest height over part zero: should that be set on the table, all is in the air even so [mm]."""
 _MARGIN = 5.0
 """From the upper end of Z's travel [mm]."""
+_JUDGED_UM = 1000.0
+"""Contour tolerance of the jobs: the motion is to be measured, not judged [µm]."""
 _RAPIDS = 3
 
 
@@ -73,7 +75,7 @@ def write_programs(machine: Machine, folder: Path) -> list[Path]:
         job = [f'program = "{path.name}"', f'dialect = "{dialect}"']
         job += [f'machine = "{machine.file.name}"', "", "[part_zero]"]
         job += [f"{axis} = {_zero(machine, axis):.6f}" for axis in SPATIAL_AXES]
-        job += ["", "[start]", f"Z = {_CLEAR}"]
+        job += ["", "[start]", f"Z = {_CLEAR}", "", "[tolerance]", f"contour_um = {_JUDGED_UM}"]
         write_text(path.with_suffix(".toml"), "\n".join(job) + "\n")
         written.append(path)
     return written
