@@ -25,7 +25,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "machine compare cutting",
         "render",
         "run",
-        "api check training",
+        "api check training view",
         "commands",
         "command_line",
         "cli",

@@ -9,7 +9,7 @@ from twin.command_line.knowledge import dialects, doctor, explain
 from twin.command_line.machines import machine_app
 from twin.command_line.pictures import render
 from twin.command_line.programs import interpret, plan, run
-from twin.command_line.training import train
+from twin.command_line.training import train, view
 from twin.command_line.verdicts import check, compare, export, sweep
 from twin.errors import ExitCode, TwinError
 from twin.version import __version__
@@ -51,6 +51,7 @@ for command in (
     compare,
     export,
     train,
+    view,
     dialects,
     explain,
     doctor,
