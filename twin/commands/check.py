@@ -9,8 +9,8 @@ import typer
 from rich.table import Table
 
 from twin.check import forms
-from twin.check.discovery import find_programs
-from twin.check.outcome import CheckOutcome
+from twin.check.discovery import baselines_without_programs, find_programs, without_jobs
+from twin.check.outcome import CheckOutcome, Finding
 from twin.check.runner import run_tasks
 from twin.check.settings import CheckSettings
 from twin.check.task import check_program
@@ -71,7 +71,16 @@ def check_and_print(
         interrupted = True
     order = {str(path): index for index, path in enumerate(programs)}
     outcomes.sort(key=lambda outcome: order[outcome.program])
+    if settings.baseline is not None and not settings.update_baseline:
+        outcomes += map(_without_program, baselines_without_programs(settings.baseline))
     _print(outcomes, to_stderr=STDOUT in (junit, json_file))
+    if jobless := without_jobs(programs):
+        names = ", ".join(map(str, jobless))
+        typer.echo(
+            f"run with the defaults, for no job file names them: {names}; "
+            "'twin init PROGRAM' writes a job file",
+            err=True,
+        )
     if interrupted:
         typer.echo(f"interrupted: {len(outcomes)} of {len(programs)} programs checked", err=True)
     if junit is not None:
@@ -94,6 +103,16 @@ def _require_outputs(settings: CheckSettings, junit: Path | None, json_file: Pat
         require_folder(settings.reports)
     if settings.baseline is not None and settings.update_baseline:
         require_folder(settings.baseline)
+
+
+def _without_program(baseline: Path) -> CheckOutcome:
+    message = "there is no program or job of this baseline any more: remove it, or bring them back"
+    return CheckOutcome(
+        program=str(baseline),
+        verdict="fail",
+        exit_code=ExitCode.FAILED,
+        findings=(Finding("baseline-without-program", message, str(baseline)),),
+    )
 
 
 def _exit_code(outcomes: Sequence[CheckOutcome]) -> ExitCode:

@@ -29,7 +29,7 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.canonical import FloatArray
-from twin.nc.compiled.contour_columns import fill, gone, new_contour
+from twin.nc.compiled.contour_columns import fill, new_contour, result_of
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.kernels.block import new_scratch
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
@@ -98,7 +98,7 @@ class VirtualMachine:
         if room <= 0 or not self._may_run():
             return False
         state, rows = self._state(), self._rows.first(room)
-        fill(self._contour, control.path.followed, control.path.position)
+        fill(self._contour, control.path.compensation_state, control.path.position)
         transfer = StateTransfer(control, state, self._contour)
         why = self._run(state, rows, transfer)
         self.full = why == FULL and room - transfer.made < CHUNK
@@ -147,7 +147,7 @@ class VirtualMachine:
             and modal.plane in PLANE_ORDER
             and modal.feed_mode in FEED_FACTORS
             and modal.correct_center
-            and control.path.hands_over
+            and control.path.transferable
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)
             and not (control.axis_limits or control.axis_accelerations)
@@ -194,7 +194,7 @@ class VirtualMachine:
         control = self._control
         registers = np.zeros(REGISTERS)
         registers[CYCLE_STATE:CYCLE_WORDS], registers[CYCLE_WORDS:MATRIX] = (
-            control.hole_values,
+            control.cycle_state,
             math.nan,
         )
         registers[SCALE], registers[ROTATION], registers[SIGNS:CYCLE_STATE] = 1.0, math.nan, 1.0
@@ -227,7 +227,7 @@ class VirtualMachine:
         cycle = self._tables.cycle(state.modal[CYCLE])
         values = state.registers[CYCLE_STATE:CYCLE_WORDS].tolist()
         self._control.modal.cycle = cycle
-        self._control.hole_values = no_values() if cycle is None else values
+        self._control.cycle_state = no_values() if cycle is None else values
 
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control
@@ -240,6 +240,6 @@ class VirtualMachine:
         event_count = int(state.event_count[0])
         events = EventRows(rows.events[:event_count], rows.event_values[:event_count])
         moves = Row(rows.codes, rows.values, rows.positions)
-        gone_on, placed = gone(self._contour, moves, events)
-        control.path.add_rows(moves, placed, gone_on)
-        control.came_to(state.programmed.tolist(), state.part.tolist(), gone_on.latest)
+        result, placed = result_of(self._contour, moves, events)
+        control.path.add_rows(moves, placed, result)
+        control.resume_at(state.programmed.tolist(), state.part.tolist(), result.latest)

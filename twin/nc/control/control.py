@@ -112,7 +112,7 @@ class Control(ControlWords):
         self.programmed = target
         self.part = end
 
-    def came_to(self, programmed: list[float], part: list[float], last: Segment | None) -> None:
+    def resume_at(self, programmed: list[float], part: list[float], last: Segment | None) -> None:
         """Blocks that went past the control have ended here; ``last`` is their last move, if any."""
         self.programmed, self.part = programmed, part
         if last is not None:
@@ -194,7 +194,7 @@ class Control(ControlWords):
         self.programmed = programmed
         self.part = self.path.position = self.frame.to_part(programmed)
 
-    def relabel(self, programmed: list[float], shift: str) -> None:
+    def set_position(self, programmed: list[float], shift: str) -> None:
         """Give the place where it stands other programmed coordinates; nothing moves."""
         here = self.frame.to_part(programmed)
         values = self.frame.shift(shift)

@@ -75,7 +75,7 @@ class ControlState:
         program_counter: Which block comes next.
         variables: What the program computes with.
         cycle_values: What the words of a milling cycle were last, by address.
-        hole_values: What a drilling cycle remembers, as ``drilling_cycle`` counts it.
+        cycle_state: What a drilling cycle remembers, as ``drilling_cycle`` counts it.
         block: The block that is being run.
         words: Its words that nothing has taken yet.
         codes: Its G codes.
@@ -119,7 +119,7 @@ class ControlState:
             language.is_local, lambda name: language.given_variable(settings.variables, name)
         )
         self.cycle_values: dict[str, float] = {}
-        self.hole_values = no_values()
+        self.cycle_state = no_values()
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
         self.codes: Sequence[tuple[Word, HasGroup]] = ()
@@ -134,8 +134,8 @@ class ControlState:
         """No cycle is in force any more, and its words hold no longer."""
         if self.cycle_values:
             self.cycle_values = {}
-        if not math.isnan(self.hole_values[START]):
-            self.hole_values = no_values()
+        if not math.isnan(self.cycle_state[START]):
+            self.cycle_state = no_values()
 
     def saved_modal(self) -> SavedModal:
         """What is in force, to be restored later."""

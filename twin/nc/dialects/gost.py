@@ -77,7 +77,7 @@ def recalculate_start(control: Control, rapid: bool) -> None:
         if abs(old) >= period:
             programmed[index] = math.fmod(old, period)
     if programmed != control.programmed:
-        control.relabel(programmed, "turns")
+        control.set_position(programmed, "turns")
 
 
 _CYRILLIC_WORD = re.compile("[А-Яа-яЁё]{2}")
@@ -156,7 +156,7 @@ GOST = Dialect(
     syntax=Syntax(comments=(Comment("$"), Comment("(", ")"), HEADING), excused=excuse),
     groups=base.GROUPS,
     g={
-        **base.BASE,
+        **base.CODES,
         **fixed_cycles.RETURN,
         9: GCode(
             meaning="exact stop in this block",

@@ -242,7 +242,7 @@ MEFI = Dialect(
     syntax=Syntax(comments=(Comment('"'), HEADING), excused=base.excuse_ellipsis),
     groups=(*base.GROUPS, "helix"),
     g={
-        **base.BASE,
+        **base.CODES,
         2: GCode(
             meaning="arc clockwise",
             group="motion",

@@ -7,19 +7,26 @@ from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Compiler, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
+from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import LineRule
-from twin.nc.control.modal import FeedMode
+from twin.nc.control.modal import FEED_FACTORS, FeedMode
 from twin.nc.geometry.planes import PLANE_ORDER, XY, YZ, ZX, Plane
-from twin.nc.iso.circular import (
-    arc_rule,
-    clockwise_arc,
-    counter_clockwise_arc,
-    feed_line,
-    rapid_line,
-)
+from twin.nc.iso.circular import arc_rule, clockwise_arc, counter_clockwise_arc
 from twin.nc.iso.fixed_cycles import CYCLES
-from twin.nc.iso.offsets import COMPENSATION, LENGTH, OFFSETS, PRESET, refuse_plane_change
+from twin.nc.iso.offsets import OFFSETS, PRESET
+from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH, refuse_plane_change
 from twin.nc.text.blocks import Word
+
+
+def rapid_line(control: Control) -> None:
+    """G0: straight to the target at the machine's own speed."""
+    control.line_to(control.target(), rapid=True)
+
+
+def feed_line(control: Control) -> None:
+    """G1: straight to the target with the feed."""
+    control.line_to(control.target(), rapid=False)
+
 
 RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
 FEED = Interpolation(feed_line, rule=LineRule())
@@ -187,7 +194,7 @@ INSTEAD = {
 }
 """Codes of other controls, and what the base has for them."""
 
-BASE = {
+CODES = {
     **MOTION,
     **DWELL,
     **PLANES,
@@ -261,3 +268,21 @@ WORD_MEANINGS = {
     "T": "tool",
     "M": "machine function",
 }
+
+
+def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
+    """One straight move by a distance, in a control's own language.
+
+    Args:
+        dialect: The control's.
+        axis: Name of the axis.
+        distance: How far, and which way [mm or deg].
+        feed: [mm/min or deg/min]
+    """
+    mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
+    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / FEED_FACTORS[mode])}"
+
+
+def _written(number: float) -> str:
+    """A number to a nanometre, without an exponent and without zeros that say nothing."""
+    return f"{number:.6f}".rstrip("0").rstrip(".")

@@ -30,7 +30,7 @@ class Stage(enum.IntEnum):
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Passed:
+class PassedElement:
     """A compensated element that was emitted, its contour, its source line and where it lies."""
 
     element: Element
@@ -40,13 +40,13 @@ class Passed:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
-class Followed:
+class CompensationState:
     """Compensation between two blocks, at a stage other than ``OFF``.
 
     Attributes:
         stage: What it waits for.
         plane: In part coordinates.
-        aside: The tool's radius, signed as its side [mm].
+        signed_offset: The tool's radius, signed as its side [mm].
         square: Outside corners between lines are extended.
         indirect: Leads go around the contour's first and last point.
         move: The move that is held, as programmed, or None.
@@ -54,12 +54,12 @@ class Followed:
         element: Its parallel; None but for ``FOLLOWING``.
         start: Where its compensated path begins in the plane.
         here: Where the path has come to, shape (k,); empty before it has begun.
-        passed: What was passed, the oldest first.
+        gouge_history: Elements that were passed, the oldest first.
     """
 
     stage: Stage
     plane: Plane
-    aside: float
+    signed_offset: float
     square: bool
     indirect: bool
     move: Segment | None
@@ -67,7 +67,7 @@ class Followed:
     element: Element | None
     start: Point
     here: list[float]
-    passed: list[Passed]
+    gouge_history: list[PassedElement]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -75,14 +75,14 @@ class CompensationResult:
     """What a run has made of a contour.
 
     Attributes:
-        followed: How far it has come, or None.
+        state: How far it has come, or None.
         waiting: Moves and events at the end of the held move, in order.
         latest: The last programmed move, or None where there was none.
         before: The same, unless an event came behind it.
         came: Something came at all.
     """
 
-    followed: Followed | None
+    state: CompensationState | None
     waiting: list[Segment | Event]
     latest: Segment | None
     before: Segment | None

@@ -14,7 +14,7 @@ MOST_MOVES = 10_000
 """Moves between G71 and G70; the page leaves this to the size of a buffer."""
 
 
-class EvenAxes:
+class SynchronousAxes:
     """Holds the moves over which axes go evenly."""
 
     def __init__(self, emit: Callable[[Segment], None]) -> None:

@@ -16,7 +16,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from twin.cutting.patches import grid_of
-from twin.nc.iso.jogging import jog_block
+from twin.nc.iso.base import jog_block
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.scene.fault_table import FAULT_DEFAULTS
 from twin.training.scene.modes import FEED_OVERRIDES, MODES, RAPID_OVERRIDES

@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.errors import UsageError
 from twin.nc.functions import SpindleState
-from twin.nc.iso.jogging import jog_block
+from twin.nc.iso.base import jog_block
 from twin.nc.text.source import source_from_text
 from twin.training.session import commands as c
 from twin.training.session.faults import forget_offset, inject, repair

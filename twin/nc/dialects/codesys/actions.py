@@ -9,7 +9,8 @@ from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
-from twin.nc.iso.offsets import LEFT, RIGHT, compensate, compile_programmed_shift
+from twin.nc.iso.offsets import compile_programmed_shift
+from twin.nc.iso.tool_compensation import LEFT, RIGHT, compensate
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Word
 
@@ -204,7 +205,7 @@ def set_reference(control: Control) -> None:
     programmed = list(control.programmed)
     for index, word in control.take_axis_words():
         programmed[index] = control.axis_value(index, word)
-    control.relabel(programmed, "offset")
+    control.set_position(programmed, "offset")
 
 
 def set_position(control: Control) -> None:

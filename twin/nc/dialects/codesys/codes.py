@@ -12,9 +12,9 @@ from twin.nc.dialects.codesys.curves import (
     SPATIAL_SPLINE,
 )
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
-from twin.nc.iso import base, offsets
-from twin.nc.iso.circular import rapid_line
-from twin.nc.iso.compensation_words import (
+from twin.nc.iso import base, offsets, tool_compensation
+from twin.nc.iso.base import rapid_line
+from twin.nc.iso.tool_compensation import (
     compile_compensation_by_radius,
     compile_end_of_compensation,
 )
@@ -35,7 +35,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         meaning=meaning,
         group="plane",
         sets={"plane": plane},
-        action=offsets.refuse_plane_change,
+        action=tool_compensation.refuse_plane_change,
         compiler=base.compile_plane(plane),
         ground="manual",
     )
@@ -96,7 +96,7 @@ CODES: dict[int, GCode] = {
     40: GCode(
         meaning="radius compensation off",
         group="compensation",
-        action=offsets.end_compensation,
+        action=tool_compensation.end_compensation,
         compiler=compile_end_of_compensation,
         ground="manual",
     ),
@@ -104,14 +104,14 @@ CODES: dict[int, GCode] = {
         meaning="radius compensation left, radius D",
         group="compensation",
         action=actions.left_of_contour,
-        compiler=compile_compensation_by_radius(offsets.LEFT),
+        compiler=compile_compensation_by_radius(tool_compensation.LEFT),
         ground="manual",
     ),
     42: GCode(
         meaning="radius compensation right, radius D",
         group="compensation",
         action=actions.right_of_contour,
-        compiler=compile_compensation_by_radius(offsets.RIGHT),
+        compiler=compile_compensation_by_radius(tool_compensation.RIGHT),
         ground="manual",
     ),
     43: GCode(

@@ -120,7 +120,7 @@ def take_shortest_way(control: Control) -> None:
         if turns:
             programmed = list(control.programmed)
             programmed[index] += turns * period
-            control.relabel(programmed, "turns")
+            control.set_position(programmed, "turns")
 
 
 def place_switches(control: Control, length: float) -> None:

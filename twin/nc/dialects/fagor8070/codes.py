@@ -14,8 +14,8 @@ from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformat
 from twin.nc.dialects.fagor8070.cycles import CYCLES
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
-from twin.nc.iso import base, fixed_cycles, offsets
-from twin.nc.iso.compensation_words import compile_compensation_by_tool, compile_end_of_compensation
+from twin.nc.iso import base, fixed_cycles, offsets, tool_compensation
+from twin.nc.iso.tool_compensation import compile_compensation_by_tool, compile_end_of_compensation
 from twin.nc.text.blocks import Word
 
 
@@ -66,9 +66,11 @@ def _compensate(side: float) -> Action:
                 "no-such-tool",
                 "compensation needs a tool, and the job has none",
                 None,
-                offsets.NO_TOOL,
+                tool_compensation.NO_TOOL,
             )
-        offsets.compensate(control, side, tool.radius if memory_of(control).offset_on else 0.0)
+        tool_compensation.compensate(
+            control, side, tool.radius if memory_of(control).offset_on else 0.0
+        )
 
     return action
 
@@ -213,21 +215,21 @@ CODES: dict[int, GCode] = {
     39: _decided("corner chamfered at the distance I", corners.chamfer_corner),
     40: _do(
         "radius compensation off",
-        offsets.end_compensation,
+        tool_compensation.end_compensation,
         group="compensation",
         compiler=compile_end_of_compensation,
     ),
     41: _do(
         "compensation, tool left",
-        _compensate(offsets.LEFT),
+        _compensate(tool_compensation.LEFT),
         group="compensation",
-        compiler=compile_compensation_by_tool(offsets.LEFT),
+        compiler=compile_compensation_by_tool(tool_compensation.LEFT),
     ),
     42: _do(
         "compensation, tool right",
-        _compensate(offsets.RIGHT),
+        _compensate(tool_compensation.RIGHT),
         group="compensation",
-        compiler=compile_compensation_by_tool(offsets.RIGHT),
+        compiler=compile_compensation_by_tool(tool_compensation.RIGHT),
     ),
     **_refused("tangential control", "the twin has no axis that turns the tool", range(45, 46)),
     50: _g("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
