@@ -1,5 +1,6 @@
 """At each continuous corner the best of rounding, overlapping moves and a plain stop is taken."""
 
+import itertools
 import math
 
 import numpy as np
@@ -35,9 +36,7 @@ def test_continuous_is_never_slower_than_stops(seed: int) -> None:
 def test_more_tolerance_costs_no_time(feed: float) -> None:
     program = square(Corner.CONTINUOUS, feed)
     times = [duration(program, mill(corner_tolerance=wide)) for wide in TOLERANCES]
-    assert all(
-        after <= before * (1.0 + 1e-9) for before, after in zip(times, times[1:], strict=False)
-    )
+    assert all(after <= before * (1.0 + 1e-9) for before, after in itertools.pairwise(times))
     assert times[0] < duration(square(Corner.EXACT_STOP, feed), mill())
 
 

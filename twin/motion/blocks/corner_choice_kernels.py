@@ -13,6 +13,7 @@ import numpy as np
 
 from twin.compilation.kernel import array_arithmetic_kernel
 from twin.motion.blocks.blocks import BoolArray
+from twin.motion.blocks.corner_kernels import BESIDE_STOP, MAX_NEIGHBOURS, NARROWEST
 from twin.motion.limits import MachineLimits
 from twin.motion.ramp_kernels import RampLimits, brake_distance, travel_time
 from twin.nc.canonical import FloatArray
@@ -89,12 +90,16 @@ def choose_stops(
             continue
         if not np.any(corners.tangent_step[i]) and not np.any(corners.curvature_step[i]):
             continue
+        width, passed = corners.width[i], 0.0
+        if width > 0.0:
+            passed = _rounding_velocity(corners, i, machine)
+            if passed >= min(blocks.velocity[i - 1], blocks.velocity[i]):
+                continue
         before = _block_limits(blocks, i - 1, machine)
         after = _block_limits(blocks, i, machine)
-        width = corners.width[i]
         through = min(before.velocity, after.velocity)
         if width > 0.0:
-            passed = min(through, _rounding_velocity(corners, i, machine))
+            passed = min(through, passed)
             if passed >= through or _never_faster(blocks, i, width, passed, before, after):
                 continue
             through = passed
@@ -112,6 +117,29 @@ def choose_stops(
         if stopping < rounding:
             stops[i], overlap[i] = True, away
     return stops, overlap
+
+
+@array_arithmetic_kernel
+def clip_widths(place: FloatArray, stops: BoolArray, width: FloatArray) -> None:
+    """Narrow roundings beside stops, in place; a narrower rounding is also a flatter one.
+
+    Args:
+        place: Where each block begins and, last, where the last one ends, shape (n + 1,).
+        stops: Whether the path stops after all, shape (n,).
+        width: Of the roundings, shape (n,).
+    """
+    count = len(stops)
+    for i in range(count):
+        if not stops[i]:
+            continue
+        width[i] = 0.0
+        for sense in (-1, 1):
+            other = i + sense
+            while 0 <= other < count and abs(other - i) <= MAX_NEIGHBOURS and not stops[other]:
+                room = BESIDE_STOP * abs(place[other] - place[i])
+                if width[other] > room:
+                    width[other] = room if room >= NARROWEST else 0.0
+                other += sense
 
 
 @array_arithmetic_kernel

@@ -13,15 +13,20 @@ import numpy as np
 
 from twin.motion.blocks.blocks import Blocks, BoolArray
 from twin.motion.blocks.border_kernels import border_steps, border_velocities, tolerance_shares
-from twin.motion.blocks.corner_choice_kernels import BlockMotion, Corners, choose_stops
+from twin.motion.blocks.corner_choice_kernels import (
+    BlockMotion,
+    Corners,
+    choose_stops,
+    clip_widths,
+)
 from twin.motion.blocks.corner_kernels import MAX_NEIGHBOURS, find_widths
 from twin.motion.limits import MotionLimits
 from twin.nc.canonical import Corner, FloatArray
 
-CONTEXT = 9 * MAX_NEIGHBOURS
-"""Blocks on either side that the path along a block can depend on: roundings reach that far, their
-widths depend on others' widths thrice as far, those on the tolerances as far again, and where the
-path stops instead depends on widths that are found in the same manner."""
+CONTEXT = 6 * MAX_NEIGHBOURS
+"""Blocks on either side that the path along a block can depend on: roundings reach that far, stops
+narrow them from as far again, their widths depend on others' widths thrice as far, and those on the
+tolerances as far again."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -78,7 +83,7 @@ def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float =
         if np.any(stops):
             corner[stops] = Corner.EXACT_STOP
             rounded &= ~stops
-            width = find_widths(place, rounded, *shares)
+            clip_widths(place, stops, width)
     entry = border_velocities(
         tangent_step, curvature_step, corner == Corner.EXACT_STOP, rounded, width,
         np.broadcast_to(limits.junction_velocity_step, axes),

@@ -26,8 +26,8 @@ from twin.motion.pieces.limit_kernels import BlockLimits, piece_limits
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 from twin.toolpath.geometry import Geometry
 
-BATCH = 2000
-"""Blocks that are cut into pieces at a time: as many as are planned at a time."""
+BATCH = 4000
+"""Blocks that are cut into pieces at a time: many more than their neighbours that are cut with them."""
 MAX_ANGLE = 1024.0 * math.pi
 """What their arcs turn together, but for the last [rad]: of helices with many turns each, a few."""
 
