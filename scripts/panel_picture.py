@@ -1,77 +1,68 @@
 """A picture of the operator's panel in a browser, taken while a scene's program runs."""
 
-import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 
-from chromium import CHROMIUM, QUIET
+from panel_player import browser, open_page, served
 
-from twin.training.panel.request import do
-from twin.training.panel.studio import RequestEvent
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.training.scene.texts import Language
-from twin.training.server.launch import open_room
 
 SCENE = "fagor_first_steps"
-LINE = 5
+LINE = 7
 """Which the program has reached in the picture."""
-SIZE = (1280, 760)
+SIZE = (1366, 768)
 PATIENCE_S = 600.0
-FRAMES = 4
-"""That a slow page is given to show the newest state."""
+SETTLED_S = 4.0
+"""That a slow page is given to show the newest state [s]."""
 
 
 def take_panel(
     out: Path,
     *,
     scene: str = SCENE,
-    language: Language | None = None,
-    sheet: str = "tasks",
-    plain: bool = False,
-    run: bool = True,
+    language: str = "en",
+    role: str = "operator",
+    line: int = LINE,
+    size: tuple[int, int] = SIZE,
 ) -> None:
-    """Open a scene, run its program, and take a picture of the page.
+    """Open a scene, run its program to a line, and take a picture of the page.
 
     Args:
         out: PNG to write.
         scene: Name of a shipped scene.
-        language: Of the panel; the scene's by default.
-        sheet: Which sheet of the side is open.
-        plain: Draw plainly.
-        run: Whether the program runs.
+        language: Of the panel.
+        role: Whose page it is.
+        line: Of the program, where it is held; 0: it is not started.
+        size: Of the page [px].
     """
-    from playwright.sync_api import sync_playwright
-
-    with open_room(
-        read_scene(scene_path(scene)), language=language, plain=plain, trainer=True
-    ) as room:
-        thread = threading.Thread(target=room.serve, daemon=True)
-        thread.start()
-        gate = room.trainer_gate if sheet == "trainer" else room.gate
-        assert gate is not None
-        with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
-            page = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]})
-            page.goto(gate.address, timeout=1e3 * PATIENCE_S)
-            _until(lambda: gate.heard > FRAMES)
-            room.shown.panel.side.sheet = sheet
-            if run:
-                room.shown.viewer.send_to_sim(RequestEvent(do("override", dial="feed", percent=20)))
-                room.shown.viewer.send_to_sim(RequestEvent(do("cycle_start")))
-                at = room.session.room.machine
-                _until(lambda: int(at.setpoint.line[0]) == LINE)
-            seen = gate.heard + FRAMES
-            _until(lambda: gate.heard > seen)
-            page.screenshot(path=out)
-            browser.close()
-        room.stop()
-        thread.join(timeout=PATIENCE_S)
+    with served(read_scene(scene_path(scene))) as room, browser() as opened:
+        context = opened.new_context(viewport={"width": size[0], "height": size[1]})
+        page = open_page(room, context, role, f"?language={language}&quality=fine")
+        page.wait_for_selector("body[data-view=ready]")
+        if line:
+            machine = room.session.room
+            room.driver.ask({"do": "coolant", "on": True}, "operator", 0)
+            room.driver.ask({"do": "cycle_start"}, "operator", 0)
+            _until(lambda: int(machine.machine.setpoint.line[0]) == line)
+            time.sleep(0.8)
+            # Frozen in the midst of it: whoever draws slowly shows what it was.
+            room.driver.ask({"do": "override", "dial": "feed", "percent": 0}, "operator", 0)
+            _until(lambda: not machine.moving)
+        page.click('[data-key="view part"]')
+        before = _pictures(page)
+        _until(lambda: _pictures(page) > before + 1, look_s=0.5)
+        time.sleep(SETTLED_S)
+        page.screenshot(path=out)
 
 
-def _until(come: Callable[[], bool]) -> None:
+def _pictures(page) -> int:
+    return int(page.get_attribute("body", "data-pictures") or 0)
+
+
+def _until(come: Callable[[], bool], look_s: float = 0.005) -> None:
     end = time.monotonic() + PATIENCE_S
     while not come():
         if time.monotonic() > end:
             raise TimeoutError("the page did not come so far")
-        time.sleep(0.05)
+        time.sleep(look_s)

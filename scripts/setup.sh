@@ -1,4 +1,4 @@
-# Sourced by the other scripts: makes .venv with everything that the project needs.
+# Sourced by the other scripts: makes .venv with what a run needs, or with all that development needs.
 # Nothing is done again while pyproject.toml and constraints.txt stay as they are.
 # shellcheck shell=bash
 
@@ -18,6 +18,8 @@ _need_packages() {
 
 _has_library() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p | grep -q "$1"; }
 
+declare -A extra=([run]="" [dev]="[dev]")
+
 _find_python() {
     local candidate
     for candidate in python3 python3.13 python3.12 python3.11; do
@@ -31,8 +33,9 @@ _find_python() {
     return 1
 }
 
+# setup_environment [dev]: with the extra "dev", or with what a run needs alone.
 setup_environment() {
-    local python stamp
+    local python stamp wanted="${1:-run}"
     python=$(_find_python)
     "$python" -c 'import ensurepip, venv' 2>/dev/null || _need_packages python3-venv
     # Off-screen pictures: EGL with Mesa's software drivers. Without them all but pictures works.
@@ -40,13 +43,16 @@ setup_environment() {
         _need_packages libegl1 libegl-mesa0 libgl1-mesa-dri || true
     fi
     stamp=$(cat pyproject.toml constraints.txt | sha256sum | cut -d' ' -f1)
-    if [ "$(cat .venv/stamp 2>/dev/null)" != "$stamp" ]; then
+    if [ "$(cat .venv/stamp-dev 2>/dev/null)" != "$stamp" ] &&
+        [ "$(cat ".venv/stamp-$wanted" 2>/dev/null)" != "$stamp" ]; then
         echo "setting up .venv"
         [ -x .venv/bin/python ] || "$python" -m venv .venv
         # By the environment, so that the isolated build keeps to the same versions.
-        PIP_CONSTRAINT="$PWD/constraints.txt" .venv/bin/python -m pip install --quiet \
-            --disable-pip-version-check --editable '.[dev]'
-        echo "$stamp" >.venv/stamp
+        PIP_CONSTRAINT="$PWD/constraints.txt" MILL_TWIN_KERNELS=0 .venv/bin/python -m pip install \
+            --quiet --disable-pip-version-check --editable ".${extra[$wanted]}"
+        echo "compiling kernels for this computer, which takes about two minutes"
+        .venv/bin/twin doctor --compile || true # pictures may be impossible here
+        echo "$stamp" >".venv/stamp-$wanted"
     fi
     PATH="$PWD/.venv/bin:$PATH"
 }

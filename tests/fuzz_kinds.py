@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from tests.nc import nc_fuzz
+from tests.nc import fuzz
 from twin.files.shipped import machine_file, machine_names
 from twin.files.stl import read_stl
 from twin.machine.config import Machine, read_machine
@@ -82,7 +82,7 @@ class Kind:
 def changed_toml(chance: random.Random, data: bytes) -> bytes:
     """A TOML file with values replaced, lines removed, repeated or moved, or bytes changed."""
     if chance.random() < 0.2:
-        return nc_fuzz.mutated(chance, data)
+        return fuzz.mutated(chance, data)
     lines = data.splitlines() or [b""]
     for _ in range(chance.randrange(1, 4)):
         at = chance.randrange(len(lines))
@@ -105,7 +105,7 @@ def changed_bytes(chance: random.Random, data: bytes) -> bytes:
     if kind < 0.15:
         return chance.randbytes(chance.randrange(300))
     if kind < 0.5 or not data:
-        return nc_fuzz.mutated(chance, data)
+        return fuzz.mutated(chance, data)
     changed = bytearray(data)
     for _ in range(chance.randrange(1, 5)):
         at, width = chance.randrange(len(changed)), chance.choice([1, 2, 4, 8])
@@ -122,24 +122,24 @@ def _programs() -> list[bytes]:
     return [
         bytes([number]) + text
         for number, dialect in enumerate(_DIALECTS)
-        for text in nc_fuzz.REAL[dialect.name]
+        for text in fuzz.REAL[dialect.name]
     ]
 
 
 def _changed_program(chance: random.Random, data: bytes) -> bytes:
     number = data[0] % len(_DIALECTS) if data else 0
     if chance.random() < 0.5:
-        return bytes([number]) + nc_fuzz.mutated(chance, data[1:])
-    return bytes([number]) + nc_fuzz.program(chance, _DIALECTS[number])
+        return bytes([number]) + fuzz.mutated(chance, data[1:])
+    return bytes([number]) + fuzz.program(chance, _DIALECTS[number])
 
 
 def _read_program(data: bytes, folder: Path) -> None:  # noqa: ARG001 (no file is needed)
     number = data[0] if data else 0
-    nc_fuzz.check(data[1:], _DIALECTS[number % len(_DIALECTS)])
+    fuzz.check(data[1:], _DIALECTS[number % len(_DIALECTS)])
 
 
 def _jobs() -> list[Path]:
-    return sorted((nc_fuzz.ROOT / "programs").glob("*/*.toml"))
+    return sorted((fuzz.ROOT / "programs").glob("*/*.toml"))
 
 
 def _lay_programs(folder: Path) -> None:
@@ -221,7 +221,7 @@ def _read_stl(data: bytes, folder: Path) -> None:
 
 
 def _scenes() -> list[Path]:
-    return sorted((nc_fuzz.ROOT / "twin" / "training" / "scenes").rglob("*.toml"))
+    return sorted((fuzz.ROOT / "twin" / "training" / "scenes").rglob("*.toml"))
 
 
 def _lay_scenes(folder: Path) -> None:

@@ -58,8 +58,8 @@ def main(name: str, tries: int, seed: int = 1) -> None:
         include=["twin", "tomllib", "trimesh"], exclude=compiled_modules()
     ):
         from tests import file_fuzz, fuzz_kinds
-        from tests.nc import nc_fuzz
-    nc_fuzz.LONGEST_SECONDS *= SLOWER
+        from tests.nc import fuzz
+    fuzz.LONGEST_SECONDS *= SLOWER
     kind = fuzz_kinds.KINDS[name]
     corpus, found = ROOT / ".fuzz" / name, ROOT / ".fuzz" / "found"
     for folder in (corpus, found):

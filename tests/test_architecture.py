@@ -1,65 +1,73 @@
 """The borders between the rooms, as design rules that a machine can check."""
 
-import ast
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).parent.parent / "twin"
+from scripts.import_picture import (
+    Arrow,
+    arrows,
+    arrows_up,
+    circles,
+    modules,
+    rooms_without_floor,
+)
 
-MAY_IMPORT = {
-    "nc": set(),
-    "toolpath": {"nc"},
-    "motion": {"nc", "toolpath"},
-    "machine": {"nc", "toolpath", "motion"},
-    "logs": {"nc"},
-    "compare": {"nc", "toolpath", "motion", "logs"},
-    "cutting": {"nc", "toolpath", "motion"},
-    "render": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "logs"},
-    "training": {"nc", "toolpath", "motion", "machine", "compare", "cutting", "render", "logs"},
-}
-ROOMS = set(MAY_IMPORT)
-NO_MUJOCO = ROOMS - {"machine", "render", "training"}
+MODULES = modules()
+ARROWS = arrows(MODULES)
+WITHOUT_MUJOCO = ("nc", "toolpath", "motion", "compare", "cutting")
 
 
-def imported_modules(path: Path) -> set[str]:
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    found = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            found.add(node.module)
-    return found
+def test_no_import_leads_up() -> None:
+    up = arrows_up(ARROWS)
+    assert not up, "\n".join(f"{a} imports {b}, which lies above or beside it" for a, b in up)
 
 
-def room_files(room: str) -> list[Path]:
-    return sorted((PACKAGE / room).rglob("*.py"))
+def test_no_circle_closes() -> None:
+    closed = circles(ARROWS)
+    assert not closed, "\n".join("a circle: " + " <-> ".join(group) for group in closed)
 
 
-@pytest.mark.parametrize("room", sorted(ROOMS))
-def test_imports_point_left(room: str):
-    allowed = MAY_IMPORT[room] | {room}
-    for path in room_files(room):
-        for module in imported_modules(path):
-            parts = module.split(".")
-            if parts[0] == "twin" and len(parts) > 1 and parts[1] in ROOMS:
-                assert parts[1] in allowed, f"{path.name} imports {module}"
-            assert module not in ("twin.cli", "twin.run.run"), f"{path.name} imports {module}"
+def test_every_room_stands_on_a_floor() -> None:
+    assert rooms_without_floor(MODULES) == []
 
 
-@pytest.mark.parametrize("room", sorted(NO_MUJOCO))
-def test_only_machine_and_render_know_mujoco(room: str):
-    for path in room_files(room):
-        assert not any(m.split(".")[0] == "mujoco" for m in imported_modules(path)), path
+def test_a_wrong_import_is_named_with_both_files() -> None:
+    wrong = Arrow("twin.nc.text.lexer", "twin.nc.control.dialect")
+    assert arrows_up([*ARROWS, wrong]) == [wrong]
+    assert arrows_up([Arrow("twin.machine.model", "twin.compare.report")])
+    assert arrows_up([Arrow("twin.nc.interpreter", "twin.run.run")])
+    back = Arrow("twin.errors", "twin.api")
+    assert any({"twin.api", "twin.errors"} <= set(group) for group in circles([*ARROWS, back]))
 
 
-def test_rooms_of_numbers_load_without_mujoco_or_opengl():
+def test_imports_inside_functions_and_for_types_only_count(tmp_path: Path) -> None:
+    file = tmp_path / "late.py"
+    file.write_text(
+        "from typing import TYPE_CHECKING\n"
+        "if TYPE_CHECKING:\n    from twin.nc import canonical\n"
+        "def f():\n    import twin.errors\n    from twin.files.toml import read_toml\n"
+    )
+    found = arrows({**MODULES, "twin.late": file})
+    assert {target for source, target in found if source == "twin.late"} == {
+        "twin.nc.canonical",
+        "twin.errors",
+        "twin.files.toml",
+    }
+
+
+@pytest.mark.parametrize("room", WITHOUT_MUJOCO)
+def test_rooms_of_numbers_do_not_name_mujoco(room: str) -> None:
+    for path in sorted(MODULES[f"twin.{room}"].parent.rglob("*.py")):
+        assert "import mujoco" not in path.read_text(encoding="utf-8"), path
+
+
+def test_rooms_of_numbers_load_without_mujoco_or_opengl() -> None:
     code = (
         "import sys, pkgutil, importlib\n"
-        f"for room in {sorted(NO_MUJOCO)}:\n"
+        f"for room in {sorted(WITHOUT_MUJOCO)}:\n"
         "    package = importlib.import_module('twin.' + room)\n"
         "    for item in pkgutil.walk_packages(package.__path__, package.__name__ + '.'):\n"
         "        importlib.import_module(item.name)\n"

@@ -65,6 +65,9 @@ def _run(stopped: list[int]) -> None:
         )
         raise SystemExit(2)
     try:
+        from twin.command_line.streams import prepare_streams
+
+        prepare_streams()
         from twin.cli import main as run
 
         run()

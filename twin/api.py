@@ -101,9 +101,9 @@ def run(
     """
     folder = Path(out)
     chain = Run(prepare(Path(program), dialect=dialect, machine=machine))
-    survey = chain.survey()
+    dry_run = chain.dry_run()
     with run_folder(folder, RESULT_FILES):
-        outcome = chain.execute(survey, folder, no_progress)
+        outcome = chain.execute(dry_run, folder, no_progress)
         write_results(chain, outcome, folder)
     recording = folder / "recording.h5"
     return FinishedRun(outcome=outcome, recording=recording if recording.is_file() else None)

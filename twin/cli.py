@@ -1,10 +1,11 @@
 """``twin``: the commands together, and what is said when one of them fails."""
 
-import sys
+import traceback
 from typing import Annotated, NoReturn
 
 import typer
 
+from twin.command_line.calibration import calibrate
 from twin.command_line.knowledge import dialects, doctor, explain
 from twin.command_line.machines import machine_app
 from twin.command_line.pictures import render
@@ -49,6 +50,7 @@ for command in (
     check,
     sweep,
     compare,
+    calibrate,
     export,
     train,
     dialects,
@@ -65,10 +67,6 @@ def main() -> None:
         app()
     except TwinError as error:
         _leave(str(error), error.exit_code)
-    except BrokenPipeError:
-        # Whoever read our output has gone (``twin interpret ... | head``): no word helps.
-        sys.stderr.close()
-        raise SystemExit(ExitCode.OK) from None
     except MemoryError:
         _leave(
             "not enough memory: a coarser stock.cell, smaller pictures or the draft quality need less",
@@ -76,6 +74,13 @@ def main() -> None:
         )
     except OSError as error:
         _leave(f"{error.filename or 'a file'}: {error.strerror or error}", ExitCode.USAGE)
+    except Exception:  # noqa: BLE001 - whatever else it is, it is a defect, and says so
+        traceback.print_exc()
+        _leave(
+            f"twin {__version__} has met a defect of its own, which says nothing about the program: "
+            "please report what stands above",
+            ExitCode.CRASH,
+        )
     except SystemExit as leaving:
         if leaving.code == ExitCode.INTERRUPTED:
             _leave("interrupted: what was complete is kept, nothing is torn", ExitCode.INTERRUPTED)

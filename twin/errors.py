@@ -4,7 +4,7 @@ import enum
 
 
 class ExitCode(enum.IntEnum):
-    """What a command returns to the shell; the same for every command."""
+    """What every command returns to the shell."""
 
     OK = 0
     FAILED = 1
@@ -15,6 +15,8 @@ class ExitCode(enum.IntEnum):
     """The NC program is wrong."""
     ALARM = 4
     """The machine raised an alarm."""
+    CRASH = 70
+    """The twin itself is at fault: a defect, or a process that was killed."""
     INTERRUPTED = 130
 
 

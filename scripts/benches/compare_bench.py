@@ -49,5 +49,5 @@ def rows() -> Iterator[Row]:
 
 def _stages(path: Path, folder: Path) -> tuple[float, float, float]:
     run = Run(prepare(path, dialect="mefi"))
-    outcome = run.execute(run.survey(), folder, no_progress)
+    outcome = run.execute(run.dry_run(), folder, no_progress)
     return outcome.duration_s / 60.0, run.clock.seconds["simulate"], run.clock.seconds["compare"]

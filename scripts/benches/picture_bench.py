@@ -14,16 +14,16 @@ from benches.row import REPEATS, Row, median_seconds
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import blank
-from twin.cutting.sweep_kernels import sweep
+from twin.cutting.sweep_kernels import Removal, sweep
 from twin.cutting.tools import profile
 from twin.files.shipped import resource_root
 from twin.job.job_file import StockTable, ToolTable, VideoTable
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples, open_recording
-from twin.render.canvas import Canvas, Pixels
+from twin.render.drawing.canvas import Canvas, Pixels
 from twin.render.film import film
-from twin.render.stage import Scene
+from twin.render.scene.stage import Scene
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.replay import scene_of
@@ -66,10 +66,10 @@ def rows() -> Iterator[Row]:
         yield Row("picture", f"ring cut by C at X100, cell {cell} mm: volume off", ring(cell), "%")
     with tempfile.TemporaryDirectory() as folder:
         run = Run(prepare(resource_root("programs") / "mefi" / "helix.toml"))
-        survey = run.survey()
-        run.execute(survey, Path(folder), no_progress)
+        dry_run = run.dry_run()
+        run.execute(dry_run, Path(folder), no_progress)
         with open_recording(Path(folder) / "recording.h5") as recording:
-            scene = scene_of(recording, run.preparation, survey.notes)
+            scene = scene_of(recording, run.preparation, dry_run.summary)
             yield from _film(scene, run.preparation.job.file.video, Path(folder) / "film.mp4")
 
 
@@ -89,16 +89,13 @@ def moves_per_second(cell: float) -> float:
     """Moves of a spiral pocket that are cut per second."""
     points = _spiral()
     edge = dataclasses.astuple(profile(TOOL))
-    removed, depth, aside = np.zeros((3, len(points)))
-    nothing = np.zeros((0, 0))
+    removal = Removal(*np.zeros((3, len(points) - 1)))
+    nothing, mark = np.zeros((0, 0)), np.zeros(len(points) - 1)
     part = blank(PLATE, np.zeros(3), cell)
 
     def cut() -> None:
         part.heights[:] = part.top
-        sweep(
-            part.heights, part.origin, cell, part.bottom, points, edge,
-            removed[1:], depth[1:], aside[1:], nothing, removed[1:],
-        )  # fmt: skip
+        sweep(part.heights, part.grid, points, edge, removal, nothing, mark)
 
     return (len(points) - 1) / median_seconds(cut)
 

@@ -5,14 +5,13 @@ Whoever leads the browser works hard while it clicks: in the room's process that
 
 import contextlib
 import multiprocessing
+import resource
 import threading
 import time
 from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
 from typing import Any
 
-from twin.training.panel.request import do
-from twin.training.panel.studio import RequestEvent
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.launch import OpenRoom, open_room
 
@@ -35,31 +34,27 @@ class MeasuredRoom:
         self._room = room
         room.session.room.feed_override = OVERRIDE
 
-    def address(self) -> str:
-        """Of its page."""
-        return self._room.gate.address
+    def addresses(self) -> dict[str, str]:
+        """Of its pages."""
+        return self._room.addresses
 
-    def heard(self) -> int:
-        """How often the page has spoken."""
-        return self._room.gate.heard
+    def bytes_sent(self) -> int:
+        """Through all streams so far."""
+        return self._room.app.bytes_sent
 
-    def width(self) -> float:
-        """Of the panel on the page [px]."""
-        return self._room.shown.panel.width
+    def memory_mb(self) -> float:
+        """The most that the process has needed so far [MB]."""
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
 
     def machine_time(self) -> float:
         """What the machine has lived so far [s]."""
         return self._room.session.room.time_s
 
-    def place(self, name: str) -> tuple[float, float, float, float]:
-        """Where a key of the panel lies: left, top, right, bottom [px]."""
-        return self._room.shown.panel.kit.places[name]
-
     def run_steadily(self) -> None:
         """Let the program run at its steady feed."""
         if not self._steady():
             wait_until(lambda: not self._room.session.room.moving)
-            self._ask("cycle_start")
+            self._room.driver.ask({"do": "cycle_start"}, "operator", 0)
             wait_until(self._steady)
 
     def braked(self) -> float:
@@ -68,18 +63,8 @@ class MeasuredRoom:
         wait_until(lambda: self._speed() < (1.0 - GONE) * steady)
         return time.time()
 
-    def reaction_to_request(self) -> float:
-        """Time from the panel's request for a hold to the loss of speed [s]."""
-        begin = time.time()
-        self._ask("feed_hold")
-        return self.braked() - begin
-
     def _steady(self) -> bool:
         return abs(self._speed() - FEED) < 0.001 * FEED
-
-    def _ask(self, name: str) -> None:
-        self._room.shown.viewer.send_to_sim(RequestEvent(do(name)))
-        self._room.driver.wake()
 
     def _speed(self) -> float:
         velocity = self._room.session.room.samples.joint_velocity[-1, :3]
@@ -121,7 +106,7 @@ def room_process() -> Iterator[RoomProcess]:
     process.start()
     there.close()
     try:
-        yield RoomProcess(here)
+        yield RoomProcess(here)  # pyright: ignore[reportArgumentType] (Windows names it otherwise)
     finally:
         here.close()
         process.join(timeout=10.0)
@@ -129,7 +114,7 @@ def room_process() -> Iterator[RoomProcess]:
 
 
 def _live(line: Connection) -> None:
-    with open_room(read_scene(scene_path(SCENE)), plain=True) as room:
+    with open_room(read_scene(scene_path(SCENE))) as room:
         measured = MeasuredRoom(room)
 
         def answer() -> None:

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.check.discovery import find_programs
+from twin.check.discovery import baselines_without_programs, find_programs, without_jobs
 from twin.errors import UsageError
 
 
@@ -48,3 +48,25 @@ def test_nothing_is_an_error_that_says_what_was_looked_for(shop: Path, tmp_path:
     (tmp_path / "empty").mkdir()
     with pytest.raises(UsageError, match="no programs in"):
         find_programs([tmp_path / "empty"])
+
+
+def test_foreign_folders_are_left_alone_and_programs_without_jobs_are_known(tmp_path: Path):
+    for folder in ("node_modules", ".hidden", "environment", "own"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "part.nc").write_text("N1 G0 X1\n")
+    (tmp_path / "environment" / "pyvenv.cfg").touch()
+    (tmp_path / "own" / "job.toml").write_text('program = "other.nc"\n')
+    (tmp_path / "own" / "other.nc").touch()
+    found = find_programs([tmp_path])
+    assert found == [tmp_path / "own" / "job.toml", tmp_path / "own" / "part.nc"]
+    assert without_jobs(found) == [tmp_path / "own" / "part.nc"]
+
+
+def test_baselines_whose_programs_are_gone_are_known(tmp_path: Path):
+    for name in ("with_job.baseline", "alone.nc.baseline", "gone.baseline"):
+        (tmp_path / "baselines").mkdir(exist_ok=True)
+        (tmp_path / "baselines" / name).touch()
+    (tmp_path / "with_job.toml").touch()
+    (tmp_path / "alone.nc").touch()
+    left = baselines_without_programs(tmp_path / "baselines")
+    assert left == [tmp_path / "baselines" / "gone.baseline"]

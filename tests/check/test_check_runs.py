@@ -3,6 +3,7 @@
 import functools
 import json
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -154,3 +155,67 @@ def test_a_process_that_dies_takes_no_other_program_with_it():
     outcomes = list(check_all([Path("bad"), Path("one"), Path("two")], die_if_bad, jobs=2))
     verdicts = {outcome.program: outcome.verdict for outcome in outcomes}
     assert verdicts == {"bad": "error", "one": "pass", "two": "pass"}
+
+
+def outcome_of(path: str) -> CheckOutcome:
+    return CheckOutcome(program=path, verdict="pass", exit_code=ExitCode.OK)
+
+
+def test_an_interrupted_check_keeps_what_was_complete(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    jobs = [str(write_job(tmp_path, name)) for name in ("first", "second")]
+
+    def interrupted(*_: object, **__: object) -> Iterator[CheckOutcome]:
+        yield outcome_of(jobs[0])
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("twin.commands.check.run_tasks", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        check_and_print(
+            jobs, settings=CheckSettings(), junit=tmp_path / "a.xml", json_file=tmp_path / "a.json",
+            environment={},
+        )  # fmt: skip
+    shown = capsys.readouterr()
+    assert "first.toml" in shown.out
+    assert "interrupted: 1 of 2 programs checked" in shown.err
+    assert "first.toml" in (tmp_path / "a.xml").read_text(encoding="utf-8")
+    assert len(json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["programs"]) == 1
+
+
+def test_outputs_that_cannot_be_written_are_told_before_anything_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    job = str(write_job(tmp_path, "part"))
+    monkeypatch.setattr("twin.commands.check.run_tasks", lambda *_, **__: pytest.fail("it ran"))
+    for junit, json_file in ((tmp_path, None), (None, Path(job) / "a.json")):
+        with pytest.raises(OSError, match=str(tmp_path)):
+            check_and_print(
+                [job], settings=CheckSettings(), junit=junit, json_file=json_file, environment={}
+            )
+
+
+def test_json_alone_stands_on_the_standard_output(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+):
+    job = str(write_job(tmp_path, "part"))
+    monkeypatch.setattr("twin.commands.check.run_tasks", lambda *_, **__: [outcome_of(job)])
+    check_and_print([job], settings=CheckSettings(), json_file=Path("-"), environment={})
+    shown = capfd.readouterr()
+    assert json.loads(shown.out)["programs"][0]["program"] == job
+    assert "1 program: 1 pass" in shown.err
+
+
+def test_a_defect_at_one_program_has_an_exit_code_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    def defect(*_: object) -> CheckOutcome:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("twin.check.program._run", defect)
+    job = str(write_job(tmp_path, "part"))
+    code = check_and_print([job], settings=CheckSettings(), jobs=1, environment={})
+    assert code is ExitCode.CRASH
+    shown = capsys.readouterr()
+    assert "ZeroDivisionError" in shown.err
+    assert "1 program: 1 error" in shown.out

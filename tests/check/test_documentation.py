@@ -51,7 +51,7 @@ def shop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (tools / name).chmod(0o755)
     monkeypatch.setenv("PATH", f"{tools}{os.pathsep}{os.environ['PATH']}")
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    plugin = "" if _installed() else "-p twin.pytest_plugin"
+    plugin = "" if _installed() else "-p mill_twin_pytest"
     monkeypatch.setenv("PYTEST_ADDOPTS", plugin)
     monkeypatch.chdir(tmp_path)
     return tmp_path

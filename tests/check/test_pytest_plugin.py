@@ -12,7 +12,7 @@ def pytest_in(path: Path, *arguments: str) -> tuple[int, str]:
     root = path if path.is_dir() else path.parent
     done = subprocess.run(
         [
-            sys.executable, "-m", "pytest", "-p", "twin.pytest_plugin", "-p", "no:cacheprovider",
+            sys.executable, "-m", "pytest", "-p", "mill_twin_pytest", "-p", "no:cacheprovider",
             "-c", "/dev/null", "--rootdir", str(root), str(path), *arguments,
         ],
         capture_output=True, text=True, check=False, cwd=root,
@@ -80,3 +80,27 @@ def test_an_nc_program_that_is_named_is_a_test_too(tmp_path: Path):
 def test_storing_baselines_needs_a_folder(tmp_path: Path):
     code, _ = pytest_in(tmp_path, "--twin-update-baseline")
     assert code == 4
+
+
+def test_a_project_may_have_a_package_of_the_same_name(tmp_path: Path):
+    (tmp_path / "twin").mkdir()
+    (tmp_path / "twin" / "__init__.py").write_text("WHOSE = 'theirs'\n")
+    (tmp_path / "test_theirs.py").write_text(
+        "import twin\n\ndef test_theirs():\n    assert twin.WHOSE == 'theirs'\n"
+    )
+    (tmp_path / "conftest.py").touch()
+    write_job(tmp_path, "good")
+    write_job(tmp_path, "tight", tolerance=0.001)
+    code, shown = pytest_in(tmp_path)
+    assert code == 1
+    assert "2 passed" in shown
+    assert "exceeds contour_um = 0.001" in shown
+
+
+def test_the_plugin_does_not_import_the_package():
+    code = "import sys, mill_twin_pytest; sys.exit('twin' in sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
+    from mill_twin_pytest import NC_SUFFIXES
+    from twin.check import discovery
+
+    assert NC_SUFFIXES == discovery.NC_SUFFIXES

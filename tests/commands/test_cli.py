@@ -147,3 +147,16 @@ def test_help_says_units_and_loses_no_word(twin: Twin) -> None:
     for command in ("render", "compare", "machine circle", "machine show"):
         text = twin(*command.split(), "--help").stdout
         assert "(mm" in text or "(s)" in text, command
+
+
+def test_a_defect_of_the_twin_ends_with_a_code_of_its_own(
+    twin: Twin, monkeypatch: pytest.MonkeyPatch
+):
+    def defect() -> str:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("twin.nc.text.explain.overview", defect)
+    ended = twin("explain")
+    assert ended.code == 70
+    assert "ZeroDivisionError" in ended.stderr
+    assert "please report" in ended.stderr

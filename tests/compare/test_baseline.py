@@ -1,4 +1,5 @@
 import dataclasses
+import itertools
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.compare.paths import AXES, UP, arc, line, moves_of
-from twin.compare.baseline import compare_baseline, write_baseline
+from twin.compare.baseline import MOST_LISTED, compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
@@ -51,12 +52,14 @@ def test_the_same_run_holds_however_it_is_chunked(stored: Path):
 
 def test_the_file_is_text_with_a_line_an_entry_and_no_word_twice(stored: Path):
     assert stored.read_text(encoding="utf-8").splitlines() == [
-        "twin baseline 2",
+        "twin baseline 3",
         "cycle_time_s 20.000000",
         "contour_um 5.000",
         "axes X Y Z C",
         "M3 S3000",
         "start X0 Y0 Z0 C0",
+        "corner exact-stop",
+        "acceleration machine",
         "feed X50 F1000",
         "dwell 0.5",
         "arc center 50 20 0 normal 0 0 1 sweep 360",
@@ -84,9 +87,10 @@ def changed(column: str, row: int, value: object) -> Moves:
         (changed("end", 2, [50.02, -30, -5, 90]), 3, "ends at X50.02, baseline X50"),
         (changed("end", 2, [50, 30, -5, 90]), 3, "ends at Y30, baseline Y-30"),
         (changed("end", 2, [50, -30, -5, 90.002]), 3, "ends at C90.002, baseline C90"),
-        (changed("sweep", 1, -360.0), 2, "arc of -360 degrees, baseline 360"),
-        (changed("sweep", 1, 720.0), 2, "arc of 720 degrees, baseline 360"),
+        (changed("sweep", 1, -360.0), 2, "clockwise by 360 degrees, baseline counter-clockwise"),
+        (changed("sweep", 1, 720.0), 2, "by 720 degrees, baseline counter-clockwise by 360"),
         (changed("center", 1, [30.0, 0, 0]), 2, "arc about (30 0 0), baseline (50 20 0)"),
+        (changed("normal", 1, [0.0, 1.0, 0.0]), 2, "in the plane ZX, baseline XY"),
         (changed("motion", 0, 0), 1, "rapid X50, baseline feed X50"),
     ],
 )
@@ -99,12 +103,78 @@ def test_the_first_block_that_differs_is_named(
 
 
 def test_a_move_more_or_less_is_told_with_what_there_was(stored: Path):
-    (fewer,) = reasons(stored, MOVES[:2], events=EVENTS[:2])
+    fewer, end = reasons(stored, MOVES[:2], events=EVENTS[:2])
     assert (fewer.what, fewer.line) == ("baseline-path", 2)
-    assert fewer.message == "its end, baseline feed Y-30 Z-5 C90"
+    assert fewer.message == "lost here: feed Y-30 Z-5 C90"
+    assert (end.what, end.message) == ("baseline-function", "lost here: M30")
     (more,) = reasons(stored, moves_of(*ROWS, ROWS[0]), events=(*EVENTS[:2],))
     assert (more.what, more.line) == ("baseline-function", 4)
     assert more.message.endswith(", baseline M30")
+
+
+def test_a_lost_block_in_the_middle_is_one_difference_and_not_all_that_follow(tmp_path: Path):
+    places = [np.array([float(at), 0, 0, 0]) for at in range(40)]
+    rows = [line(a, b) for a, b in itertools.pairwise(places)]
+    write_baseline(tmp_path / "long", FIGURES, AXES, [Chunk(moves_of(*rows))])
+    shorter = Chunk(moves_of(*rows[:10], *rows[13:]))
+    found = compare_baseline(tmp_path / "long", FIGURES, AXES, [shorter], BaselineTable())
+    assert [reason.message for reason in found] == [f"lost here: feed X{x}" for x in (11, 12, 13)]
+    assert [reason.line for reason in found] == [11] * len(found)
+
+
+def test_all_blocks_that_differ_are_listed_with_an_end(stored: Path, tmp_path: Path):
+    ends = MOVES.end.copy()
+    ends[0, 0], ends[2, 1] = 50.5, -31.0
+    found = reasons(stored, dataclasses.replace(MOVES, end=ends))
+    assert [(reason.line, reason.message) for reason in found] == [
+        (1, "ends at X50.5, baseline X50"),
+        (3, "ends at Y-31, baseline Y-30"),
+    ]
+    places = [np.array([float(at), 0, 0, 0]) for at in range(200)]
+    rows = [line(a, b) for a, b in itertools.pairwise(places)]
+    write_baseline(tmp_path / "long", FIGURES, AXES, [Chunk(moves_of(*rows))])
+    slow = dataclasses.replace(moves_of(*rows), feed=np.full(len(rows), 17.0))
+    many = compare_baseline(tmp_path / "long", FIGURES, AXES, [Chunk(slow)], BaselineTable())
+    assert len(many) == MOST_LISTED + 1
+    assert many[-1].message == f"{len(rows) - MOST_LISTED} more differences of blocks"
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "what", "told"),
+    [
+        ("corner", 2, "baseline-corner", "corner continuous, baseline exact-stop"),
+        (
+            "acceleration",
+            500.0,
+            "baseline-acceleration",
+            "acceleration 500 machine, baseline machine",
+        ),
+    ],
+)
+def test_how_a_block_is_driven_is_held_too(
+    stored: Path, column: str, value: float, what: str, told: str
+):
+    (found,) = reasons(stored, changed(column, 1, value))
+    assert (found.what, found.line, found.message) == (what, 2, told)
+
+
+def test_the_job_and_the_cut_are_held_too(tmp_path: Path):
+    path = tmp_path / "part.baseline"
+    cut = {"removed_mm3": 1000.0, "gouges_count": 0.0}
+    stored = dataclasses.replace(FIGURES, cut=cut)
+    job = {"tools.1.diameter": "8.0", "stock.size": "[60.0, 60.0, 20.0]"}
+    write_baseline(path, stored, AXES, [PROGRAM], job)
+    assert compare_baseline(path, stored, AXES, [PROGRAM], BaselineTable(), job) == []
+    other = {"tools.1.diameter": "6.0", "offsets.G54.X": "1.0"}
+    now = dataclasses.replace(FIGURES, cut={"removed_mm3": 1011.0, "gouges_count": 1.0})
+    found = compare_baseline(path, now, AXES, [PROGRAM], BaselineTable(), other)
+    assert [(reason.what, reason.message) for reason in found] == [
+        ("baseline-job", "offsets.G54.X is 1.0, baseline not set"),
+        ("baseline-job", "stock.size is not set, baseline [60.0, 60.0, 20.0]"),
+        ("baseline-job", "tools.1.diameter is 6.0, baseline 8.0"),
+        ("baseline-cut", "cut: gouges_count 1, baseline 0"),
+        ("baseline-cut", "cut: removed_mm3 1011, baseline 1000"),
+    ]
 
 
 def test_functions_dwells_and_feeds_are_held_too(stored: Path):
@@ -135,8 +205,9 @@ def test_a_program_that_no_longer_interprets_is_told_with_what_was_there(stored:
     assert (broken.what, broken.line) == ("baseline-path", 2)
     assert broken.message == "no longer interprets, baseline dwell 0.5"
     program = broken_program(changed("end", 0, [51.0, 0, 0, 0])[:1], 2)
-    (earlier,) = compare_baseline(stored, None, AXES, program, BaselineTable())
+    earlier, broken = compare_baseline(stored, None, AXES, program, BaselineTable())
     assert (earlier.line, earlier.message) == (1, "ends at X51, baseline X50")
+    assert broken.line == 2
 
 
 def test_another_machine_is_no_traceback(stored: Path):

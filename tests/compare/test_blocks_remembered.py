@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.compare.paths import line, moves_of
-from twin.compare.blocks import BlockCollector, BlockFigures
+from twin.compare.contour.blocks import BlockCollector
+from twin.compare.figures import BlockFigures
 from twin.nc.canonical import Motion
 
 REMEMBERED = 7
@@ -31,8 +32,8 @@ def figures(
         found = collector.add(
             moves, place[here], moves.line[place[here]], error[here].copy(), time[here]
         )
-        assert (collector.block[found] == np.unique(collector.block[found])).all()
-        most = max(most, len(collector.block))
+        assert (collector.columns.block[found] == np.unique(collector.columns.block[found])).all()
+        most = max(most, len(collector.columns.block))
     return collector.figures(), most
 
 

@@ -3,8 +3,8 @@ import pytest
 
 from tests.compare.paths import UP, arc, line, moves_of
 from tests.compare.runs import compare, setpoints
-from twin.compare.arcs import POLAR_ARCS, plane_axes
-from twin.compare.circle import CirclePath, circle_figures, hysteresis_um
+from twin.compare.circular.arcs import POLAR_ARCS, plane_axes
+from twin.compare.circular.circle import BINS_PER_TURN, CirclePath, circle_figures, hysteresis_um
 from twin.nc.canonical import FloatArray
 
 RADIUS = 25.0
@@ -75,6 +75,25 @@ def test_both_directions_together():
     assert both.circular_deviation_um == pytest.approx(8.0, abs=0.01)
     assert both.mean_radius_error_um == pytest.approx(-2.0, abs=0.01)
     assert hysteresis_um(one, other) == pytest.approx(8.0, abs=0.01)
+
+
+@pytest.mark.parametrize("apex_deg", [89.5, 90.0, 90.37, 90.73])
+@pytest.mark.parametrize("count", [3000, 60_000])
+def test_hysteresis_sees_a_peak_narrower_than_a_degree(apex_deg: float, count: int):
+    """A peak of 15 µm that falls off over half a degree, as friction leaves it at a reversal."""
+    angle = np.arange(count) * (2.0 * np.pi / count)
+    beside = np.abs(np.rad2deg(angle) - apex_deg)
+    peak = 0.015 * np.maximum(0.0, 1.0 - beside / 0.5)
+    paths = []
+    for deviation in (peak, np.zeros(count)):
+        path = CirclePath(50.0)
+        radius = 50.0 + deviation
+        path.add(np.column_stack([radius * np.cos(angle), radius * np.sin(angle)]))
+        paths.append(path)
+    # The nearest sample or bin lies at most half a step beside the apex.
+    step = max(360.0 / count, 360.0 / BINS_PER_TURN)
+    assert hysteresis_um(*paths) == pytest.approx(15.0, abs=15.0 * step / 0.5)
+    assert hysteresis_um(*paths) == hysteresis_um(*reversed(paths))
 
 
 def test_nothing_has_no_figures():

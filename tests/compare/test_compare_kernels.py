@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from tests.compare.paths import line, moves_of
-from twin.compare.blocks import BlockCollector
-from twin.compare.circle_kernels import collect_by_angle
-from twin.compare.corner_kernels import pass_corners
+from twin.compare.circular.circle_kernels import collect_by_angle
+from twin.compare.contour.blocks import BlockCollector
+from twin.compare.contour.corner_kernels import pass_corners
 from twin.compare.statistics import RESOLUTION, Distribution
 from twin.compare.statistics_kernels import LEAST_EXPONENT
 from twin.nc.canonical import FloatArray, IntArray

@@ -10,7 +10,7 @@ from PIL import Image
 from tests.compare.paths import AXES, UP, arc, line, moves_of
 from tests.compare.runs import FRAME, PART_ZERO, samples, setpoints
 from twin.compare.comparison import Comparison
-from twin.compare.report import Report, render_report, write_report
+from twin.compare.report.report import Report, render_report, write_report
 from twin.compare.result import RunSummary, result
 from twin.compare.trace import Trace
 from twin.compare.verdict import judge

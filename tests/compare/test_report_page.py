@@ -8,7 +8,7 @@ from chromium import CHROMIUM, QUIET
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.compare.test_report import MOVES, report_of
-from twin.compare.report import write_report
+from twin.compare.report.report import write_report
 
 pytestmark = pytest.mark.skipif(
     CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"

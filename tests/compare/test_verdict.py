@@ -5,9 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.compare.blocks import BlockFigures
-from twin.compare.corners import CornerFigures
-from twin.compare.figures import ArcFigures, AxisTracking, ContourFigures, Figures
+from twin.compare.figures import (
+    ArcFigures,
+    AxisTracking,
+    BlockFigures,
+    ContourFigures,
+    CornerFigures,
+    Figures,
+)
 from twin.compare.result import RunSummary, result, write_result
 from twin.compare.verdict import judge
 from twin.errors import ExitCode

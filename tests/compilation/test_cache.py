@@ -46,23 +46,30 @@ def package(tmp_path: Path) -> Path:
     return room.parent
 
 
-def outcome(package: Path, **changed: str) -> list[str]:
-    """What the kernel gives, and how often it was found compiled."""
+def started(package: Path, **changed: str) -> "subprocess.Popen[str]":
     surroundings = {
         **os.environ,
         "NUMBA_CACHE_DIR": str(package.parents[1] / "cache"),
+        "XDG_CACHE_HOME": str(package.parents[1] / "user"),
         "PYTHONDONTWRITEBYTECODE": "1",
         **changed,
     }
-    done = subprocess.run(
+    return subprocess.Popen(
         [sys.executable, "-c", CALL],
-        env=surroundings,
-        cwd=package.parent,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return done.stdout.split()
+        env=surroundings, cwd=package.parent, stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def outcome(package: Path, **changed: str) -> list[str]:
+    """What the kernel gives, and how often it was found compiled."""
+    process = started(package, **changed)
+    said = process.communicate()[0]
+    assert process.returncode == 0
+    return said.split()
+
+
+def kept(folder: Path, kernel: str) -> list[Path]:
+    return sorted(folder.rglob(f"{kernel}-*.kernel"))
 
 
 def test_a_changed_kernel_is_seen_through_the_one_that_calls_it(package: Path) -> None:
@@ -107,3 +114,52 @@ def test_with_nothing_to_write_to_kernels_last_as_long_as_the_process(package: P
     nowhere = {"NUMBA_CACHE_DIR": str(blocked), "XDG_CACHE_HOME": str(blocked)}
     assert outcome(package, **nowhere) == ["21", "0"]
     assert outcome(package, **nowhere) == ["21", "0"]
+
+
+@pytest.mark.parametrize("damage", ["cut", "emptied", "a bit"])
+def test_a_damaged_kernel_is_compiled_again(package: Path, damage: str) -> None:
+    assert outcome(package) == ["21", "0"]
+    (file,) = kept(package.parents[1], "outer")
+    whole = file.read_bytes()
+    middle = len(whole) // 2
+    file.write_bytes(
+        {
+            "cut": whole[:middle],
+            "emptied": b"",
+            "a bit": whole[:middle] + bytes([whole[middle] ^ 1]) + whole[middle + 1 :],
+        }[damage]
+    )
+    assert outcome(package) == ["21", "0"]
+    assert outcome(package) == ["21", "1"]
+
+
+def test_kernels_are_not_loaded_from_where_others_can_put_them(package: Path) -> None:
+    assert outcome(package) == ["21", "0"]
+    folder = package.parents[1] / "cache" / "mill-twin"
+    folder.chmod(0o777)
+    assert outcome(package) == ["21", "0"]
+    assert len(kept(package.parents[1] / "user", "outer")) == 1
+
+
+def test_processes_that_begin_together_compile_each_kernel_once(package: Path) -> None:
+    runs = [started(package) for _ in range(3)]
+    said = sorted(tuple(run.communicate()[0].split()) for run in runs)
+    assert said == [("21", "0"), ("21", "1"), ("21", "1")]
+
+
+def test_kernels_for_every_processor_are_found_in_the_installation(package: Path) -> None:
+    generic = {"NUMBA_CPU_NAME": "generic"}
+    assert outcome(package, **generic) == ["21", "0"]
+    shutil.move(package.parents[1] / "cache" / "mill-twin", package / "_resources" / "kernels")
+    assert outcome(package) == ["21", "1"]
+    assert not kept(package.parents[1] / "cache", "outer")
+
+
+def test_kernels_that_nobody_loads_any_more_are_removed(package: Path) -> None:
+    assert outcome(package) == ["21", "0"]
+    (package / "room" / "inner_kernels.py").write_text(INNER.format(3))
+    before = {file.parent for file in kept(package.parents[1], "outer")}
+    for folder in before:
+        os.utime(folder, (0, 0))
+    assert outcome(package) == ["31", "0"]
+    assert not any(folder.exists() for folder in before)

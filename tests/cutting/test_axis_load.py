@@ -8,7 +8,7 @@ import pytest
 from tests.cutting.conftest import Motion
 from twin.cutting.axis_load import AxisLoad
 from twin.cutting.cut import Cutter
-from twin.cutting.program_notes import ProgramNotes
+from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tools import ToolPlan
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable, ToolTable
@@ -17,7 +17,7 @@ from twin.toolpath.part_frame import PartFrame
 FRAME = PartFrame(rotary=3, center=(5.0, -3.0), turn_zero=20.0)
 ZERO = np.array([5.0, -3.0, 0.0, 20.0])
 TOOL = ToolTable(number=1, diameter=8.0, teeth=3, speed=4000.0)
-NOTES = ProgramNotes(tools=ToolPlan((TOOL,)))
+SUMMARY = ProgramSummary(tools=ToolPlan((TOOL,)))
 DISC = StockTable(shape="cylinder", diameter=120.0, height=20.0, cell=0.2, material="C45")
 
 
@@ -25,7 +25,7 @@ def test_turning_the_table_alone_loads_it_by_force_times_radius(samples: Motion)
     radius, count = 45.0, 4000
     motion = np.tile(ZERO + np.array([radius, 0.0, -2.0, 0.0]), (count, 1))
     motion[:, 3] += np.linspace(0.0, 120.0, count)
-    load = AxisLoad(DISC, NOTES, FRAME, ZERO)
+    load = AxisLoad(DISC, SUMMARY, FRAME, ZERO)
     half = count // 2
     loads = np.concatenate([load(samples(motion[part]).setpoint)
                             for part in (slice(0, half), slice(half, None))])  # fmt: skip
@@ -43,7 +43,7 @@ def test_loads_are_the_forces_on_the_part_turned_back(samples: Motion) -> None:
     motion = ZERO + np.stack(
         [30 * np.cos(3 * time), 25 * np.sin(2 * time), -1 - time, 70 * time], axis=1
     )
-    load = AxisLoad(DISC, NOTES, FRAME, ZERO)(samples(motion).setpoint)
+    load = AxisLoad(DISC, SUMMARY, FRAME, ZERO)(samples(motion).setpoint)
     cutter = Cutter(DISC, TOOL, FRAME, ZERO)
     cutter.add(samples(motion), np.zeros(len(motion), np.bool_))
     np.testing.assert_allclose(
@@ -60,7 +60,7 @@ def test_loads_are_the_forces_on_the_part_turned_back(samples: Motion) -> None:
 def test_what_cannot_be_reckoned_is_refused() -> None:
     bare = DISC.model_copy(update={"material": None})
     with pytest.raises(ConfigError, match=r"stock\.material"):
-        AxisLoad(bare, NOTES, FRAME, ZERO)
-    idle = ProgramNotes(tools=ToolPlan((ToolTable(number=1),)))
+        AxisLoad(bare, SUMMARY, FRAME, ZERO)
+    idle = ProgramSummary(tools=ToolPlan((ToolTable(number=1),)))
     with pytest.raises(ConfigError, match="spindle speed"):
         AxisLoad(DISC, idle, FRAME, ZERO)

@@ -6,7 +6,7 @@ import hypothesis.strategies as st
 import numpy as np
 import pytest
 
-from twin.cutting.sweep_kernels import sweep
+from twin.cutting.sweep_kernels import Grid, Removal, sweep
 from twin.cutting.thin_kernels import thin
 from twin.cutting.tools import Profile
 from twin.nc.canonical import FloatArray
@@ -38,19 +38,18 @@ def swept(
     points: FloatArray, cutter: Profile, shape: tuple[int, int]
 ) -> tuple[FloatArray, FloatArray, FloatArray, tuple[int, int, int, int]]:
     heights = np.zeros(shape)
-    removed, depth, aside = np.zeros((3, len(points) - 1))
+    removal = Removal(*np.zeros((3, len(points) - 1)))
     profile = dataclasses.astuple(cutter)
     marks = np.zeros(shape)
-    mark = np.arange(1, len(removed) + 1, dtype=np.float64)
-    changed = sweep(
-        heights, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, aside, marks, mark
-    )
+    mark = np.arange(1, len(points), dtype=np.float64)
+    grid = Grid((0.0, 0.0), CELL, BOTTOM)
+    changed = sweep(heights, grid, points, profile, removal, marks, mark)
     np.testing.assert_array_equal(marks > 0, heights < 0)
     unmarked = np.zeros(shape)
     none = np.zeros((0, 0))
-    sweep(unmarked, (0.0, 0.0), CELL, BOTTOM, points, profile, removed, depth, aside, none, mark)
+    sweep(unmarked, grid, points, profile, removal, none, mark)
     np.testing.assert_array_equal(unmarked, heights)
-    return heights, removed, depth, changed
+    return heights, removal.volume, removal.depth, changed
 
 
 coordinate = st.floats(-4.0, 12.0)
@@ -100,13 +99,11 @@ def test_what_is_passed_over_was_cut_before(
     heights = np.zeros(shape)
     none, nothing = np.zeros((0, 0)), np.zeros(1)
     for i, line in enumerate(itertools.pairwise(path)):
-        volume, deepest = np.zeros(1), np.zeros(1)
-        sweep(
-            heights, (0.0, 0.0), CELL, BOTTOM, np.array(line), dataclasses.astuple(cutter),
-            volume, deepest, np.zeros(1), none, nothing,
-        )  # fmt: skip
-        assert removed[i] == pytest.approx(volume[0], abs=1e-9)
-        assert depth[i] == pytest.approx(deepest[0], abs=1e-9)
+        one = Removal(*np.zeros((3, 1)))
+        grid = Grid((0.0, 0.0), CELL, BOTTOM)
+        sweep(heights, grid, np.array(line), dataclasses.astuple(cutter), one, none, nothing)
+        assert removed[i] == pytest.approx(one.volume[0], abs=1e-9)
+        assert depth[i] == pytest.approx(one.depth[0], abs=1e-9)
     np.testing.assert_allclose(whole, heights, atol=1e-12)
 
 

@@ -8,15 +8,15 @@ import mujoco
 import numpy as np
 import pytest
 
-from twin.cutting.program_notes import ProgramNotes
+from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.tools import ToolPlan
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.config import Machine, read_machine
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, RecordingHeader, Samples, open_recording, record
-from twin.render.gl import BACKENDS, probe
-from twin.render.stage import Scene
+from twin.render.drawing.gl import BACKENDS, probe
+from twin.render.scene.scene import Scene
 
 MODEL = """
 <mujoco>
@@ -67,7 +67,7 @@ STOCK = StockTable(shape="box", size=(120.0, 80.0, 20.0), cell=0.5)
 ZERO = np.array([0.0, 0.0, -230.0, 15.0])
 """The table top is 250 mm below the tip of the tool at Z 0; the stock stands on it."""
 SOURCE = ("G0 X0 Y0 Z50", "G1 X-40 Z-5 ; прямая", "G1 X40", "G1 C90 ; kružnice")
-NOTES = ProgramNotes(tools=ToolPlan((TOOL,)), rapid=np.array([True, False, False, False]))
+SUMMARY = ProgramSummary(tools=ToolPlan((TOOL,)), rapid=np.array([True, False, False, False]))
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -136,7 +136,7 @@ def recording(make_recording: Record) -> Iterator[Recording]:
 @pytest.fixture
 def scene(recording: Recording, spec: mujoco.MjSpec, machine: Machine) -> Scene:
     return Scene(
-        recording=recording, spec=spec, machine=machine, notes=NOTES, source=SOURCE, stock=STOCK
+        recording=recording, spec=spec, machine=machine, summary=SUMMARY, source=SOURCE, stock=STOCK
     )
 
 

@@ -7,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from twin.job.job_file import StockTable
-from twin.render.canvas import DRAFT
-from twin.render.chips import FLIGHT_S, GRAVITY, MOST, RISE, SPEED, chips
-from twin.render.stage import Scene, stage
+from twin.render.drawing.canvas import DRAFT
+from twin.render.drawing.chips import FLIGHT_S, GRAVITY, MOST, RISE, SPEED, chips
+from twin.render.scene.scene import Scene
+from twin.render.scene.stage import stage
 
 TIP = np.array([0.3, -0.2, 0.9])
 DIAMETER = 0.01

@@ -12,15 +12,13 @@ from PIL import Image
 
 from twin.errors import RenderError
 from twin.recording.reader import open_recording
-from twin.render import filament, gl
-from twin.render.canvas import DRAFT, Canvas, Pixels, Quality
-from twin.render.filament_mesh import mesh_corners, tangent_frames
-from twin.render.gl import Probe, probe
-from twin.render.opengl_canvas import OpenGLCanvas
-from twin.render.renderer import Renderer, open_canvas, prepare
-from twin.render.stage import Scene, stage
-from twin.render.still import Shot, stills
-from twin.render.studio_light import (
+from twin.render.drawing import filament, gl
+from twin.render.drawing.canvas import DRAFT, Canvas, Pixels, Quality
+from twin.render.drawing.filament_mesh import mesh_corners, tangent_frames
+from twin.render.drawing.gl import Probe, probe
+from twin.render.drawing.opengl_canvas import OpenGLCanvas
+from twin.render.drawing.renderer import Renderer, open_canvas, prepare
+from twin.render.drawing.studio_light import (
     LAMP_LUX,
     SOFT_BOXES,
     brightness,
@@ -28,6 +26,9 @@ from twin.render.studio_light import (
     environment,
     light_studio,
 )
+from twin.render.scene.scene import Scene
+from twin.render.scene.stage import stage
+from twin.render.still import Shot, stills
 
 Record = Callable[..., Path]
 SIZE = (160, 120)
@@ -192,7 +193,7 @@ def test_the_probe_outlives_a_missing_driver(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_canvases_share_their_interface() -> None:
-    from twin.render.filament_canvas import FilamentCanvas
+    from twin.render.drawing.filament_canvas import FilamentCanvas
 
     for kind in (OpenGLCanvas, FilamentCanvas):
         assert issubclass(kind, Canvas)
@@ -262,7 +263,7 @@ def test_lamps_get_an_intensity_unless_the_model_has_one() -> None:
 @pytest.mark.usefixtures("filament_driver")
 def test_filament_says_in_a_process_of_its_own_what_it_draws_through() -> None:
     done = subprocess.run(
-        [sys.executable, "-m", "twin.render.probe", filament.FILAMENT],
+        [sys.executable, "-m", "twin.render.drawing.probe", filament.FILAMENT],
         capture_output=True,
         text=True,
         check=True,

@@ -12,7 +12,7 @@ from PIL import Image
 from twin.errors import RenderError
 from twin.job.job_file import VideoTable
 from twin.render.film import film
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 
 VIDEO = VideoTable(cameras=("overview", "top"), seconds=2.0, fps=10, size=(321, 181))
 

@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 from twin.errors import RenderError
-from twin.render import doctor, gl
-from twin.render.gl import Probe
+from twin.render import doctor
+from twin.render.drawing import gl
+from twin.render.drawing.gl import Probe
 
 
 def test_doctor_finds_opengl_and_encoder() -> None:

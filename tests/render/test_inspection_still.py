@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.render.conftest import NOTES, STOCK
+from tests.render.conftest import STOCK, SUMMARY
 from twin.cutting.recut import COMMANDED, inspect_recorded
 from twin.errors import RenderError
 from twin.recording.form import STEPS
 from twin.render.inspection_still import inspection_still
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 
 
 def test_a_slot_cut_too_deep_is_blue(scene: Scene, tmp_path: Path) -> None:
     # The joints of the recording stand 4 µm below the setpoints.
     pictures = []
     for tolerance in (4.0, 400.0):
-        found, _ = inspect_recorded(scene.recording, NOTES, STOCK, COMMANDED, tolerance)
+        found, _ = inspect_recorded(scene.recording, SUMMARY, STOCK, COMMANDED, tolerance)
         inspection_still(
             scene,
             found,
@@ -33,6 +33,6 @@ def test_a_slot_cut_too_deep_is_blue(scene: Scene, tmp_path: Path) -> None:
 
 
 def test_unknown_camera_is_refused(scene: Scene, tmp_path: Path) -> None:
-    found, _ = inspect_recorded(scene.recording, NOTES, STOCK, COMMANDED, 1.0)
+    found, _ = inspect_recorded(scene.recording, SUMMARY, STOCK, COMMANDED, 1.0)
     with pytest.raises(RenderError, match="has overview, top, part, riding"):
         inspection_still(scene, found, out=tmp_path / "part.png", camera="side")

@@ -8,7 +8,7 @@ import pytest
 
 from tests.render.conftest import MODEL, TOOL
 from twin.machine.config import Machine
-from twin.render.placement import ROTARY_TABLE, Joints, place, tip_position
+from twin.render.scene.placement import ROTARY_TABLE, Joints, place, tip_position
 
 reach = st.floats(-200.0, 200.0)
 

@@ -10,8 +10,8 @@ import trimesh
 from command_line import Twin
 from PIL import Image
 
-from twin.render import filament
-from twin.render.gl import FILAMENT, Probe, probe
+from twin.render.drawing import filament
+from twin.render.drawing.gl import FILAMENT, Probe, probe
 
 PROGRAM = """S2000 M3
 G0 X-20 Z2

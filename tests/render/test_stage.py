@@ -7,18 +7,19 @@ import numpy as np
 import pytest
 import trimesh
 
-from tests.render.conftest import NOTES, TOOL, Record
+from tests.render.conftest import SUMMARY, TOOL, Record
 from twin.cutting.tools import ToolPlan, profile
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, open_recording
-from twin.render.canvas import DRAFT, FINAL, Pixels
-from twin.render.placement import tip_position
-from twin.render.replay import deal
-from twin.render.stage import Scene, Stage, stage
+from twin.render.drawing.canvas import DRAFT, FINAL, Pixels
+from twin.render.frames import deal
+from twin.render.scene.placement import tip_position
+from twin.render.scene.scene import Scene
+from twin.render.scene.stage import Stage, stage
+from twin.render.scene.tool_body import fluted
 from twin.render.still import moment
-from twin.render.tool_body import fluted
 
 SIZE = (320, 240)
 
@@ -52,7 +53,7 @@ def test_tool_tip_is_where_the_recording_says(scene: Scene, line: int) -> None:
 def test_a_change_of_tool_is_seen(scene: Scene) -> None:
     long = ToolTable(number=2, kind="drill", diameter=8.0, length=55.0)
     changed = dataclasses.replace(
-        scene, notes=dataclasses.replace(NOTES, tools=ToolPlan((TOOL, long), (0, 2)))
+        scene, summary=dataclasses.replace(SUMMARY, tools=ToolPlan((TOOL, long), (0, 2)))
     )
     with stage(changed, SIZE, DRAFT) as play:
         for line, number in ((2, 1), (3, 2)):
@@ -140,7 +141,7 @@ def test_stock_turns_with_the_table(scene: Scene) -> None:
 
 
 def test_trail_grows(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("twin.render.stage.TRAIL_MM", (2.0, 2.0))
+    monkeypatch.setattr("twin.render.scene.stage.TRAIL_MM", (2.0, 2.0))
 
     def visible(play: Stage) -> int:
         names = [
@@ -176,13 +177,13 @@ def test_trail_shows_the_error(
     machine: Machine,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("twin.render.stage.TRAIL_MM", (2.0, 2.0))
-    feeds = dataclasses.replace(NOTES, rapid=np.zeros(4, np.bool_))
+    monkeypatch.setattr("twin.render.scene.stage.TRAIL_MM", (2.0, 2.0))
+    feeds = dataclasses.replace(SUMMARY, rapid=np.zeros(4, np.bool_))
     colours = []
     for error in (0.0, 25.0):
         with open_recording(make_recording(np.full(1001, error))) as recording:
             scene = Scene(
-                recording=recording, spec=spec, machine=machine, notes=feeds, error_scale_um=20.0
+                recording=recording, spec=spec, machine=machine, summary=feeds, error_scale_um=20.0
             )
             colours.append(trail_colour(scene))
     assert colours[0][1] > colours[0][0] + 30, "green"

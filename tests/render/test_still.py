@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.render.conftest import NOTES, SOURCE, STOCK, Record
-from twin.cutting.program_notes import Steps
+from tests.render.conftest import SOURCE, STOCK, SUMMARY, Record
+from twin.cutting.program_summary import Steps
 from twin.errors import RenderError
 from twin.machine.config import Machine
 from twin.recording.form import STEPS
 from twin.recording.reader import open_recording
+from twin.render.frames import deal
 from twin.render.gauge import Gauge
-from twin.render.replay import deal
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 from twin.render.still import Shot, moment, stills
 
 
@@ -82,14 +82,19 @@ def test_display_reads_the_lag_where_nobody_compared(scene: Scene) -> None:
 def test_display_reads_contour_spindle_tool_and_the_screens_own_position(
     make_recording: Record, spec: mujoco.MjSpec, machine: Machine
 ) -> None:
-    notes = dataclasses.replace(
-        NOTES,
+    summary = dataclasses.replace(
+        SUMMARY,
         spindle=Steps((0, 2), (None, -800.0)),
         shown=Steps((0, 2), (np.zeros(4), np.array([0.0, 0.0, 0.0, -360.0]))),
     )
     with open_recording(make_recording(np.arange(1001.0))) as recording:
         scene = Scene(
-            recording=recording, spec=spec, machine=machine, notes=notes, source=SOURCE, stock=STOCK
+            recording=recording,
+            spec=spec,
+            machine=machine,
+            summary=summary,
+            source=SOURCE,
+            stock=STOCK,
         )
         reading = gauge_at(scene, 601).reading(no_warning)
         before = gauge_at(scene, 301).reading(no_warning)
@@ -110,14 +115,14 @@ def test_alarms_are_shown_from_their_moment_on(
 ) -> None:
     alarms: Sequence[tuple[float, str]] = [(0.5, "following error of X")]
     with open_recording(make_recording(alarms=alarms)) as recording:
-        scene = Scene(recording=recording, spec=spec, machine=machine, notes=NOTES, stock=STOCK)
+        scene = Scene(recording=recording, spec=spec, machine=machine, summary=SUMMARY, stock=STOCK)
         assert red(take(scene, tmp_path / "before.png", 401)) == 0
         assert red(take(scene, tmp_path / "after.png", 601)) > 1000
 
 
 def test_a_block_that_spoils_the_part_is_warned_of(scene: Scene, tmp_path: Path) -> None:
     spoiled = dataclasses.replace(
-        scene, notes=dataclasses.replace(NOTES, rapid=np.ones(4, np.bool_))
+        scene, summary=dataclasses.replace(SUMMARY, rapid=np.ones(4, np.bool_))
     )
     assert red(take(spoiled, tmp_path / "warned.png", 601)) > 1000
     assert red(take(spoiled, tmp_path / "air.png", 101)) == 0

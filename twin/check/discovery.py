@@ -14,11 +14,14 @@ NC_SUFFIXES = frozenset(
 """What a file must end in to be taken for an NC program when a folder is searched."""
 
 
+_FOREIGN_FOLDERS = frozenset({"node_modules", "site-packages", "__pycache__"})
+
+
 def find_programs(paths: Iterable[str | Path]) -> list[Path]:
     """Find job files and NC programs.
 
-    A file is taken as it is named. A folder is searched with all its subfolders, hidden ones left
-    out: its job files, and its NC programs that no job file there runs. A glob (``*``, ``?``,
+    A file is taken as it is named. A folder is searched with all its subfolders, but for hidden ones,
+    virtual environments and what package managers fetch: its job files, and its NC programs that no job file there runs. A glob (``*``, ``?``,
     ``[``, ``**``) is expanded, its matches treated like paths.
 
     Args:
@@ -61,7 +64,7 @@ def _programs_in(folder: Path) -> list[Path]:
     jobs: list[Path] = []
     programs: list[Path] = []
     for root, folders, files in os.walk(folder):
-        folders[:] = [name for name in folders if not name.startswith(".")]
+        folders[:] = [name for name in folders if not _is_foreign(Path(root) / name)]
         for name in files:
             path = Path(root) / name
             if path.suffix == ".toml":
@@ -72,6 +75,33 @@ def _programs_in(folder: Path) -> list[Path]:
     taken = {program for program in run_by.values() if program is not None}
     jobs = [job for job in jobs if run_by[job] is not None]
     return sorted([*jobs, *(path for path in programs if path.resolve() not in taken)])
+
+
+def without_jobs(programs: Iterable[Path]) -> list[Path]:
+    """Programs that no job file runs, so that they run with the defaults."""
+    found = []
+    for path in programs:
+        job = path.with_suffix(".toml")
+        runs_it = job.is_file() and program_of(job) == path.resolve()
+        if path.suffix != ".toml" and not runs_it:
+            found.append(path)
+    return found
+
+
+def baselines_without_programs(folder: Path) -> list[Path]:
+    """Baselines in a folder whose job and program are both gone from beside it."""
+    left = []
+    for baseline in sorted(folder.rglob("*.baseline")):
+        place = folder.resolve().parent / baseline.relative_to(folder)
+        if not (place.with_suffix(".toml").is_file() or place.with_suffix("").is_file()):
+            left.append(baseline)
+    return left
+
+
+def _is_foreign(folder: Path) -> bool:
+    if folder.name.startswith(".") or folder.name in _FOREIGN_FOLDERS:
+        return True
+    return (folder / "pyvenv.cfg").is_file()
 
 
 def program_of(path: Path) -> Path | None:

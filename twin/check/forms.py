@@ -19,7 +19,7 @@ def table_rows(outcomes: Sequence[CheckOutcome]) -> list[tuple[str, str, str, st
     return [
         (
             outcome.program,
-            outcome.verdict,
+            outcome.verdict if outcome.expected is None else f"pass: {outcome.expected} expected",
             "–" if outcome.contour_um is None else f"{outcome.contour_um:.1f} µm",
             str(outcome.worst_line or "–"),
             "–" if outcome.cycle_time_s is None else f"{outcome.cycle_time_s:.2f} s",
@@ -44,7 +44,9 @@ def summary_line(outcomes: Sequence[CheckOutcome]) -> str:
     counts = dict.fromkeys(("pass", "fail", "alarm", "error"), 0)
     for outcome in outcomes:
         counts[outcome.verdict] += 1
+    expected = sum(outcome.expected is not None for outcome in outcomes)
     told = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
+    told += f" ({expected} of them fail as their jobs expect)" if expected else ""
     warnings = sum(len(outcome.warnings) for outcome in outcomes)
     noun = "program" if len(outcomes) == 1 else "programs"
     beside = f"; {warnings} {'warning' if warnings == 1 else 'warnings'}" if warnings else ""

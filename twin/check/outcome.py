@@ -51,6 +51,7 @@ class CheckOutcome:
         findings: Why it does not pass; empty when it does.
         warnings: What the interpreter had to say beside that.
         changes: What a sweep changed for it, keys of job or machine and their values.
+        expected: The code that its job expects and that it ended with, so that it passes.
     """
 
     program: str
@@ -63,6 +64,7 @@ class CheckOutcome:
     findings: tuple[Finding, ...] = ()
     warnings: tuple[Finding, ...] = ()
     changes: tuple[tuple[str, Any], ...] = ()
+    expected: str | None = None
 
     @property
     def passed(self) -> bool:
@@ -83,6 +85,6 @@ def died(task: str) -> CheckOutcome:
     return CheckOutcome(
         program=task,
         verdict="error",
-        exit_code=ExitCode.FAILED,
+        exit_code=ExitCode.CRASH,
         findings=(Finding("process-died", message, task),),
     )

@@ -1,21 +1,27 @@
 """One program run for its verdict alone: no pictures, no recording, no part."""
 
 import dataclasses
+import json
+import re
 import time
-from collections.abc import Iterable
+import traceback
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Any
 
+from twin.check.expectation import expectation, held_to_expectation
 from twin.check.outcome import CheckOutcome, Finding
 from twin.check.settings import CheckSettings
 from twin.check.variation import Variant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
-from twin.errors import ExitCode, TwinError
+from twin.errors import ExitCode, TwinError, UsageError
 from twin.job.job_file import Job
 from twin.machine.alarms import Alarm
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.run.messages import alarm_diagnostic, reason_text
+from twin.run.outcome import Outcome
 from twin.run.preparation import Preparation, prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
@@ -25,24 +31,30 @@ def run_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     """Run a program and say how it came out; what is wrong with it becomes a finding."""
     began, path = time.perf_counter(), variant.path
     try:
-        outcome = _run(variant, settings)
+        outcome = held_to_expectation(_run(variant, settings), expectation(path))
     except TwinError as error:
         outcome = _not_run(path, error)
+    except OSError as error:
+        outcome = _not_run(path, UsageError(f"{error.filename or path}: {error.strerror or error}"))
+    except MemoryError:
+        outcome = _not_run(path, UsageError("not enough memory; a coarser stock.cell needs less"))
+    except Exception:  # noqa: BLE001 - a defect at one program is told with it, the others run on
+        outcome = _crashed(path)
     return dataclasses.replace(outcome, wall_s=time.perf_counter() - began, changes=variant.changes)
 
 
 def file_of(folder: Path, job: Job, suffix: str) -> Path:
     """Where a job's baseline or report lies: in the folder, under the job's own path.
 
-    A path is taken relative to the working folder where it lies below that, so that a baseline is
-    found again from another checkout. A program without a job file keeps its whole name, so that
-    two of the same stem do not share one.
+    Paths are anchored at the folder that the baselines' own folder lies in, or at the working folder
+    for what is not below that, so that they are found again from another checkout and from another
+    working folder. A program without a job file keeps its whole name, so that two of the same stem
+    do not share one.
     """
     resolved = (job.path or job.program).resolve()
-    here = Path.cwd().resolve()
-    parts = (
-        resolved.relative_to(here) if resolved.is_relative_to(here) else Path(*resolved.parts[1:])
-    )
+    anchors = (folder.resolve().parent, Path.cwd().resolve())
+    anchor = next((each for each in anchors if resolved.is_relative_to(each)), Path("/"))
+    parts = resolved.relative_to(anchor)
     name = parts.name if job.path is None else parts.stem
     return folder / parts.with_name(name + suffix)
 
@@ -58,21 +70,23 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     )
     run = Run(preparation)
     try:
-        survey = run.survey()
-        outcome = run.execute(survey, None, no_progress)
+        dry_run = run.dry_run()
+        outcome = run.execute(dry_run, None, no_progress)
     except ProgramError as error:
         differing = _baseline_reasons(preparation, None, settings)
         return _not_run(path, error, _findings(preparation, differing))
     if settings.reports is not None:
-        from twin.compare.report import write_report
+        from twin.compare.report.report import write_report
         from twin.run.results import report_of, result_of
 
         page = report_of(run, outcome, result_of(run, outcome))
         write_report(file_of(settings.reports, preparation.job, ".html"), page)
     contour = outcome.figures.contour
     alarmed = outcome.verdict.outcome == "alarm"
-    figures = None if alarmed else RunFigures(outcome.duration_s, contour.max)
+    figures = None if alarmed else _figures(outcome)
     differing = _baseline_reasons(preparation, figures, settings)
+    if not dry_run.moves and not alarmed:
+        differing.insert(0, Reason("empty-program", "the program makes no move", 0, 0.0))
     failed = bool(differing) and not alarmed
     return CheckOutcome(
         program=str(path),
@@ -98,12 +112,50 @@ def _baseline_reasons(
         return []
     file = file_of(settings.baseline, preparation.job, ".baseline")
     axes, chunks = preparation.machine.axes, preparation.interpretation().chunks()
+    keys = _settings(preparation)
     if not settings.update_baseline:
         limits = preparation.job.file.baseline
-        return compare_baseline(file, figures, axes, chunks, limits)
+        return compare_baseline(file, figures, axes, chunks, limits, keys)
     if figures is not None:
-        write_baseline(file, figures, axes, chunks)
+        write_baseline(file, figures, axes, chunks, keys)
     return []
+
+
+def _figures(outcome: Outcome) -> RunFigures:
+    """What a baseline keeps of a run."""
+    cut = outcome.cut
+    figures = {}
+    if cut is not None:
+        figures = {
+            "removed_mm3": cut.removed_mm3,
+            "air_share": cut.air_share,
+            "gouges_count": float(len(cut.gouges)),
+            "rapid_into_stock_count": float(len(cut.rapid_into_stock)),
+            "spindle_off_count": float(len(cut.spindle_off)),
+        }
+    return RunFigures(outcome.duration_s, outcome.figures.contour.max, figures)
+
+
+def _settings(preparation: Preparation) -> dict[str, str]:
+    """The whole job as keys and texts, defaults and where program zero comes to lie with it."""
+    file = preparation.job.file
+    content = file.model_dump(mode="json", exclude={"program", "video"}, exclude_none=True)
+    content["dialect"], content["machine"] = (
+        preparation.dialect.name,
+        preparation.machine.file.name,
+    )
+    content["tools"] = {str(tool.pop("number")): tool for tool in content["tools"]}
+    if "stock" in content and "file" in content["stock"]:
+        content["stock"]["file"] = Path(content["stock"]["file"]).name
+    return dict(_flat("", content))
+
+
+def _flat(key: str, value: Any) -> Iterator[tuple[str, str]]:
+    if isinstance(value, dict):
+        for name, inner in value.items():
+            yield from _flat(f"{key}.{name}" if key else name, inner)
+    else:
+        yield key, json.dumps(value, ensure_ascii=False)
 
 
 def _not_run(path: Path, error: TwinError, differing: tuple[Finding, ...] = ()) -> CheckOutcome:
@@ -119,11 +171,46 @@ def _not_run(path: Path, error: TwinError, differing: tuple[Finding, ...] = ()) 
     )
 
 
-def _findings(preparation: Preparation, reasons: Iterable[Reason]) -> tuple[Finding, ...]:
-    program, source = str(preparation.job.program), preparation.source
-    return tuple(
-        Finding(r.what, r.message, program, r.line, text=reason_text(r, source)) for r in reasons
+def _crashed(path: Path) -> CheckOutcome:
+    message = "the twin has met a defect of its own, which says nothing about the program"
+    text = f"{path}: error crash: {message}\n{traceback.format_exc().rstrip()}"
+    return CheckOutcome(
+        program=str(path),
+        verdict="error",
+        exit_code=ExitCode.CRASH,
+        findings=(Finding("crash", message, str(path), text=text),),
     )
+
+
+def _findings(preparation: Preparation, reasons: Iterable[Reason]) -> tuple[Finding, ...]:
+    return tuple(_finding(preparation, reason) for reason in reasons)
+
+
+def _finding(preparation: Preparation, reason: Reason) -> Finding:
+    job = preparation.job.path
+    if reason.what == "baseline-job" and job is not None:
+        line = _line_of_key(job.read_text(encoding="utf-8"), reason.message.split()[0])
+        text = f"{job}:{line}: error {reason.what}: {reason.message}"
+        return Finding(reason.what, reason.message, str(job), line, text=text)
+    program, text = str(preparation.job.program), reason_text(reason, preparation.source)
+    return Finding(reason.what, reason.message, program, reason.line, text=text)
+
+
+def _line_of_key(text: str, key: str) -> int:
+    """The line of a TOML file that sets a key, or begins its table; 1 where it is set elsewhere."""
+    *tables, name = key.split(".")
+    wanted = [
+        rf"{re.escape(name)}\s*=",
+        *(rf"\[\[?\s*{re.escape(each)}\b" for each in tables[::-1]),
+    ]
+    if tables[:1] == ["tools"]:
+        wanted.insert(0, rf"number\s*=\s*{tables[1]}\b" if len(tables) > 1 else wanted[0])
+    lines = text.splitlines()
+    for pattern in wanted:
+        for number, line in enumerate(lines, 1):
+            if re.match(rf"\s*{pattern}", line):
+                return number
+    return 1
 
 
 def _alarm_finding(preparation: Preparation, alarm: Alarm) -> Finding:

@@ -9,8 +9,8 @@ def dialects(
     name: Annotated[str | None, typer.Argument(help="One of them.", show_default=False)] = None,
 ) -> None:
     """Print the dialects, or what one of them understands, refuses and decided."""
-    from twin.nc.describe import describe, overview
     from twin.nc.dialects import dialect_named
+    from twin.nc.dialects.pages import describe, overview
 
     typer.echo(overview() if name is None else describe(dialect_named(name)))
 
@@ -26,8 +26,15 @@ def explain(
     typer.echo(explanations.overview() if code is None else explanations.explain(code))
 
 
-def doctor() -> None:
-    """Say what this computer can do: libraries, off-screen pictures, video."""
+def doctor(
+    compile_now: Annotated[
+        bool,
+        typer.Option(
+            "--compile", help="Compile all kernels first: into the installation, for images."
+        ),
+    ] = False,
+) -> None:
+    """Say what this computer can do: libraries, compiled kernels, off-screen pictures, video."""
     from twin.commands.doctor import print_doctor
 
-    raise typer.Exit(print_doctor())
+    raise typer.Exit(print_doctor(compile_now=compile_now))

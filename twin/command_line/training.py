@@ -17,27 +17,14 @@ def train(
     language: Annotated[
         str | None, typer.Option("--language", help="en, ru, it or cs; default: the scene's.")
     ] = None,
-    window: Annotated[
-        bool,
-        typer.Option("--window", help="Show the page in a window of its own; closing it ends."),
-    ] = False,
     host: Annotated[
-        str | None, typer.Option("--host", help="Listen there too; needs --token.")
+        str | None, typer.Option("--host", help="Listen there; needs --certificate.")
     ] = None,
     port: Annotated[
         int, typer.Option("--port", min=0, max=65535, help="0: the first free from 8080.")
     ] = 0,
-    token: Annotated[
-        str | None, typer.Option("--token", help="What a browser must know to come in.")
-    ] = None,
     certificate: Annotated[Path | None, typer.Option("--certificate", help="For https.")] = None,
     key: Annotated[Path | None, typer.Option("--key", help="Of the certificate.")] = None,
-    trainer: Annotated[
-        bool, typer.Option("--trainer", help="A second address with the trainer's sheet.")
-    ] = False,
-    plain: Annotated[
-        bool, typer.Option("--plain", help="Draw plainly: for browsers without a graphics card.")
-    ] = False,
     out: Annotated[
         Path | None, typer.Option("--out", help="Logs and score sheets; default out/training.")
     ] = None,
@@ -51,7 +38,6 @@ def train(
     if rehearse:
         raise typer.Exit(room.rehearse_and_print(scene))
     code = room.train(
-        scene, language=language, window=window, host=host, port=port, token=token,
-        certificate=certificate, key=key, trainer=trainer, plain=plain, out=out,
-    )  # fmt: skip
+        scene, language=language, host=host, port=port, certificate=certificate, key=key, out=out
+    )
     raise typer.Exit(code)

@@ -2,26 +2,24 @@
 
 import functools
 import os
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
 from twin.check import forms
-from twin.check.discovery import find_programs
-from twin.check.outcome import CheckOutcome
+from twin.check.discovery import baselines_without_programs, find_programs, without_jobs
+from twin.check.outcome import CheckOutcome, Finding
 from twin.check.runner import run_tasks
 from twin.check.settings import CheckSettings
 from twin.check.task import check_program
+from twin.commands.console import table_console
 from twin.errors import ExitCode, UsageError
-from twin.files.atomic import write_text
+from twin.files.atomic import STDOUT, require_folder, require_writable, write_text
 from twin.run.progress import shown_progress
 
 _STYLES = {"pass": "", "fail": "bold yellow", "alarm": "bold magenta", "error": "bold red"}
-_LOG_WIDTH = 160
 CODE_QUALITY_FILE = "gl-code-quality-report.json"
 """Where GitLab's examples look for the report; written to the working folder on GitLab alone."""
 
@@ -38,55 +36,104 @@ def check_and_print(
 ) -> ExitCode:
     """Check programs and tell how they came out.
 
+    Interrupted, it tells of those that are complete.
+
     Args:
         paths: Programs, job files, folders, globs.
         settings: How each is checked.
-        junit: Write JUnit XML there.
-        json_file: Write every outcome as JSON there.
+        junit: Write JUnit XML there; ``-`` is the standard output.
+        json_file: Write every outcome as JSON there; ``-`` is the standard output.
         jobs: How many at a time; one for each core by default.
         cluster: Address of the Ray cluster to run on instead; ``local`` starts one here.
         environment: Tells GitHub Actions and GitLab by their variables.
 
     Returns:
-        ``OK`` when every program passes, else ``FAILED``.
+        ``OK`` when every program passes; ``CRASH`` when the twin itself failed at one; else ``FAILED``.
 
     Raises:
         UsageError: No program was found, or ``--update-baseline`` names no folder.
+        OSError: What is to be written cannot be; told before anything runs.
+        KeyboardInterrupt: It was interrupted; what is complete has been told.
     """
     if settings.update_baseline and settings.baseline is None:
         raise UsageError("--update-baseline needs --baseline DIR")
     programs = find_programs(paths)
+    _require_outputs(settings, junit, json_file)
     check = functools.partial(check_program, settings=settings)
     outcomes: list[CheckOutcome] = []
-    with shown_progress() as progress:
-        for outcome in run_tasks(programs, check, jobs=jobs, cluster=cluster):
-            outcomes.append(outcome)
-            progress("check", len(outcomes) / len(programs))
+    interrupted = False
+    try:
+        with shown_progress() as progress:
+            for outcome in run_tasks(programs, check, jobs=jobs, cluster=cluster):
+                outcomes.append(outcome)
+                progress("check", len(outcomes) / len(programs))
+    except KeyboardInterrupt:
+        interrupted = True
     order = {str(path): index for index, path in enumerate(programs)}
     outcomes.sort(key=lambda outcome: order[outcome.program])
-    _print(outcomes)
+    if settings.baseline is not None and not settings.update_baseline:
+        outcomes += map(_without_program, baselines_without_programs(settings.baseline))
+    _print(outcomes, to_stderr=STDOUT in (junit, json_file))
+    if jobless := without_jobs(programs):
+        names = ", ".join(map(str, jobless))
+        typer.echo(
+            f"run with the defaults, for no job file names them: {names}; "
+            "'twin init PROGRAM' writes a job file",
+            err=True,
+        )
+    if interrupted:
+        typer.echo(f"interrupted: {len(outcomes)} of {len(programs)} programs checked", err=True)
     if junit is not None:
         forms.write_junit(junit, outcomes)
     if json_file is not None:
         write_text(json_file, forms.json_text(outcomes))
     _tell_server(outcomes, environment)
+    if interrupted:
+        raise KeyboardInterrupt
+    return _exit_code(outcomes)
+
+
+def _require_outputs(settings: CheckSettings, junit: Path | None, json_file: Path | None) -> None:
+    if junit == STDOUT == json_file:
+        raise UsageError("--junit - and --json -: only one of them can be the standard output")
+    for file in (junit, json_file):
+        if file is not None:
+            require_writable(file)
+    if settings.reports is not None:
+        require_folder(settings.reports)
+    if settings.baseline is not None and settings.update_baseline:
+        require_folder(settings.baseline)
+
+
+def _without_program(baseline: Path) -> CheckOutcome:
+    message = "there is no program or job of this baseline any more: remove it, or bring them back"
+    return CheckOutcome(
+        program=str(baseline),
+        verdict="fail",
+        exit_code=ExitCode.FAILED,
+        findings=(Finding("baseline-without-program", message, str(baseline)),),
+    )
+
+
+def _exit_code(outcomes: Sequence[CheckOutcome]) -> ExitCode:
+    if any(outcome.exit_code is ExitCode.CRASH for outcome in outcomes):
+        return ExitCode.CRASH
     return ExitCode.OK if all(outcome.passed for outcome in outcomes) else ExitCode.FAILED
 
 
-def _print(outcomes: Sequence[CheckOutcome]) -> None:
+def _print(outcomes: Sequence[CheckOutcome], *, to_stderr: bool) -> None:
     table = Table(box=None, pad_edge=False)
-    table.add_column("program", overflow="fold")
-    table.add_column("verdict")
+    table.add_column("program", overflow="fold", ratio=1)
+    table.add_column("verdict", no_wrap=True)
     for heading in ("contour error", "line", "cycle time"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, justify="right", no_wrap=True)
     for outcome, row in zip(outcomes, forms.table_rows(outcomes), strict=True):
         table.add_row(*row, style=_STYLES[outcome.verdict])
-    # In a log nothing is gained by folding at 80 columns.
-    Console(width=None if sys.stdout.isatty() else _LOG_WIDTH).print(table)
+    table_console(stderr=to_stderr).print(table)
     for outcome in outcomes:
-        for finding in outcome.findings:
+        for finding in (*outcome.warnings, *outcome.findings):
             typer.echo(str(finding), err=True)
-    typer.echo(forms.summary_line(outcomes))
+    typer.echo(forms.summary_line(outcomes), err=to_stderr)
 
 
 def _tell_server(outcomes: Sequence[CheckOutcome], environment: Mapping[str, str]) -> None:

@@ -5,9 +5,9 @@ import json
 from pathlib import Path
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
+from twin.commands.console import table_console
 from twin.compare.track_comparison import TrackDifference, compare_files
 from twin.errors import ExitCode, UsageError
 from twin.logs.column_map import read_column_map
@@ -68,7 +68,7 @@ def _print_table(found: TrackDifference) -> None:
         )  # fmt: skip
         cells = [f"{value:.4f}" for value in values]
         table.add_row(name, *cells, f"{axis.time_s:.3f} s", str(axis.line or "–"))
-    Console().print(table)
+    table_console().print(table)
     typer.echo(
         f"differences in mm or deg; offset {found.offset_s:.4f} s, overlap {found.overlap_s:.3f} s"
     )

@@ -12,15 +12,28 @@ from twin.files.shipped import machine_names
 LIBRARIES = ("mujoco", "numpy", "numba", "h5py", "trimesh", "av", "pillow", "matplotlib", "typer")
 
 
-def print_doctor() -> ExitCode:
-    """Print what was found; pictures that cannot be made are an error, the rest runs without."""
+def print_doctor(*, compile_now: bool = False) -> ExitCode:
+    """Print what was found; pictures that cannot be made are an error, the rest runs without.
+
+    Args:
+        compile_now: Compile every kernel before anything else is done.
+
+    Raises:
+        UsageError: Kernels are to be compiled, and there is nowhere to keep them.
+    """
+    if compile_now:
+        from twin.commands.compilation import compile_into_reach
+
+        typer.echo(f"compiled into {compile_into_reach()}")
+    from twin.compilation.inventory import inventory
     from twin.render.doctor import render_facts
-    from twin.render.filament import PACKAGES
+    from twin.render.drawing.filament import PACKAGES
 
     typer.echo(f"python     {platform.python_version()} ({sys.executable})")
     for name in LIBRARIES:
         typer.echo(f"{name:<10} {importlib.metadata.version(name)}")
     typer.echo(f"machines   {', '.join(machine_names())}")
+    typer.echo(f"kernels    {inventory()}")
     facts = render_facts()
     typer.echo(f"OpenGL     {facts.backend or 'none'} {facts.renderer}".rstrip())
     filament = facts.filament or f"none (optional): apt-get install {PACKAGES}"

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import typer
 
-from twin.compare.export import export_csv
 from twin.errors import ExitCode, UsageError
+from twin.recording.export import export_csv
 from twin.recording.reader import open_recording
 
 

@@ -3,19 +3,20 @@
 from pathlib import Path
 
 from twin.recording.reader import open_recording
+from twin.run.dry_run import DryRun
 from twin.run.progress import Progress
 from twin.run.results import STILL_NAME
-from twin.run.run import Run, Survey
+from twin.run.run import Run
 
 FILM_STEM = "video"
 
 
-def film_run(run: Run, survey: Survey, folder: Path, progress: Progress) -> None:
+def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> None:
     """Film a run that was recorded, and draw its end as a still.
 
     Args:
         run: The run.
-        survey: What the first pass over its program found.
+        dry_run: What the first pass over its program found.
         folder: Where ``recording.h5`` lies and the pictures go.
         progress: Told how far the film is.
 
@@ -28,7 +29,7 @@ def film_run(run: Run, survey: Survey, folder: Path, progress: Progress) -> None
 
     video = run.preparation.job.file.video
     with open_recording(folder / "recording.h5") as recording:
-        scene = scene_of(recording, run.preparation, survey.notes)
+        scene = scene_of(recording, run.preparation, dry_run.summary)
         film(
             scene,
             video=video,

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from twin import api
+from twin.commands.console import table_console
 from twin.compilation.announcement import announce_compilation
 from twin.errors import UsageError
 from twin.machine.motion_limits import motion_limits
@@ -90,7 +91,7 @@ def _as_json(summary: Summary, picture: Path) -> dict[str, object]:
 
 
 def _print(summary: Summary, picture: Path) -> None:
-    console = Console()
+    console = table_console()
     typer.echo(f"cycle time {summary.total:.3f} s, {len(summary.line)} blocks that take time")
     for title, figures in (
         ("time spent", summary.by_cause()),

@@ -22,7 +22,7 @@ from twin.job.job_file import VideoTable
 from twin.render.encoder import FORMATS
 from twin.render.film import film
 from twin.render.inspection_still import inspection_still
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 from twin.render.still import Shot, moment, stills
 from twin.run.progress import shown_progress
 from twin.run.replay import event_time, open_scene
@@ -164,7 +164,7 @@ class _Maker:
     def _part(self) -> Any:
         if self._scene.stock is None:
             raise UsageError("the job has no [stock]: there is no part to write or to measure")
-        return recut(self._scene.recording, self._scene.notes, self._scene.stock).map
+        return recut(self._scene.recording, self._scene.summary, self._scene.stock).map
 
     def _measure(self, nominal: str, tolerance_um: float) -> Inspection:
         scene = self._scene
@@ -174,7 +174,7 @@ class _Maker:
             raise UsageError(f"--inspect {nominal}: give '{COMMANDED}' or an STL file")
         found, part = inspect_recorded(
             scene.recording,
-            scene.notes,
+            scene.summary,
             scene.stock,
             COMMANDED if nominal == COMMANDED else Path(nominal),
             tolerance_um,

@@ -42,13 +42,13 @@ def run_and_print(
     preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
     folder = out or Path("out") / preparation.job.program.stem
     run = Run(preparation)
-    survey = run.survey()
+    dry_run = run.dry_run()
     with run_folder(folder, RESULT_FILES):
         with shown_progress() as progress:
-            outcome = run.execute(survey, folder, progress)
+            outcome = run.execute(dry_run, folder, progress)
             if video and outcome.samples:
                 with run.clock.stage("render"):
-                    film_run(run, survey, folder, progress)
+                    film_run(run, dry_run, folder, progress)
         write_results(run, outcome, folder)
     _print_findings(run, outcome)
     typer.echo(_summary(run, outcome, folder))

@@ -1,12 +1,10 @@
 """``twin sweep``: one job with values varied, one line of a table for each combination."""
 
 import functools
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
 from twin.check import forms
@@ -15,11 +13,10 @@ from twin.check.runner import run_tasks
 from twin.check.settings import CheckSettings
 from twin.check.task import check_variant
 from twin.check.variation import variants
+from twin.commands.console import table_console
 from twin.errors import ExitCode, UsageError
-from twin.files.atomic import write_text
+from twin.files.atomic import STDOUT, require_writable, write_text
 from twin.run.progress import shown_progress
-
-_LOG_WIDTH = 160
 
 
 def sweep_and_print(
@@ -50,6 +47,8 @@ def sweep_and_print(
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
     tasks = variants(path, vary)
+    if json_file is not None:
+        require_writable(json_file)
     check = functools.partial(check_variant, settings=settings)
     outcomes: list[CheckOutcome] = []
     with shown_progress() as progress:
@@ -60,11 +59,11 @@ def sweep_and_print(
     outcomes.sort(key=lambda outcome: order.get(outcome.changes, len(order)))
     if json_file is not None:
         write_text(json_file, forms.json_text(outcomes))
-    _print(outcomes, [key for key, _ in tasks[0].changes])
+    _print(outcomes, [key for key, _ in tasks[0].changes], to_stderr=json_file == STDOUT)
     return ExitCode.OK if all(outcome.passed for outcome in outcomes) else ExitCode.FAILED
 
 
-def _print(outcomes: Sequence[CheckOutcome], keys: Sequence[str]) -> None:
+def _print(outcomes: Sequence[CheckOutcome], keys: Sequence[str], *, to_stderr: bool) -> None:
     table = Table(box=None, pad_edge=False)
     for key in keys:
         table.add_column(key.partition(".")[2], justify="right")
@@ -74,7 +73,7 @@ def _print(outcomes: Sequence[CheckOutcome], keys: Sequence[str]) -> None:
     for outcome, row in zip(outcomes, forms.table_rows(outcomes), strict=True):
         values = [_shown(value) for _, value in outcome.changes] or ["?"] * len(keys)
         table.add_row(*values, *row[1:])
-    Console(width=None if sys.stdout.isatty() else _LOG_WIDTH).print(table)
+    table_console(stderr=to_stderr).print(table)
     for text in dict.fromkeys(str(f) for outcome in outcomes for f in outcome.findings):
         typer.echo(text, err=True)
 

@@ -1,7 +1,7 @@
 """``twin train``: the training room."""
 
 import contextlib
-import ssl
+from importlib.util import find_spec
 from pathlib import Path
 
 import typer
@@ -61,14 +61,10 @@ def train(
     name: str,
     *,
     language: str | None,
-    window: bool,
     host: str | None,
     port: int,
-    token: str | None,
     certificate: Path | None,
     key: Path | None,
-    trainer: bool,
-    plain: bool,
     out: Path | None,
 ) -> ExitCode:
     """Open a scene and play it until it is closed.
@@ -80,11 +76,11 @@ def train(
         TwinError: The scene, or how it shall be opened, is wrong.
     """
     from twin.compilation.announcement import announce_compilation
-    from twin.training.server.gate import LOOPBACK
-    from twin.training.server.launch import open_room
-    from twin.training.server.window import find_browser, open_window
 
-    browser = find_browser() if window else None
+    require_extra()
+    from twin.training.server.launch import open_room
+    from twin.web.server import LOOPBACK
+
     announce_compilation()
     scene = read_scene(scene_path(name))
     with contextlib.ExitStack() as stack:
@@ -94,24 +90,15 @@ def train(
                 language=language_named(language),
                 host=host or LOOPBACK,
                 port=port,
-                token=token or "",
-                tls=_tls(certificate, key),
-                trainer=trainer,
-                plain=plain,
+                certificate=certificate,
+                key=key,
                 out=out or Path("out") / "training",
             )
         )
         interrupted = stack.enter_context(let_interruption_stop(room.stop))
-        typer.echo(f"{scene.name}: open {room.gate.address} in a browser; Ctrl+C ends")
-        if room.trainer_gate is not None:
-            typer.echo(f"the trainer's own page: {room.trainer_gate.address}")
-        if host is not None and certificate is None:
-            typer.echo(
-                "other computers' browsers show the page over https only: give --certificate "
-                "and --key, or lead them here through ssh -L", err=True,
-            )  # fmt: skip
-        if browser is not None:
-            stack.enter_context(open_window(browser, room.gate.address, room.stop))
+        typer.echo(f"{scene.name}: open {room.addresses['operator']} in a browser; Ctrl+C ends")
+        typer.echo(f"the trainer's own page: {room.addresses['trainer']}")
+        typer.echo(f"to look on: {room.addresses['watcher']}")
         room.serve()
         if interrupted:
             typer.echo("")  # the terminal has shown its ^C
@@ -120,14 +107,14 @@ def train(
     return ExitCode.FAILED if judge.over and judge.score < scene.points else ExitCode.OK
 
 
-def _tls(certificate: Path | None, key: Path | None) -> ssl.SSLContext | None:
-    if certificate is None:
-        if key is not None:
-            raise UsageError("--key belongs to a --certificate, and there is none")
-        return None
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
-    try:
-        context.load_cert_chain(certificate, key)
-    except (OSError, ssl.SSLError) as error:
-        raise UsageError(f"{certificate}: no certificate with its key: {error}") from error
-    return context
+def require_extra() -> None:
+    """Refuse to open a page where the server's packages are missing.
+
+    Raises:
+        UsageError: They are; the message says how to get them.
+    """
+    missing = [name for name in ("starlette", "uvicorn", "websockets") if find_spec(name) is None]
+    if missing:
+        raise UsageError(
+            f"pages need {', '.join(missing)}: install mill-twin with its extra 'train'"
+        )

@@ -1,14 +1,18 @@
 """Baselines: what a program came to when it was last approved.
 
-A later run is held to it: the first block whose path differs is named with its program line.
+A later run is held to it: every block that differs is named with its program line, and so is every
+key of the job, and every figure of the run and of its cut.
 """
 
-import math
-from collections.abc import Iterable, Iterator
+import itertools
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from twin.compare.baseline_text import (
     Entry,
+    Head,
     RunFigures,
     entries,
     number,
@@ -17,6 +21,7 @@ from twin.compare.baseline_text import (
     text,
     write,
 )
+from twin.compare.block_difference import block_differences, same_end
 from twin.compare.verdict import Reason
 from twin.errors import UsageError
 from twin.files.atomic import complete_or_absent
@@ -24,14 +29,21 @@ from twin.job.job_file import BaselineTable
 from twin.nc.canonical import Axes, Chunk
 from twin.nc.text.diagnostics import ProgramError
 
+MOST_LISTED = 50
+"""Blocks that are named one by one; how many more differ is told behind them."""
+_LOOK_AHEAD = 24
+"""Blocks that may be inserted or lost in one place and the rest be recognised again."""
 _SMALLEST_TIME = 1e-6
 """A cycle time that differs by no more than this is the same [s]: what the file resolves."""
-_SWEEP_DEG = 0.5
-"""Sweeps that differ by more are not the same; the end point tells a wrong angle within the turn,
-but not the sign, nor whole turns."""
 
 
-def write_baseline(path: Path, figures: RunFigures, axes: Axes, chunks: Iterable[Chunk]) -> None:
+def write_baseline(
+    path: Path,
+    figures: RunFigures,
+    axes: Axes,
+    chunks: Iterable[Chunk],
+    settings: Mapping[str, str] | None = None,
+) -> None:
     """Store a baseline, complete or not at all.
 
     Args:
@@ -39,9 +51,10 @@ def write_baseline(path: Path, figures: RunFigures, axes: Axes, chunks: Iterable
         figures: What the run came to.
         axes: Of the moves.
         chunks: The program.
+        settings: Keys of the job and their values, as text.
     """
     with complete_or_absent(path) as temporary, temporary.open("w", encoding="utf-8") as file:
-        write(file, figures, axes.names, entries(chunks))
+        write(file, Head(figures, axes.names, settings or {}), entries(chunks))
 
 
 def compare_baseline(
@@ -50,6 +63,7 @@ def compare_baseline(
     axes: Axes,
     chunks: Iterable[Chunk],
     limits: BaselineTable,
+    settings: Mapping[str, str] | None = None,
 ) -> list[Reason]:
     """Hold a run to its baseline.
 
@@ -59,10 +73,10 @@ def compare_baseline(
         axes: Of the moves.
         chunks: The program; where it no longer interprets, the baseline tells what was there.
         limits: How far they may differ.
+        settings: Keys of the job and their values, as text.
 
     Returns:
-        One reason each for path, feed, cycle time and contour error, where they differ too much;
-        those of path and feed name the first block that differs.
+        A reason for every key of the job, every block and every figure that differs too much.
 
     Raises:
         UsageError: The file is not a baseline.
@@ -72,12 +86,28 @@ def compare_baseline(
         return [Reason("baseline-missing", message, 0, 0.0)]
     try:
         with path.open(encoding="utf-8") as file:
-            stored, names = read_head(file)
-            reasons = _program_reasons(read_entries(file, names), names, axes, chunks, limits)
+            head, lines = read_head(file)
+            reasons = _settings_reasons(head.settings, settings or {})
+            if axes.names != head.axes:
+                told = f"axes {' '.join(axes.names)}, baseline {' '.join(head.axes)}"
+                reasons.append(Reason("baseline-path", told, 0, 0.0))
+            else:
+                pairs = _Pairs(read_entries(lines, head.axes), entries(chunks), limits)
+                reasons += _first_of(_program_reasons(pairs, head.axes, limits))
     except (ValueError, IndexError, TypeError) as error:
         message = f"{path}: is not a baseline of this twin: {error}; --update-baseline stores one"
         raise UsageError(message) from error
-    return reasons + ([] if figures is None else _figure_reasons(stored, figures, limits))
+    return reasons + ([] if figures is None else _figure_reasons(head.figures, figures, limits))
+
+
+def _settings_reasons(stored: Mapping[str, str], now: Mapping[str, str]) -> list[Reason]:
+    reasons = []
+    for key in sorted(stored.keys() | now.keys()):
+        here, there = now.get(key, "not set"), stored.get(key, "not set")
+        if here != there:
+            message = f"{key} is {here}, baseline {there}"
+            reasons.append(Reason("baseline-job", message, 0, 0.0))
+    return reasons
 
 
 def _figure_reasons(stored: RunFigures, now: RunFigures, limits: BaselineTable) -> list[Reason]:
@@ -95,84 +125,135 @@ def _figure_reasons(stored: RunFigures, now: RunFigures, limits: BaselineTable) 
             f"grew by more than {limits.contour_um:g} µm"
         )
         reasons.append(Reason("baseline-contour", message, 0, 0.0))
+    for name in sorted(stored.cut.keys() | now.cut.keys()):
+        here, there = now.cut.get(name, 0.0), stored.cut.get(name, 0.0)
+        # Counts must be equal; volumes and shares, which are not whole, may differ a little.
+        share = 0.0 if name.endswith("_count") else limits.cut_percent / 100.0
+        if abs(here - there) > share * max(abs(there), 1e-3):
+            message = f"cut: {name} {number(here)}, baseline {number(there)}"
+            reasons.append(Reason("baseline-cut", message, 0, 0.0))
     return reasons
 
 
-def _program_reasons(
-    stored: Iterator[Entry],
-    names: tuple[str, ...],
-    axes: Axes,
-    chunks: Iterable[Chunk],
-    limits: BaselineTable,
-) -> list[Reason]:
-    if axes.names != names:
-        told = f"axes {' '.join(axes.names)}, baseline {' '.join(names)}"
-        return [Reason("baseline-path", told, 0, 0.0)]
-    program = entries(chunks)
-    reasons: list[Reason] = []
-    before: Entry | None = None
-    line = 0
-    try:
-        # One by one, for the stored entry at which the program breaks is the one to tell.
+def _first_of(reasons: Iterator[Reason]) -> list[Reason]:
+    listed = list(itertools.islice(reasons, MOST_LISTED))
+    more = sum(1 for _ in reasons)
+    if more:
+        listed.append(Reason("baseline-path", f"{more} more differences of blocks", 0, 0.0))
+    return listed
+
+
+class _Pair(NamedTuple):
+    """What stands beside each other: a stored block, a block of the program, or both."""
+
+    before: Entry | None
+    now: Entry | None
+    line: int
+
+
+class _Pairs:
+    """Stored blocks and those of the program, side by side, found again behind a lost or new one."""
+
+    def __init__(
+        self, stored: Iterator[Entry], program: Iterator[Entry], limits: BaselineTable
+    ) -> None:
+        self._sources = (stored, program)
+        self._ahead: tuple[deque[Entry], deque[Entry]] = (deque(), deque())
+        self._tolerance = limits.path_um / 1e3
+        self._line = 0
+        self._broken: ProgramError | None = None
+
+    def expected(self) -> Entry | None:
+        """The stored block that comes next."""
+        self._fill(0, 1)
+        return self._ahead[0][0] if self._ahead[0] else None
+
+    def __iter__(self) -> Iterator[_Pair]:
+        stored, program = self._ahead
         while True:
-            before, now = next(stored, None), None
-            now = next(program, None)
-            line = line if now is None else now.line
-            if before is None and now is None:
-                return reasons
-            difference = _difference(before, now, names, limits.path_um / 1e3, line)
-            if difference is not None:
-                return [*reasons, difference]
-            if not reasons and before is not None and now is not None:
-                reasons += _feed_reasons(before, now, limits)
+            self._fill(0, 1)
+            self._fill(1, 1)
+            if not program and self._broken is not None:
+                raise self._broken
+            if not stored and not program:
+                return
+            if stored and program and same_end(stored[0], program[0], self._tolerance):
+                yield self._taken(1, 1)
+                continue
+            lost, new = self._found_again()
+            for _ in range(min(lost, new)):
+                yield self._taken(1, 1)
+            for _ in range(lost - new):
+                yield self._taken(1, 0)
+            for _ in range(new - lost):
+                yield self._taken(0, 1)
+
+    def _taken(self, stored: int, program: int) -> _Pair:
+        before = self._ahead[0].popleft() if stored else None
+        now = self._ahead[1].popleft() if program else None
+        # What is lost is told at the line before which it stood.
+        told_at = now or (self._ahead[1][0] if self._ahead[1] else None)
+        self._line = self._line if told_at is None else told_at.line
+        return _Pair(before, now, self._line)
+
+    def _found_again(self) -> tuple[int, int]:
+        """How many stored blocks and blocks of the program lie before the next that are alike."""
+        self._fill(0, _LOOK_AHEAD)
+        self._fill(1, _LOOK_AHEAD)
+        stored, program = self._ahead
+        for away in range(1, _LOOK_AHEAD * 2):
+            for lost in sorted(range(away + 1), key=lambda lost, away=away: abs(2 * lost - away)):
+                new = away - lost
+                if (
+                    lost < len(stored)
+                    and new < len(program)
+                    and same_end(stored[lost], program[new], self._tolerance)
+                ):
+                    return lost, new
+        return len(program) if self._broken else len(stored), len(program)
+
+    def _fill(self, side: int, count: int) -> None:
+        while len(self._ahead[side]) < count:
+            try:
+                entry = next(self._sources[side], None)
+            except ProgramError as error:
+                # Told when all that came before it has been compared.
+                self._broken = error
+                return
+            if entry is None:
+                return
+            self._ahead[side].append(entry)
+
+
+def _program_reasons(
+    pairs: _Pairs, names: tuple[str, ...], limits: BaselineTable
+) -> Iterator[Reason]:
+    apart = False
+    try:
+        for before, now, line in pairs:
+            if before is not None and now is not None and before.kind == now.kind:
+                found = block_differences(before, now, names, limits, begins_apart=apart)
+                apart = any(code == "baseline-path" for code, _ in found)
+                yield from (Reason(code, message, line, 0.0) for code, message in found)
+                continue
+            apart = True
+            whichever = before or now
+            what = "baseline-function"
+            if whichever is None or whichever.is_path:
+                what = "baseline-path"
+            yield Reason(what, _instead(before, now, names), line, 0.0)
     except ProgramError as error:
-        message = f"no longer interprets, baseline {_told(before, names)}"
-        return [*reasons, Reason("baseline-path", message, error.diagnostic.line, 0.0)]
+        message = f"no longer interprets, baseline {_told(pairs.expected(), names)}"
+        yield Reason("baseline-path", message, error.diagnostic.line, 0.0)
 
 
-def _feed_reasons(before: Entry, now: Entry, limits: BaselineTable) -> list[Reason]:
-    if abs(now.feed - before.feed) <= limits.feed_percent / 100.0 * before.feed + 1e-6:
-        return []
-    message = (
-        f"feed {number(now.feed)}, baseline {number(before.feed)}: "
-        f"differs by more than {limits.feed_percent:g} %"
-    )
-    return [Reason("baseline-feed", message, now.line, 0.0)]
+def _instead(before: Entry | None, now: Entry | None, names: tuple[str, ...]) -> str:
+    if now is None:
+        return f"lost here: {_told(before, names)}"
+    if before is None:
+        return f"new, and not in the baseline: {_told(now, names)}"
+    return f"{_told(now, names)}, baseline {_told(before, names)}"
 
 
 def _told(entry: Entry | None, names: tuple[str, ...]) -> str:
     return "its end" if entry is None else text(entry, names, entry.start, entry.feed)
-
-
-def _difference(
-    before: Entry | None, now: Entry | None, names: tuple[str, ...], tolerance: float, line: int
-) -> Reason | None:
-    """How one entry differs, if it does."""
-    if before is None or now is None or now.kind != before.kind:
-        missing = before or now
-        what = "baseline-path" if missing is None or missing.is_path else "baseline-function"
-        return Reason(what, f"{_told(now, names)}, baseline {_told(before, names)}", line, 0.0)
-    message = _path_difference(before, now, names, tolerance)
-    return None if message is None else Reason("baseline-path", message, line, 0.0)
-
-
-def _path_difference(
-    before: Entry, now: Entry, names: tuple[str, ...], tolerance: float
-) -> str | None:
-    for what, one, other in (("starts", now.start, before.start), ("ends", now.end, before.end)):
-        for name, here, there in zip(names, one, other, strict=False):
-            if abs(here - there) > tolerance:
-                return f"{what} at {name}{number(here)}, baseline {name}{number(there)}"
-    if now.kind == "dwell" and abs(now.value - before.value) > _SMALLEST_TIME:
-        return f"dwell {number(now.value)} s, baseline {number(before.value)} s"
-    return _arc_difference(before, now, tolerance) if now.center else None
-
-
-def _arc_difference(before: Entry, now: Entry, tolerance: float) -> str | None:
-    if math.dist(now.center, before.center) > tolerance:
-        here, there = (" ".join(map(number, arc.center)) for arc in (now, before))
-        return f"arc about ({here}), baseline ({there})"
-    same_side = sum(a * b for a, b in zip(now.normal, before.normal, strict=True))
-    if abs(now.value * same_side - before.value) > _SWEEP_DEG:
-        return f"arc of {number(now.value)} degrees, baseline {number(before.value)}"
-    return None

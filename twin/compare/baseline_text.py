@@ -1,28 +1,33 @@
 """Baselines as text: one entry a line, modal like an NC program, so that they are small and diff well.
 
-    twin baseline 2
+    twin baseline 3
     cycle_time_s 12.5
     contour_um 3.2
     axes X Y Z C
+    cut removed_mm3 812.5
+    job tolerance.contour_um 20.0
     M3 S3000
     start X0 Y0 Z50 C0
+    corner exact-path
     rapid Z0
     feed X50 F600
     arc X0 center 25 0 0 normal 0 0 1 sweep 180
     dwell 0.5
 
-An axis or a feed is written where it changes; source lines are not, so that a comment more changes
+An axis, a feed, a corner mode (``corner continuous 0.05``) or a programmed acceleration
+(``acceleration 500 400``) is written where it changes; source lines are not, so that a comment more changes
 nothing.
 """
 
 import dataclasses
+import itertools
 import math
-from collections.abc import Iterable, Iterator
-from typing import TextIO
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple, TextIO
 
-from twin.nc.canonical import Chunk, Dwell, Event, Function, Motion, Moves, Shape
+from twin.nc.canonical import Chunk, Corner, Dwell, Event, Function, Motion, Moves, Shape
 
-HEADING = "twin baseline 2"
+HEADING = "twin baseline 3"
 _DECIMALS = 6
 """Of coordinates in the file: a nanometre, far below any tolerance."""
 
@@ -34,10 +39,26 @@ class RunFigures:
     Attributes:
         cycle_time_s: Machine time of the program [s].
         contour_um: Greatest contour error [µm].
+        cut: Figures of the cut by name; none where nothing is cut.
     """
 
     cycle_time_s: float
     contour_um: float
+    cut: Mapping[str, float] = dataclasses.field(default_factory=dict)
+
+
+class Head(NamedTuple):
+    """What stands before the entries.
+
+    Attributes:
+        figures: What the run came to.
+        axes: Names of the axes.
+        settings: Keys of the job and their values, as text.
+    """
+
+    figures: RunFigures
+    axes: tuple[str, ...]
+    settings: Mapping[str, str]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -54,6 +75,8 @@ class Entry:
         center: Of an arc [mm].
         normal: Of an arc.
         value: Sweep of an arc [deg], or length of a dwell [s].
+        corner: How the end of a move is passed, such as ``exact-path`` or ``continuous 0.05``.
+        acceleration: Programmed acceleration and deceleration, or ``machine`` for its own.
     """
 
     kind: str
@@ -64,6 +87,8 @@ class Entry:
     center: tuple[float, ...] = ()
     normal: tuple[float, ...] = ()
     value: float = 0.0
+    corner: str = ""
+    acceleration: str = ""
 
     @property
     def is_path(self) -> bool:
@@ -78,6 +103,12 @@ _KINDS = {
     (Motion.FEED, Shape.ARC): "arc",
 }
 _MOVES = frozenset(_KINDS.values())
+_CORNERS = {
+    Corner.EXACT_STOP: "exact-stop",
+    Corner.EXACT_PATH: "exact-path",
+    Corner.CONTINUOUS: "continuous",
+}
+_MODAL = ("corner", "acceleration")
 
 
 def entries(chunks: Iterable[Chunk]) -> Iterator[Entry]:
@@ -117,29 +148,50 @@ def _move(moves: Moves, row: int) -> Entry:
         center=tuple(moves.center[row].tolist()) if arc else (),
         normal=tuple(moves.normal[row].tolist()) if arc else (),
         value=float(moves.sweep[row]),
+        corner=_corner(moves, row),
+        acceleration=_acceleration(moves, row),
     )
 
 
-def write(
-    file: TextIO, figures: RunFigures, names: tuple[str, ...], program: Iterable[Entry]
-) -> None:
+def _corner(moves: Moves, row: int) -> str:
+    corner, tolerance = Corner(moves.corner[row]), float(moves.corner_tolerance[row])
+    rounded = corner is Corner.CONTINUOUS and not math.isnan(tolerance)
+    return _CORNERS[corner] + (f" {number(tolerance)}" if rounded else "")
+
+
+def _acceleration(moves: Moves, row: int) -> str:
+    limits = (float(moves.acceleration[row]), float(moves.deceleration[row]))
+    if all(map(math.isnan, limits)):
+        return "machine"
+    return " ".join("machine" if math.isnan(limit) else number(limit) for limit in limits)
+
+
+def write(file: TextIO, head: Head, program: Iterable[Entry]) -> None:
     """Write a baseline.
 
     Args:
         file: Where to.
-        figures: What the run came to.
-        names: Of the axes.
+        head: What stands before the entries.
         program: What the program does.
     """
+    figures = head.figures
     file.write(f"{HEADING}\n")
     file.write(f"cycle_time_s {figures.cycle_time_s:.6f}\ncontour_um {figures.contour_um:.3f}\n")
-    file.write(f"axes {' '.join(names)}\n")
+    file.write(f"axes {' '.join(head.axes)}\n")
+    file.writelines(f"cut {name} {number(value)}\n" for name, value in figures.cut.items())
+    file.writelines(f"job {key} {value}\n" for key, value in sorted(head.settings.items()))
     position: tuple[float, ...] = ()
     feed = 0.0
+    modal = dict.fromkeys(_MODAL, "")
     for entry in program:
         if entry.start and list(map(number, entry.start)) != list(map(number, position)):
-            file.write(f"start {words(names, entry.start)}\n")
-        file.write(text(entry, names, entry.start, feed) + "\n")
+            file.write(f"start {words(head.axes, entry.start)}\n")
+        for name, before in modal.items():
+            value = getattr(entry, name)
+            if value and value != before:
+                file.write(f"{name} {value}\n")
+                modal[name] = value
+        file.write(text(entry, head.axes, entry.start, feed) + "\n")
         position, feed = entry.end or position, entry.feed or feed
 
 
@@ -177,8 +229,8 @@ def number(value: float) -> str:
     return "0" if shown == "-0" else shown
 
 
-def read_head(lines: Iterator[str]) -> tuple[RunFigures, tuple[str, ...]]:
-    """Figures and names of the axes; the iterator is left at the first entry.
+def read_head(lines: Iterator[str]) -> tuple[Head, Iterator[str]]:
+    """What stands before the entries, and the lines of the entries.
 
     Raises:
         ValueError: This is no baseline.
@@ -191,8 +243,20 @@ def read_head(lines: Iterator[str]) -> tuple[RunFigures, tuple[str, ...]]:
         if name != key:
             raise ValueError(f"'{key}' is missing")
         values[key] = rest
-    figures = RunFigures(float(*values["cycle_time_s"]), float(*values["contour_um"]))
-    return figures, tuple(values["axes"])
+    cut: dict[str, float] = {}
+    settings: dict[str, str] = {}
+    for line in lines:
+        kind, _, rest = line.rstrip("\n").partition(" ")
+        key, _, value = rest.partition(" ")
+        if kind == "cut":
+            cut[key] = float(value)
+        elif kind == "job":
+            settings[key] = value
+        else:
+            lines = itertools.chain([line], lines)
+            break
+    figures = RunFigures(float(*values["cycle_time_s"]), float(*values["contour_um"]), cut)
+    return Head(figures, tuple(values["axes"]), settings), lines
 
 
 def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[Entry]:
@@ -203,12 +267,15 @@ def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[Entry
     """
     position = dict.fromkeys(names, 0.0)
     feed = 0.0
+    modal = dict.fromkeys(_MODAL, "")
     for line in lines:
         parts = line.split()
         if not parts:
             continue
         kind = "rapid arc" if parts[:2] == ["rapid", "arc"] else parts[0]
-        if kind == "dwell":
+        if kind in _MODAL:
+            modal[kind] = " ".join(parts[1:])
+        elif kind == "dwell":
             yield Entry(kind, value=float(parts[1]))
         elif kind != "start" and kind not in _MOVES:
             yield Entry(" ".join(parts))
@@ -221,9 +288,9 @@ def read_entries(lines: Iterator[str], names: tuple[str, ...]) -> Iterator[Entry
             if kind == "start":
                 continue
             feed = own_feed
-            yield Entry(
-                kind, 0, start, tuple(position.values()), 0.0 if "rapid" in kind else feed, *arc
-            )
+            end = tuple(position.values())
+            own = 0.0 if "rapid" in kind else feed
+            yield Entry(kind, 0, start, end, own, *arc, **modal)
 
 
 def _split_arc(

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from twin.compare.arcs import ArcCollector
-from twin.compare.blocks import BlockCollector
-from twin.compare.contour_kernels import follow
-from twin.compare.corners import CornerCollector
-from twin.compare.features import FeatureCollector
+from twin.compare.circular.arcs import ArcCollector
+from twin.compare.contour.blocks import BlockCollector
+from twin.compare.contour.corners import CornerCollector
+from twin.compare.contour.features import FeatureCollector
+from twin.compare.contour.follow_kernels import follow
 from twin.compare.figures import AxisTracking, ContourFigures, Figures, WorstPlace
 from twin.compare.statistics import Distribution
 from twin.errors import RecordingError
@@ -179,15 +179,15 @@ class Comparison:
         """See whether the lines that the tool was in are among the worst now."""
         least = min((w.error_um for w in self._worst.values()), default=0.0)
         floor = least if len(self._worst) >= WORST_PLACES else -1.0
-        error, when = self._blocks.greatest, self._blocks.when
-        for row in rows[(error[rows] > floor) & (when[rows] >= setpoint.time[0])]:
-            line = int(self._blocks.block[row]) // 2
-            known = self._worst.get(line)
-            if known is None or error[row] > known.error_um:
-                sample = int(np.searchsorted(setpoint.time, when[row]))
+        known = self._blocks.columns
+        for row in rows[(known.greatest[rows] > floor) & (known.when[rows] >= setpoint.time[0])]:
+            line, error = int(known.block[row]) // 2, float(known.greatest[row])
+            before = self._worst.get(line)
+            if before is None or error > before.error_um:
+                when = float(known.when[row])
+                sample = int(np.searchsorted(setpoint.time, when))
                 position = setpoint.position[sample] - self._part_zero
-                place = WorstPlace(line, float(when[row]), float(error[row]), position)
-                self._worst[line] = place
+                self._worst[line] = WorstPlace(line, when, error, position)
         kept = sorted(self._worst.values(), key=lambda w: (-w.error_um, w.line))[:WORST_PLACES]
         self._worst = {place.line: place for place in kept}
 

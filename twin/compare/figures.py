@@ -3,9 +3,9 @@
 import dataclasses
 from collections.abc import Mapping
 
-from twin.compare.blocks import NO_BLOCKS, BlockFigures
-from twin.compare.corners import NO_CORNERS, CornerFigures
-from twin.nc.canonical import FloatArray
+import numpy as np
+
+from twin.nc.canonical import BoolArray, FloatArray, IntArray
 from twin.units import AxisKind
 
 
@@ -77,10 +77,10 @@ class ArcFigures:
         time_s: When the tool reached the arc [s].
         radius_mm: Commanded radius [mm].
         sweep_deg: Commanded opening angle, signed, all turns [deg].
-        circular_deviation_um: ISO 230-4 circular deviation G (see ``twin.compare.circle``) [µm].
+        circular_deviation_um: ISO 230-4 circular deviation G (see ``twin.compare.circular.circle``) [µm].
         radial_max_um: Greatest radial deviation, positive outside the commanded circle [µm].
         radial_min_um: Least radial deviation [µm].
-        polar: Angle [deg] in the arc's plane (``twin.compare.arcs.plane_axes``) and radial
+        polar: Angle [deg] in the arc's plane (``twin.compare.circular.arcs.plane_axes``) and radial
             deviation [µm] by row for a polar plot, shape (m, 2); empty for all but the worst arcs.
     """
 
@@ -118,6 +118,75 @@ class BidirectionalFigures:
     circular_deviation_um: float
     mean_radial_deviation_um: float
     hysteresis_um: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class BlockFigures:
+    """Contour error of m blocks as columns, by line; a line's rapids after its feeds.
+
+    Attributes:
+        line: Source line, shape (m,).
+        rapid: Whether the row is about the rapids of the line, shape (m,).
+        arc: Whether an arc is among its moves, shape (m,).
+        samples: How many samples were nearest to it, shape (m,).
+        max_um: Greatest contour error, shape (m,) [µm].
+        rms_um: Root mean square, shape (m,) [µm].
+        p99_um: What 99 % of the samples of one passage do not exceed, at most 0.8 % too high; of
+            several passages the greatest, shape (m,) [µm].
+        time_s: When the greatest was reached, shape (m,) [s].
+        forgotten: How often a block was let go of because enough others were worse. Those that are
+            the worst of all are exact in ``max_um`` even so; their other figures leave out what
+            was before they were let go of and came again.
+    """
+
+    line: IntArray
+    rapid: BoolArray
+    arc: BoolArray
+    samples: IntArray
+    max_um: FloatArray
+    rms_um: FloatArray
+    p99_um: FloatArray
+    time_s: FloatArray
+    forgotten: int = 0
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+
+NO_BLOCKS = BlockFigures(
+    line=np.zeros(0, np.int64),
+    rapid=np.zeros(0, np.bool_),
+    arc=np.zeros(0, np.bool_),
+    samples=np.zeros(0, np.int64),
+    max_um=np.zeros(0),
+    rms_um=np.zeros(0),
+    p99_um=np.zeros(0),
+    time_s=np.zeros(0),
+)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class CornerFigures:
+    """The corners of a program: how far they are rounded.
+
+    Attributes:
+        count: How many were passed.
+        rounding_um: Greatest rounding: shortest distance from a corner to the tool's path [µm].
+        line: Source line that ends at that corner; 0 without corners.
+        time_s: When the tool was nearest to it [s].
+        rms_um: Root mean square of the corners' roundings [µm].
+        p99_um: What 99 % of the corners' roundings do not exceed [µm], to 0.1 %.
+    """
+
+    count: int = 0
+    rounding_um: float = 0.0
+    line: int = 0
+    time_s: float = 0.0
+    rms_um: float = 0.0
+    p99_um: float = 0.0
+
+
+NO_CORNERS = CornerFigures()
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

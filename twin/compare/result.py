@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.compare.blocks import BlockFigures
-from twin.compare.figures import ArcFigures, AxisTracking, Figures
+from twin.compare.figures import ArcFigures, AxisTracking, BlockFigures, Figures
 from twin.compare.verdict import AlarmLike, Verdict
 from twin.files.atomic import write_text
 from twin.job.job_file import ToleranceTable

@@ -1,142 +1,169 @@
-"""Where compiled kernels are kept: by the content of everything that they were compiled from.
+"""Compiled kernels, kept by the content of everything that they were compiled from.
 
-Numba keeps what it compiled for as long as the file that a kernel stands in stays as it is; it does
-not see that a function or a constant of another file, compiled into this one, has become a different
-one. Here a kernel's folder is named after a hash of its own file and of all files of the package
-that it imports, directly or through others, and of the versions of Python, NumPy, Numba and LLVM.
-Times and paths do not count: a moved, restored or copied environment finds what was compiled before.
+Numba's own cache keeps what it compiled for as long as the file that a kernel stands in stays as it
+is: it does not see that a function or a constant of another file, compiled into this one, has
+changed; it compiles anew when an environment was moved; and a file of it that was cut short ends the
+program. Here a kernel's folder is named by its content, its file by its types and its processor; a
+file carries a checksum, and one that is damaged is compiled again. Processes that lack the same
+kernel at the same time wait for the one that compiles it.
 """
 
-import functools
+import contextlib
+import fcntl
 import hashlib
 import os
-import platform
-import re
-import tempfile
-from collections.abc import Callable, Iterator
+import pickle
+import secrets
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-import llvmlite
-import numba
-import numpy as np
-from numba.core.caching import CompileResultCacheImpl, _CacheLocator
+from numba.core.caching import _Cache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+from numba.core.sigutils import normalize_signature
 
-_PACKAGE = Path(__file__).parent.parent
-_VERSIONS = (platform.python_version(), np.__version__, numba.__version__, llvmlite.__version__)
-_IMPORT = re.compile(
-    r"^(?:from (?P<origin>twin[\w.]*) import (?P<names>\([^)]*\)|[^\n]*)|import (?P<module>twin[\w.]+))",
-    re.MULTILINE,
+from twin.compilation.content import PACKAGE, content_key
+from twin.compilation.folders import (
+    SHIPPED,
+    remove_forgotten,
+    touch,
+    trusted_folders,
+    writable_folder,
 )
 
+GENERIC = ("generic", "")
+"""Processor and features of kernels that run on every processor of an architecture."""
 
-class ContentCacheLocator(_CacheLocator):
-    """Tells Numba where the compiled form of one kernel is kept.
+_CHECKSUM_BYTES = hashlib.sha256().digest_size
+_SUFFIX = ".kernel"
 
-    Attributes:
-        _py_file: The kernel's file; Numba names it in its warnings.
+Compilable = TypeVar("Compilable")
+
+
+def keep_by_content(compilable: Compilable, function: Callable[..., Any]) -> Compilable:
+    """Let what Numba compiles for a function be kept here.
+
+    Args:
+        compilable: What Numba made of the function: a dispatcher or a C callback.
+        function: The function itself; one of another package is not kept.
     """
-
-    def __init__(self, file: Path, folder: Path) -> None:
-        self._py_file = str(file)
-        self._folder = folder
-
-    def get_cache_path(self) -> Any:
-        """The folder of all kernels of the file."""
-        return str(self._folder)
-
-    def get_source_stamp(self) -> Any:
-        """What tells a fresh kernel from a stale one; the folder's name says it already."""
-        return self._folder.name
-
-    def get_disambiguator(self) -> Any:
-        """Kernels of one file differ by their names."""
-        return "kernel"
-
-    @classmethod
-    def from_function(
-        cls,
-        py_func: Callable[..., Any],  # noqa: ARG003 (Numba passes it)
-        py_file: str,
-    ) -> Any:
-        """A locator for a kernel of this package, None for another's function."""
-        file = Path(py_file)
-        if not file.is_relative_to(_PACKAGE):
-            return None
-        return cls(file, cache_root() / content_key(file))
+    file = Path(function.__code__.co_filename).resolve()
+    if file.is_relative_to(PACKAGE):
+        holder: Any = compilable
+        holder._cache = KernelCache(function, file)  # noqa: SLF001 - Numba has no public place for it
+    return compilable
 
 
-def keep_kernels_by_content() -> None:
-    """Let Numba keep this package's kernels here; what others compile stays as it is."""
-    classes = CompileResultCacheImpl._locator_classes  # noqa: SLF001 - Numba has no public place for it
-    if ContentCacheLocator not in classes:
-        CompileResultCacheImpl._locator_classes = [ContentCacheLocator, *classes]  # noqa: SLF001
+class KernelCache(_Cache):
+    """The compiled forms of one kernel."""
 
+    def __init__(self, function: Callable[..., Any], file: Path) -> None:
+        self._name = f"{function.__module__}.{function.__qualname__}"
+        self._folder = content_key(file)
+        self._locks: dict[str, int] = {}
 
-@functools.cache
-def cache_root() -> Path:
-    """The first folder that can be written to.
+    @property
+    def cache_path(self) -> Any:
+        """Where the kernel is kept that is compiled next."""
+        return str(writable_folder() / self._folder)
 
-    ``NUMBA_CACHE_DIR`` where it is set, the user's cache folder, else a temporary folder of this
-    process, whose kernels last as long as it does.
-    """
-    for folder in _candidates():
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """The kernel for these types, or None: then this process compiles it and no other.
+
+        Args:
+            sig: Types of the arguments and of the result.
+            target_context: Numba's, which the kernel is loaded into.
+        """
+        target_context.refresh()
+        data = self._read(sig, target_context)
+        if data is None:
+            self._begin(self._file_name(sig, _processor(target_context)))
+            # Another process may have compiled it while this one waited.
+            data = self._read(sig, target_context)
+            if data is None:
+                return None
+            self._end(self._file_name(sig, _processor(target_context)))
+        return CompileResult._rebuild(target_context, *pickle.loads(data))  # noqa: S301, SLF001 (from folders that nobody else writes to; Numba has no public place for it)
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep what was compiled; a full disk loses it and nothing else."""
+        name = self._file_name(sig, _processor(data.target_context))
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            tempfile.TemporaryFile(dir=folder).close()
-        except OSError:
-            continue
-        return folder
-    return Path(_temporary().name)
+            if not data.lifted and not data.library.has_dynamic_globals:
+                with contextlib.suppress(OSError):
+                    self._write(name, dumps(data._reduce()))  # noqa: SLF001
+        finally:
+            self._end(name)
+
+    def enable(self) -> None:
+        """Numba asks for it; this cache is always on."""
+
+    def disable(self) -> None:
+        """Numba asks for it; this cache is always on."""
+
+    def flush(self) -> None:
+        """Numba asks for it; what is kept by content is never stale."""
+
+    def _read(self, sig: Any, target_context: Any) -> bytes | None:
+        here = _processor(target_context)
+        own = self._file_name(sig, here)
+        shipped = self._file_name(sig, (here[0], *GENERIC))
+        for root, name in [(SHIPPED, shipped), *((root, own) for root in trusted_folders())]:
+            data = _checked(root / self._folder / name)
+            if data is not None:
+                if root is not SHIPPED:
+                    touch(root / self._folder)
+                return data
+        return None
+
+    def _write(self, name: str, data: bytes) -> None:
+        root = writable_folder()
+        folder = root / self._folder
+        folder.mkdir(mode=0o700, exist_ok=True)
+        temporary = folder / f"{name}.{secrets.token_hex(8)}"
+        try:
+            temporary.write_bytes(hashlib.sha256(data).digest() + data)
+            temporary.replace(folder / name)
+        finally:
+            temporary.unlink(missing_ok=True)
+        remove_forgotten(root)
+
+    def _begin(self, name: str) -> None:
+        """Wait until no other process compiles this; where locks are not to be had, do not wait."""
+        self._end(name)
+        with contextlib.suppress(OSError):
+            folder = writable_folder() / self._folder
+            folder.mkdir(mode=0o700, exist_ok=True)
+            handle = os.open(folder / f"{name}.lock", os.O_CREAT | os.O_RDWR, 0o600)
+            self._locks[name] = handle
+            fcntl.flock(handle, fcntl.LOCK_EX)
+
+    def _end(self, name: str) -> None:
+        handle = self._locks.pop(name, None)
+        if handle is not None:
+            with contextlib.suppress(OSError):
+                (writable_folder() / self._folder / f"{name}.lock").unlink()
+            os.close(handle)
+
+    def _file_name(self, sig: Any, processor: tuple[str, ...]) -> str:
+        arguments, result = normalize_signature(sig)
+        about = "\n".join((self._name, *map(str, arguments), str(result), *processor))
+        stem = self._name.rpartition(".")[2]
+        return f"{stem}-{hashlib.sha256(about.encode()).hexdigest()[:24]}{_SUFFIX}"
 
 
-@functools.cache
-def content_key(file: Path) -> str:
-    """Hash of a file, of all files of the package that it imports, and of the compilers' versions."""
-    digest = hashlib.sha256("\n".join(_VERSIONS).encode())
-    for source in sorted(_closure(file)):
-        digest.update(source.relative_to(_PACKAGE).as_posix().encode() + b"\0")
-        digest.update(source.read_bytes() + b"\0")
-    return digest.hexdigest()[:24]
+def _processor(target_context: Any) -> tuple[str, ...]:
+    """System, processor and its features that kernels are compiled for."""
+    return tuple(map(str, target_context.codegen().magic_tuple()))
 
 
-def _candidates() -> Iterator[Path]:
-    if chosen := os.environ.get("NUMBA_CACHE_DIR"):
-        yield Path(chosen) / "mill-twin"
-    user_cache = os.environ.get("XDG_CACHE_HOME")
+def _checked(file: Path) -> bytes | None:
+    """A file's content behind its checksum; None where there is none or it is damaged."""
     try:
-        yield (Path(user_cache) if user_cache else Path.home() / ".cache") / "mill-twin" / "kernels"
-    except RuntimeError:
-        return  # a user without a home folder
-
-
-@functools.cache
-def _temporary() -> "tempfile.TemporaryDirectory[str]":
-    return tempfile.TemporaryDirectory(prefix="mill-twin-kernels-")
-
-
-def _closure(file: Path) -> set[Path]:
-    found: set[Path] = set()
-    waiting = [file]
-    while waiting:
-        source = waiting.pop()
-        if source not in found:
-            found.add(source)
-            waiting.extend(_imported(source))
-    return found
-
-
-@functools.cache
-def _imported(file: Path) -> tuple[Path, ...]:
-    """The package's files that a file imports at its head."""
-    modules: list[str] = []
-    for match in _IMPORT.finditer(file.read_text(encoding="utf-8")):
-        if match["module"]:
-            modules.append(match["module"])
-            continue
-        modules.append(match["origin"])
-        modules += [f"{match['origin']}.{name}" for name in re.findall(r"\w+", match["names"])]
-    places = {_PACKAGE.parent.joinpath(*module.split(".")) for module in modules}
-    files = {place.with_suffix(".py") for place in places}
-    files |= {place / "__init__.py" for place in places}
-    return tuple(sorted(each for each in files if each.is_file()))
+        content = file.read_bytes()
+    except OSError:
+        return None
+    data = content[_CHECKSUM_BYTES:]
+    whole = content[:_CHECKSUM_BYTES] == hashlib.sha256(data).digest()
+    return data if whole else None

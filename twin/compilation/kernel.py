@@ -12,9 +12,7 @@ from typing import Any, TypeVar, cast
 import numba
 import numpy as np
 
-from twin.compilation.cache import keep_kernels_by_content
-
-keep_kernels_by_content()
+from twin.compilation.cache import keep_by_content
 
 NONE_YET, ONCE, NO = (
     cast("int", np.int64(0)),
@@ -70,4 +68,4 @@ def arithmetic_kernel(function: Kernel) -> Kernel:
 
 def _compiled(function: Kernel, **options: Any) -> Kernel:
     jit: Any = numba.njit  # its declared options lack ``_nrt``
-    return jit(cache=True, **options)(function)
+    return keep_by_content(jit(**options)(function), function)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from twin.cutting.cut import Cutter
-from twin.cutting.program_notes import ProgramNotes
+from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.job.job_file import StockTable
 from twin.motion.setpoints.setpoints import Setpoints
@@ -23,7 +23,7 @@ class AxisLoad:
     def __init__(
         self,
         stock: StockTable,
-        notes: ProgramNotes,
+        summary: ProgramSummary,
         part_frame: PartFrame,
         part_zero: FloatArray,
     ) -> None:
@@ -31,7 +31,7 @@ class AxisLoad:
 
         Args:
             stock: The blank; its material must be named.
-            notes: What is in the spindle when, at which speed, and which moves are rapids.
+            summary: What is in the spindle when, at which speed, and which moves are rapids.
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
 
@@ -41,12 +41,12 @@ class AxisLoad:
         """
         if stock.material is None:
             raise ConfigError("cutting_load needs stock.material, for the cutting force")
-        if all(tool.speed is None for tool in notes.tools.tools):
+        if all(tool.speed is None for tool in summary.tools.tools):
             raise ConfigError(
                 "cutting_load needs a spindle speed: S in the program, or speed of a [[tools]] table"
             )
-        self._cutter = Cutter(stock, notes.tools, part_frame, part_zero, along="setpoints")
-        self._notes = notes
+        self._cutter = Cutter(stock, summary.tools, part_frame, part_zero, along="setpoints")
+        self._summary = summary
         self._part_frame = part_frame
 
     def __call__(self, setpoint: Setpoints) -> FloatArray:
@@ -60,7 +60,7 @@ class AxisLoad:
         """
         still = np.zeros_like(setpoint.position)
         samples = Samples(setpoint, setpoint.position, setpoint.velocity, still)
-        self._cutter.add(samples, self._notes.is_rapid(setpoint.move))
+        self._cutter.add(samples, self._summary.is_rapid(setpoint.move))
         force = self._cutter.force
         frame, load = self._part_frame, still
         load[:, :3] = force

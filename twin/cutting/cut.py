@@ -6,12 +6,12 @@ from typing import Any, Literal
 
 import numpy as np
 
+from twin.cutting.cut_log import BlockCut, CutLog
 from twin.cutting.events import SCRAPE_MM, CutEvent, EventLog, StockWatch, Stretches, meets_material
 from twin.cutting.force import cutting_load, cutting_width, kienzle
 from twin.cutting.force_direction import tool_force
 from twin.cutting.height_map import BoolArray, blank
-from twin.cutting.ledger import BlockCut, Ledger
-from twin.cutting.sweep_kernels import overlap, sweep
+from twin.cutting.sweep_kernels import Removal, overlap, sweep
 from twin.cutting.thin_kernels import thin
 from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
 from twin.job.job_file import StockTable, ToolTable
@@ -136,7 +136,7 @@ class Cutter:
         self._standing = StockWatch("standing")
         self._halts = halts
         self.halted: CutEvent | None = None
-        self._ledger = Ledger()
+        self._cut_log = CutLog()
 
     def add(self, samples: Samples, rapid: BoolArray, standing: BoolArray | None = None) -> float:
         """Cut along a chunk that follows the last one.
@@ -179,7 +179,7 @@ class Cutter:
 
     def result(self) -> CutResult:
         """What was cut so far."""
-        bin_s, over_time = self._ledger.over_time
+        bin_s, over_time = self._cut_log.over_time
         return CutResult(
             removed_mm3=self._removed,
             cell_mm=self.map.cell,
@@ -187,8 +187,8 @@ class Cutter:
             gouges=self._gouges.events(),
             rapid_into_stock=self._rapids.events(),
             spindle_off=self._standing.events(),
-            blocks=self._ledger.blocks,
-            blocks_forgotten=self._ledger.forgotten,
+            blocks=self._cut_log.blocks,
+            blocks_forgotten=self._cut_log.forgotten,
             bin_s=bin_s,
             removed_over_time=tuple(over_time.tolist()),
             force_n=self._force,
@@ -249,17 +249,13 @@ class Cutter:
 
     def _sweep(self, points: FloatArray, edge: Profile) -> FloatArray:
         """Take off what lies in the way; volume [mm³], depth and place aside [mm] by stretch."""
-        removed, depth, aside = found = np.zeros((3, len(points) - 1))
+        found = np.zeros((3, len(points) - 1))
         changed = sweep(
             self.map.heights,
-            self.map.origin,
-            self.map.cell,
-            self.map.bottom,
+            self.map.grid,
             points,
             dataclasses.astuple(edge),
-            removed,
-            depth,
-            aside,
+            Removal(*found),
             self.marks,
             self._travelled + np.cumsum(_lengths(points)),
         )
@@ -277,8 +273,7 @@ class Cutter:
             found[what] = np.zeros(len(points) - 1)
             overlap(
                 self.map.heights,
-                self.map.origin,
-                self.map.cell,
+                self.map.grid,
                 self.map.top,
                 points,
                 0.5 * diameter,
@@ -304,7 +299,7 @@ class Cutter:
             self._force = max(self._force or 0.0, float(force.max()))
             self._power = max(self._power or 0.0, float(load.power.max()))
             pushed = tool_force(stretches, force, self.tool, self._material)
-        self._ledger.add(stretches, cutting_width(stretches, self.tool.diameter), force)
+        self._cut_log.add(stretches, cutting_width(stretches, self.tool.diameter), force)
         return pushed
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from twin.cutting.events import SCRAPE_MM, CutEvent
 from twin.cutting.height_map import HeightMap
 from twin.cutting.outline import Outline
-from twin.cutting.sweep_kernels import sweep
+from twin.cutting.sweep_kernels import Removal, sweep
 from twin.cutting.thin_kernels import thin
 from twin.cutting.tools import ToolPlan, profile
 from twin.job.fixture import FixtureTable
@@ -98,12 +98,13 @@ class FixtureGuard:
             group = np.zeros(len(tip), np.int64)
             chosen = thin(tip, group, STRAIGHT_MM, LONGEST_MM, MOST_JOINED)
             way, edge = tip[chosen], profile(tool)
-            removed, depth, aside = np.zeros((3, len(way) - 1))
+            found = np.zeros((3, len(way) - 1))
             sweep(
-                self._map.heights, self._map.origin, CELL_MM, self._map.bottom, way,
-                (edge.radius, edge.flat, edge.corner, edge.slope), removed, depth, aside,
-                np.zeros((0, 0)), removed,
+                self._map.heights, self._map.grid, way,
+                (edge.radius, edge.flat, edge.corner, edge.slope), Removal(*found),
+                np.zeros((0, 0)), found[0],
             )  # fmt: skip
+            depth = found[1]
             touched = np.flatnonzero(depth > SCRAPE_MM)
             if not len(touched):
                 continue

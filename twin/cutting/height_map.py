@@ -11,6 +11,7 @@ import numpy as np
 
 from twin.cutting.drape_kernels import drape
 from twin.cutting.outline import BoolArray, Outline, outline
+from twin.cutting.sweep_kernels import Grid
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.job.job_file import StockTable
@@ -42,6 +43,11 @@ class HeightMap:
     top: float
     outline: Outline
     uncut: FloatArray
+
+    @property
+    def grid(self) -> Grid:
+        """Where the cells lie."""
+        return Grid(self.origin, self.cell, self.bottom)
 
     @property
     def volume(self) -> float:

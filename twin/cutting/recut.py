@@ -9,7 +9,7 @@ from twin.cutting.cut import Cutter
 from twin.cutting.drape_kernels import drape
 from twin.cutting.height_map import HeightMap
 from twin.cutting.inspection import Inspection, inspect
-from twin.cutting.program_notes import ProgramNotes
+from twin.cutting.program_summary import ProgramSummary
 from twin.files.stl import read_stl
 from twin.job.job_file import StockTable
 from twin.recording.reader import Recording
@@ -21,7 +21,7 @@ COMMANDED: Commanded = "commanded"
 
 def recut(
     recording: Recording,
-    notes: ProgramNotes,
+    summary: ProgramSummary,
     stock: StockTable,
     along: Literal["joints", "setpoints"] = "joints",
 ) -> Cutter:
@@ -29,7 +29,7 @@ def recut(
 
     Args:
         recording: The run.
-        notes: What is in the spindle when, and which moves are rapids.
+        summary: What is in the spindle when, and which moves are rapids.
         stock: The blank.
         along: Whether the simulated motion cuts or the commanded one.
 
@@ -37,9 +37,9 @@ def recut(
         ConfigError: The stock is wrong.
     """
     header = recording.header
-    cutter = Cutter(stock, notes.tools, header.part_frame, header.part_zero, along=along)
+    cutter = Cutter(stock, summary.tools, header.part_frame, header.part_zero, along=along)
     for samples in recording.chunks():
-        cutter.add(samples, notes.is_rapid(samples.setpoint.move))
+        cutter.add(samples, summary.is_rapid(samples.setpoint.move))
     return cutter
 
 
@@ -65,7 +65,7 @@ def nominal_map(part: HeightMap, file: Path, recording: Recording) -> HeightMap:
 
 def inspect_recorded(
     recording: Recording,
-    notes: ProgramNotes,
+    summary: ProgramSummary,
     stock: StockTable,
     nominal: Path | Commanded,
     tolerance_um: float,
@@ -74,7 +74,7 @@ def inspect_recorded(
 
     Args:
         recording: The run.
-        notes: See ``recut``.
+        summary: What is in the spindle when, and which moves are rapids.
         stock: The blank.
         nominal: STL of the nominal part in program coordinates, or ``COMMANDED``.
         tolerance_um: Deviation that is still good [µm].
@@ -85,9 +85,9 @@ def inspect_recorded(
     Raises:
         ConfigError: The stock or the nominal part is wrong.
     """
-    part = recut(recording, notes, stock).map
+    part = recut(recording, summary, stock).map
     if nominal == COMMANDED:
-        ideal = recut(recording, notes, stock, "setpoints").map
+        ideal = recut(recording, summary, stock, "setpoints").map
     else:
         ideal = nominal_map(part, Path(nominal), recording)
     return inspect(part, ideal, tolerance_um), part

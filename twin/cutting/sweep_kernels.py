@@ -1,28 +1,52 @@
 """Hot loops of cutting: sweep the tool along straight stretches."""
 
 import math
+from typing import NamedTuple
 
 from twin.compilation.kernel import array_kernel
+from twin.cutting.tool_height_kernels import below_capsule, lowest_height
 from twin.nc.canonical import FloatArray
 
 _FAR = 1e9
 """Farther than any stock reaches [mm]."""
 
-_BISECTIONS = 40
-"""Halvings of a sweep in search of its lowest point: 1e-12 of its length."""
+
+class Grid(NamedTuple):
+    """Where the cells of a height map lie.
+
+    Attributes:
+        origin: X and Y of the middle of cell ``[0, 0]`` [mm].
+        cell: Side of a cell [mm].
+        bottom: Z below which there is nothing to cut [mm].
+    """
+
+    origin: tuple[float, float]
+    cell: float
+    bottom: float
+
+
+class Removal(NamedTuple):
+    """What each of n lines took off.
+
+    Attributes:
+        volume: Material, shape (n,) [mm³].
+        depth: Greatest depth of it, shape (n,) [mm].
+        aside: How far left of the line it lay in the mean, shape (n,) [mm]; 0 for a line straight
+            down.
+    """
+
+    volume: FloatArray
+    depth: FloatArray
+    aside: FloatArray
 
 
 @array_kernel
 def sweep(
     heights: FloatArray,
-    origin: tuple[float, float],
-    cell: float,
-    bottom: float,
+    grid: Grid,
     points: FloatArray,
     profile: tuple[float, float, float, float],
-    removed: FloatArray,
-    depth: FloatArray,
-    aside: FloatArray,
+    removal: Removal,
     marks: FloatArray,
     mark: FloatArray,
 ) -> tuple[int, int, int, int]:
@@ -33,15 +57,10 @@ def sweep(
 
     Args:
         heights: The height map, shape (ny, nx) [mm]; changed in place.
-        origin: X and Y of the middle of cell ``[0, 0]`` [mm].
-        cell: Side of a cell [mm].
-        bottom: Z below which there is nothing to cut [mm].
+        grid: Where its cells lie.
         points: Tool tip positions, shape (n, 3) [mm].
         profile: Radius, flat, corner, slope of ``twin.cutting.tools.Profile``.
-        removed: Set to the material removed by each line, shape (n - 1,) [mm³].
-        depth: Set to the greatest depth of material removed by each line, shape (n - 1,) [mm].
-        aside: Set to how far left of the way of each line its material lay in the mean, shape
-            (n - 1,) [mm]; 0 for a line straight down.
+        removal: Set to what each line took off, n - 1 of them.
         marks: Set to the line's ``mark`` where it cut, shape (ny, nx); of no size, if nobody asks.
         mark: What each line leaves in ``marks``, shape (n - 1,).
 
@@ -49,38 +68,35 @@ def sweep(
         First and last-but-one row, first and last-but-one column of the cells that changed.
     """
     row_first, row_end, column_first, column_end = heights.shape[0], 0, heights.shape[1], 0
-    radius = profile[0]
-    rows, columns = heights.shape
+    radius, cell = profile[0], grid.cell
     for i in range(len(points) - 1):
         volume, deepest, across, along = 0.0, 0.0, 0.0, 0.0
         ax, ay = points[i, 0], points[i, 1]
         bx, by = points[i + 1, 0], points[i + 1, 1]
-        low = max(0, math.ceil((min(ay, by) - radius - origin[1]) / cell))
-        high = min(rows - 1, math.floor((max(ay, by) + radius - origin[1]) / cell))
+        low = max(0, math.ceil((min(ay, by) - radius - grid.origin[1]) / cell))
+        high = min(heights.shape[0] - 1, math.floor((max(ay, by) + radius - grid.origin[1]) / cell))
         # What the tool stands in already, no stretch that does not sink can take off again.
         stands = i > 0 and points[i + 1, 2] >= points[i, 2]
         for row in range(low, high + 1):
-            y = origin[1] + row * cell
+            y = grid.origin[1] + row * cell
             left, right = _chord(ax, ay, bx, by, radius, y)
-            first = max(0, math.ceil((left - origin[0]) / cell))
-            end = min(columns - 1, math.floor((right - origin[0]) / cell)) + 1
-            hole, hole_end = end, end
+            first = max(0, math.ceil((left - grid.origin[0]) / cell))
+            end = min(heights.shape[1] - 1, math.floor((right - grid.origin[0]) / cell)) + 1
+            done, done_end = end, end
             if stands:
                 left, right = _done(ax, ay, bx, by, radius, profile[1], y)
                 if left <= right:
-                    hole = _within(math.ceil((max(left, -_FAR) - origin[0]) / cell), first, end)
-                    hole_end = _within(
-                        math.floor((min(right, _FAR) - origin[0]) / cell) + 1, hole, end
-                    )
-            for begin, stop in ((first, hole), (hole_end, end)):
+                    done = math.ceil((max(left, -_FAR) - grid.origin[0]) / cell)
+                    done = _within(done, first, end)
+                    done_end = math.floor((min(right, _FAR) - grid.origin[0]) / cell) + 1
+                    done_end = _within(done_end, done, end)
+            for begin, stop in ((first, done), (done_end, end)):
                 if begin >= stop:
                     continue
                 line = heights[row, begin:stop]
-                x = origin[0] + begin * cell
+                x = grid.origin[0] + begin * cell
                 before = line.copy() if marks.size else line
-                cut, most, moment = _cut_row(
-                    line, x, y, cell, bottom, points[i], points[i + 1], profile
-                )
+                cut, most, moment = _cut_row(line, x, y, grid, points[i], points[i + 1], profile)
                 if cut > 0.0:
                     volume += cut
                     across += cut * (x - ax) + moment * cell
@@ -89,23 +105,27 @@ def sweep(
                     row_first, row_end = min(row_first, row), max(row_end, row + 1)
                     column_first, column_end = min(column_first, begin), max(column_end, stop)
                     if marks.size:
-                        for k in range(len(line)):
-                            if line[k] < before[k]:
-                                marks[row, begin + k] = mark[i]
+                        _mark_lowered(marks[row, begin:stop], line, before, mark[i])
         length = math.hypot(bx - ax, by - ay)
-        aside[i] = 0.0
+        removal.aside[i] = 0.0
         if volume > 0.0 and length > 0.0:
-            aside[i] = (along * (bx - ax) - across * (by - ay)) / (volume * length)
-        removed[i] = volume * cell * cell
-        depth[i] = deepest
+            removal.aside[i] = (along * (bx - ax) - across * (by - ay)) / (volume * length)
+        removal.volume[i] = volume * cell * cell
+        removal.depth[i] = deepest
     return row_first, row_end, column_first, column_end
+
+
+@array_kernel
+def _mark_lowered(marks: FloatArray, heights: FloatArray, before: FloatArray, mark: float) -> None:
+    for k in range(len(heights)):
+        if heights[k] < before[k]:
+            marks[k] = mark
 
 
 @array_kernel
 def overlap(
     heights: FloatArray,
-    origin: tuple[float, float],
-    cell: float,
+    grid: Grid,
     top: float,
     points: FloatArray,
     radius: float,
@@ -116,8 +136,7 @@ def overlap(
 
     Args:
         heights: The height map, shape (ny, nx) [mm].
-        origin: X and Y of the middle of cell ``[0, 0]`` [mm].
-        cell: Side of a cell [mm].
+        grid: Where its cells lie.
         top: Z above which there is no material [mm].
         points: Tool tip positions, shape (n, 3) [mm].
         radius: Of the cylinder [mm].
@@ -132,16 +151,16 @@ def overlap(
         bx, by = points[i + 1, 0], points[i + 1, 1]
         if min(points[i, 2], points[i + 1, 2]) + above >= top:
             continue
-        low = max(0, math.ceil((min(ay, by) - radius - origin[1]) / cell))
-        high = min(rows - 1, math.floor((max(ay, by) + radius - origin[1]) / cell))
+        low = max(0, math.ceil((min(ay, by) - radius - grid.origin[1]) / grid.cell))
+        high = min(rows - 1, math.floor((max(ay, by) + radius - grid.origin[1]) / grid.cell))
         for row in range(low, high + 1):
-            y = origin[1] + row * cell
+            y = grid.origin[1] + row * grid.cell
             left, right = _chord(ax, ay, bx, by, radius, y)
-            first = max(0, math.ceil((left - origin[0]) / cell))
-            end = min(columns - 1, math.floor((right - origin[0]) / cell)) + 1
+            first = max(0, math.ceil((left - grid.origin[0]) / grid.cell))
+            end = min(columns - 1, math.floor((right - grid.origin[0]) / grid.cell)) + 1
             for column in range(first, end):
-                x = origin[0] + column * cell
-                lower = _lowest(x, y, points[i], points[i + 1], cylinder) + above
+                x = grid.origin[0] + column * grid.cell
+                lower = lowest_height(x, y, points[i], points[i + 1], cylinder) + above
                 depth[i] = max(depth[i], heights[row, column] - lower)
 
 
@@ -202,8 +221,7 @@ def _cut_row(
     line: FloatArray,
     x: float,
     y: float,
-    cell: float,
-    bottom: float,
+    grid: Grid,
     a: FloatArray,
     b: FloatArray,
     profile: tuple[float, float, float, float],
@@ -216,7 +234,7 @@ def _cut_row(
     """
     volume, deepest, moment = 0.0, 0.0, 0.0
     if profile[1] >= profile[0] and a[2] == b[2]:
-        z = max(a[2], bottom)
+        z = max(a[2], grid.bottom)
         for i in range(len(line)):
             cut = max(line[i] - z, 0.0)
             line[i] = min(line[i], z)
@@ -224,14 +242,14 @@ def _cut_row(
             moment += cut * i
             deepest = max(deepest, cut)
         return volume, deepest, moment
-    lowest = max(min(a[2], b[2]), bottom)
+    lowest = max(min(a[2], b[2]), grid.bottom)
     ball = profile[1] == 0.0 and profile[2] == profile[0]
     for i in range(len(line)):
         if line[i] <= lowest:
             continue
-        if ball and _below_capsule(x + i * cell, y, line[i], a, b, profile[0]):
+        if ball and below_capsule(x + i * grid.cell, y, line[i], a, b, profile[0]):
             continue
-        z = max(_lowest(x + i * cell, y, a, b, profile), bottom)
+        z = max(lowest_height(x + i * grid.cell, y, a, b, profile), grid.bottom)
         cut = line[i] - z
         if cut > 0.0:
             line[i] = z
@@ -239,100 +257,3 @@ def _cut_row(
             moment += cut * i
             deepest = max(deepest, cut)
     return volume, deepest, moment
-
-
-@array_kernel
-def _below_capsule(
-    x: float, y: float, z: float, a: FloatArray, b: FloatArray, radius: float
-) -> bool:
-    """Whether a point no higher than a swept ball's centres is outside of it: a cheap refusal."""
-    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    px, py, pz = x - a[0], y - a[1], z - a[2] - radius
-    if pz > min(0.0, dz):
-        return False
-    squared = dx * dx + dy * dy + dz * dz
-    if squared > 0.0:
-        t = min(1.0, max(0.0, (px * dx + py * dy + pz * dz) / squared))
-        px, py, pz = px - t * dx, py - t * dy, pz - t * dz
-    return px * px + py * py + pz * pz >= radius * radius
-
-
-@array_kernel
-def _lowest(
-    x: float, y: float, a: FloatArray, b: FloatArray, profile: tuple[float, float, float, float]
-) -> float:
-    """Lowest height over (x, y) of a tool that moves straight from a to b; inf if it misses.
-
-    With t from 0 to 1 the distance from the axis is convex in t, the profile is convex and rises
-    with the distance, and the tip's height is linear: their sum is convex, so that its only
-    minimum is an end of the stretch in reach or the place where its slope changes sign.
-    """
-    radius, flat, corner, slope = profile
-    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    squared = dx * dx + dy * dy
-    px, py = x - a[0], y - a[1]
-    if squared == 0.0:
-        return min(a[2], b[2]) + _profile(math.hypot(px, py), radius, flat, corner, slope)
-    nearest = (px * dx + py * dy) / squared
-    across = px * dx + py * dy
-    offset = max(px * px + py * py - across * across / squared, 0.0)
-    reach = radius * radius - offset
-    if reach < 0.0:
-        return math.inf
-    half = math.sqrt(reach / squared)
-    first, last = max(0.0, nearest - half), min(1.0, nearest + half)
-    if first > last:
-        return math.inf
-    if dz == 0.0:
-        t = min(last, max(first, nearest))
-    elif flat >= radius:
-        t = last if dz < 0.0 else first
-    elif flat == 0.0 and corner > 0.0:
-        steepest = math.sqrt(reach / (squared * (squared + dz * dz)))
-        t = min(last, max(first, nearest - dz * steepest))
-    else:
-        t = _turning_point(first, last, nearest, squared, offset, dz, flat, corner, slope)
-    along = t - nearest
-    distance = math.sqrt(offset + squared * along * along)
-    return a[2] + t * dz + _profile(min(distance, radius), radius, flat, corner, slope)
-
-
-@array_kernel
-def _profile(distance: float, radius: float, flat: float, corner: float, slope: float) -> float:
-    if distance > radius:
-        return math.inf
-    beyond = max(distance - flat, 0.0)
-    if corner > 0.0:
-        return corner - math.sqrt(max(corner * corner - beyond * beyond, 0.0))
-    return slope * beyond
-
-
-@array_kernel
-def _turning_point(
-    first: float,
-    last: float,
-    nearest: float,
-    squared: float,
-    offset: float,
-    dz: float,
-    flat: float,
-    corner: float,
-    slope: float,
-) -> float:
-    """Where the height over a cell stops falling, by halving the stretch [share of the line]."""
-    for _ in range(_BISECTIONS):
-        t = 0.5 * (first + last)
-        along = t - nearest
-        distance = math.sqrt(offset + squared * along * along)
-        rise = dz
-        if distance > flat:
-            beyond = distance - flat
-            steepness = slope
-            if corner > 0.0:
-                steepness = beyond / math.sqrt(max(corner * corner - beyond * beyond, 1e-18))
-            rise += steepness * squared * along / distance
-        if rise > 0.0:
-            last = t
-        else:
-            first = t
-    return 0.5 * (first + last)

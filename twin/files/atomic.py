@@ -1,13 +1,25 @@
-"""Files that are either complete or absent: written beside their place, then renamed."""
+"""Files that are either complete or absent: written beside their place, then renamed.
+
+What is no file of its own, a pipe, a terminal or another device, is written to as it stands; a link
+stays a link, and the file that it leads to is replaced. ``-`` is the standard output.
+"""
 
 import contextlib
+import errno
 import os
 import secrets
+import shutil
+import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 LEFTOVERS = ".*.part.*"
 """Files that a killed process left half-written."""
+STDOUT = Path("-")
+
+_STDOUT_NAMES = (STDOUT, Path("/dev/stdout"), Path("/dev/fd/1"), Path("/proc/self/fd/1"))
+_KERNEL_FOLDERS = (Path("/dev"), Path("/proc"))
 
 
 @contextlib.contextmanager
@@ -18,11 +30,19 @@ def complete_or_absent(path: Path) -> Iterator[Path]:
     raises, the temporary file is removed and ``path`` is as it was.
 
     Args:
-        path: Where the complete file shall stand. Its folder is made when missing.
+        path: Where the complete file shall stand, or what it shall be written to. Its folder is made
+            when missing.
 
     Raises:
         OSError: The folder cannot be written to.
     """
+    if _is_stream(path):
+        with tempfile.TemporaryDirectory() as folder:
+            whole = Path(folder) / f"whole{path.suffix}"
+            yield whole
+            _pour(whole, path)
+        return
+    path = Path(os.path.realpath(path))
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.part{path.suffix}")
     try:
@@ -36,3 +56,55 @@ def write_text(path: Path, text: str) -> None:
     """Write ``text`` as UTF-8, complete or not at all."""
     with complete_or_absent(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
+
+
+def require_writable(path: Path) -> None:
+    """Make sure that a file can be written, before much is done for what shall stand in it.
+
+    Args:
+        path: The file to be. Its folder is made when missing.
+
+    Raises:
+        OSError: It cannot be written; the error names it.
+    """
+    if _is_stream(path):
+        if path not in _STDOUT_NAMES and not os.access(path, os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+        return
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    require_folder(Path(os.path.realpath(path)).parent, named=path)
+
+
+def require_folder(folder: Path, *, named: Path | None = None) -> None:
+    """Make sure that files can be put into a folder, which is made when missing.
+
+    Args:
+        folder: The folder to be.
+        named: What an error names instead of it.
+
+    Raises:
+        OSError: It cannot be made or written to.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(named or folder)) from error
+
+
+def _is_stream(path: Path) -> bool:
+    """Whether a path leads to something that is written to, and that no other file may replace."""
+    if path in _STDOUT_NAMES or any(map(path.is_relative_to, _KERNEL_FOLDERS)):
+        return True
+    return path.exists() and not path.is_file() and not path.is_dir()
+
+
+def _pour(whole: Path, path: Path) -> None:
+    if path in _STDOUT_NAMES:
+        sys.stdout.flush()
+        sys.stdout.buffer.write(whole.read_bytes())
+        sys.stdout.buffer.flush()
+        return
+    with whole.open("rb") as source, path.open("wb") as stream:
+        shutil.copyfileobj(source, stream)

@@ -7,6 +7,11 @@ from twin.errors import UsageError
 _PACKAGE = Path(__file__).resolve().parents[1]
 
 
+def is_installed() -> bool:
+    """Whether this package was installed from a wheel, rather than being run from its checkout."""
+    return (_PACKAGE / "_resources").is_dir()
+
+
 def resource_root(kind: str) -> Path:
     """Return the folder of the shipped ``models`` or ``programs``.
 

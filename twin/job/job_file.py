@@ -176,6 +176,8 @@ class BaselineTable(Table):
     """Change of the cycle time, either way."""
     contour_um: Annotated[float, Field(ge=0)] = 1.0
     """Growth of the greatest contour error [µm]."""
+    cut_percent: Annotated[float, Field(ge=0)] = 1.0
+    """Change of the volume that is cut, of each tool's, and of the share of air, either way."""
 
 
 class VideoTable(Table):
@@ -235,6 +237,9 @@ class JobFile(Table):
     """Blocks that begin with a slash are left out."""
     step_limit: Annotated[int, Field(gt=0)] = 20_000
     """Blocks that may be run again through jumps and loops before the program counts as endless."""
+    expect: Annotated[str, Field(pattern="^[a-z0-9_-]+$")] | None = None
+    """Code of the alarm, tolerance or diagnostic that the job is to end with; ``twin check`` then
+    passes it, and fails it where it ends otherwise."""
     tolerance: ToleranceTable = ToleranceTable()
     baseline: BaselineTable = BaselineTable()
     video: VideoTable = VideoTable()

@@ -43,7 +43,7 @@ class CircularTest:
         feed: Commanded [mm/min].
         angle_deg: Shape (n,), from 0 in equal steps.
         counter_clockwise_um: Distance outward from the commanded circle, shape (n,) [µm].
-        clockwise_um: The same for the other direction.
+        clockwise_um: That distance of the clockwise circle, shape (n,) [µm].
         circular_deviation_um: G(b).
         radial_deviation_um: F, largest and smallest.
         hysteresis_um: H.

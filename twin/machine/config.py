@@ -67,10 +67,16 @@ class AxisTable(Table):
     """Of whatever turns with the motor: ball screw, worm, pulley [kg m²]."""
     lead: Positive | None = None
     """Axis travel per turn of the motor [mm or deg]; none: a direct drive, nothing is reflected."""
+    mass: NonNegative = 0.0
+    """What the motor feels, as it was measured: mass [kg] or inertia [kg m²], motor and screw
+    included; 0: as bodies, inertias and lead say. The axis's own body, motor and screw are scaled."""
     viscous_friction: NonNegative = 0.0
     """Of guides and screw [N s/mm or N m s/deg]."""
     dry_friction: NonNegative = 0.0
     """Coulomb friction of guides and screw [N or N m]."""
+    constant_force: Coordinate = 0.0
+    """What pulls the axis whichever way it goes, positive along + [N or N m]: weight that no
+    counterbalance carries, a cable, a cover's spring."""
     lugre: LuGreTable | None = None
     """Refines ``dry_friction``; none: Coulomb's law."""
     backlash: NonNegative = 0.0
@@ -84,7 +90,7 @@ class AxisTable(Table):
     """Largest step of the axis's velocity where an exact path goes through a knee [mm/s or deg/s];
     0: the axis stops there."""
     junction_acceleration_step: NonNegative = 0.0
-    """The same of its acceleration where only the curvature jumps [mm/s² or deg/s²]."""
+    """Largest step of its acceleration where only the curvature of the path jumps [mm/s² or deg/s²]."""
     kv: Positive
     """Position-loop gain [(m/min)/mm; rotary (1000 deg/min)/deg]: lag = velocity / gain."""
     damping_ratio: Positive = 1.0
@@ -97,6 +103,10 @@ class AxisTable(Table):
     """Share of the inertial force that the drive adds in advance."""
     force_limit: NonNegative = 0.0
     """Largest drive force [N or N m]; 0: no limit."""
+    current_scale: NonNegative = 0.0
+    """Force of the drive per ampere that its control shows [N/A or N m/A]; 0: not known."""
+    current_at_rest: Coordinate = 0.0
+    """What the control shows where the drive gives no force [A]."""
     saturation_time_s: NonNegative = 0.05
     """Alarm when the drive stays at its force limit for this long [s]."""
     following_error_limit: NonNegative = 0.0
@@ -112,6 +122,10 @@ class AxisTable(Table):
             raise ValueError("stiffness lies between motor and axis: give motor_inertia and lead")
         if self.backlash and not self.lead:
             raise ValueError("backlash lies between motor and axis: give motor_inertia and lead")
+        if self.mass and (self.stiffness or self.backlash):
+            raise ValueError(
+                "mass does not say what of it lies before a spring or a gap: give motor_inertia"
+            )
         return self
 
 
@@ -123,7 +137,7 @@ class PathTable(Table):
     jerk: Positive
     """[mm/s³]."""
     rotary_acceleration: Positive | None = None
-    """The same for a path of rotary axes alone [deg/s²]; none: the axes decide."""
+    """Acceleration of a path of rotary axes alone [deg/s²]; none: the axes decide."""
     rotary_jerk: Positive | None = None
     """[deg/s³]."""
     corner_tolerance: Positive = 0.01

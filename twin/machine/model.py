@@ -6,6 +6,7 @@ import numpy as np
 from twin.errors import ConfigError
 from twin.machine.config import Machine
 from twin.machine.drives import Drive, feedforward_name, integral_name, reflected_inertia, tune
+from twin.machine.measured_mass import set_measured_masses
 from twin.machine.tool_shape import (
     COLLISION_GROUP,
     FRAME_SIDE,
@@ -101,6 +102,7 @@ def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
                 f"which is {axis.kind}, must"
             )
         add_inertia(spec, axis)
+    set_measured_masses(spec, machine)
 
 
 def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
@@ -154,7 +156,10 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
             f"{machine.path}: axes.{name}: with kv = {axis.kv:g} the motor{reason} reacts faster "
             f"than the servo period; kv up to {axis.kv * FASTEST / rate:.3g} works"
         )
-    springs = [("stiffness", axis.stiffness, swinging(axis, drive.moved), "0 is rigid")]
+    springs = []
+    if axis.stiffness:
+        swings = swinging(axis, drive.moved)
+        springs.append(("stiffness", axis.stiffness, swings, "0 is rigid"))
     if axis.lugre is not None:
         springs.append(("lugre.stiffness", axis.lugre.stiffness, drive.moved, "none is Coulomb"))
     for key, stiffness, swings, otherwise in springs:

@@ -15,7 +15,7 @@ from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.timers import switch_off_timers
 from twin.machine.transmission import give_name, has_give
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.units import kv_per_second
 
@@ -87,6 +87,7 @@ class Servo:
         self._velocity_share = np.array([axis.velocity_feedforward for axis in axes])
         self._limit = np.array([axis.force_limit or np.inf for axis in axes])
         self._acceleration_share = np.array([axis.acceleration_feedforward for axis in axes])
+        self._constant = np.array([axis.constant_force for axis in axes])
         self._last: Setpoints | None = None
         self._state = np.zeros(0)
         self._states = np.zeros((0, 0))
@@ -184,7 +185,12 @@ class Servo:
 
     def _load(self) -> FloatArray:
         """What every axis carries as it stands, shape (k,) [N or N m]."""
-        return (self._data.qfrc_bias - self._data.qfrc_passive)[self._dof]
+        return self._carried(self._dof, np.arange(len(self._dof)))
+
+    def _carried(self, dofs: IntArray, axes: IntArray) -> FloatArray:
+        """What joints of axes carry as they stand [N or N m]."""
+        pulled = (self._constant * np.sign(self._scale))[axes]
+        return (self._data.qfrc_bias - self._data.qfrc_passive)[dofs] - pulled
 
     def _carry(self, load: FloatArray) -> FloatArray:
         """Give the integrators their load; return what the others stand off for theirs, (k,)."""
@@ -211,7 +217,7 @@ class Servo:
         data.qpos[self._qpos] = rest
         data.act[self._setpoint_state] = polyline_nodes(chunk[:1], self._period)[0] * self._scale
         mujoco.mj_forward(model, data)
-        carried = (data.qfrc_bias - data.qfrc_passive)[self._give_dof]
+        carried = self._carried(self._give_dof, self._gives)
         data.qpos[self._qpos] = rest - self._carry(self._load())
         data.qpos[self._give_qpos] = -carried / self._stiffness - np.sign(carried) * self._half_gap
         self._state = np.zeros(mujoco.mj_stateSize(model, _STATE))
@@ -223,6 +229,8 @@ class Servo:
             return np.zeros((0, len(self._state)))
         self._data.warning.number[:] = 0
         controls, held = self._controls(setpoints), _CONTROL
+        if load is None and self._constant.any():
+            load = np.zeros((steps, len(self._dof)))
         if load is not None:
             controls, held = np.hstack([controls, self._pushes(load)]), _CONTROL | _PUSH
         with Rollout(nthread=0) as rollout:
@@ -255,9 +263,9 @@ class Servo:
         return controls
 
     def _pushes(self, load: FloatArray) -> FloatArray:
-        """A load on the axes as generalised forces, shape (n, nv); it acts beyond what gives."""
+        """Load and constant forces as generalised forces, (n, nv); they act beyond what gives."""
         pushes = np.zeros((len(load), self.model.nv))
-        pushes[:, self._dof] = load * np.sign(self._scale)
+        pushes[:, self._dof] = (load + self._constant) * np.sign(self._scale)
         pushes[:, self._give_dof] = pushes[:, self._dof[self._gives]]
         return pushes
 

@@ -4,17 +4,26 @@ MuJoCo asks the clock around every stage of every step, of which RK4 has four pa
 measures stands in ``MjData.timer``, for profilers of interactive viewers.
 """
 
+from typing import Any
+
 import mujoco
-import numba
+from numba import types
+from numba.core.ccallback import CFunc
 
-from twin.compilation.cache import keep_kernels_by_content
-
-keep_kernels_by_content()
+from twin.compilation.cache import keep_by_content
 
 
-@numba.cfunc("float64()", cache=True)
 def _no_time() -> float:
     return 0.0
+
+
+def _callback() -> Any:
+    compiled = keep_by_content(CFunc(_no_time, ((), types.float64), {}, {}), _no_time)
+    compiled.compile()
+    return compiled.ctypes
+
+
+_NO_TIME = _callback()
 
 
 def switch_off_timers() -> None:
@@ -23,4 +32,4 @@ def switch_off_timers() -> None:
     ``mujoco.set_mjcb_time(None)`` brings MuJoCo's clock back.
     """
     if mujoco.get_mjcb_time() is None:
-        mujoco.set_mjcb_time(_no_time.ctypes)
+        mujoco.set_mjcb_time(_NO_TIME)

@@ -30,6 +30,7 @@ from twin.units import AxisKind
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
 CodeArray = npt.NDArray[np.uint8]
 
 SPATIAL_AXES = ("X", "Y", "Z")

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from twin.nc.canonical import Chunk, FloatArray
-from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
+from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.path.move_columns import CHUNK
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
@@ -57,7 +57,7 @@ class Interpretation:
         self.settings = settings
         self.before_compiled_tier: Callable[[], None] = lambda: None
         self._compiled_from = compiled_from
-        self._control = Control(dialect, settings, source)
+        self._control = Executor(dialect, settings, source)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -87,7 +87,7 @@ class Interpretation:
             plain = self._virtual_machine() if compiled_after == 0 else None
             while not control.ended:
                 if plain is None or not plain.run():
-                    block = control.flow.next()
+                    block = control.program_counter.next()
                     if block is None:
                         break
                     before = len(control.path)

@@ -64,7 +64,7 @@ JOINT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "joint/velocity": ("joint_velocity", "mm/s or deg/s"),
     "drive/force": ("drive_force", "N or N m"),
 }
-"""The same of ``Samples``."""
+"""Datasets, the fields of ``Samples`` that they keep, and their units."""
 CONTOUR = "contour"
 """Dataset of the contour error, shape (n,) [µm]; missing where nobody compared."""
 

@@ -8,7 +8,7 @@ import av
 from av.codec.codec import UnknownCodecError
 
 from twin.errors import RenderError
-from twin.render.gl import FILAMENT, choose_backend, probe
+from twin.render.drawing.gl import FILAMENT, choose_backend, probe
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

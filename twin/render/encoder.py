@@ -16,8 +16,8 @@ from av.filter import Graph
 
 from twin.errors import RenderError
 from twin.files.atomic import complete_or_absent
-from twin.render.canvas import Pixels
 from twin.render.doctor import H264_ENCODER, missing_encoder
+from twin.render.drawing.canvas import Pixels
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -5,11 +5,12 @@ from pathlib import Path
 
 from twin.errors import RenderError
 from twin.job.job_file import VideoTable
-from twin.render.canvas import quality_named
+from twin.render.drawing.canvas import quality_named
 from twin.render.encoder import video_writer
+from twin.render.frames import deal, frame_ends
 from twin.render.gauge import Gauge
-from twin.render.replay import deal, frame_ends
-from twin.render.stage import Scene, stage
+from twin.render.scene.scene import Scene
+from twin.render.scene.stage import stage
 
 Progress = Callable[[int, int], None]
 """Told how many frames are drawn, and of how many."""

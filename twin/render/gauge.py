@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.recording.reader import Samples
 from twin.render.hud import Display, Reading
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 from twin.units import SECONDS_PER_MINUTE, UM_PER_MM
 
 
@@ -57,15 +57,15 @@ class Gauge:
         line, move, time = int(setpoint.line[0]), int(setpoint.move[0]), float(setpoint.time[0])
         raised = [text for since, text in self._alarms if since <= time]
         position = last.joint_position[0] - header.part_zero
-        if self._scene.notes.shown is not None:
-            position = position + self._scene.notes.shown.at(move)
+        if self._scene.summary.shown is not None:
+            position = position + self._scene.summary.shown.at(move)
         return Reading(
             line=line,
             position=position,
             feed=turning if only_turns else feed,
             feed_unit="°/min" if only_turns else "mm/min",
-            spindle=self._scene.notes.spindle.at(move),
-            tool=self._scene.notes.tools.at(move).number,
+            spindle=self._scene.summary.spindle.at(move),
+            tool=self._scene.summary.tools.at(move).number,
             error_um=self._error(),
             time_s=time,
             alarm=raised[-1] if raised else warning(line),

@@ -11,8 +11,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from twin.nc.canonical import Axes, FloatArray
-from twin.render.canvas import Pixels
-from twin.render.palette import error_palette
+from twin.render.drawing.canvas import Pixels
+from twin.render.scene.trail import error_palette
 
 INK = (24, 33, 42, 255)
 MUTED = (92, 105, 118, 255)

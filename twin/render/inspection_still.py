@@ -7,11 +7,12 @@ from PIL import Image, ImageDraw
 
 from twin.cutting.colours import deviation_colours
 from twin.cutting.inspection import Inspection
-from twin.render.cameras import PART
-from twin.render.canvas import quality_named
+from twin.render.drawing.canvas import quality_named
+from twin.render.drawing.renderer import Renderer
 from twin.render.hud import INK, MUTED, PAPER, font, lay_over
-from twin.render.renderer import Renderer
-from twin.render.stage import Scene, stage
+from twin.render.scene.cameras import PART
+from twin.render.scene.scene import Scene
+from twin.render.scene.stage import stage
 from twin.render.still import save
 from twin.units import UM_PER_MM
 

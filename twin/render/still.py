@@ -10,11 +10,12 @@ from PIL import Image
 from twin.errors import RenderError
 from twin.files.atomic import complete_or_absent
 from twin.recording.reader import Recording
-from twin.render.canvas import Pixels, quality_named
+from twin.render.drawing.canvas import Pixels, quality_named
+from twin.render.drawing.renderer import Renderer
+from twin.render.frames import deal
 from twin.render.gauge import Gauge
-from twin.render.renderer import Renderer
-from twin.render.replay import deal
-from twin.render.stage import Scene, stage
+from twin.render.scene.scene import Scene
+from twin.render.scene.stage import stage
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

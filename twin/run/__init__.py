@@ -1,1 +1,1 @@
-"""One run, in the order of the rooms."""
+"""One run of a job: preparation, dry run, the order of the rooms, results."""

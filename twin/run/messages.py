@@ -1,11 +1,15 @@
-"""Machine alarms and near misses shown as the interpreter shows errors: place, caret, hint."""
+"""Alarms, near misses and broken tolerances shown as errors of a program: place, caret, text."""
 
 import re
 
 from twin.compare.verdict import Reason
 from twin.machine.alarms import Alarm, NearMiss
-from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.text.diagnostics import Diagnostic, Severity
 from twin.nc.text.source import Source
+
+_FIRST_WORD = re.compile(r"\S+")
+_WHOLE_LINE = re.compile(r".*", re.DOTALL)
+_WITHOUT_INDENT = re.compile(r"\S(.*\S)?", re.DOTALL)
 
 
 def alarm_diagnostic(alarm: Alarm, source: Source) -> Diagnostic:
@@ -17,20 +21,12 @@ def alarm_diagnostic(alarm: Alarm, source: Source) -> Diagnostic:
         alarm: The machine's alarm.
         source: The program that ran.
     """
-    text = _line(source, alarm.line)
-    word = re.search(rf"{re.escape(alarm.axis)}\s*=?\s*[-+]?[\d.#$]\S*", text, re.IGNORECASE)
-    if not alarm.axis or word is None:
-        word = re.search(r"\S+", text)
-    return Diagnostic(
-        severity="error",
-        code=alarm.code,
-        message=f"{alarm.message} (alarm after {alarm.time_s:.3f} s)",
-        file=source.name,
-        line=max(alarm.line, 1),
-        column=1 if word is None else word.start() + 1,
-        width=1 if word is None else word.end() - word.start(),
-        source=text,
-    )
+    marked = [_FIRST_WORD]
+    if alarm.axis:
+        axis_word = rf"{re.escape(alarm.axis)}\s*=?\s*[-+]?[\d.#$]\S*"
+        marked.insert(0, re.compile(axis_word, re.IGNORECASE))
+    message = f"{alarm.message} (alarm after {alarm.time_s:.3f} s)"
+    return _at_line(source, alarm.line, alarm.code, message, *marked)
 
 
 def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
@@ -40,25 +36,12 @@ def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
         near_miss: The closest approach of the run.
         source: The program that ran.
     """
-    text = _line(source, near_miss.line)
     one, two = near_miss.between
-    return Diagnostic(
-        severity="warning",
-        code="near-miss",
-        message=(
-            f"the {one} passes the {two} with {near_miss.clearance_mm:.2f} mm to spare "
-            f"(after {near_miss.time_s:.3f} s)"
-        ),
-        file=source.name,
-        line=max(near_miss.line, 1),
-        column=1,
-        width=max(len(text), 1),
-        source=text,
+    message = (
+        f"the {one} passes the {two} with {near_miss.clearance_mm:.2f} mm to spare "
+        f"(after {near_miss.time_s:.3f} s)"
     )
-
-
-def _line(source: Source, number: int) -> str:
-    return source.lines[number - 1] if 0 < number <= len(source.lines) else ""
+    return _at_line(source, near_miss.line, "near-miss", message, _WHOLE_LINE, severity="warning")
 
 
 def reason_text(reason: Reason, source: Source) -> str:
@@ -70,18 +53,38 @@ def reason_text(reason: Reason, source: Source) -> str:
     """
     if not 0 < reason.line <= len(source.lines):
         return f"{source.name}: error {reason.what}: {reason.message}"
-    text = source.lines[reason.line - 1]
-    column = len(text) - len(text.lstrip())
     when = f" ({reason.time_s:.3f} s)" if reason.time_s else ""
-    return str(
-        Diagnostic(
-            severity="error",
-            code=reason.what,
-            message=reason.message + when,
-            file=source.name,
-            line=reason.line,
-            column=column + 1,
-            width=max(len(text.strip()), 1),
-            source=text,
-        )
+    message = reason.message + when
+    return str(_at_line(source, reason.line, reason.what, message, _WITHOUT_INDENT))
+
+
+def _at_line(
+    source: Source,
+    line: int,
+    code: str,
+    message: str,
+    *marked: re.Pattern[str],
+    severity: Severity = "error",
+) -> Diagnostic:
+    """Point at a program line.
+
+    Args:
+        source: The program that ran.
+        line: Its line; without one, an empty line 1 is shown.
+        code: Of the diagnostic.
+        message: What happened.
+        marked: What the caret stands under: the first of these that the line holds.
+        severity: Of the diagnostic.
+    """
+    text = source.lines[line - 1] if 0 < line <= len(source.lines) else ""
+    found = next((match for pattern in marked if (match := pattern.search(text))), None)
+    return Diagnostic(
+        severity=severity,
+        code=code,
+        message=message,
+        file=source.name,
+        line=max(line, 1),
+        column=1 if found is None else found.start() + 1,
+        width=1 if found is None else max(found.end() - found.start(), 1),
+        source=text,
     )

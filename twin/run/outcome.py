@@ -24,7 +24,8 @@ class Outcome:
         samples: How many samples were recorded, settling included.
         duration_s: Machine time of the program, settling not counted [s].
         final_commanded: Program coordinates at the end, shape (k,) [mm or deg].
-        final_simulated: The same of the simulated joints.
+        final_simulated: Program coordinates of the simulated joints at the end, shape (k,)
+            [mm or deg].
     """
 
     verdict: Verdict

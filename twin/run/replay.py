@@ -4,12 +4,12 @@ import contextlib
 from collections.abc import Iterator
 from pathlib import Path
 
-from twin.cutting.program_notes import NoteTaker, ProgramNotes
+from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
 from twin.cutting.recut import recut
 from twin.errors import UsageError
 from twin.machine.model import build_spec
 from twin.recording.reader import Recording, open_recording
-from twin.render.stage import Scene
+from twin.render.scene.scene import Scene
 from twin.run.preparation import Preparation, prepare_recorded
 
 EVENTS = ("end", "worst", "alarm", "rapid", "gouge")
@@ -17,27 +17,27 @@ EVENTS = ("end", "worst", "alarm", "rapid", "gouge")
 first alarm, the first rapid into stock, the first gouge by flutes, shank or holder."""
 
 
-def notes_of(preparation: Preparation) -> ProgramNotes:
+def summary_of(preparation: Preparation) -> ProgramSummary:
     """What a program says beside its moves.
 
     Raises:
         ProgramError: The program is wrong.
         ConfigError: It brings a tool that the job does not list.
     """
-    taker = NoteTaker(preparation.job.file)
+    builder = SummaryBuilder(preparation.job.file)
     for chunk in preparation.interpretation().chunks():
-        taker.add(chunk)
-    return taker.notes()
+        builder.add(chunk)
+    return builder.summary()
 
 
-def scene_of(recording: Recording, preparation: Preparation, notes: ProgramNotes) -> Scene:
+def scene_of(recording: Recording, preparation: Preparation, summary: ProgramSummary) -> Scene:
     """What is to be seen of a recording of a prepared job."""
     job = preparation.job.file
     return Scene(
         recording=recording,
         spec=build_spec(preparation.machine, job.tools[0]),
         machine=preparation.machine,
-        notes=notes,
+        summary=summary,
         source=preparation.source.lines,
         stock=job.stock,
         error_scale_um=job.tolerance.contour_um,
@@ -58,7 +58,7 @@ def open_scene(path: Path, *, machine: str | None = None) -> Iterator[tuple[Scen
     """
     with open_recording(path) as recording:
         preparation = prepare_recorded(recording.header, machine=machine)
-        yield scene_of(recording, preparation, notes_of(preparation)), preparation
+        yield scene_of(recording, preparation, summary_of(preparation)), preparation
 
 
 def event_time(scene: Scene, event: str) -> float | None:
@@ -83,7 +83,7 @@ def event_time(scene: Scene, event: str) -> float | None:
     elif event == "alarm":
         found = min((time for time, _ in recording.alarms), default=None)
     elif scene.stock is not None:
-        cut = recut(recording, scene.notes, scene.stock).result()
+        cut = recut(recording, scene.summary, scene.stock).result()
         events = cut.rapid_into_stock if event == "rapid" else cut.gouges
         found = min((each.time_s for each in events), default=None)
     if found is None:

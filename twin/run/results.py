@@ -5,12 +5,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from twin.compare.report import Report, write_report
+from twin.compare.report.report import Report, write_report
 from twin.compare.result import RunSummary, result, write_result
 from twin.run.outcome import Outcome
 from twin.run.run import Run
 
 STILL_NAME = "still.png"
+"""Picture of a run's end."""
 RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", STILL_NAME)
 """What a run may leave; an earlier run's files of these names are removed when one begins.
 

@@ -1,4 +1,4 @@
-"""The order of the rooms: text, moves, setpoints, samples, figures, in chunks."""
+"""The order of the rooms: text, moves, setpoints, samples, cut, figures, in chunks."""
 
 import dataclasses
 from collections.abc import Iterator
@@ -6,57 +6,31 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 import mujoco
-import numpy as np
 
 from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
 from twin.compare.verdict import judge
 from twin.cutting.axis_load import AxisLoad
-from twin.cutting.cut import CutResult, Cutter
-from twin.cutting.fixtures import FixtureGuard
-from twin.cutting.part import write_stl
-from twin.cutting.program_notes import NoteTaker, ProgramNotes
-from twin.cutting.spindle import Spindle, speaks_of_spindle
+from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
-from twin.machine.alarms import Alarm
 from twin.machine.model import build_spec, spindle_over_table_mm
 from twin.machine.motion_limits import motion_limits
 from twin.machine.simulate import Simulation, simulate
-from twin.machine.travel import soft_limit_alarm
 from twin.motion.planner import plan
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.motion.setpoints.settle import settle
 from twin.nc.canonical import Chunk, FloatArray
-from twin.nc.text.diagnostics import Diagnostic
 from twin.nc.text.source import Source
 from twin.recording.reader import LONGEST_TEXT, RecordingHeader, RecordingWriter, Samples, record
+from twin.run.dry_run import DryRun, interpret_all
+from twin.run.machining import Machining
 from twin.run.outcome import Outcome
 from twin.run.placement import part_zero
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.stages import StageClock
-from twin.run.stock_alarm import fixture_alarm, stock_alarm
 from twin.toolpath.part_frame import PartFrame
 from twin.version import __version__
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Survey:
-    """What a first pass over the program found, before anything moves.
-
-    Attributes:
-        moves: How many moves the program makes.
-        warnings: What the interpreter had to say.
-        alarm: The soft-limit alarm of the first move that leaves the travel, if any.
-        speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
-        notes: What the program says beside its moves.
-    """
-
-    moves: int
-    warnings: tuple[Diagnostic, ...]
-    alarm: Alarm | None
-    speaks_of_spindle: bool
-    notes: ProgramNotes
 
 
 class Run:
@@ -90,164 +64,124 @@ class Run:
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
         self._planned_s = 0.0
-        self._spindle = Spindle(held_to_program=False)
 
-    def execute(self, survey: Survey, out: Path | None, progress: Progress) -> Outcome:
+    def dry_run(self) -> DryRun:
+        """Interpret the whole program once.
+
+        Raises:
+            ProgramError: The program is wrong.
+            ConfigError: It brings a tool that the job does not list.
+        """
+        return interpret_all(self.preparation, self.part_zero, self.clock)
+
+    def execute(self, dry_run: DryRun, out: Path | None, progress: Progress) -> Outcome:
         """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
 
         A program that would leave the travel moves nothing and writes nothing.
 
         Args:
-            survey: What the first pass found.
+            dry_run: What the dry run found.
             out: The folder; None writes neither, for who wants the verdict alone.
             progress: Told how far the simulation is.
 
         Raises:
             SimulationError: The simulation failed; the recording is not kept.
         """
-        preparation = self.preparation
-        tolerance = preparation.job.file.tolerance
-        comparison = Comparison(
-            preparation.machine.axes,
-            self.part_frame,
-            self.part_zero,
-            apart=[part.lines for part in tolerance.blocks],
-        )
-        cutter, guard = self._cutter(survey.notes), self._guard(survey.notes)
-        track = _Track(self.part_zero, preparation.start)
-        self._spindle = Spindle(held_to_program=survey.speaks_of_spindle)
-        alarm, near_miss = survey.alarm, None
+        comparison, machining = self._comparison(), self._machining(dry_run)
+        reached = _Reached(self.part_zero, self.preparation.start)
+        alarm, near_miss = dry_run.alarm, None
         if alarm is None:
             with self._recording(out) as writer:
-                simulation = self._simulation(comparison, survey.notes)
+                setpoints = self._setpoints(comparison, machining)
+                simulation = self._simulation(setpoints, dry_run.summary)
                 for simulated in self.clock.watch("simulate", simulation):
                     with self.clock.stage("cut"):
-                        clear, touched = _keep_clear(guard, simulated)
-                        samples, alarm = self._cut(cutter, clear, survey.notes)
-                        alarm = alarm or touched
-                    track.add(samples)
+                        samples, alarm = machining.add(simulated)
+                    reached.add(samples)
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
                         self.trace.add(samples, contour_um)
                     if writer is not None:
                         with self.clock.stage("record"):
                             writer.append(samples, contour_um)
-                    progress("simulate", track.progress(survey.moves))
+                    progress("simulate", reached.share_of(dry_run.moves))
                     if alarm is not None:
                         break
                 alarm, near_miss = alarm or simulation.alarm, simulation.near_miss
                 if alarm is not None and writer is not None:
                     writer.note_alarms([(alarm.time_s, alarm.message)])
-        cut = self._finish_part(cutter, out) if cutter is not None and len(track) else None
+        with self.clock.stage("cut"):
+            cut = machining.finish(out) if len(reached) else None
         figures = comparison.result()
         alarms = () if alarm is None else (alarm,)
-        duration_s = min(self._planned_s, track.time_s)
+        duration_s = min(self._planned_s, reached.time_s)
+        tolerance = self.preparation.job.file.tolerance
         return Outcome(
             verdict=judge(figures, tolerance, alarms, cycle_time_s=duration_s),
             figures=figures,
             cut=cut,
             alarms=alarms,
             near_miss=near_miss,
-            warnings=survey.warnings,
-            samples=len(track),
+            warnings=dry_run.warnings,
+            samples=len(reached),
             duration_s=duration_s,
-            final_commanded=track.commanded,
-            final_simulated=track.simulated,
+            final_commanded=reached.commanded,
+            final_simulated=reached.simulated,
         )
 
-    def survey(self) -> Survey:
-        """Interpret the whole program once, so that no error is met with the machine half-way.
-
-        Raises:
-            ProgramError: The program is wrong.
-        """
-        interpretation = self.preparation.interpretation()
-        moves, alarm, speaks = 0, None, False
-        taker = NoteTaker(self.preparation.job.file)
-        for chunk in self.clock.watch("interpret", interpretation.chunks()):
-            moves += len(chunk.moves)
-            taker.add(chunk)
-            speaks = speaks or speaks_of_spindle(chunk)
-            if alarm is None:
-                alarm = soft_limit_alarm(self.preparation.machine, chunk.moves, self.part_zero)
-        return Survey(
-            moves=moves,
-            warnings=tuple(interpretation.diagnostics),
-            alarm=alarm,
-            speaks_of_spindle=speaks,
-            notes=taker.notes(),
-        )
-
-    def _cut(
-        self, cutter: Cutter | None, samples: Samples, notes: ProgramNotes
-    ) -> tuple[Samples, Alarm | None]:
-        """Cut along a chunk; what is left of it where the stock raised an alarm, and the alarm."""
-        if cutter is None:
-            return samples, None
-        rapid = notes.is_rapid(samples.setpoint.move)
-        cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
-        if cutter.halted is None:
-            return samples, None
-        alarm = stock_alarm(cutter.halted, cutter.tool)
-        end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
-        return samples[:end], alarm
-
-    def _load(self, notes: ProgramNotes) -> AxisLoad | None:
-        job = self.preparation.job.file
-        if not job.cutting_load:
-            return None
-        if job.stock is None:
-            raise ConfigError("cutting_load needs a [stock] to cut")
-        return AxisLoad(job.stock, notes, self.part_frame, self.part_zero)
-
-    def _simulation(self, comparison: Comparison, notes: ProgramNotes) -> Simulation:
+    def _setpoints(self, comparison: Comparison, machining: Machining) -> Iterator[Setpoints]:
+        """The planned motion; those who judge it hear of every move before it is simulated."""
         machine = self.preparation.machine
         period = machine.file.servo_period_s
-        setpoints = plan(
-            self.clock.watch("interpret", self._chunks(comparison)),
-            motion_limits(machine),
-            period_s=period,
-            part_zero=self.part_zero,
-            start=self.preparation.start + self.part_zero,
+
+        def moves() -> Iterator[Chunk]:
+            for chunk in self.preparation.interpretation().chunks():
+                comparison.expect(chunk.moves)
+                machining.expect(chunk)
+                yield chunk
+
+        def planned() -> Iterator[Setpoints]:
+            for chunk in plan(
+                self.clock.watch("interpret", moves()),
+                motion_limits(machine),
+                period_s=period,
+                part_zero=self.part_zero,
+                start=self.preparation.start + self.part_zero,
+            ):
+                self._planned_s = float(chunk.time[-1])
+                yield chunk
+
+        return self.clock.watch("plan", settle(planned(), period))
+
+    def _simulation(self, setpoints: Iterator[Setpoints], summary: ProgramSummary) -> Simulation:
+        machine, job = self.preparation.machine, self.preparation.job.file
+        load = None
+        if job.cutting_load:
+            if job.stock is None:
+                raise ConfigError("cutting_load needs a [stock] to cut")
+            load = AxisLoad(job.stock, summary, self.part_frame, self.part_zero)
+        return simulate(machine, self.spec, setpoints, summary.tools, load)
+
+    def _comparison(self) -> Comparison:
+        return Comparison(
+            self.preparation.machine.axes,
+            self.part_frame,
+            self.part_zero,
+            apart=[part.lines for part in self.preparation.job.file.tolerance.blocks],
         )
-        settled = self.clock.watch("plan", settle(self._planned(setpoints), period))
-        load = self._load(notes)
-        return simulate(machine, self.spec, settled, notes.tools, load)
 
-    def _planned(self, setpoints: Iterator[Setpoints]) -> Iterator[Setpoints]:
-        for chunk in setpoints:
-            self._planned_s = float(chunk.time[-1])
-            yield chunk
-
-    def _chunks(self, comparison: Comparison) -> Iterator[Chunk]:
-        """The program's moves on their way to the planner; those who judge hear of them too."""
-        for chunk in self.preparation.interpretation().chunks():
-            comparison.expect(chunk.moves)
-            self._spindle.expect(chunk)
-            yield chunk
-
-    def _cutter(self, notes: ProgramNotes) -> Cutter | None:
-        job = self.preparation.job.file
-        if job.stock is None:
-            return None
-        return Cutter(job.stock, notes.tools, self.part_frame, self.part_zero, halts=True)
-
-    def _guard(self, notes: ProgramNotes) -> FixtureGuard | None:
-        """What keeps the cutter off the fixtures; without a turning table nobody knows where."""
-        machine = self.preparation.machine
-        if not machine.file.fixtures or machine.part_frame.rotary is None:
-            return None
-        height = notes.tools.tools[0].length - spindle_over_table_mm(machine)
-        return FixtureGuard(machine.file.fixtures, notes.tools, self.part_frame, height)
+    def _machining(self, dry_run: DryRun) -> Machining:
+        return Machining(
+            self.preparation.machine,
+            self.preparation.job.file.stock,
+            dry_run.summary,
+            self.part_frame,
+            self.part_zero,
+            speaks_of_spindle=dry_run.speaks_of_spindle,
+        )
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:
         return nullcontext() if out is None else record(out / "recording.h5", self.header())
-
-    def _finish_part(self, cutter: Cutter, out: Path | None) -> CutResult:
-        with self.clock.stage("cut"):
-            if out is not None:
-                write_stl(cutter.map, out / "part.stl")
-            return cutter.result()
 
     def header(self) -> RecordingHeader:
         """What the recording says about itself."""
@@ -273,16 +207,7 @@ def _text_to_keep(source: Source) -> str:
     return source.text if source.lines.size <= LONGEST_TEXT else ""
 
 
-def _keep_clear(guard: FixtureGuard | None, samples: Samples) -> tuple[Samples, Alarm | None]:
-    """What is left of a chunk where the cutter touched a fixture, and the alarm."""
-    found = None if guard is None else guard.look(samples)
-    if found is None:
-        return samples, None
-    row, event, name = found
-    return samples[: row + 1], fixture_alarm(event, name)
-
-
-class _Track:
+class _Reached:
     """How far the run has come and where the axes stand, in program coordinates."""
 
     def __init__(self, part_zero: FloatArray, start: FloatArray) -> None:
@@ -305,7 +230,7 @@ class _Track:
         self.commanded = setpoint.position[-1] - self._part_zero
         self.simulated = samples.joint_position[-1] - self._part_zero
 
-    def progress(self, moves: int) -> float:
+    def share_of(self, moves: int) -> float:
         """Share of the program that is done, 0 to 1."""
         move, fraction = self._place
         return (move + fraction) / moves if moves else 1.0

@@ -10,8 +10,10 @@ from hypothesis import given, settings
 from twin.errors import UsageError
 from twin.nc.functions import SpindleState
 from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.session import checkpoints
 from twin.training.session.commands import command_from
 from twin.training.session.log import relive
+from twin.training.session.room import Room
 from twin.training.session.session import Session
 
 
@@ -204,7 +206,7 @@ def test_living_it_again_is_the_same_to_the_last_bit(session):
     do(session, "cycle_start")
     session.advance(200)
     room = session.room
-    again = relive(session.scene, session.log, room.tick)
+    again = relive(Room(session.scene), session.log, room.tick)
     assert np.array_equal(again.machine.position, room.machine.position)
     assert again.work is not None
     assert room.work is not None
@@ -218,7 +220,9 @@ def test_living_it_again_is_the_same_to_the_last_bit(session):
 def test_a_replay_comes_to_where_the_session_is(session):
     do(session, "cycle_start")
     session.advance(150)
-    replay = session.replay()
+    assert session.submit({"do": "replay"}, "trainer")
+    replay = session.replay
+    assert replay is not None
     while not replay.over:
         replay.advance(0.06)
     assert np.array_equal(replay.room.machine.position, session.room.machine.position)
@@ -280,3 +284,32 @@ def test_a_spindle_start_without_a_speed_turns_at_the_last_one_or_at_one_nobody_
     assert not room.spindle.turns
     do(session, "spindle", on=True)
     assert room.spindle == SpindleState(started=True, speed=1500.0)
+
+
+def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch):
+    monkeypatch.setattr(checkpoints, "APART_S", 0.3)
+    session = Session(session.scene)
+    do(session, "cycle_start")
+    session.advance(70)
+    do(session, "override", dial="feed", percent=70)
+    session.advance(41)
+    do(session, "feed_hold")
+    session.advance(20)
+    do(session, "cycle_start")
+    session.advance(30)
+    room = session.room
+    assert room.work is not None
+    place, removed = room.machine.position, room.work.removed
+    later = []
+    for _ in range(2):
+        session.advance(80)
+        later.append(session.room.machine.position)
+        session.rewind(0.8)
+        back = session.room
+        assert back.run is not None
+        assert back.run.begun
+        assert np.array_equal(back.machine.position, place)
+        assert back.work is not None
+        assert back.work.removed == removed
+    assert np.array_equal(later[0], later[1])
+    assert len(session.log) == 4

@@ -2,12 +2,11 @@
 
 from collections.abc import Callable, Iterable, Mapping
 
-from twin.nc.bytecode.opcodes import MOST_ROWS, MOST_STORES, Bytecode, Opcode, number_of_place
+from twin.nc.bytecode.opcodes import MOST_ROWS, MOST_STORES, Bytecode, Opcode, number_of_location
 from twin.nc.bytecode.registers import MOST_WORDS
+from twin.nc.bytecode.variables import Variables
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.control.flow import Place
-from twin.nc.control.variables import Variables
-from twin.nc.text.blocks import Block, Word
+from twin.nc.text.blocks import Block, Location, Word
 from twin.nc.text.expressions import (
     Computed,
     Exists,
@@ -235,13 +234,13 @@ class Assembler:
             self._compute(compute, 2)
         self._store(Opcode.STORE_NUMBERED)
 
-    def begin_for(self, name: str, behind: Place) -> None:
+    def begin_for(self, name: str, behind: Location) -> None:
         """First, last and step are on the stack: a counted loop begins, or ends at once."""
         self._add(Opcode.BEGIN_FOR)
         self.assign(name)
         self.jump_if(behind)
 
-    def step_for(self, name: str, again: Place) -> None:
+    def step_for(self, name: str, again: Location) -> None:
         """First, last and step are on the stack: a counted loop goes on."""
         self._add(Opcode.LOAD, self._slot(name))
         self._add(Opcode.STEP_FOR)
@@ -250,39 +249,39 @@ class Assembler:
 
     # --- flow
 
-    def jump(self, place: Place) -> None:
-        """Go on at a place."""
-        self._add(Opcode.JUMP, number_of_place(place))
+    def jump(self, location: Location) -> None:
+        """Go on at a location."""
+        self._add(Opcode.JUMP, number_of_location(location))
 
-    def jump_if(self, place: Place) -> None:
+    def jump_if(self, location: Location) -> None:
         """The same where the topmost value is true."""
-        self._add(Opcode.JUMP_IF, number_of_place(place))
+        self._add(Opcode.JUMP_IF, number_of_location(location))
 
-    def jump_unless(self, place: Place) -> None:
+    def jump_unless(self, location: Location) -> None:
         """The same where it is not."""
-        self._add(Opcode.JUMP_UNLESS, number_of_place(place))
+        self._add(Opcode.JUMP_UNLESS, number_of_location(location))
 
-    def jump_case(self, place: Place) -> None:
+    def jump_case(self, location: Location) -> None:
         """The same where it equals the value below, which stays."""
-        self._add(Opcode.JUMP_CASE, number_of_place(place))
+        self._add(Opcode.JUMP_CASE, number_of_location(location))
 
-    def jump_counted(self, place: Place, counter: str, times: float) -> None:
-        """Go on at a place so many times; then on, and the counter begins anew."""
+    def jump_counted(self, location: Location, counter: str, times: float) -> None:
+        """Go on at a location so many times; then on, and the counter begins anew."""
         self._add(Opcode.COUNT_DOWN, self._slot(counter), times)
-        self.jump_if(place)
+        self.jump_if(location)
 
     def call(
         self,
-        place: Place,
+        location: Location,
         deepest: int,
         own: Iterable[str] | None = None,
         *,
         restores: bool = False,
     ) -> None:
-        """Run the part that begins at a place.
+        """Run the part that begins at a location.
 
         Args:
-            place: Where it begins.
+            location: Where it begins.
             deepest: Parts that may call each other.
             own: Its own variables, which get the topmost values; None: it has the caller's.
             restores: Its end puts back into force what is in force now.
@@ -299,13 +298,13 @@ class Assembler:
                 done.add(name)
         if restores:
             self._add(Opcode.RESTORE_CODES)
-        self._add(Opcode.CALL, number_of_place(place))
+        self._add(Opcode.CALL, number_of_location(location))
 
-    def repeat(self, first: Place, last: Place, deepest: int) -> None:
+    def repeat(self, first: Location, last: Location, deepest: int) -> None:
         """Run a range as often as the topmost value says."""
         self._add(Opcode.CHECK_CALL, deepest)
-        self._add(Opcode.RANGE, number_of_place(last))
-        self._add(Opcode.REPEAT, number_of_place(first))
+        self._add(Opcode.RANGE, number_of_location(last))
+        self._add(Opcode.REPEAT, number_of_location(first))
 
     def check_return(self) -> None:
         """What ``go_back`` needs, to be written before anything that cannot be undone."""

@@ -12,12 +12,12 @@ caller; blocks run; moves made."""
 PROGRESS = 8
 
 BACK, FIRST, AGAIN, LAST, OWNS_SCOPE, RESTORES = range(6)
-"""Columns of the calls, as ``Return`` has them; ``LAST`` is ``NO_PLACE`` where a word ends the
+"""Columns of the calls, as ``CallFrame`` has them; ``LAST`` is ``NO_LOCATION`` where a word ends the
 part, ``RESTORES`` is one of the following."""
 NOTHING_RESTORED, RESTORED_BY_CONTROL, RESTORED_HERE = range(3)
 """What its end puts back into force: nothing; what only the control knows; what ``Saved`` holds."""
 CALL_COLUMNS = 6
-NO_PLACE = -1
+NO_LOCATION = -1
 MOST_CALLS = 64
 """Parts within each other: more than any dialect allows."""
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.control.flow import Place
+from twin.nc.text.blocks import Location
 
 MOST_INSTRUCTIONS = 1 << 19
 """Rows that are kept; a program that needs more is compiled anew from there on."""
@@ -22,7 +22,7 @@ MOST_ROWS = 200
 MOST_VALUES = MOST_ROWS
 """Values that wait on the stack: no row adds more than one."""
 PART_BITS = 20
-"""A place as one number: the line, and in these bits the part."""
+"""A location as one number: the line, and in these bits the part."""
 LARGEST_PART = (1 << PART_BITS) - 1
 NOT_COMPILED, INTERPRETED = 0, -1
 """Instead of a line's first row: not compiled yet; always run by the interpreter tier."""
@@ -74,7 +74,7 @@ class Opcode(enum.IntEnum):
     RUN_REPEATEDLY = 20
     """Run them as often as the topmost value says, at most ``immediate`` times."""
     JUMP = 21
-    """Go on at the place ``operand``."""
+    """Go on at the location ``operand``."""
     JUMP_IF = 22
     """The same where the topmost value is not 0."""
     JUMP_UNLESS = 23
@@ -95,11 +95,11 @@ class Opcode(enum.IntEnum):
     RESTORE_CODES = 30
     """Its end puts back into force what is in force now."""
     CALL = 31
-    """Run the part that begins at the place ``operand``."""
+    """Run the part that begins at the location ``operand``."""
     RANGE = 32
-    """The range that is repeated next ends at the place ``operand``."""
+    """The range that is repeated next ends at the location ``operand``."""
     REPEAT = 33
-    """Run the range that begins at the place ``operand`` as often as the topmost value says."""
+    """Run the range that begins at the location ``operand`` as often as the topmost value says."""
     CHECK_RETURN = 34
     """There must be a part that can be returned from."""
     RETURN = 35
@@ -276,14 +276,14 @@ class Bytecode:
             self._rows = 1
 
 
-def number_of_place(place: Place) -> int:
-    """A place as one number, in the order of the program."""
-    return place.line << PART_BITS | place.part
+def number_of_location(location: Location) -> int:
+    """A location as one number, in the order of the program."""
+    return location.line << PART_BITS | location.part
 
 
-def place_of_number(number: int) -> Place:
-    """The inverse of ``number_of_place``."""
-    return Place(number >> PART_BITS, number & LARGEST_PART)
+def location_of_number(number: int) -> Location:
+    """The inverse of ``number_of_location``."""
+    return Location(number >> PART_BITS, number & LARGEST_PART)
 
 
 (

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.control.drilling_cycle import VALUES
+from twin.nc.path.drilling_cycle import VALUES
 
 (
     INTERPOLATION,

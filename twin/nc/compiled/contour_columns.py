@@ -9,6 +9,13 @@ from twin.nc.canonical import Corner, Event, Motion, Shape
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.elements import element_from
 from twin.nc.geometry.planes import PLANE_NAMES, Plane
+from twin.nc.path.compensation_state import (
+    NECK,
+    CompensationResult,
+    CompensationState,
+    PassedElement,
+    Stage,
+)
 from twin.nc.path.contour_registers import (
     BOX,
     CONTOUR,
@@ -34,7 +41,6 @@ from twin.nc.path.contour_registers import (
     Row,
 )
 from twin.nc.path.event_columns import EventRows
-from twin.nc.path.followed import NECK, Followed, Passed, Stage
 from twin.nc.path.move_columns import Segment
 
 
@@ -48,8 +54,8 @@ def new_contour(axes: int) -> Contour:
     return Contour(
         counts=np.zeros(COUNTS, np.int64),
         plane=np.zeros((3, 3)),
-        aside=np.zeros(1),
-        held=_empty_row(axes),
+        signed_offset=np.zeros(1),
+        lookahead=_empty_row(axes),
         latest=_empty_row(axes),
         curves=np.zeros((2, CURVE)),
         start=np.zeros(2),
@@ -57,7 +63,7 @@ def new_contour(axes: int) -> Contour:
         position=np.zeros(axes),
         waiting=several,
         rows_after=np.zeros(MOST_WAITING + 1, np.int64),
-        passed=np.zeros((NECK, PASSED_COLUMNS)),
+        gouge_history=np.zeros((NECK, PASSED_COLUMNS)),
     )
 
 
@@ -65,28 +71,28 @@ def _empty_row(axes: int) -> Row:
     return Row(np.zeros(5, np.int64), np.zeros(11), np.zeros((3, axes)))
 
 
-def fill(contour: Contour, followed: Followed | None, position: list[float]) -> None:
+def fill(contour: Contour, state: CompensationState | None, position: list[float]) -> None:
     """Give the columns how far compensation has come, and where the path has come to."""
     counts = contour.counts
     counts[:] = 0
     contour.position[:] = position
-    if followed is None:
+    if state is None:
         return
-    counts[STAGE], counts[SQUARE] = followed.stage, followed.square
-    counts[INDIRECT], counts[PLACED] = followed.indirect, bool(followed.here)
-    counts[PLANE_NUMBER] = PLANE_NAMES.index(followed.plane.name)
-    contour.plane[:], contour.aside[0] = followed.plane.directions, followed.aside
-    if followed.move is not None:
-        _fill_row(contour.held, followed.move)
-        contour.here[:] = followed.move.start
-    if followed.here:
-        contour.here[:] = followed.here
-    for place, element in ((CONTOUR, followed.contour), (ELEMENT, followed.element)):
+    counts[STAGE], counts[SQUARE] = state.stage, state.square
+    counts[INDIRECT], counts[PLACED] = state.indirect, bool(state.here)
+    counts[PLANE_NUMBER] = PLANE_NAMES.index(state.plane.name)
+    contour.plane[:], contour.signed_offset[0] = state.plane.directions, state.signed_offset
+    if state.move is not None:
+        _fill_row(contour.lookahead, state.move)
+        contour.here[:] = state.move.start
+    if state.here:
+        contour.here[:] = state.here
+    for place, element in ((CONTOUR, state.contour), (ELEMENT, state.element)):
         if element is not None:
             contour.curves[place] = _column(element.curve)
-    contour.start[:] = followed.start
-    counts[PASSED] = len(followed.passed)
-    for row, each in zip(contour.passed, followed.passed, strict=False):
+    contour.start[:] = state.start
+    counts[PASSED] = len(state.gouge_history)
+    for row, each in zip(contour.gouge_history, state.gouge_history, strict=False):
         row[:CURVE] = _column(each.element.curve)
         row[HAS_CONTOUR] = each.contour is not None
         if each.contour is not None:
@@ -94,26 +100,9 @@ def fill(contour: Contour, followed: Followed | None, position: list[float]) -> 
         row[LINE], row[BOX:] = each.line, each.box
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class CompensationResult:
-    """What a run has made of a contour.
-
-    Attributes:
-        followed: How far it has come, or None.
-        waiting: Moves and events at the end of the held move, in order.
-        latest: The last programmed move, or None where there was none.
-        before: The same, unless an event came behind it.
-        came: Something came at all.
-    """
-
-    followed: Followed | None
-    waiting: list[Segment | Event]
-    latest: Segment | None
-    before: Segment | None
-    came: bool
-
-
-def gone(contour: Contour, moves: Row, events: EventRows) -> tuple[CompensationResult, EventRows]:
+def result_of(
+    contour: Contour, moves: Row, events: EventRows
+) -> tuple[CompensationResult, EventRows]:
     """Read the columns.
 
     Args:
@@ -136,7 +125,7 @@ def gone(contour: Contour, moves: Row, events: EventRows) -> tuple[CompensationR
     held_back = list(events.part(placed, event_count))
     waiting = _waiting(contour, held_back)
     came = latest is not None or event_count > 0
-    return CompensationResult(_followed(contour), waiting, latest, before, came), events.part(
+    return CompensationResult(_state_of(contour), waiting, latest, before, came), events.part(
         0, placed
     )
 
@@ -152,7 +141,7 @@ def _waiting(contour: Contour, held_back: list[Event]) -> list[Segment | Event]:
     return waiting
 
 
-def _followed(contour: Contour) -> Followed | None:
+def _state_of(contour: Contour) -> CompensationState | None:
     counts = contour.counts
     stage = Stage(int(counts[STAGE]))
     if stage is Stage.OFF:
@@ -161,13 +150,13 @@ def _followed(contour: Contour) -> Followed | None:
     x, y = contour.start.tolist()
     abscissa, ordinate, normal = contour.plane.tolist()
     name = PLANE_NAMES[counts[PLANE_NUMBER]]
-    return Followed(
+    return CompensationState(
         stage,
         Plane(name, (*abscissa,), (*ordinate,), (*normal,)),
-        float(contour.aside[0]),
+        float(contour.signed_offset[0]),
         bool(counts[SQUARE]),
         bool(counts[INDIRECT]),
-        segment(contour.held) if held else None,
+        segment(contour.lookahead) if held else None,
         None if stage is Stage.STARTED else element_from(_tuple(contour.curves[CONTOUR])),
         element_from(_tuple(contour.curves[ELEMENT])) if stage is Stage.FOLLOWING else None,
         (x, y),
@@ -176,11 +165,11 @@ def _followed(contour: Contour) -> Followed | None:
     )
 
 
-def _passed(contour: Contour, number: int) -> Passed:
-    row = contour.passed[(contour.counts[OLDEST] + number) % NECK]
+def _passed(contour: Contour, number: int) -> PassedElement:
+    row = contour.gouge_history[(contour.counts[OLDEST] + number) % NECK]
     around = element_from(_tuple(row[CURVE : 2 * CURVE])) if row[HAS_CONTOUR] else None
     left, low, right, high = row[BOX:].tolist()
-    return Passed(
+    return PassedElement(
         element_from(_tuple(row[:CURVE])), around, int(row[LINE]), (left, low, right, high)
     )
 

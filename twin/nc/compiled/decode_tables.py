@@ -4,7 +4,7 @@ Nothing is said here of any dialect: a code, a letter or an interpolation that t
 not describe completely is not plain.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -42,17 +42,15 @@ from twin.nc.compiled.kernels.tokenizer import (
     UNSUPPORTED,
     LineTables,
 )
-from twin.nc.control.control import Control
-from twin.nc.control.dialect import Comment, Dialect, FeedMode, GCode, Modal
-from twin.nc.control.drilling_cycle import Cycle
-from twin.nc.control.interpolation import ArcRule, CycleRule, Interpolation, LineRule
+from twin.nc.control.codes import GCode
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.interpolation import ArcRule, CycleRule, MotionMode
+from twin.nc.control.modal import FEED_FACTORS, FeedMode, Modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.geometry.planes import PLANE_ORDER
-from twin.nc.iso import codes
-
-FEED_FACTORS = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
-"""By what F is multiplied to count per minute; other modes need more than F."""
+from twin.nc.path.drilling_cycle import Cycle
+from twin.nc.text.syntax import Comment
 
 _FIELDS: Mapping[str, int] = {
     "interpolation": INTERPOLATION,
@@ -74,7 +72,6 @@ class DecodeTables:
         blocks: What blocks mean.
         groups: The modal groups in the order of their numbers in ``blocks``.
         token_kinds: What the letters of plain words are.
-        rapid_feed: What ``LineRule`` says of rapids.
     """
 
     def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
@@ -82,7 +79,6 @@ class DecodeTables:
         self._interpolations = _interpolations(dialect)
         self._places = {id(each): float(at) for at, each in enumerate(self._interpolations)}
         self._cycles = _cycles(dialect)
-        self.rapid_feed = _rapid_feed(self._interpolations)
         self.token_kinds = _token_kinds(dialect, settings)
         self.lines = _line_tables(dialect, self.token_kinds)
         self.blocks = self._block_tables(dialect, settings)
@@ -98,7 +94,7 @@ class DecodeTables:
             state[place] = 0.0 if value is None else value
         return state
 
-    def cycle(self, number: float) -> Interpolation | None:
+    def cycle(self, number: float) -> MotionMode | None:
         """The drilling cycle with a number."""
         return self._cycles[int(number)]
 
@@ -108,7 +104,7 @@ class DecodeTables:
         plain = [each.rule for each in self._cycles if each is not None]
         return {letter for each in plain if isinstance(each, CycleRule) for letter in each.words}
 
-    def knows_cycle(self, cycle: Interpolation | None) -> bool:
+    def knows_cycle(self, cycle: MotionMode | None) -> bool:
         """Whether the kernel can drill it."""
         return any(each is cycle for each in self._cycles)
 
@@ -159,7 +155,7 @@ class DecodeTables:
     def _meaning(self, code: GCode) -> tuple[int, float] | None:
         """Which place a code sets, and to what; None for a code that does more than that."""
         if code.begins_cycle:
-            return (NOTHING, 0.0) if self._number_of_cycle(code.sets["cycle"]) else None
+            return (NOTHING, 0.0) if self._number_of_cycle(code.sets.get("cycle")) else None
         does = (code.action, code.perform, code.after)
         if any(does) or code.once or code.alone or code.refused or not code.group:
             return None
@@ -172,13 +168,13 @@ class DecodeTables:
         return NOTHING, 0.0
 
 
-def _interpolations(dialect: Dialect) -> list[Interpolation | None]:
+def _interpolations(dialect: Dialect) -> list[MotionMode | None]:
     """None, which stands for any that is not plain, then the plain ones of the dialect."""
-    found: list[Interpolation | None] = [None]
+    found: list[MotionMode | None] = [None]
     for code in dialect.g.values():
         value = code.sets.get("interpolation")
         if (
-            isinstance(value, Interpolation)
+            isinstance(value, MotionMode)
             and value.rule is not None
             and all(value is not each for each in found)
         ):
@@ -186,17 +182,17 @@ def _interpolations(dialect: Dialect) -> list[Interpolation | None]:
     return found
 
 
-def _cycles(dialect: Dialect) -> list[Interpolation | None]:
+def _cycles(dialect: Dialect) -> list[MotionMode | None]:
     """None, then the drilling cycles of the dialect."""
     begun = (code.sets.get("cycle") for code in dialect.g.values())
-    return [None, *(each for each in begun if isinstance(each, Interpolation) and _drills(each))]
+    return [None, *(each for each in begun if isinstance(each, MotionMode) and _drills(each))]
 
 
-def _drills(interpolation: Interpolation) -> bool:
+def _drills(interpolation: MotionMode) -> bool:
     return isinstance(interpolation.rule, CycleRule)
 
 
-def _cycle_rows(cycles: list[Interpolation | None], token_kinds: Mapping[str, int]) -> FloatArray:
+def _cycle_rows(cycles: list[MotionMode | None], token_kinds: Mapping[str, int]) -> FloatArray:
     parts = len(Cycle._fields)
     rows = np.full((len(cycles), parts + 1 + max(token_kinds.values())), float(UNSUPPORTED))
     rows[:, :parts] = 0.0
@@ -206,13 +202,6 @@ def _cycle_rows(cycles: list[Interpolation | None], token_kinds: Mapping[str, in
             for letter in each.rule.words.keys() & token_kinds.keys():
                 row[parts + token_kinds[letter]] = each.rule.words[letter]
     return rows
-
-
-def _rapid_feed(
-    interpolations: list[Interpolation | None],
-) -> Callable[[Control], float] | None:
-    plain = [each.rule for each in interpolations if each is not None and each.rapid]
-    return next((each.rapid_feed for each in plain if isinstance(each, LineRule)), None)
 
 
 def _functions(dialect: Dialect) -> IntArray:
@@ -226,7 +215,7 @@ def _functions(dialect: Dialect) -> IntArray:
     return function
 
 
-def _kind(interpolation: Interpolation | None) -> int:
+def _kind(interpolation: MotionMode | None) -> int:
     if interpolation is None:
         return NO_MOTION
     if isinstance(interpolation.rule, ArcRule):
@@ -260,8 +249,7 @@ def _token_kinds(dialect: Dialect, settings: ControlSettings) -> dict[str, int]:
     token_kinds = {
         letter: token_kind for letter, token_kind in token_kinds.items() if letter not in taken
     }
-    if dialect.words.get("F") is codes.set_feed:
-        token_kinds["F"] = FEED
+    token_kinds.update(dict.fromkeys(dialect.feed_letter, FEED))
     return {**token_kinds, "N": NUMBER, "G": CODE, "M": FUNCTION}
 
 

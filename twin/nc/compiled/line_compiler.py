@@ -9,7 +9,8 @@ from twin.nc.compiled.kernels.expression import BINARY_FUNCTIONS, TERNARY_FUNCTI
 from twin.nc.compiled.kernels.program import unread_lines
 from twin.nc.compiled.kernels.tokenizer import CODE, FUNCTION, NUMBER
 from twin.nc.compiled.line_templates import LineTemplates
-from twin.nc.control.control import Control
+from twin.nc.control.block_compiler import BlockCompiler
+from twin.nc.control.executor import Executor
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import ProgramError
 
@@ -26,10 +27,10 @@ class LineCompiler:
         bytecode: What was compiled.
     """
 
-    def __init__(self, control: Control, tables: DecodeTables) -> None:
+    def __init__(self, control: Executor, tables: DecodeTables) -> None:
         self._control = control
         self._lines = tables.lines
-        self.bytecode = Bytecode(len(control.flow.lines))
+        self.bytecode = Bytecode(len(control.program_counter.lines))
         letters = [
             letter
             for letter, token_kind in tables.token_kinds.items()
@@ -44,14 +45,13 @@ class LineCompiler:
             NUMBER,
             control.dialect.live_variables,
         )
+        self._compiler = BlockCompiler(control, control.dialect, self._assembler)
 
     def compile(self, line: int) -> bool:
         """Compile a line, from 0; False where the interpreter tier must run all of it."""
         bytecode = self.bytecode
-        if self._control.dialect.compile_block is None:
-            return False
         bytecode.make_room()
-        lines = self._control.flow.lines
+        lines = self._control.program_counter.lines
         key, numbers = self._templates.split(lines[line])
         if self._copy(line, key, numbers):
             page = lines.page_of(line)
@@ -91,7 +91,7 @@ class LineCompiler:
 
     def _compile_line(self, line: int) -> bool:
         bytecode = self.bytecode
-        blocks = self._control.flow.quiet_blocks(line)
+        blocks = self._control.program_counter.quiet_blocks(line)
         if blocks is None or len(blocks) > LARGEST_PART:
             bytecode.begins(line, INTERPRETED)
             return False
@@ -121,8 +121,7 @@ class LineCompiler:
         try:
             self._assembler.begin(block)
             if not (block.skippable and control.settings.block_skip):
-                assert control.dialect.compile_block is not None
-                control.dialect.compile_block(control, block, self._assembler)
+                control.dialect.compile_block(self._compiler, block)
         except (UnsupportedError, ProgramError):
             return False
         finally:

@@ -1,4 +1,4 @@
-"""Hands the place in the program, its calls and its variables to the compiled run, and back."""
+"""Hands the location in the program, its calls and its variables to the compiled run, and back."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from twin.nc.bytecode.frames import (
     LINE,
     MADE,
     MOST_CALLS,
-    NO_PLACE,
+    NO_LOCATION,
     NOTHING_RESTORED,
     OWNS_SCOPE,
     PART,
@@ -27,20 +27,21 @@ from twin.nc.bytecode.frames import (
     Saved,
     VariableStore,
 )
-from twin.nc.bytecode.opcodes import number_of_place, place_of_number
+from twin.nc.bytecode.opcodes import location_of_number, number_of_location
 from twin.nc.bytecode.registers import State
 from twin.nc.canonical import IntArray
 from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
-from twin.nc.control.control import Control
-from twin.nc.control.dialect import Modal
-from twin.nc.control.flow import Place, Progress, Return
+from twin.nc.control.executor import Executor
+from twin.nc.control.modal import SavedModal
+from twin.nc.control.program_counter import CallFrame, Progress
 from twin.nc.path.contour_registers import Contour
+from twin.nc.text.blocks import Location
 
 
 class StateTransfer:
     """One run: what the kernel is given of a control's program, and what it makes of it."""
 
-    def __init__(self, control: Control, state: State, contour: Contour) -> None:
+    def __init__(self, control: Executor, state: State, contour: Contour) -> None:
         """Begin a run.
 
         Args:
@@ -54,14 +55,14 @@ class StateTransfer:
             np.zeros((MOST_CALLS, len(state.modal))),
             np.zeros((MOST_CALLS, len(state.active_codes)), np.int64),
         )
-        self._begin = control.flow.progress()
-        place, furthest, steps_left = self._begin
+        self._begin = control.program_counter.progress()
+        location, furthest, instruction_budget = self._begin
         self._progress = np.zeros(PROGRESS, np.int64)
-        self._progress[[LINE, PART]] = place
-        self._progress[FURTHEST] = number_of_place(furthest)
-        self._progress[INSTRUCTION_BUDGET] = steps_left
+        self._progress[[LINE, PART]] = location
+        self._progress[FURTHEST] = number_of_location(furthest)
+        self._progress[INSTRUCTION_BUDGET] = instruction_budget
         self._progress[DEPTH] = control.variables.depth
-        self._given = control.flow.calls
+        self._given = control.program_counter.calls
         self._progress[CALLS] = len(self._given)
         self._calls = np.zeros((MOST_CALLS, CALL_COLUMNS), np.int64)
         for row, call in enumerate(self._given):
@@ -94,21 +95,23 @@ class StateTransfer:
     @property
     def gone_on(self) -> bool:
         """The run has gone past a block or a line."""
-        return self.blocks > 0 or self.line != self._begin.place.line
+        return self.blocks > 0 or self.line != self._begin.location.line
 
     def give_back(self) -> None:
         """The control goes on from where the run has come to; its codes are those of the begin."""
         progress, control = self._progress, self._control
-        place = Place(int(progress[LINE]), int(progress[PART]))
-        furthest = place_of_number(int(progress[FURTHEST]))
+        location = Location(int(progress[LINE]), int(progress[PART]))
+        furthest = location_of_number(int(progress[FURTHEST]))
         calls = [
             _call(row, self._restored(index, int(row[RESTORES])))
             for index, row in enumerate(self._calls[: progress[CALLS]])
         ]
-        control.flow.resume(Progress(place, furthest, int(progress[INSTRUCTION_BUDGET])), calls)
+        control.program_counter.resume(
+            Progress(location, furthest, int(progress[INSTRUCTION_BUDGET])), calls
+        )
         control.variables.depth = int(progress[DEPTH])
 
-    def _restored(self, index: int, by: int) -> tuple[Modal, dict[str, int]] | None:
+    def _restored(self, index: int, by: int) -> SavedModal | None:
         """What the end of a call puts back into force."""
         if by == RESTORED_BY_CONTROL:
             return self._given[index].restores
@@ -122,31 +125,31 @@ class StateTransfer:
         return restored
 
 
-def put_into_force(control: Control, numbers: IntArray) -> None:
+def put_into_force(control: Executor, numbers: IntArray) -> None:
     """Apply the codes that a run has found in each group."""
     for number in numbers.tolist():
         if number != UNSUPPORTED:
             control.put_into_force(number, control.dialect.g[number])
 
 
-def _numbers(call: Return) -> list[int]:
+def _numbers(call: CallFrame) -> list[int]:
     numbers = [0] * CALL_COLUMNS
-    numbers[BACK] = number_of_place(call.back)
-    numbers[FIRST] = number_of_place(call.first)
+    numbers[BACK] = number_of_location(call.back)
+    numbers[FIRST] = number_of_location(call.first)
     numbers[AGAIN] = call.again
-    numbers[LAST] = NO_PLACE if call.last is None else number_of_place(call.last)
-    numbers[OWNS_SCOPE] = call.own_variables
+    numbers[LAST] = NO_LOCATION if call.last is None else number_of_location(call.last)
+    numbers[OWNS_SCOPE] = call.owns_scope
     numbers[RESTORES] = NOTHING_RESTORED if call.restores is None else RESTORED_BY_CONTROL
     return numbers
 
 
-def _call(row: IntArray, restores: tuple[Modal, dict[str, int]] | None) -> Return:
+def _call(row: IntArray, restores: SavedModal | None) -> CallFrame:
     back, first, again, last, own, _ = row.tolist()
-    return Return(
-        place_of_number(back),
-        place_of_number(first),
+    return CallFrame(
+        location_of_number(back),
+        location_of_number(first),
         again,
-        None if last == NO_PLACE else place_of_number(last),
-        own_variables=bool(own),
+        None if last == NO_LOCATION else location_of_number(last),
+        owns_scope=bool(own),
         restores=restores,
     )

@@ -29,18 +29,19 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.canonical import FloatArray
-from twin.nc.compiled.contour_columns import fill, gone, new_contour
-from twin.nc.compiled.decode_tables import FEED_FACTORS, DecodeTables
+from twin.nc.compiled.contour_columns import fill, new_contour, result_of
+from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.kernels.block import new_scratch
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
 from twin.nc.compiled.kernels.program import run_program
 from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
 from twin.nc.compiled.line_compiler import LineCompiler
 from twin.nc.compiled.state_transfer import StateTransfer, put_into_force
-from twin.nc.control.control import Control
-from twin.nc.control.drilling_cycle import most_acts, no_values
+from twin.nc.control.executor import Executor
+from twin.nc.control.modal import FEED_FACTORS
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.contour_registers import Row
+from twin.nc.path.drilling_cycle import most_acts, no_values
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import CHUNK
 from twin.nc.text.lines import Page
@@ -61,10 +62,10 @@ class VirtualMachine:
         full: The path has no room for the next block's moves.
     """
 
-    def __init__(self, control: Control) -> None:
+    def __init__(self, control: Executor) -> None:
         axes = len(control.settings.axes)
         self._control = control
-        self._lines = control.flow.lines
+        self._lines = control.program_counter.lines
         self._page = Page(0, b"")
         self._tables = DecodeTables(control.dialect, control.settings)
         self._line_compiler = LineCompiler(control, self._tables)
@@ -97,7 +98,7 @@ class VirtualMachine:
         if room <= 0 or not self._may_run():
             return False
         state, rows = self._state(), self._rows.first(room)
-        fill(self._contour, control.path.followed, control.path.position)
+        fill(self._contour, control.path.compensation_state, control.path.position)
         transfer = StateTransfer(control, state, self._contour)
         why = self._run(state, rows, transfer)
         self.full = why == FULL and room - transfer.made < CHUNK
@@ -146,7 +147,7 @@ class VirtualMachine:
             and modal.plane in PLANE_ORDER
             and modal.feed_mode in FEED_FACTORS
             and modal.correct_center
-            and control.path.hands_over
+            and control.path.transferable
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)
             and not (control.axis_limits or control.axis_accelerations)
@@ -154,7 +155,7 @@ class VirtualMachine:
         )
 
     def _constants(self) -> Constants:
-        control, rapid = self._control, self._tables.rapid_feed
+        control, rapid = self._control, self._control.dialect.rapid_feed
         return Constants(
             default_feed=control.settings.default_feed,
             default_rotary_feed=control.settings.default_rotary_feed,
@@ -193,7 +194,7 @@ class VirtualMachine:
         control = self._control
         registers = np.zeros(REGISTERS)
         registers[CYCLE_STATE:CYCLE_WORDS], registers[CYCLE_WORDS:MATRIX] = (
-            control.hole_values,
+            control.cycle_state,
             math.nan,
         )
         registers[SCALE], registers[ROTATION], registers[SIGNS:CYCLE_STATE] = 1.0, math.nan, 1.0
@@ -226,7 +227,7 @@ class VirtualMachine:
         cycle = self._tables.cycle(state.modal[CYCLE])
         values = state.registers[CYCLE_STATE:CYCLE_WORDS].tolist()
         self._control.modal.cycle = cycle
-        self._control.hole_values = no_values() if cycle is None else values
+        self._control.cycle_state = no_values() if cycle is None else values
 
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control
@@ -239,6 +240,6 @@ class VirtualMachine:
         event_count = int(state.event_count[0])
         events = EventRows(rows.events[:event_count], rows.event_values[:event_count])
         moves = Row(rows.codes, rows.values, rows.positions)
-        gone_on, placed = gone(self._contour, moves, events)
-        control.path.add_rows(moves, placed, gone_on)
-        control.came_to(state.programmed.tolist(), state.part.tolist(), gone_on.latest)
+        result, placed = result_of(self._contour, moves, events)
+        control.path.add_rows(moves, placed, result)
+        control.resume_at(state.programmed.tolist(), state.part.tolist(), result.latest)

@@ -1,279 +1,224 @@
-"""The control that every dialect shares: it runs blocks, keeps what is modal, and moves.
+"""What a control offers to the codes and words of a dialect: words, targets, lines, arcs, feeds."""
 
-A block takes effect in a fixed order: modal codes by group, set-up actions, modal words (F, S, T),
-early M functions, the motion or what stands in its place, late M functions, jumps. Every word must
-be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
-"""
+import abc
+import math
+from collections.abc import Mapping
 
-import dataclasses
-from typing import NoReturn
+from twin.nc.canonical import Corner, Motion
+from twin.nc.control.modal import FEED_FACTORS, FeedMode
+from twin.nc.control.words import ControlWords
+from twin.nc.geometry.planes import Plane, Vector, cross
+from twin.nc.path.move_columns import NAN, Segment
+from twin.nc.path.segments import direction_of
 
-from twin.nc.control.dialect import GCode, MCode
-from twin.nc.control.motion import ControlMotion
-from twin.nc.control.state import integer_of, number_of
-from twin.nc.text.blocks import Block, Statement, Word
-from twin.nc.text.expressions import Expression, ExpressionError
+LARGEST_COORDINATE = 1e7
+"""Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 
 
-class Control(ControlMotion):
-    """One control while it runs one program."""
+_SMALLEST_MOVE = 1e-9
+"""A block that goes less far than this moves nothing [mm or deg]: far below any resolution."""
 
-    def run(self, block: Block) -> None:
-        """Run one block.
 
-        Raises:
-            ProgramError: It is wrong.
+class Control(ControlWords):
+    """One control, as the actions of codes see it; positions are programmed ones."""
+
+    def target(self) -> list[float]:
+        """Take the axis words; the programmed position that they ask for, shape (k,)."""
+        target = list(self.programmed)
+        for index, word in self.take_axis_words():
+            value = self.axis_value(index, word)
+            if self.modal.incremental or word.incremental:
+                value += target[index]
+            if not abs(value) <= LARGEST_COORDINATE:
+                self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
+            target[index] = value
+        return target
+
+    def line_to(self, target: list[float], *, rapid: bool) -> None:
+        """Move straight to a programmed position; nothing when it stands there already."""
+        self._add(target, rapid=rapid)
+
+    def spline_to(self, target: list[float], *, flat: bool) -> None:
+        """Move on a spline through a programmed position; ``flat``: its height goes linearly.
+
+        The same position twice ends the spline and begins another.
         """
-        self.block = block
-        self.report.line = block.line
-        if block.skippable and self.settings.block_skip:
+        if target == self.programmed:
+            self.path.end_spline()
+        self._add(target, rapid=False, spline=(flat,))
+
+    def arc_to(self, target: list[float], center: Vector, sweep: float) -> None:
+        """Move on an arc about the plane's normal.
+
+        Args:
+            target: Programmed position of its end, shape (k,).
+            center: Programmed centre at the height of the start [mm].
+            sweep: Signed angle with all turns [deg].
+        """
+        normal, sweep = self.frame.arc(self.modal.plane.normal, sweep)
+        self._add(target, rapid=False, center=self.frame.point(center), normal=normal, sweep=sweep)
+
+    def _add(
+        self,
+        target: list[float],
+        *,
+        rapid: bool,
+        center: Vector | None = None,
+        normal: Vector = (NAN, NAN, NAN),
+        sweep: float = 0.0,
+        spline: tuple[bool] | None = None,
+    ) -> None:
+        end = self.frame.to_part(target)
+        if center is None and math.dist(self.part[:3], end[:3]) < _SMALLEST_MOVE:
+            end[:3] = self.part[:3]  # what a frame has rounded is no way
+        length = self._length(end, center, normal, sweep)
+        if length < _SMALLEST_MOVE:
+            self.programmed = target
             return
-        if self.dialect.repeat_word:
-            block = self._repeated(block)
-        if block.statement is not None:
-            self._run_statement(block.statement)
-            return
-        functions = self._sort_words(block)
-        codes = self.codes
-        restore = self._apply_codes()
-        for _, code in codes:
-            if code.action is not None:
-                code.action(self)
-        instead = next((code for _, code in codes if code.perform is not None), None)
-        self._run_modal_words("" if instead is None else instead.takes)
-        for word, function in functions:
-            if not function.late:
-                self._run_function(word, function)
-        if instead is not None and instead.perform is not None:
-            instead.perform(self)
-        else:
-            self._move()
-        for _, code in codes:
-            if code.after is not None:
-                code.after(self)
-        for word, function in functions:
-            if function.late:
-                self._run_function(word, function)
-        if self.words or self.series:
-            self._refuse_unused()
-        for name, value in restore:
-            setattr(self.modal, name, value)
-
-    def prepare(self) -> None:
-        """The program begins."""
-        if self.dialect.prepare is not None:
-            self.dialect.prepare(self)
-
-    def _repeated(self, block: Block) -> Block:
-        """Run a block with a repeat word as often as it says, but once; return it without."""
-        words = [word for word in block.words if word.address == self.dialect.repeat_word]
-        if not words:
-            return block
-        word = words[0]
-        value = word.value
-        count = self.evaluate(value, word) if isinstance(value, Expression) else value
-        rest = tuple(each for each in block.words if each is not word)
-        if count < 1.0 or count != int(count):
-            self.fail("repeat-count", f"{word.address} must count 1 or more runs", word)
-        if any(each.address in "MTDH" for each in rest):
-            self.fail("repeat-count", f"{word.address} repeats motion only, no M, T, D or H", word)
-        if count > self.settings.step_limit:
-            self.fail("endless-program", f"more than {self.settings.step_limit} runs", word)
-        plain = dataclasses.replace(block, words=rest)
-        for _ in range(int(count) - 1):
-            self.run(plain)
-        return plain
-
-    def _run_statement(self, statement: Statement) -> None:
-        self.words, self.codes = {}, []
-        action = self.dialect.statements.get(statement.keyword, self.dialect.other_statement)
-        assert action is not None
-        action(self, statement)
-
-    def finish(self) -> None:
-        """The program has ended, by an end code or by its last line."""
-        if not self.flow.begun:
-            self.report.line = 1
-            self.report.warn("empty-program", "no line holds a block", hint="is this the program?")
-        elif not self.ended and self.dialect.finish is not None:
-            self.dialect.finish(self)
-        self.path.finish()
-
-    def _apply_codes(self) -> list[tuple[str, object]]:
-        """Apply the block's codes; what those for this block only have replaced."""
-        restore: list[tuple[str, object]] = []
-        for word, code in self.codes:
-            if code.once:
-                restore += [(name, getattr(self.modal, name)) for name in code.sets]
-            if code.alone and len(self.block.words) > 1:
-                self.fail("alone", f"{word.text} must stand alone in its block", word)
-            self.put_into_force(int(number_of(word)), code)
-        return restore
-
-    def _sort_words(self, block: Block) -> list[tuple[Word, MCode]]:
-        self.codes = []
-        self.words = {}
-        self.series = []
-        functions: list[tuple[Word, MCode]] = []
-        for word in block.words:
-            if isinstance(word.value, Expression) and word.address not in self.dialect.references:
-                word = word._replace(value=self.evaluate(word.value, word))
-            if word.address in self.dialect.signed and number_of(word) < 0.0:
-                word = word._replace(address=f"{word.address}-")
-            if word.address == "G":
-                self.codes.append((word, self._g_code(word)))
-            elif word.address == "M":
-                functions.append((word, self._m_code(word)))
-            elif word.address in self.dialect.series and self._has_switch(block):
-                if isinstance(word.value, Expression):
-                    word = word._replace(value=self.evaluate(word.value, word))
-                self.series.append(word)
-            elif word.address in self.words:
-                self.fail("duplicate-word", f"'{word.address}' stands twice in the block", word)
-            else:
-                self.words[word.address] = word
-        if len(self.codes) > 1:
-            self._check_groups()
-        if len(functions) > 1:
-            self._check_functions(functions)
-        return functions
-
-    def _has_switch(self, block: Block) -> bool:
-        return any(word.address == self.dialect.series[0] for word in block.words)
-
-    def _g_code(self, word: Word) -> GCode:
-        number = integer_of(number_of(word))
-        code = self.dialect.g.get(number)
-        if code is None:
-            known = ", ".join(f"G{number}" for number in sorted(self.dialect.g))
-            instead = self.dialect.instead.get(number)
-            self.fail(
-                "unknown-g",
-                f"{word.text} is unknown to {self.dialect.name}",
-                word,
-                hint=f"known: {known}" if instead is None else instead,
-            )
-        if code.refused:
-            self.fail("unsupported-g", f"{word.text} ({code.meaning}): {code.refused}", word)
-        return code
-
-    def _m_code(self, word: Word) -> MCode:
-        number = integer_of(number_of(word))
-        code = self.dialect.m.get(number)
-        if code is None and self.dialect.any_m and number >= 0:
-            return MCode(meaning="machine function")
-        if code is None:
-            self.fail(
-                "unknown-m",
-                f"{word.text} is unknown to {self.dialect.name}",
-                word,
-                hint=f"known: {', '.join(f'M{number}' for number in sorted(self.dialect.m))}",
-            )
-        return code
-
-    def _check_groups(self) -> None:
-        seen: dict[str, Word] = {}
-        performing: Word | None = None
-        for word, code in self.codes:
-            if code.group and code.group in seen:
-                other = seen[code.group]
-                self.fail(
-                    "conflicting-codes",
-                    f"{other.text} and {word.text} exclude each other ({code.group})",
-                    word,
-                    hint="write them in two blocks",
-                )
-            seen[code.group] = word
-            if code.perform is not None:
-                if performing is not None:
-                    message = f"{performing.text} and {word.text} cannot share a block"
-                    self.fail("conflicting-codes", message, word, hint="write them in two blocks")
-                performing = word
-        order = {group: rank for rank, group in enumerate(self.dialect.groups)}
-        self.codes.sort(key=lambda pair: order.get(pair[1].group, len(order)))
-
-    def _check_functions(self, functions: list[tuple[Word, MCode]]) -> None:
-        seen: dict[str, Word] = {}
-        for word, function in functions:
-            other = seen.setdefault(function.group or word.text, word)
-            if other is not word:
-                message = f"{other.text} and {word.text} exclude each other"
-                self.fail("conflicting-codes", message, word, hint="write them in two blocks")
-
-    def _run_modal_words(self, reserved: str) -> None:
-        words = self.words
-        for address, action in self.dialect.words.items():
-            if address in words and address not in reserved:
-                action(self, words.pop(address))
-
-    def _run_function(self, word: Word, code: MCode) -> None:
-        if code.action is not None:
-            code.action(self)
-        if code.silent:
-            return
-        arguments = self.take_function_arguments(word)
-        self.function(f"M{integer_of(number_of(word))}", arguments)
-        if code.ends:
-            self.ended = True
-
-    def take_function_arguments(self, word: Word) -> dict[str, float]:
-        """What belongs to an M function: its own words, and for a spindle start the speed."""
-        arguments = {
-            address: self.take_computed(address)
-            for address in self.dialect.function_letters
-            if address in self.words
-        }
-        if integer_of(number_of(word)) in (3, 4) and self.spindle is not None:
-            arguments["S"] = self.spindle
-        return arguments
-
-    def _move(self) -> None:
-        words = self.words
-        starts_cycle = any(code.begins_cycle for _, code in self.codes)
-        motion_words = self.dialect.motion_words
-        if not starts_cycle and not any(address in motion_words for address in words):
-            return
-        interpolation = self.modal.cycle or self.modal.interpolation
-        if interpolation is None:
-            word = next(each for each in words.values() if each.address in motion_words)
-            if word.address not in self.dialect.axis_letters:
-                message = f"'{word.text}' belongs to a motion, and no motion code is in force"
-                self.fail("no-motion-code", message, word, self._meaning_of(word.address))
-            self.fail(
-                "no-motion-code",
-                f"'{word.text}' would move, but no motion code is in force",
-                word,
-                hint="write G0, G1, G2 or G3",
-            )
-        if self.dialect.before_motion is not None:
-            self.dialect.before_motion(self, interpolation.rapid)
-        interpolation.perform(self)
-        if self.dialect.after_motion is not None:
-            self.dialect.after_motion(self)
-
-    def _refuse_unused(self) -> NoReturn:
-        word = next(iter(self.words.values()), None) or self.series[0]
-        if word.address in self.dialect.word_meanings:
-            message = f"nothing in this block uses '{word.text}'"
-            self.fail("unused-word", message, word, self._meaning_of(word.address))
-        known = ", ".join(self.dialect.word_meanings)
-        self.fail(
-            "unknown-word",
-            f"'{word.address}' is no word of {self.dialect.name}",
-            word,
-            hint=f"words of {self.dialect.name}: {known}",
+        modal = self.modal
+        is_arc = center is not None
+        if self.series:
+            self.place_switches(length)
+        feed = self.rapid_feed if rapid else self._feed_per_minute(end, is_arc, length)
+        acceleration, deceleration = self.acceleration, self.deceleration
+        if rapid:
+            acceleration = _either(self.rapid_acceleration, acceleration)
+            deceleration = _either(self.rapid_deceleration, deceleration)
+        if self.axis_limits or self.axis_accelerations:
+            share = self._axis_shares(end, length, is_arc)
+            feed = _limited(feed, self.axis_limits, share)
+            acceleration = _limited(acceleration, self.axis_accelerations, share)
+            deceleration = _limited(deceleration, self.axis_accelerations, share)
+        self._last = Segment(
+            motion=Motion.RAPID if rapid else Motion.FEED,
+            line=self.block.line,
+            block=self.block.number,
+            start=self.part,
+            end=end,
+            display=target,
+            feed=feed,
+            corner=Corner.EXACT_STOP if rapid else modal.corner,
+            corner_tolerance=modal.corner_tolerance,
+            acceleration=acceleration,
+            deceleration=deceleration,
+            center=center,
+            normal=normal,
+            sweep=sweep,
         )
+        if spline is None:
+            self.path.add(self._last)
+        else:
+            self.path.add_point(self._last, flat=spline[0])
+        self.programmed = target
+        self.part = end
 
-    def _meaning_of(self, address: str) -> str:
-        return f"{address} in {self.dialect.name}: {self.dialect.word_meanings[address]}"
+    def resume_at(self, programmed: list[float], part: list[float], last: Segment | None) -> None:
+        """Blocks that went past the control have ended here; ``last`` is their last move, if any."""
+        self.programmed, self.part = programmed, part
+        if last is not None:
+            self._last = last
 
+    @property
+    def direction(self) -> Vector | None:
+        """Where the last move was going when it ended, programmed coordinates; None before one."""
+        move = self._last
+        return None if move is None else self.frame.unturn(direction_of(move, at_end=True))
+
+    def _length(
+        self, end: list[float], center: Vector | None, normal: Vector, sweep: float
+    ) -> float:
+        """What the feed counts, by the convention of ``canonical`` [mm or deg]."""
+        start = self.part
+        if center is not None:
+            radius = math.dist(start[:3], center)
+            advance = sum((end[i] - start[i]) * normal[i] for i in range(3))
+            return math.hypot(radius * math.radians(sweep), advance)
+        spatial = math.dist(start[:3], end[:3])
+        return spatial or math.dist(start[3:], end[3:])
+
+    def _axis_shares(self, end: list[float], length: float, is_arc: bool) -> list[float]:
+        """How much of the path's speed each axis takes at most."""
+        shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
+        return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
+
+    def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
+        turning = not is_arc and all(
+            new == old or not linear
+            for new, old, linear in zip(end, self.part, self.linear, strict=True)
+        )
+        if self.feed is None:
+            self.report.warn_once(
+                "no-feed",
+                "no feed is programmed: the machine's default is used",
+                *self._blamed(None),
+                hint="write F in the first block that needs it",
+            )
+            settings = self.settings
+            return settings.default_rotary_feed if turning else settings.default_feed
+        mode = self.modal.feed_mode
+        if mode is FeedMode.SECONDS_PER_BLOCK:
+            return length / self.feed * 60.0
+        feed = self.feed if turning else self.feed * self.modal.unit
+        if mode in FEED_FACTORS:
+            return feed * FEED_FACTORS[mode]
+        if not self.spindle:
+            self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
+        return feed * self.spindle
+
+    def dwell(self, seconds: float) -> None:
+        """Wait."""
+        line = self.block.line
+        self.path.event(lambda columns: columns.dwell(line, seconds))
+
+    def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
+        """Report a function at this place of the path."""
+        line, given = self.block.line, dict(arguments)
+        self.path.event(lambda columns: columns.function(line, word, given, at))
+
+    def part_plane(self) -> Plane:
+        """The working plane as the part sees it."""
+        plane, frame = self.modal.plane, self.frame
+        if frame.is_identity:
+            return plane
+        normal, _ = frame.arc(plane.normal, 0.0)
+        abscissa, _ = frame.arc(plane.abscissa, 0.0)
+        return Plane(plane.name, abscissa, cross(normal, abscissa), normal)
+
+    @property
+    def has_moved(self) -> bool:
+        """The path has begun."""
+        return self._last is not None
+
+    def stand_at(self, programmed: list[float]) -> None:
+        """Let the path, which has not begun, begin at a programmed position."""
+        self.programmed = programmed
+        self.part = self.path.position = self.frame.to_part(programmed)
+
+    def set_position(self, programmed: list[float], shift: str) -> None:
+        """Give the place where it stands other programmed coordinates; nothing moves."""
+        here = self.frame.to_part(programmed)
+        values = self.frame.shift(shift)
+        moved = [
+            value + part - other for value, part, other in zip(values, self.part, here, strict=True)
+        ]
+        self.frame.set_shift(shift, moved)
+        self.programmed = programmed
+
+    def reframed(self) -> None:
+        """The frame has changed: see where it stands now."""
+        self.programmed = self.frame.to_programmed(self.part)
+
+    @abc.abstractmethod
     def place_switches(self, length: float) -> None:
         """Report the block's switch points, told the length of its move."""
-        if self.dialect.place_switches is not None:
-            self.dialect.place_switches(self, length)
 
-    def read_variable(self, name: str, index: float | None) -> float:
-        """Value of a variable of the program, for expressions."""
-        if self.dialect.read_variable is None:
-            raise ExpressionError("unknown-variable", f"there is no variable {name}")
-        return self.dialect.read_variable(self, name, index)
+
+def _limited(value: float, limits: Mapping[int, float], shares: list[float]) -> float:
+    """A value along the path so that no axis exceeds its own limit; NaN is no limit."""
+    bounds = [limit / shares[index] for index, limit in limits.items() if shares[index] > 0.0]
+    return min([value, *bounds]) if value == value else min(bounds, default=value)
+
+
+def _either(value: float, default: float) -> float:
+    """A value, or where it is NaN another one."""
+    return default if math.isnan(value) else value

@@ -1,26 +1,15 @@
-"""How axis words become a move, and which of these ways the compiled tier knows."""
+"""How axis words become a move, as data: what the compiled tier must know of it."""
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
-from twin.nc.control.drilling_cycle import Cycle
-
-if TYPE_CHECKING:
-    from twin.nc.control.control import Control
+from twin.nc.path.drilling_cycle import Cycle
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class LineRule:
-    """A block of plain axis words goes straight to their target.
-
-    Attributes:
-        rapid_feed: Of a rapid at a pace that the program sets: its own feed per second, 0 where it
-            follows F; None: the machine's pace.
-    """
-
-    rapid_feed: Callable[["Control"], float] | None = None
+    """A block of plain axis words goes straight to their target."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,17 +50,18 @@ class CycleRule:
     words: Mapping[str, int]
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class Interpolation:
-    """How axis words become a move.
+MotionRule = LineRule | ArcRule | CycleRule
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class MotionMode:
+    """What is in force of how axis words become a move.
 
     Attributes:
-        perform: Takes the block's words and moves.
         rapid: At the machine's own speed.
-        rule: What it does in a block of plain words, for the compiled tier; None: ``perform`` alone
-            knows.
+        rule: What it does in a block of plain words, for the compiled tier; None: it has no
+            compiled form.
     """
 
-    perform: Callable[["Control"], None]
     rapid: bool = False
-    rule: LineRule | ArcRule | CycleRule | None = None
+    rule: MotionRule | None = None

@@ -33,7 +33,7 @@ class ControlSettings:
     """Feed of a program that sets none [mm/min]."""
 
     default_rotary_feed: float = 3600.0
-    """The same for moves of rotary axes alone [deg/min]."""
+    """Feed of moves of rotary axes alone in a program that sets none [deg/min]."""
 
     start: Mapping[str, float] = dataclasses.field(default_factory=dict)
     """Where the axes stand when the program starts, part coordinates [mm or deg]; missing is 0."""

@@ -3,28 +3,62 @@
 import dataclasses
 import math
 import re
-from typing import NoReturn
+from collections.abc import Callable, Mapping, Sequence
+from typing import NoReturn, Protocol
 
-from twin.nc.control.dialect import Dialect, GCode, Modal
-from twin.nc.control.drilling_cycle import START, no_values
-from twin.nc.control.flow import Flow, Return
+from twin.nc.bytecode.variables import Variables
+from twin.nc.control.modal import Modal, SavedModal
+from twin.nc.control.program_counter import CallFrame, ProgramCounter
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.tools import Tools
-from twin.nc.control.variables import Variables
 from twin.nc.geometry.frame import Frame
+from twin.nc.path.drilling_cycle import START, no_values
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.path import Path
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
+from twin.nc.text.syntax import Language
+
+
+class ControlLanguage(Language, Protocol):
+    """What a control needs to know of a dialect; attributes as in ``Dialect``."""
+
+    @property
+    def axis_letters(self) -> frozenset[str]:
+        """Addresses that name axes."""
+        ...
+
+    @property
+    def memory(self) -> Callable[[], object]:
+        """Makes the object that holds what only this dialect remembers."""
+        ...
+
+    @property
+    def is_local(self) -> Callable[[str], bool]:
+        """Whether calls with variables of their own have a variable of this name anew."""
+        ...
+
+    @property
+    def given_variable(self) -> Callable[[Mapping[str, float], str], float | None]:
+        """The value of a variable among those of the job, or None."""
+        ...
+
+
+class HasGroup(Protocol):
+    """A code of a block, as far as its modal group."""
+
+    @property
+    def group(self) -> str:
+        """Its modal group; empty: it is not modal."""
+        ...
 
 
 class ControlState:
     """The state of one control while it runs one program.
 
     Attributes:
-        dialect: The language it reads.
         settings: What it was told of the machine and the job.
         report: Where its diagnostics go.
         modal: What stays in force.
@@ -37,10 +71,11 @@ class ControlState:
         spindle: S as programmed, or None [1/min].
         tools: The tools in use.
         path: Where moves and events go.
-        flow: Which block comes next.
+        axis_letters: Addresses that name axes.
+        program_counter: Which block comes next.
         variables: What the program computes with.
         cycle_values: What the words of a milling cycle were last, by address.
-        hole_values: What a drilling cycle remembers, as ``holes`` counts it.
+        cycle_state: What a drilling cycle remembers, as ``drilling_cycle`` counts it.
         block: The block that is being run.
         words: Its words that nothing has taken yet.
         codes: Its G codes.
@@ -54,17 +89,17 @@ class ControlState:
         ended: An end code was run.
     """
 
-    def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
-        self.dialect = dialect
+    def __init__(
+        self, language: ControlLanguage, settings: ControlSettings, source: Source
+    ) -> None:
         self.settings = settings
         self.report = Reporter(source, strict=settings.strict)
         self.axis_index = {name: index for index, name in enumerate(settings.axes.names)}
         self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)
         self.modal = Modal()
-        for name, value in dialect.start_state.items():
-            setattr(self.modal, name, value)
         self.active: dict[str, int] = {}
-        self.memory = dialect.memory()
+        self.memory = language.memory()
+        self.axis_letters = language.axis_letters
         self.frame = Frame(len(settings.axes))
         self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
         self.part = list(self.programmed)
@@ -76,51 +111,43 @@ class ControlState:
         self.rapid_deceleration = NAN
         self.tools = Tools(settings.tools, any_tool=settings.any_tool)
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
-        lexer = Lexer(dialect, self.report)
-        self.flow = Flow(source, lexer, settings.step_limit, self.report, self._leave)
+        lexer = Lexer(language, self.report)
+        self.program_counter = ProgramCounter(
+            source, lexer, settings.step_limit, self.report, self._leave
+        )
         self.variables = Variables(
-            dialect.is_local, lambda name: dialect.given_variable(settings.variables, name)
+            language.is_local, lambda name: language.given_variable(settings.variables, name)
         )
         self.cycle_values: dict[str, float] = {}
-        self.hole_values = no_values()
+        self.cycle_state = no_values()
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
-        self.codes: list[tuple[Word, GCode]] = []
+        self.codes: Sequence[tuple[Word, HasGroup]] = ()
         self.series: list[Word] = []
         self.rapid_feed = NAN
         self.axis_limits: dict[int, float] = {}
         self.axis_accelerations: dict[int, float] = {}
         self._last: Segment | None = None
         self.ended = False
-        for number in dialect.start:
-            self.put_into_force(number, dialect.g[number])
 
-    def put_into_force(self, number: int, code: GCode) -> None:
-        """Apply a modal code."""
-        for name, value in code.sets.items():
-            setattr(self.modal, name, value)
-        if self.modal.cycle is None:
-            self._forget_cycle()
-        if code.group:
-            self.active[code.group] = number
-
-    def _forget_cycle(self) -> None:
+    def forget_cycle(self) -> None:
+        """No cycle is in force any more, and its words hold no longer."""
         if self.cycle_values:
             self.cycle_values = {}
-        if not math.isnan(self.hole_values[START]):
-            self.hole_values = no_values()
+        if not math.isnan(self.cycle_state[START]):
+            self.cycle_state = no_values()
 
-    def saved_modal(self) -> tuple[Modal, dict[str, int]]:
+    def saved_modal(self) -> SavedModal:
         """What is in force, to be restored later."""
-        return dataclasses.replace(self.modal), dict(self.active)
+        return SavedModal(dataclasses.replace(self.modal), dict(self.active))
 
-    def restore_modal(self, saved: tuple[Modal, dict[str, int]]) -> None:
+    def restore_modal(self, saved: SavedModal) -> None:
         """Put back what ``saved_modal`` gave."""
         self.modal, self.active = saved
 
-    def _leave(self, part: Return) -> None:
+    def _leave(self, part: CallFrame) -> None:
         """A called part of the program has ended."""
-        if part.own_variables:
+        if part.owns_scope:
             self.variables.leave()
         if part.restores is not None:
             self.restore_modal(part.restores)
@@ -164,7 +191,7 @@ class ControlState:
 
     def _span_of(self, move: Segment) -> tuple[int, int]:
         """Column and width of a move's block number; without one of the line's first word."""
-        text = self.flow.lines[move.line - 1]
+        text = self.program_counter.lines[move.line - 1]
         number = rf"N[ \t]*0*{move.block}(?![0-9])" if move.block >= 0 else r"\S+"
         match = re.search(number, text, re.IGNORECASE)
         return (0, 1) if match is None else (match.start(), len(match[0]))

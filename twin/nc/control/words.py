@@ -42,7 +42,7 @@ class ControlWords(ControlState, abc.ABC):
             ProgramError: The machine lacks an axis.
         """
         taken = []
-        for address in [a for a in self.words if a in self.dialect.axis_letters]:
+        for address in [a for a in self.words if a in self.axis_letters]:
             word = self.words.pop(address)
             index = self.axis_index.get(address)
             if index is None:
@@ -78,7 +78,7 @@ class ControlWords(ControlState, abc.ABC):
         if not text.strip() and not count:
             return []
         try:
-            found, end = self.flow.lexer.expressions.read_list(text, 0)
+            found, end = self.program_counter.lexer.expressions.read_list(text, 0)
         except ExpressionError as error:
             at = column + (error.column or 0)
             self.report.fail(error.code, str(error), at, 1, error.hint)

@@ -7,13 +7,12 @@ import dataclasses
 import math
 import re
 
-from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.block_compiler import compile_words
 from twin.nc.canonical import Corner
+from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
-from twin.nc.iso import codes, cycles, decisions
-from twin.nc.text.blocks import Block
+from twin.nc.control.dialect import Decision, Dialect
+from twin.nc.iso import base, fixed_cycles, shared_decisions
+from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 RESOLUTION = 9
 """Decimals of a degree that a start point is rounded to before the remainder is taken.
@@ -78,7 +77,7 @@ def recalculate_start(control: Control, rapid: bool) -> None:
         if abs(old) >= period:
             programmed[index] = math.fmod(old, period)
     if programmed != control.programmed:
-        control.relabel(programmed, "turns")
+        control.set_position(programmed, "turns")
 
 
 _CYRILLIC_WORD = re.compile("[А-Яа-яЁё]{2}")
@@ -94,21 +93,12 @@ def excuse(line: str, previous: str) -> str | None:
     with a comment is that comment's tail, as long as it does not begin with a readable word; and
     a line that begins with a Cyrillic word of four letters or more, as no block does, is a heading.
     """
-    if codes.is_ellipsis(line):
+    if base.is_ellipsis(line):
         return "ellipsis"
     prose = _CYRILLIC_WORD.search(line) and not _READABLE_WORD.match(line)
     if prose and ("$" in previous or _PROSE.match(line)):
         return "comment-tail"
     return None
-
-
-def compile_block(control: Control, block: Block, assembler: Assembler) -> None:
-    """Write a block as instructions for the compiled tier.
-
-    Raises:
-        UnsupportedError: It is left to the interpreter tier.
-    """
-    compile_words(control, block.words, assembler)
 
 
 DECISIONS = (
@@ -156,7 +146,7 @@ DECISIONS = (
         "1200 degrees per minute is the only sensible reading of the page's G1 C359.999 F1200.",
         example="feed_of_rotary_axes",
     ),
-    *decisions.DECISIONS,
+    *shared_decisions.DECISIONS,
 )
 
 GOST = Dialect(
@@ -164,10 +154,10 @@ GOST = Dialect(
     title="Russian control with G102 (ISO 6983-1, GOST 20999-83)",
     code_page="cp1251",
     syntax=Syntax(comments=(Comment("$"), Comment("(", ")"), HEADING), excused=excuse),
-    groups=codes.GROUPS,
+    groups=base.GROUPS,
     g={
-        **codes.BASE,
-        **cycles.RETURN,
+        **base.CODES,
+        **fixed_cycles.RETURN,
         9: GCode(
             meaning="exact stop in this block",
             sets={"corner": Corner.EXACT_STOP},
@@ -181,12 +171,12 @@ GOST = Dialect(
             ground="seed",
         ),
     },
-    instead=codes.INSTEAD,
-    start=(*codes.START, 64, 98),
-    m=codes.M_CODES,
-    words=codes.WORDS,
-    word_compilers=codes.WORD_COMPILERS,
-    word_meanings=codes.WORD_MEANINGS,
+    instead=base.INSTEAD,
+    start=(*base.START, 64, 98),
+    m=base.M_CODES,
+    words=base.WORDS,
+    word_compilers=base.WORD_COMPILERS,
+    word_meanings=base.WORD_MEANINGS,
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(
@@ -195,6 +185,5 @@ GOST = Dialect(
     ),
     memory=Periods,
     before_motion=recalculate_start,
-    compile_block=compile_block,
     disturbed=lambda control: bool(_periods(control).by_axis),
 )

@@ -4,18 +4,19 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 """
 
 import dataclasses
-from collections.abc import Iterator
 
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import compile_words
+from twin.nc.bytecode.assembler import UnsupportedError
 from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_compiler import BlockCompiler
+from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import HEADING, Comment, Decision, Dialect, GCode, Mark, Syntax
-from twin.nc.control.interpolation import ArcRule, Interpolation
+from twin.nc.control.dialect import Decision, Dialect
+from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry.arcs import sweep_between
-from twin.nc.iso import codes, decisions
+from twin.nc.iso import base, shared_decisions
 from twin.nc.iso.circular import arc_rule, iso_arc_center, start_and_end
 from twin.nc.text.blocks import Block
+from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 
 @dataclasses.dataclass(slots=True)
@@ -79,7 +80,7 @@ def jump_with_repeat(control: Control) -> None:
     """
     target, count = control.take("L"), control.take("Q")
     if target is None:
-        numbers = ", ".join(f"N{label}" for label in list(control.flow.labels())[:12])
+        numbers = ", ".join(f"N{label}" for label in list(control.program_counter.labels())[:12])
         code = control.code_word(73)
         control.fail(
             "jump-target", "G73 needs L: the block to jump to", code, hint=f"blocks here: {numbers}"
@@ -98,24 +99,25 @@ def jump_with_repeat(control: Control) -> None:
     number = control.number(target)
     if number != int(number):
         control.fail("jump-target", f"{target.text} is no block number", target)
-    control.flow.jump(int(number), (target.column, target.width), "L")
+    control.program_counter.jump(int(number), (target.column, target.width), "L")
 
 
-def compile_block(control: Control, block: Block, assembler: Assembler) -> None:
+def compile_block(compiler: BlockCompiler, block: Block) -> None:
     """Write a block as instructions for the compiled tier, with its jump as ``jump_with_repeat`` does.
 
     Raises:
         UnsupportedError: It is left to the interpreter tier.
     """
+    control, assembler = compiler.control, compiler.assembler
     jumps = [word for word in block.words if word.address == "G" and word.value == 73.0]
     targets = [word for word in block.words if jumps and word.address == "L"]
     counts = [word for word in block.words if jumps and word.address == "Q"]
     taken = (*jumps[:1], *targets[:1], *counts[:1])
     if counts:  # a cycle with pecks would take Q as its own
-        if any(code.begins_cycle for code in _codes(control, block)):
+        if any(code.begins_cycle for code in compiler.known_codes(block.words)):
             raise UnsupportedError
         assembler.emit(Opcode.NO_PECKS)
-    compile_words(control, [word for word in block.words if word not in taken], assembler)
+    compiler.words(word for word in block.words if word not in taken)
     if jumps:
         times = control.number(counts[0]) if counts else 1.0
         if not targets or times < 0.0 or times != int(times):
@@ -123,17 +125,8 @@ def compile_block(control: Control, block: Block, assembler: Assembler) -> None:
         number, span = control.number(targets[0]), (targets[0].column, targets[0].width)
         if number != int(number):
             raise UnsupportedError
-        place = control.flow.find_label(int(number), span, "L")
-        assembler.jump_counted(place, repeat_counter(block), times)
-
-
-def _codes(control: Control, block: Block) -> Iterator[GCode]:
-    """The block's G codes, as far as they are known."""
-    for word in block.words:
-        if word.address == "G" and isinstance(word.value, float):
-            code = control.dialect.g.get(int(word.value))
-            if code is not None:
-                yield code
+        target = control.program_counter.find_label(int(number), span, "L")
+        assembler.jump_counted(target, repeat_counter(block), times)
 
 
 def _arc(control: Control, *, clockwise: bool) -> None:
@@ -239,17 +232,17 @@ DECISIONS = (
         "Nothing in the page allows the tool to leave the programmed path.",
         example="exact_path",
     ),
-    *decisions.DECISIONS,
+    *shared_decisions.DECISIONS,
 )
 
 MEFI = Dialect(
     name="mefi",
     title="MEFI CNC8x6",
     code_page="cp1250",
-    syntax=Syntax(comments=(Comment('"'), HEADING), excused=codes.excuse_ellipsis),
-    groups=(*codes.GROUPS, "helix"),
+    syntax=Syntax(comments=(Comment('"'), HEADING), excused=base.excuse_ellipsis),
+    groups=(*base.GROUPS, "helix"),
     g={
-        **codes.BASE,
+        **base.CODES,
         2: GCode(
             meaning="arc clockwise",
             group="motion",
@@ -267,15 +260,15 @@ MEFI = Dialect(
         98: GCode(meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"),
     },
     instead={
-        **codes.INSTEAD,
+        **base.INSTEAD,
         99: "cycles return to the height of their call; G98 ends a helix here",
     },
-    start=codes.START,
-    m=codes.M_CODES,
-    words=codes.WORDS,
-    word_compilers=codes.WORD_COMPILERS,
+    start=base.START,
+    m=base.M_CODES,
+    words=base.WORDS,
+    word_compilers=base.WORD_COMPILERS,
     word_meanings={
-        **codes.WORD_MEANINGS,
+        **base.WORD_MEANINGS,
         "R": "radius of an arc below 180 degrees; reference plane of a cycle",
         "L": "block to jump to (G73)",
         "Q": "number of jumps (G73); depth of one peck (G83)",

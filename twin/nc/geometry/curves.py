@@ -72,7 +72,7 @@ def scale_of(curve: Curve, by: float) -> float:
     return (radius - math.copysign(by, by * curve[4])) / radius
 
 
-def aside_of(curve: Curve, by: float) -> Curve:
+def parallel_of(curve: Curve, by: float) -> Curve:
     """The parallel curve, ``by`` to the left [mm], where there is one."""
     is_arc, start, end, center, sweep = curve
     if not is_arc:

@@ -59,11 +59,11 @@ class Element:
         """Unit direction of travel at the start or the end."""
         return curves.tangent_of(self.curve, at_end)
 
-    def aside(self, by: float) -> "Element | None":
+    def parallel(self, by: float) -> "Element | None":
         """The parallel element, ``by`` to the left [mm]; None where an arc would vanish."""
         if not curves.leaves_room(self.curve, by):
             return None
-        return element_from(curves.aside_of(self.curve, by))
+        return element_from(curves.parallel_of(self.curve, by))
 
     def along(self, point: Point) -> float:
         """How far along the element's own curve a point of it lies: 0 at its start, 1 at its end.

@@ -58,10 +58,10 @@ def point_of(line: Curve, share: float) -> Point:
     return (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
 
 
-def way_around(start: Point, end: Point, corner: Point, aside: float) -> tuple[bool, Curve]:
+def way_around(start: Point, end: Point, corner: Point, signed_offset: float) -> tuple[bool, Curve]:
     """Whether there is an arc as ``leads.around`` has it, and that arc."""
     none = (False, start, end, corner, 0.0)
-    radius, far = abs(aside), distance(start, corner)
+    radius, far = abs(signed_offset), distance(start, corner)
     lead = (end[0] - start[0], end[1] - start[1])
     arm = (corner[0] - end[0], corner[1] - end[1])
     if lead[0] * arm[0] + lead[1] * arm[1] >= 0.0 or far <= radius:
@@ -71,6 +71,6 @@ def way_around(start: Point, end: Point, corner: Point, aside: float) -> tuple[b
         corner[0] + (start[0] - corner[0]) * radius / far,
         corner[1] + (start[1] - corner[1]) * radius / far,
     )
-    touch = arcs.turned(towards, corner, -opening if aside > 0.0 else opening)
-    sweep = arcs.sweep_between(touch, end, corner, aside > 0.0)
+    touch = arcs.turned(towards, corner, -opening if signed_offset > 0.0 else opening)
+    sweep = arcs.sweep_between(touch, end, corner, signed_offset > 0.0)
     return (abs(sweep) < 180.0, (True, touch, end, corner, sweep))

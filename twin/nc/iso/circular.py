@@ -22,7 +22,7 @@ Decision: the Fagor 8070's default (CIRINERR) for every dialect that states none
 to 0.001 mm stay far below it.
 """
 RADIUS_SHARE = 0.001
-"""The same as a share of the radius (the 8070's CIRINFACT, 0.1 %): the larger limit counts."""
+"""How far they may differ as a share of the radius (the 8070's CIRINFACT, 0.1 %): the larger limit counts."""
 
 CENTER_SHIFT = 0.1
 """How far a centre may be moved to fit both points [mm], or ten times ``RADIUS_SHARE``.
@@ -206,13 +206,3 @@ def arc_rule(*, clockwise: bool, fits_radius: bool = False) -> ArcRule:
         shift=CENTER_SHIFT,
         fits_radius=fits_radius,
     )
-
-
-def rapid_line(control: Control) -> None:
-    """G0: straight to the target at the machine's own speed."""
-    control.line_to(control.target(), rapid=True)
-
-
-def feed_line(control: Control) -> None:
-    """G1: straight to the target with the feed."""
-    control.line_to(control.target(), rapid=False)

@@ -5,11 +5,12 @@ from collections.abc import Callable, Mapping
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
 from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Compiler, GCode, Ground, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import Compiler, GCode, Ground
-from twin.nc.control.drilling_cycle import (
+from twin.nc.control.interpolation import CycleRule
+from twin.nc.path.drilling_cycle import (
     BOTTOM,
     EVERY,
     FACTOR,
@@ -28,7 +29,6 @@ from twin.nc.control.drilling_cycle import (
     remember,
     write_acts,
 )
-from twin.nc.control.interpolation import CycleRule, Interpolation
 
 _BESIDE = "ST"
 """Words that may stand beside a cycle on the compiled tier: they change nothing of where the tool stands."""
@@ -52,7 +52,7 @@ def cycle_code(
 
     def call(control: Control) -> None:
         axis = control.modal.plane.axes[2]
-        begin(control.hole_values, axis, control.programmed[axis], cycle.lasting)
+        begin(control.cycle_state, axis, control.programmed[axis], cycle.lasting)
         if not cycle.lasting:
             _take_words(control, rule)
 
@@ -82,11 +82,11 @@ def _take_words(control: Control, rule: CycleRule) -> None:
             given[value] = control.length(word) if in_mm else control.number(word)
             if word.incremental:
                 relative[value] = True
-    remember(control.hole_values, given, relative[REFERENCE], relative[BOTTOM], cycle.lasting)
+    remember(control.cycle_state, given, relative[REFERENCE], relative[BOTTOM], cycle.lasting)
 
 
 def _compile_words(words: Mapping[str, int]) -> Compiler:
-    """The same for the compiled tier, where the words of axes stay with those of the hole."""
+    """Compile those words; the words of axes stay with those of the hole."""
 
     def write(block: BlockWords, assembler: Assembler) -> None:
         for address, value in words.items():
@@ -97,8 +97,8 @@ def _compile_words(words: Mapping[str, int]) -> Compiler:
                 raise UnsupportedError
             assembler.word_value(word)
             assembler.emit(Opcode.CYCLE_WORD, value)
-        others = block.words.keys() & block.control.dialect.word_compilers.keys()
-        if others - set(_BESIDE) or any(code.action for _, code in block.functions):
+        others = block.words.keys() & block.acting_letters
+        if others - set(_BESIDE) or block.functions_act:
             raise UnsupportedError
 
     return write
@@ -116,7 +116,7 @@ def _hole(control: Control, rule: CycleRule) -> Hole:
         ProgramError: A word is missing or wrong.
     """
     axis, to_reference = control.modal.plane.axes[2], control.modal.return_to_reference
-    hole = hole_of(rule.cycle, control.hole_values, axis, to_reference)
+    hole = hole_of(rule.cycle, control.cycle_state, axis, to_reference)
     if hole.fault != Fault.NONE:
         _refuse(control, rule, hole)
     return hole
@@ -130,7 +130,7 @@ def _refuse(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
         missing = [
             address
             for value, address in sorted(addresses.items())
-            if (rule.cycle.needed >> value) & 1 and math.isnan(control.hole_values[value])
+            if (rule.cycle.needed >> value) & 1 and math.isnan(control.cycle_state[value])
         ]
         control.fail("cycle-word", f"{name} needs {' and '.join(missing)}")
     if hole.fault == Fault.PLANE:

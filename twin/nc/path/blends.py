@@ -118,7 +118,7 @@ def _fillet(
 ) -> tuple[float, float, Point]:
     """Where a fillet touches both moves, as shares of their ways, and its centre."""
     side = math.copysign(radius, turn)
-    beside, following = before.aside(side), behind.aside(side)
+    beside, following = before.parallel(side), behind.parallel(side)
     if beside is None or following is None:
         raise NoBlendError(f"the radius {radius:g} does not fit into the arc beside the corner")
     fitting: list[tuple[float, float, Point]] = []

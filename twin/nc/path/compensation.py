@@ -18,7 +18,7 @@ from twin.nc.canonical import Corner
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.elements import Element, crossing, crossings, turn_between
 from twin.nc.geometry.planes import Plane
-from twin.nc.path.followed import NECK, Followed, Passed, Stage
+from twin.nc.path.compensation_state import NECK, CompensationState, PassedElement, Stage
 from twin.nc.path.leads import LeadOut, around, lead_depth
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.segments import element_of, level_arc
@@ -27,7 +27,7 @@ Emit = Callable[[Segment], None]
 Refuse = Callable[[Segment, str, str], NoReturn]
 """Told the segment, the code and the message; raises."""
 Warn = Callable[[Segment, str, str], None]
-"""The same for a warning."""
+"""Told of the segment, the code and the message of a warning."""
 
 LARGEST_SQUARE = 90.0 + 1e-9
 """Square corners are extended up to this turn, beyond it rolled around [deg]."""
@@ -37,7 +37,7 @@ STRAIGHT_ON = 1e-4
 
 
 @dataclasses.dataclass(slots=True)
-class _Held:
+class _WaitingMove:
     """A move that waits for its successor.
 
     Attributes:
@@ -77,12 +77,12 @@ class Compensation:
         self._square = square
         self._indirect = indirect
         self._warn = warn
-        self._passed: collections.deque[Passed] = collections.deque(maxlen=NECK)
+        self._gouge_history: collections.deque[PassedElement] = collections.deque(maxlen=NECK)
         self.plane = plane
-        self._aside = side * radius
+        self._signed_offset = side * radius
         self._emit = emit
         self._refuse = refuse
-        self._held: _Held | None = None
+        self._lookahead: _WaitingMove | None = None
         self._here: list[float] = []
 
     def add(self, move: Segment) -> None:
@@ -92,37 +92,37 @@ class Compensation:
             self._pass(move)
             return
         contour = self._element(move)
-        if self._held is None:
+        if self._lookahead is None:
             if move.center is not None:
                 self._refuse(move, "compensation-start", "compensation must start on a line")
-            self._held = _Held(move, contour, None, start[:2], [])
+            self._lookahead = _WaitingMove(move, contour, None, start[:2], [])
             return
         element = self._parallel(move, contour)
-        at = self._join(self._held, contour, element, move)
-        self._held = _Held(move, contour, element, at, [])
+        at = self._join(self._lookahead, contour, element, move)
+        self._lookahead = _WaitingMove(move, contour, element, at, [])
 
     def event(self, event: Callable[[], None]) -> None:
         """Something that happens where the path has come to."""
-        if self._held is None:
+        if self._lookahead is None:
             event()
         else:
-            self._held.waiting.append(event)
+            self._lookahead.waiting.append(event)
 
     @property
     def waits(self) -> bool:
         """Something waits for the end of the held move."""
-        return self._held is not None and bool(self._held.waiting)
+        return self._lookahead is not None and bool(self._lookahead.waiting)
 
     @property
-    def followed(self) -> Followed:
+    def state(self) -> CompensationState:
         """How far it has come, where nothing waits."""
-        held, stage = self._held, Stage.STARTED
+        held, stage = self._lookahead, Stage.STARTED
         if held is not None:
             stage = Stage.LEADING_IN if held.element is None else Stage.FOLLOWING
-        return Followed(
+        return CompensationState(
             stage,
             self.plane,
-            self._aside,
+            self._signed_offset,
             self._square,
             self._indirect,
             None if held is None else held.move,
@@ -130,22 +130,22 @@ class Compensation:
             None if held is None else held.element,
             (0.0, 0.0) if held is None else held.start,
             self._here,
-            list(self._passed),
+            list(self._gouge_history),
         )
 
-    def resume(self, followed: Followed) -> None:
+    def resume(self, state: CompensationState) -> None:
         """Go on as if it had come as far as this."""
-        self._here = followed.here
-        self._passed.extend(followed.passed)
-        if followed.move is not None and followed.contour is not None:
-            self._held = _Held(
-                followed.move, followed.contour, followed.element, followed.start, []
+        self._here = state.here
+        self._gouge_history.extend(state.gouge_history)
+        if state.move is not None and state.contour is not None:
+            self._lookahead = _WaitingMove(
+                state.move, state.contour, state.element, state.start, []
             )
 
     def wait(self, move: Segment) -> None:
         """A move along the plane's normal at the end of the held one."""
-        assert self._held is not None
-        self._held.waiting.append(move)
+        assert self._lookahead is not None
+        self._lookahead.waiting.append(move)
 
     def finish(self) -> LeadOut | None:
         """G40: what is held ends square to itself.
@@ -153,12 +153,14 @@ class Compensation:
         Returns:
             What the path now stands beside, so that a line must lead out; None on the contour.
         """
-        held, self._held = self._held, None
+        held, self._lookahead = self._lookahead, None
         if held is None:
             return None
         self._end(held, held.contour.end if held.element is None else held.element.end)
         return (
-            LeadOut(self.plane, held.contour, self._aside, self._indirect) if held.element else None
+            LeadOut(self.plane, held.contour, self._signed_offset, self._indirect)
+            if held.element
+            else None
         )
 
     def _out(self, move: Segment) -> None:
@@ -166,11 +168,11 @@ class Compensation:
         self._emit(move)
 
     def _pass(self, move: Segment) -> None:
-        self._passed.clear()
-        if self._held is None:
+        self._gouge_history.clear()
+        if self._lookahead is None:
             self._out(move)
         else:
-            self._held.waiting.append(move)
+            self._lookahead.waiting.append(move)
 
     def _element(self, move: Segment) -> Element:
         element = element_of(move, self.plane)
@@ -180,17 +182,17 @@ class Compensation:
         return element
 
     def _parallel(self, move: Segment, contour: Element) -> Element:
-        element = contour.aside(self._aside)
+        element = contour.parallel(self._signed_offset)
         if element is None:
             self._refuse(
                 move,
                 "compensation-radius",
-                f"the tool's radius {abs(self._aside):g} does not fit into the arc of radius "
+                f"the tool's radius {abs(self._signed_offset):g} does not fit into the arc of radius "
                 f"{contour.radius:.4f}",
             )
         return element
 
-    def _join(self, held: _Held, contour: Element, element: Element, move: Segment) -> Point:
+    def _join(self, held: _WaitingMove, contour: Element, element: Element, move: Segment) -> Point:
         """End the held move, go around the corner; return where the next one starts."""
         if held.element is None:
             self._lead_in(held, contour, element)
@@ -200,17 +202,22 @@ class Compensation:
             self._end(held, element.start)
             return element.start
         straight = held.contour.center is None and contour.center is None
-        if self._square and straight and turn * self._aside < 0.0 and abs(turn) <= LARGEST_SQUARE:
+        if (
+            self._square
+            and straight
+            and turn * self._signed_offset < 0.0
+            and abs(turn) <= LARGEST_SQUARE
+        ):
             (corner,) = crossings(held.element, element)
             self._end(held, corner)
             return corner
-        if turn * self._aside < 0.0 or abs(turn) > 180.0 - STRAIGHT_ON:
+        if turn * self._signed_offset < 0.0 or abs(turn) > 180.0 - STRAIGHT_ON:
             self._end(held, held.element.end)
             self._roll(held, contour.start, element.start, turn)
             return element.start
         return self._inside(held, element, move)
 
-    def _inside(self, held: _Held, element: Element, move: Segment) -> Point:
+    def _inside(self, held: _WaitingMove, element: Element, move: Segment) -> Point:
         before = held.element
         assert before is not None
         from_start = before.along(held.start)
@@ -226,19 +233,19 @@ class Compensation:
             self._refuse(
                 move,
                 "compensation-gouge",
-                f"the tool's radius {abs(self._aside):g} does not fit into the inside corner: "
+                f"the tool's radius {abs(self._signed_offset):g} does not fit into the inside corner: "
                 "it would cut into the contour before or after",
             )
         at = min(fitting, key=lambda point: distance(point, corner))
         self._end(held, at)
         return at
 
-    def _lead_in(self, held: _Held, contour: Element, element: Element) -> None:
+    def _lead_in(self, held: _WaitingMove, contour: Element, element: Element) -> None:
         arc = None
         if self._indirect:
-            arc = around(held.start, element.start, contour.start, self._aside)
+            arc = around(held.start, element.start, contour.start, self._signed_offset)
         touch = element.start if arc is None else arc.start
-        depth = lead_depth(Element(held.start, touch), contour, abs(self._aside))
+        depth = lead_depth(Element(held.start, touch), contour, abs(self._signed_offset))
         if depth:
             message = f"on its way to the contour the tool cuts {depth:.3f} mm into it"
             self._warn(held.move, "compensation-lead", message)
@@ -246,8 +253,8 @@ class Compensation:
         if arc is not None:
             self._turn(held.move, arc)
 
-    def _roll(self, held: _Held, corner: Point, end: Point, turn: float) -> None:
-        sweep = abs(turn) if self._aside < 0.0 else -abs(turn)
+    def _roll(self, held: _WaitingMove, corner: Point, end: Point, turn: float) -> None:
+        sweep = abs(turn) if self._signed_offset < 0.0 else -abs(turn)
         assert held.element is not None
         arc = Element(held.element.end, end, corner, sweep)
         self._pass_by(arc, None, held.move)
@@ -258,7 +265,7 @@ class Compensation:
         arc_move = level_arc(move, self.plane, arc, self._here)
         self._out(dataclasses.replace(arc_move, corner=Corner.EXACT_PATH))
 
-    def _end(self, held: _Held, at: Point) -> None:
+    def _end(self, held: _WaitingMove, at: Point) -> None:
         """Emit the held move up to a point in the plane, then what waits for its end."""
         move, plane = held.move, self.plane
         end = plane.world(*at, plane.local(move.end).height)
@@ -294,7 +301,7 @@ class Compensation:
 
     def _pass_by(self, element: Element, contour: Element | None, move: Segment) -> None:
         """Refuse an element that crosses an earlier one, unless the contour crosses itself there."""
-        passed, box = self._passed, element.box
+        passed, box = self._gouge_history, element.box
         left, low, right, high = box
         for index, older in enumerate(passed):
             from_x, from_y, to_x, to_y = older.box
@@ -311,10 +318,10 @@ class Compensation:
             self._refuse(
                 move,
                 "compensation-gouge",
-                f"the tool's radius {abs(self._aside):g} does not fit between this element and "
+                f"the tool's radius {abs(self._signed_offset):g} does not fit between this element and "
                 f"that of line {older.line}: the path crosses itself",
             )
-        passed.append(Passed(element, contour, move.line, box))
+        passed.append(PassedElement(element, contour, move.line, box))
 
 
 def _cross(first: Element | None, second: Element) -> bool:

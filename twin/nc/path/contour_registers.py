@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.path.followed import Stage
+from twin.nc.path.compensation_state import Stage
 
 (
     STAGE,
@@ -18,7 +18,7 @@ from twin.nc.path.followed import Stage
     MOVED_EVENTS,
     PLANE_NUMBER,
 ) = range(11)
-"""Places in the counts: a ``followed.Stage``; moves along the normal that wait for the end of the
+"""Places in the counts: a ``compensation_state.Stage``; moves along the normal that wait for the end of the
 held one; elements that were passed; the place of the oldest; square corners; indirect leads; it is
 known where the path has come to; whether compensation was given a move in this run, the rows that
 were there behind it, and the events before it; the number of the working plane."""
@@ -56,8 +56,8 @@ class Contour(NamedTuple):
     Attributes:
         counts: Shape (``COUNTS``,).
         plane: Abscissa, ordinate and normal in part coordinates, shape (3, 3).
-        aside: The tool's radius, signed as the side of the contour, shape (1,) [mm].
-        held: The move that waits for its successor, as programmed.
+        signed_offset: The tool's radius, signed as the side of the contour, shape (1,) [mm].
+        lookahead: The move that waits for its successor, as programmed.
         latest: The last move that compensation was given in this run, as programmed.
         curves: The held move and its parallel in the plane, shape (2, ``CURVE``).
         start: Where its compensated path begins in the plane, shape (2,) [mm].
@@ -65,13 +65,13 @@ class Contour(NamedTuple):
         position: Where all of the path had come to when the run began, shape (k,).
         waiting: The moves that wait, shape (``MOST_WAITING``, ...).
         rows_after: Row behind the held move and behind each that waits, shape (w + 1,).
-        passed: Elements that were passed, a ring, shape (n, ``PASSED_COLUMNS``).
+        gouge_history: Elements that were passed, a ring, shape (n, ``PASSED_COLUMNS``).
     """
 
     counts: IntArray
     plane: FloatArray
-    aside: FloatArray
-    held: Row
+    signed_offset: FloatArray
+    lookahead: Row
     latest: Row
     curves: FloatArray
     start: FloatArray
@@ -79,4 +79,4 @@ class Contour(NamedTuple):
     position: FloatArray
     waiting: Row
     rows_after: IntArray
-    passed: FloatArray
+    gouge_history: FloatArray

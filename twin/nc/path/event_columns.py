@@ -39,7 +39,7 @@ class EventRows:
         return self.rows[:, _BEFORE]
 
     def behind(self, moves: int) -> "EventRows":
-        """The same behind further moves, in columns of their own."""
+        """These events behind further moves, in columns of their own."""
         rows = self.rows.copy()
         rows[:, _BEFORE] += moves
         return EventRows(rows, self.amounts.copy())

@@ -8,20 +8,18 @@ import math
 from collections.abc import Callable
 
 from twin.nc.canonical import Axes, Chunk, Motion
-from twin.nc.compiled.contour_columns import CompensationResult
 from twin.nc.geometry.planes import PLANE_NAMES, Plane
 from twin.nc.path.blends import Blend
 from twin.nc.path.compensation import Compensation, Refuse, Warn
+from twin.nc.path.compensation_state import CompensationResult, CompensationState, Stage
 from twin.nc.path.contour_registers import Row
-from twin.nc.path.even_axes import MOST_MOVES, EvenAxes
 from twin.nc.path.event_columns import EventRows
-from twin.nc.path.followed import Followed, Stage
-from twin.nc.path.lead_out import lead_out
-from twin.nc.path.leads import LeadOut
+from twin.nc.path.leads import LeadOut, lead_out
 from twin.nc.path.loops import Loops
 from twin.nc.path.move_columns import MoveColumns, Segment
 from twin.nc.path.rounding import Rounding
 from twin.nc.path.splines import Spline
+from twin.nc.path.synchronous_axes import MOST_MOVES, SynchronousAxes
 
 
 class Path:
@@ -41,7 +39,7 @@ class Path:
         self._compensation: Compensation | None = None
         self._leading_out: LeadOut | None = None
         self._loops: Loops | None = None
-        self._even: EvenAxes | None = None
+        self._synchronous: SynchronousAxes | None = None
         self.position = start
 
     def __len__(self) -> int:
@@ -56,8 +54,8 @@ class Path:
         self._flush()
         self.end_compensation()
         self.keep_loops()
-        if self._even is not None:
-            self._even.finish()
+        if self._synchronous is not None:
+            self._synchronous.finish()
 
     # --- what the control adds
 
@@ -68,24 +66,24 @@ class Path:
         self._before = move
         self._round(move)
 
-    def add_rows(self, moves: Row, events: EventRows, gone: CompensationResult) -> None:
+    def add_rows(self, moves: Row, events: EventRows, result: CompensationResult) -> None:
         """Moves as columns: of a path that was handed over, as compensation has let them go.
 
         Args:
             moves: Moves that are driven.
             events: Those between them; ``before`` counts from the first of them.
-            gone: How far compensation has come.
+            result: How far compensation has come.
         """
         self._columns.add_event_rows(events)
         if len(moves.codes):
             self._columns.add_rows(*moves)
             self.position = moves.positions[-1, 1].tolist()
-        self._resume(gone)
+        self._resume(result)
 
     @property
-    def hands_over(self) -> bool:
+    def transferable(self) -> bool:
         """No stage but compensation holds or changes moves, and nothing waits for a move's end."""
-        if self._spline or self._rounding or self._loops or self._even:
+        if self._spline or self._rounding or self._loops or self._synchronous:
             return False
         compensation, leading = self._compensation, self._leading_out
         if compensation is not None:
@@ -93,34 +91,34 @@ class Path:
         return leading is None or leading.plane.name in PLANE_NAMES
 
     @property
-    def followed(self) -> Followed | None:
+    def compensation_state(self) -> CompensationState | None:
         """How far compensation has come, or None."""
         if self._compensation is not None:
-            return self._compensation.followed
-        return None if self._leading_out is None else self._leading_out.followed
+            return self._compensation.state
+        return None if self._leading_out is None else self._leading_out.state
 
-    def _resume(self, gone: CompensationResult) -> None:
-        """Compensation has gone on by itself."""
-        if gone.came:
-            self._before = gone.before
+    def _resume(self, result: CompensationResult) -> None:
+        """Compensation has result on by itself."""
+        if result.came:
+            self._before = result.before
         self._compensation = self._leading_out = None
-        followed = gone.followed
-        if followed is None:
+        state = result.state
+        if state is None:
             return
-        if followed.stage is Stage.LEADING_OUT:
-            assert followed.contour is not None
+        if state.stage is Stage.LEADING_OUT:
+            assert state.contour is not None
             self._leading_out = LeadOut(
-                followed.plane, followed.contour, followed.aside, followed.indirect
+                state.plane, state.contour, state.signed_offset, state.indirect
             )
             return
-        side, radius = math.copysign(1.0, followed.aside), abs(followed.aside)
+        side, radius = math.copysign(1.0, state.signed_offset), abs(state.signed_offset)
         self.start_compensation(
-            followed.plane, side, radius, square=followed.square, indirect=followed.indirect
+            state.plane, side, radius, square=state.square, indirect=state.indirect
         )
         compensation = self._compensation
         assert compensation is not None
-        compensation.resume(followed)
-        for each in gone.waiting:
+        compensation.resume(state)
+        for each in result.waiting:
             if isinstance(each, Segment):
                 compensation.wait(each)
             else:
@@ -280,17 +278,17 @@ class Path:
     def go_evenly(self, axis: int) -> None:
         """From now on the axis of this column goes evenly over the moves that follow."""
         self._flush()
-        if self._even is None:
-            self._even = EvenAxes(self._columns.add)
-        self._even.begin(axis)
+        if self._synchronous is None:
+            self._synchronous = SynchronousAxes(self._columns.add)
+        self._synchronous.begin(axis)
 
     def go_as_programmed(self, axis: int) -> None:
         """It has arrived, and goes with each move again."""
-        if self._even is not None:
+        if self._synchronous is not None:
             self._flush()
-            self._even.end(axis)
-            if self._even.idle:
-                self._even = None
+            self._synchronous.end(axis)
+            if self._synchronous.idle:
+                self._synchronous = None
 
     def _emit(self, move: Segment) -> None:
         if move.center is None and move.start == move.end:
@@ -302,9 +300,9 @@ class Path:
             self._loops.add(move)
 
     def _out(self, move: Segment) -> None:
-        if self._even is None:
+        if self._synchronous is None:
             self._columns.add(move)
-        elif not self._even.add(move):
+        elif not self._synchronous.add(move):
             message = f"an axis cannot go evenly over more than {MOST_MOVES} moves"
             self._refuse(move, "even-axis", message)
 
@@ -315,7 +313,7 @@ class Path:
             self._loops.event(lambda: self._report(happen))
 
     def _report(self, happen: Callable[[MoveColumns], None]) -> None:
-        if self._even is None:
+        if self._synchronous is None:
             happen(self._columns)
         else:
-            self._even.event(lambda: happen(self._columns))
+            self._synchronous.event(lambda: happen(self._columns))

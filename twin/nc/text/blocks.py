@@ -7,6 +7,13 @@ from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.text.expressions import Expression
 
 
+class Location(NamedTuple):
+    """Where a block stands in a program: its line, from 0, and its part of the line, from 0."""
+
+    line: int
+    part: int
+
+
 class Word(NamedTuple):
     """An address with its value.
 

@@ -2,16 +2,16 @@
 
 import re
 
-from twin.nc.control.dialect import Dialect
 from twin.nc.text.expression_reader import ExpressionReader, operator_pattern
 from twin.nc.text.expressions import NUMBER, ExpressionSyntax
+from twin.nc.text.syntax import Language
 
 
 class Grammar:
     """What reading a line needs, made once per dialect and program.
 
     Attributes:
-        dialect: Whose syntax it is.
+        language: Whose syntax it is.
         syntax: Its declaration.
         word: An address with a plain number and, where the dialect has it, the incremental suffix.
         address: An address alone.
@@ -21,9 +21,9 @@ class Grammar:
         unfinished: The end of a text that a bracket must follow as a value, or None.
     """
 
-    def __init__(self, dialect: Dialect) -> None:
-        syntax = dialect.syntax
-        self.dialect = dialect
+    def __init__(self, language: Language) -> None:
+        syntax = language.syntax
+        self.language = language
         self.syntax = syntax
         self.reader = ExpressionReader(syntax.expressions) if syntax.expressions else None
         continues = "[0-9.]"

@@ -1,12 +1,12 @@
 """From a line of text to blocks of words, by a dialect's syntax."""
 
-from twin.nc.control.dialect import Dialect
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.expression_reader import ExpressionReader
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.line_reader import LineReader
 from twin.nc.text.reporter import Reporter
+from twin.nc.text.syntax import Language
 
 LONGEST_LINE = 65_536
 """Characters of a line: far beyond any control's block, so that one line cannot eat the memory."""
@@ -15,8 +15,8 @@ LONGEST_LINE = 65_536
 class Lexer:
     """Reads the lines of programs in one dialect."""
 
-    def __init__(self, dialect: Dialect, report: Reporter) -> None:
-        self._grammar = Grammar(dialect)
+    def __init__(self, language: Language, report: Reporter) -> None:
+        self._grammar = Grammar(language)
         self._report = report
 
     @property

@@ -200,7 +200,7 @@ class LineReader:
     def _refuse_value(self, begin: int, error: ExpressionError) -> NoReturn:
         name = _NAME.match(self._line, begin)
         if name is not None and error.code == "unknown-function":
-            message = f"'{name[0]}' is no word of {self._grammar.dialect.name}"
+            message = f"'{name[0]}' is no word of {self._grammar.language.name}"
             hint = f"a value is a number, a variable or a function; {self._comments()}"
             self._fail("unknown-word", message, begin, width=len(name[0]), hint=hint)
         column = begin if error.column is None else min(error.column, len(self._line) - 1)
@@ -249,14 +249,14 @@ class LineReader:
             self._fail("foreign-letter", message, at, hint=hint)
         statement = _STATEMENT.match(self._line, at)
         if statement is not None and self._grammar.statement is not None:
-            known = ", ".join(self._grammar.dialect.statements)
-            message = f"'{statement[0]}' is no statement of {self._grammar.dialect.name}"
+            known = ", ".join(self._grammar.language.statements)
+            message = f"'{statement[0]}' is no statement of {self._grammar.language.name}"
             self._fail(
                 "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"
             )
         if address is not None:
             self._refuse_missing_value(address)
-        message = f"'{character}' begins no word of {self._grammar.dialect.name}"
+        message = f"'{character}' begins no word of {self._grammar.language.name}"
         self._fail("unreadable", message, at, hint=self._hint_for(character))
 
     def _refuse_missing_value(self, address: re.Match[str]) -> NoReturn:

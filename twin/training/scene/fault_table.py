@@ -13,6 +13,15 @@ FAULT_KINDS: tuple[FaultKind, ...] = (
     "friction", "backlash", "dull_drive", "lost_offset", "alarm",
 )  # fmt: skip
 
+FAULT_DEFAULTS: dict[FaultKind, tuple[float, str, str]] = {
+    "friction": (1500.0, "N", "N m"),
+    "backlash": (0.05, "mm", "deg"),
+    "dull_drive": (0.4, "", ""),
+    "lost_offset": (2.0, "mm", "deg"),
+    "alarm": (0.0, "", ""),
+}
+"""What a fault is offered with: its value, and its unit for a linear and for a rotary axis."""
+
 
 class FaultTable(Table):
     """One fault.

@@ -2,6 +2,7 @@
 
 import functools
 from pathlib import Path
+from typing import Any
 
 from twin.files.toml import Table, read_toml
 from twin.training.scene.texts import Language
@@ -42,6 +43,11 @@ class Words:
     def __getitem__(self, key: str) -> str:
         """A label."""
         return self._labels[key]
+
+    def as_data(self) -> dict[str, Any]:
+        """Labels and alarms as plain data, for a page."""
+        alarms = {code: words.model_dump() for code, words in self._alarms.items()}
+        return {"labels": self._labels, "alarms": alarms}
 
     def alarm(self, code: str) -> AlarmWords:
         """What an alarm is called; one without words is called by its code."""

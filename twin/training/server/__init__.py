@@ -1,1 +1,1 @@
-"""The server: its doors and its page."""
+"""The server: the machine's thread, what pages are sent, who may do what."""

@@ -1,73 +1,49 @@
-"""From a scene to a page, and the files that are left of it."""
+"""From a scene to its pages, and the files that are left of it."""
 
 import contextlib
-import secrets
-import ssl
-import tempfile
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 
-from mujoco.studio import messages, viewer_handle
-
-from twin.nc.iso.jogging import jog_block
-from twin.training.panel.panel import Panel
-from twin.training.panel.studio import PanelPlugin, RoomPlugin
 from twin.training.scene.scene_file import Scene
-from twin.training.scene.texts import Language, in_language
+from twin.training.scene.texts import Language
 from twin.training.scene.vocabulary import Words
-from twin.training.server.gate import LOOPBACK, Gate
-from twin.training.server.page import open_page
-from twin.training.server.studio_files import own_files
+from twin.training.server.app import ROLES, RoomApp
+from twin.training.server.driver import Driver
 from twin.training.session.score import SheetWriter
 from twin.training.session.session import Session
-
-_EXAMPLE = (10.0, 600.0)
-"""Way [mm] and feed [mm/min] of the block that the empty MDI line shows."""
-_TOKEN_BYTES = 12
-"""Length of the trainer's token, made anew for every session."""
+from twin.web.doorkeeper import Doorkeeper
+from twin.web.files import require_three
+from twin.web.guard import Guard
+from twin.web.server import LOOPBACK, WebServer
 
 
 class OpenRoom:
-    """A room that is open to the operator.
+    """A room that is open.
 
     Attributes:
         session: What is played.
         driver: Lets its time go on.
-        shown: Shows it.
-        handle: Studio's side of it.
-        gate: Where browsers come in.
-        trainer_gate: Where the trainer's browser comes in; None where there is no trainer.
+        app: What its pages are served.
+        addresses: By role; each has a token of its own.
         folder: Where log and score sheet lie; None for nowhere.
     """
 
     def __init__(
-        self,
-        session: Session,
-        driver: RoomPlugin,
-        shown: PanelPlugin,
-        handle: viewer_handle.ViewerHandle,
-        gate: Gate,
-        trainer_gate: Gate | None,
-        folder: Path | None,
+        self, driver: Driver, app: RoomApp, addresses: dict[str, str], folder: Path | None
     ) -> None:
-        self.session = session
+        self.session = driver.session
         self.driver = driver
-        self.shown = shown
-        self.handle = handle
-        self.gate = gate
-        self.trainer_gate = trainer_gate
+        self.app = app
+        self.addresses = addresses
         self.folder = folder
-        self._over = threading.Event()
 
     def serve(self) -> None:
         """Let time go on until Ctrl+C is pressed or the room is stopped."""
-        while not self._over.is_set() and self.handle.is_running():
-            self.handle.sync()
+        self.driver.serve()
 
     def stop(self) -> None:
         """End ``serve``, which runs on another thread, after the slice of time that it is at."""
-        self._over.set()
+        self.driver.stop()
 
 
 @contextlib.contextmanager
@@ -77,68 +53,43 @@ def open_room(
     language: Language | None = None,
     host: str = LOOPBACK,
     port: int = 0,
-    token: str = "",
-    tls: ssl.SSLContext | None = None,
-    trainer: bool = False,
-    plain: bool = False,
+    certificate: Path | None = None,
+    key: Path | None = None,
     out: Path | None = None,
 ) -> Iterator[OpenRoom]:
     """Open the training room for a scene.
 
     Args:
         scene: The scene.
-        language: Of the panel; the scene's by default.
-        host: Where the page's gate listens.
+        language: Of the pages; the scene's by default.
+        host: Where the server listens.
         port: Its port; 0: the first free one.
-        token: What a browser must know.
-        tls: Certificate for https.
-        trainer: There is a trainer, with an address of their own.
-        plain: Draw plainly, for computers without a graphics card.
+        certificate: For https.
+        key: Of the certificate.
         out: Folder for log and score sheet; none: none are written.
 
     Raises:
         TwinError: The scene does not fit its machine, the port is taken.
     """
-    dialect = scene.preparation.dialect
-    words = Words(language or scene.file.language, dialect.name)
+    require_three()
+    server = WebServer(host, port, certificate, key)
+    spoken = language or scene.file.language
     warm_up(scene)
     session = Session(scene)
-    writer = SheetWriter(session, words, out)
-    driver = RoomPlugin(session, plain=plain, changed=writer.write)
-    title = f"{in_language(scene.file.title, words.language)} - {words['title']}"
-    with contextlib.ExitStack() as stack:
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="twin-train-")))
-        stack.enter_context(own_files(folder))
-        inside = folder / "studio.sock"
-        gate = Gate(inside, host=host, port=port, token=token, tls=tls)
-        trainer_gate = None
-        if trainer:
-            own = secrets.token_urlsafe(_TOKEN_BYTES)
-            trainer_gate = Gate(inside, host=host, token=own, tls=tls)
-        gates = [each for each in (gate, trainer_gate) if each is not None]
-
-        def trainer_has_panel() -> bool:
-            return trainer_gate is not None and trainer_gate.has_panel and not gate.has_panel
-
-        shown = PanelPlugin(
-            Panel(scene.file, words, jog_block(dialect, "X", *_EXAMPLE)),
-            driver.display,
-            scene.file.picture.camera,
-            plain=plain,
-            trainer=trainer_has_panel,
-            wake=driver.wake,
-        )
-        handle = open_page(
-            title, [shown, driver], inside, lambda: sum(each.heard for each in gates)
-        )
-        for each in gates:
-            stack.enter_context(each)
-        stack.enter_context(handle)
-        handle.dispatch(messages.LoadModelEvent(path=""))
-        try:
-            yield OpenRoom(session, driver, shown, handle, gate, trainer_gate, writer.folder)
-        finally:
-            writer.write(session)
+    writer = SheetWriter(session, Words(spoken, scene.preparation.dialect.name), out)
+    driver = Driver(session, writer.changed)
+    driver.trouble = writer.trouble
+    app = RoomApp(driver, spoken)
+    doorkeeper = Doorkeeper(ROLES, server.port)
+    addresses = {
+        role: f"{server.origin}/{role}/#{token}" for role, token in doorkeeper.tokens.items()
+    }
+    server.start(Guard(app.asgi, doorkeeper, local=server.local))
+    try:
+        yield OpenRoom(driver, app, addresses, writer.folder)
+    finally:
+        server.stop()
+        writer.close()
 
 
 def warm_up(scene: Scene) -> None:

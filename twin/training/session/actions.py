@@ -7,10 +7,10 @@ import numpy as np
 
 from twin.errors import UsageError
 from twin.nc.functions import SpindleState
-from twin.nc.iso.jogging import jog_block
+from twin.nc.iso.base import jog_block
 from twin.nc.text.source import source_from_text
 from twin.training.session import commands as c
-from twin.training.session.faults import inject
+from twin.training.session.faults import forget_offset, inject, repair
 from twin.training.session.room import Room
 from twin.units import SECONDS_PER_MINUTE
 
@@ -39,7 +39,7 @@ def _cycle_start(room: Room, _command: c.CycleStart) -> None:
     if room.waiting:
         room.go_on()
     elif room.run is not None:
-        room.run.motion.start()
+        room.run.start()
     elif room.mode == "jog":
         raise UsageError("cycle start does nothing in manual jog")
     elif room.mode == "mdi":
@@ -54,7 +54,7 @@ def _cycle_start(room: Room, _command: c.CycleStart) -> None:
 def _feed_hold(room: Room, _command: c.FeedHold) -> None:
     if room.run is None:
         raise UsageError("nothing runs")
-    room.run.motion.hold()
+    room.run.hold()
     room.judge.note_hold(room)
 
 
@@ -150,11 +150,13 @@ def _set_zero(room: Room, command: c.SetZero) -> None:
     stands = float(room.machine.position[column])
     longer = float((room.tables.program_zero - room.tables.zero)[column])
     room.tables.zero[column] = stands - command.reading - longer
+    forget_offset(room, command.axis)
 
 
 def _set_offset(room: Room, command: c.SetOffset) -> None:
     _require_no_run(room)
     room.tables.zero[_column(room, command.axis)] = command.value
+    forget_offset(room, command.axis)
 
 
 def _set_tool(room: Room, command: c.SetTool) -> None:
@@ -179,7 +181,7 @@ def _inject(room: Room, command: c.Inject) -> None:
 
 
 def _repair(room: Room, _command: c.Repair) -> None:
-    room.machine.repair()
+    repair(room)
 
 
 def _require_no_alarm(room: Room) -> None:

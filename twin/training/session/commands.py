@@ -174,13 +174,48 @@ class Repair(Table):
     do: Literal["repair"] = "repair"
 
 
+class Freeze(Table):
+    """Trainer: let time stand still."""
+
+    do: Literal["freeze"] = "freeze"
+
+
+class Unfreeze(Table):
+    """Trainer: let time go on."""
+
+    do: Literal["go_on"] = "go_on"
+
+
+class Rewind(Table):
+    """Trainer: take the machine back; time stands still then."""
+
+    do: Literal["rewind"] = "rewind"
+    seconds: Annotated[float, Field(gt=0, le=1e6)]
+    """How far, in machine time [s]."""
+
+
+class StartReplay(Table):
+    """Trainer: show the session again."""
+
+    do: Literal["replay"] = "replay"
+
+
+class EndReplay(Table):
+    """Trainer: come back from a replay to the present."""
+
+    do: Literal["end_replay"] = "end_replay"
+
+
+SessionCommand = Freeze | Unfreeze | Rewind | StartReplay | EndReplay
+"""What is done to the session's time and not to its machine."""
+
 Command = (
     SelectMode | CycleStart | FeedHold | Reset | EmergencyStop | Override | Jog | JogStop | Enter
     | Edit | Spindle | Coolant | SetZero | SetOffset | SetTool | Answer | Hint | Finish | Inject
-    | Repair
+    | Repair | SessionCommand
 )  # fmt: skip
 
-TRAINERS = (Inject, Repair)
+TRAINERS = (Inject, Repair, Freeze, Unfreeze, Rewind, StartReplay, EndReplay)
 """Commands that are a trainer's alone."""
 
 _ADAPTER: pydantic.TypeAdapter[Command] = pydantic.TypeAdapter(

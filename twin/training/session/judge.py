@@ -120,7 +120,7 @@ class Judge:
         """Check every open task against the machine as it stands after a slice."""
         if self.over:
             return
-        if room.run is not None and room.running == "program" and room.run.motion.held:
+        if room.run is not None and room.running == "program" and room.run.held:
             self._note_single(room)
             if self._hold_line and not room.moving:
                 self.evidence.held.add(self._hold_line)

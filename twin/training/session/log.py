@@ -1,9 +1,9 @@
 """The log of a session, and living it again: the same commands at the same ticks."""
 
 import dataclasses
+from collections.abc import Sequence
 from typing import Any, Literal
 
-from twin.training.scene.scene_file import Scene
 from twin.training.session.actions import carry_out
 from twin.training.session.commands import command_from
 from twin.training.session.room import SLICE, Room
@@ -19,7 +19,7 @@ class Entry:
         tick: Servo periods since the beginning.
         who: Who did it.
         command: What, as plain data.
-        refusal: Why the machine did not do it; empty when it did.
+        refusal: Why it was not done; empty when it was.
     """
 
     tick: int
@@ -36,16 +36,16 @@ class Replay:
         over: It has come to where the session had come to.
     """
 
-    def __init__(self, scene: Scene, log: list[Entry], tick: int) -> None:
-        """Go back to the beginning.
+    def __init__(self, room: Room, entries: Sequence[Entry], tick: int) -> None:
+        """Go back.
 
         Args:
-            scene: The session's scene.
-            log: What was done.
-            tick: How far it had come.
+            room: The machine as it was at the beginning, or later.
+            entries: What was done to the machine since then.
+            tick: How far to go.
         """
-        self.room = Room(scene)
-        self._log = list(log)
+        self.room = room
+        self._entries = [entry for entry in entries if entry.tick <= tick]
         self._given = 0
         self._end = tick
 
@@ -58,8 +58,8 @@ class Replay:
         """Go on by machine time [s], to the end at most."""
         room = self.room
         goal = min(self._end, room.tick + SLICE * round(seconds / room.slice_s))
-        while self._given < len(self._log) and self._log[self._given].tick <= goal:
-            entry = self._log[self._given]
+        while self._given < len(self._entries) and self._entries[self._given].tick <= goal:
+            entry = self._entries[self._given]
             room.advance((entry.tick - room.tick) // SLICE)
             if not entry.refusal:
                 carry_out(room, command_from(entry.command))
@@ -67,18 +67,18 @@ class Replay:
         room.advance((goal - room.tick) // SLICE)
 
 
-def relive(scene: Scene, log: list[Entry], tick: int) -> Room:
+def relive(room: Room, entries: Sequence[Entry], tick: int) -> Room:
     """Live a session again.
 
     Args:
-        scene: Its scene.
-        log: What was done.
+        room: The machine as it was at the beginning, or later.
+        entries: What was done to the machine since then.
         tick: How far to go.
 
     Returns:
         The room as it was at that tick.
     """
-    replay = Replay(scene, log, tick)
+    replay = Replay(room, entries, tick)
     while not replay.over:
         replay.advance(1.0)
     return replay.room

@@ -4,6 +4,7 @@ from typing import Protocol
 
 from twin.machine.live import LiveMachine
 from twin.recording.reader import Samples
+from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.modes import Mode
 from twin.training.scene.scene_file import Scene
 from twin.training.session.notice import Notice
@@ -24,6 +25,7 @@ class Observed(Protocol):
     running: str
     alarm: Notice | None
     samples: Samples
+    faults: list[FaultTable]
 
     @property
     def time_s(self) -> float:

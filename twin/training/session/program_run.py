@@ -2,14 +2,17 @@
 
 The program is interpreted block by block. It is cut into parts where an operator or the control
 has to do something before the axes go on: a program stop, a tool change, an error. The axes rest at
-such places anyway, so that each part can be planned on its own.
+such places anyway, so that each part can be planned on its own. It is interpreted ahead of the
+axes, a bounded number of blocks in each slice of time, so that a program that loops for ever keeps
+nobody waiting. All that was asked of a run is noted, so that it can be copied at any moment.
 """
 
 import bisect
 import dataclasses
 import math
+from collections import deque
 from collections.abc import Iterator
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -19,8 +22,8 @@ from twin.machine.travel import soft_limit_alarm
 from twin.motion.live.live_motion import LiveMotion
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves
-from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
+from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import PROGRAM_STOPS, TOOL_CHANGE
 from twin.nc.text.blocks import Block
@@ -29,6 +32,15 @@ from twin.nc.text.source import Source
 
 MOVES_AT_ONCE = 256
 """Moves that are interpreted before the planner hears of them."""
+CHUNKS_AHEAD = 4
+"""Groups of so many moves that are interpreted ahead of the planner."""
+BLOCKS_AT_REST, BLOCKS_IN_MOTION = 200, 50
+"""Blocks that are interpreted in one slice of time, before the axes move and while they do."""
+BLOCKS_WITHOUT_MOVE = 3000
+"""Blocks without a move after which a run gives up whose axes wait for the next one."""
+
+MADE_AGAIN_AT_ONCE = 100
+"""Slices that a copied run is planned by when it is made again."""
 
 LARGEST_OVERRIDE = 1.2
 """Factor at the end of the feed override dial."""
@@ -57,7 +69,6 @@ class ProgramRun:
     """One run of a program.
 
     Attributes:
-        motion: The part that is being driven.
         ending: Why the present part ends; known once it has been interpreted to its end.
         message: What there is to say of an ending by error.
         tool: The tool that a tool change asks for.
@@ -85,9 +96,11 @@ class ProgramRun:
         Raises:
             ProgramError: The program cannot be begun.
         """
+        self._recipe = (source, dialect, settings, machine, soft_limits)
+        self._journal: list[tuple[Any, ...]] = []
         self._machine = machine
         self._limits = motion_limits(machine)
-        self._control = Control(dialect, settings, source)
+        self._control = Executor(dialect, settings, source)
         self._control.prepare()
         self._soft_limits = soft_limits
         self.dropped = False
@@ -95,8 +108,27 @@ class ProgramRun:
         self.ending_line = 0
         self.message = ""
         self.tool: int | None = self._control.tools.spindle
-        self._zero = np.zeros(0)
+        self._begin = np.zeros(0), np.zeros(0)
         self._forget()
+
+    def __deepcopy__(self, _memo: dict[int, Any]) -> "ProgramRunCopy":
+        """What is needed to make this run again: planning it anew is cheap, its generators stay."""
+        return ProgramRunCopy(self._recipe, tuple(self._journal))
+
+    @property
+    def begun(self) -> bool:
+        """Whether the present part has moves for the axes."""
+        return self._motion is not None
+
+    @property
+    def held(self) -> bool:
+        """Whether cycle start is waited for."""
+        return self._motion is not None and self._motion.held
+
+    @property
+    def finished(self) -> bool:
+        """Whether the present part has come to its end, or to rest after ``drop``."""
+        return self.dropped if self._motion is None else self._motion.finished
 
     def begin(self, start: FloatArray, zero: FloatArray) -> None:
         """Plan the part that comes next.
@@ -105,19 +137,76 @@ class ProgramRun:
             start: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         """
+        self._journal.append(("begin", start, zero))
         self._forget()
-        self._zero = zero
+        self._begin = start, zero
         self.ending = None
-        self.motion = LiveMotion(
-            self._chunks(),
-            self._limits,
-            period_s=self._machine.file.servo_period_s,
-            part_zero=zero,
-            start=start,
-            largest_override=LARGEST_OVERRIDE,
-        )
+        self._look_ahead()
+
+    def drive(self, count: int, feed: float, rapid: float, *, single: bool) -> Setpoints | None:
+        """The next setpoints; None while the first moves are being interpreted.
+
+        Args:
+            count: How many servo periods.
+            feed: Factor of the feed override.
+            rapid: Factor of the rapid override.
+            single: Whether to stop at the end of every block.
+        """
+        self._note_drive(count, feed, rapid, single)
+        self._look_ahead()
+        motion = self._motion
+        if motion is None:
+            return None
+        motion.feed_override, motion.rapid_override = feed, rapid
+        motion.single_block = single
+        return motion.advance(count)
+
+    def _note_drive(self, count: int, feed: float, rapid: float, single: bool) -> None:
+        settings = (feed, rapid, single)
+        last = self._journal[-1]
+        if last[0] == "drive" and last[2:] == (count, *settings):
+            self._journal[-1] = ("drive", last[1] + 1, count, *settings)
+        else:
+            self._journal.append(("drive", 1, count, *settings))
+
+    def hold(self) -> None:
+        """Stop on the path until ``start``."""
+        self._journal.append(("hold",))
+        if self._motion is not None:
+            self._motion.hold()
+
+    def start(self) -> None:
+        """Go on after a hold or at the end of a single block."""
+        self._journal.append(("start",))
+        if self._motion is not None:
+            self._motion.start()
+
+    def drop(self) -> None:
+        """Come to rest on the path, and forget the rest."""
+        self._journal.append(("drop",))
+        self.dropped = True
+        if self._motion is not None:
+            self._motion.reset()
+
+    def _look_ahead(self) -> None:
+        """Interpret some blocks more; the axes can go once there are moves."""
+        most = BLOCKS_AT_REST if self._motion is None else BLOCKS_IN_MOTION
+        if self.ending is None and len(self._waiting) < CHUNKS_AHEAD:
+            self._interpret(most)
+        if self._motion is None and self._waiting:
+            start, zero = self._begin
+            self._motion = LiveMotion(
+                self._chunks(),
+                self._limits,
+                period_s=self._machine.file.servo_period_s,
+                part_zero=zero,
+                start=start,
+                largest_override=LARGEST_OVERRIDE,
+            )
 
     def _forget(self) -> None:
+        self._motion: LiveMotion | None = None
+        self._waiting: deque[Chunk] = deque()
         self._count = 0
         self._marks: list[int] = []
         self._modal: list[ModalState] = []
@@ -126,32 +215,27 @@ class ProgramRun:
         self._firsts: list[int] = []
 
     def _chunks(self) -> Iterator[Chunk]:
-        while self.ending is None:
-            chunk = self._next_chunk()
-            alarm = None
-            if self._soft_limits:
-                alarm = soft_limit_alarm(self._machine, chunk.moves, self._zero)
-            if alarm is not None:
-                outside = int(np.flatnonzero(chunk.moves.line == alarm.line)[0])
-                chunk = Chunk(chunk.moves[:outside], ())
-                self.ending, self.message = "soft-limit", alarm.message
-                self.ending_line = alarm.line
-            self._functions += [
-                (self._count + event.before, event)
-                for event in chunk.events
-                if isinstance(event, Function)
-            ]
-            self._firsts.append(self._count)
-            self._moves.append(chunk.moves)
-            self._count += len(chunk.moves)
-            yield chunk
+        """What the planner pulls; where it is quicker than the interpreter, it waits a little."""
+        while True:
+            if not self._waiting and self.ending is None:
+                self._interpret(BLOCKS_WITHOUT_MOVE)
+            if not self._waiting and self.ending is None:
+                self._finish_chunk(self._control.path.take())
+                if not len(self._waiting[-1].moves):
+                    self.ending = "program"
+                    self.message = f"endless-program: {BLOCKS_WITHOUT_MOVE} blocks without a move"
+            if not self._waiting:
+                return
+            yield self._waiting.popleft()
 
-    def _next_chunk(self) -> Chunk:
-        """Interpret until there are enough moves, or a place at which the part ends."""
+    def _interpret(self, most: int) -> None:
+        """Interpret at most so many blocks, until there are enough moves or the part ends."""
         control = self._control
+        enough = False
         try:
-            while len(control.path) < MOVES_AT_ONCE and self.ending is None:
-                block = None if control.ended else control.flow.next()
+            while most > 0 and not enough and self.ending is None:
+                most -= 1
+                block = None if control.ended else control.program_counter.next()
                 if block is None:
                     control.finish()
                     self.ending = "end"
@@ -160,11 +244,33 @@ class ProgramRun:
                 control.run(block)
                 self._note(block)
                 self._look_for_stop(block)
+                enough = len(control.path) >= MOVES_AT_ONCE
         except ProgramError as error:
             diagnostic = error.diagnostic
             self.ending, self.message = "program", f"{diagnostic.code}: {diagnostic.message}"
             self.ending_line = diagnostic.line
-        return control.path.take()
+        if enough or self.ending is not None:
+            self._finish_chunk(control.path.take())
+
+    def _finish_chunk(self, chunk: Chunk) -> None:
+        """Hand moves on to the planner, up to the first one that would leave the travel."""
+        alarm = None
+        if self._soft_limits:
+            alarm = soft_limit_alarm(self._machine, chunk.moves, self._begin[1])
+        if alarm is not None:
+            outside = int(np.flatnonzero(chunk.moves.line == alarm.line)[0])
+            chunk = Chunk(chunk.moves[:outside], ())
+            self.ending, self.message = "soft-limit", alarm.message
+            self.ending_line = alarm.line
+        self._functions += [
+            (self._count + event.before, event)
+            for event in chunk.events
+            if isinstance(event, Function)
+        ]
+        self._firsts.append(self._count)
+        self._moves.append(chunk.moves)
+        self._count += len(chunk.moves)
+        self._waiting.append(chunk)
 
     def _note(self, block: Block) -> None:
         control = self._control
@@ -181,15 +287,12 @@ class ProgramRun:
         if self.ending is not None:
             self.ending_line = block.line
 
-    def drop(self) -> None:
-        """Come to rest on the path, and forget the rest."""
-        self.dropped = True
-        self.motion.reset()
-
     def passed(self, setpoints: Setpoints) -> list[Function]:
         """The functions that have happened since the last call."""
-        place = math.inf if self.motion.finished else -1.0
-        if len(setpoints) and not self.motion.finished:
+        if self._motion is None:
+            return []
+        place = math.inf if self.finished else -1.0
+        if len(setpoints) and not self.finished:
             place = int(setpoints.move[-1]) + float(setpoints.fraction[-1])
         happened = [function for move, function in self._functions if move + function.at <= place]
         del self._functions[: len(happened)]
@@ -217,3 +320,33 @@ class ProgramRun:
             return None
         chunk = bisect.bisect_right(self._firsts, move) - 1
         return self._moves[chunk], move - self._firsts[chunk]
+
+
+@dataclasses.dataclass(frozen=True)
+class ProgramRunCopy:
+    """A run that was copied and can be made again.
+
+    Attributes:
+        recipe: What the run was made of.
+        journal: What was asked of it, in order.
+    """
+
+    recipe: tuple[Source, Dialect, ControlSettings, Machine, bool]
+    journal: tuple[tuple[Any, ...], ...]
+
+    def made_again(self) -> ProgramRun:
+        """The run as it was when it was copied."""
+        source, dialect, settings, machine, soft_limits = self.recipe
+        run = ProgramRun(source, dialect, settings, machine, soft_limits=soft_limits)
+        for what, *given in self.journal:
+            if what == "drive":
+                times, count, feed, rapid, single = given
+                while times:
+                    together = min(times, MADE_AGAIN_AT_ONCE) if run.begun else 1
+                    times -= together
+                    setpoints = run.drive(together * count, feed, rapid, single=single)
+                    if setpoints is not None:
+                        run.passed(setpoints)
+            else:
+                getattr(run, what)(*given)
+        return run

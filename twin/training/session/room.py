@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from twin.cutting.tools import default_cell
 from twin.errors import TwinError, UsageError
+from twin.job.job_file import StockTable, ToolTable
 from twin.machine.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.machine.live import LiveMachine
 from twin.machine.model import spindle_over_table_mm
@@ -20,6 +22,7 @@ from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS, SpindleStat
 from twin.nc.text.source import Source
 from twin.recording.reader import Samples
 from twin.run.placement import part_zero, start_position
+from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.modes import Mode
 from twin.training.scene.scene_file import Scene
 from twin.training.session.faults import inject
@@ -34,6 +37,9 @@ SLICE = 10
 a session that is lived again has its commands, its cuts and its ends at the same borders."""
 STANDSTILL = 0.05
 """Speed below which an axis counts as standing for the panel [mm/s or deg/s]."""
+
+CELLS_ACROSS = 400
+"""Cells of the live stock along its shorter side, at least."""
 
 
 class Room:
@@ -59,6 +65,7 @@ class Room:
         run: The program, MDI block or jog that is being run.
         running: What is being run: ``program``, ``mdi``, ``jog``, or nothing.
         waiting: A program waits at a program stop.
+        faults: What is broken.
         samples: The last slice.
         label: What the screen adds to the position, shape (k,) [mm or deg].
     """
@@ -86,7 +93,7 @@ class Room:
         self.part_frame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
         self.work = None
         if job.stock is not None:
-            self.work = Workpiece(job.stock, job.tools[0], self.part_frame, zero)
+            self.work = Workpiece(_fine(job.stock, job.tools), job.tools[0], self.part_frame, zero)
         self.mode: Mode = file.start.mode
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
@@ -103,6 +110,7 @@ class Room:
         self.tick = 0
         self.samples = self.machine.hold(1)
         self.label = np.zeros(len(stand))
+        self.faults: list[FaultTable] = []
         for fault in file.faults:
             inject(self, fault)
         if file.start.alarm:
@@ -117,7 +125,7 @@ class Room:
     @property
     def held(self) -> bool:
         """Whether cycle start is waited for in the midst of something that runs."""
-        return self.waiting or (self.run is not None and self.run.motion.held)
+        return self.waiting or (self.run is not None and self.run.held)
 
     @property
     def moving(self) -> bool:
@@ -168,11 +176,13 @@ class Room:
     def _setpoints(self, count: int) -> Setpoints:
         if self.run is None or self.waiting:
             return self.machine.setpoint[:0]
-        motion = self.run.motion
-        motion.feed_override = self.feed_override / 100.0
-        motion.rapid_override = self.rapid_override / 100.0
-        motion.single_block = self.running == "program" and self.mode == "single"
-        return motion.advance(count)
+        setpoints = self.run.drive(
+            count,
+            self.feed_override / 100.0,
+            self.rapid_override / 100.0,
+            single=self.running == "program" and self.mode == "single",
+        )
+        return self.machine.setpoint[:0] if setpoints is None else setpoints
 
     def _see(self, part: Samples) -> None:
         """Cut along samples; what must not be cut raises an alarm."""
@@ -233,7 +243,7 @@ class Room:
     def _end_of_part(self) -> None:
         """What comes when the present part of a program has come to its end."""
         run = self.run
-        if run is None or self.waiting or not run.motion.finished:
+        if run is None or self.waiting or not run.finished:
             return
         ending = run.ending
         if run.dropped or self.running == "jog" or ending in (None, "end"):
@@ -243,11 +253,18 @@ class Room:
         elif ending == "stop":
             self.waiting = True
         elif ending == "tool":
-            self.mount(run.tool)
-            self.go_on()
+            self._change_tool(run)
         else:
             assert ending is not None
             self.raise_alarm(ending, run.message, line=run.ending_line)
+
+    def _change_tool(self, run: ProgramRun) -> None:
+        try:
+            self.mount(run.tool)
+        except TwinError as error:
+            self.raise_alarm("program", str(error), line=run.ending_line)
+        else:
+            self.go_on()
 
     def start_run(self, source: Source, what: str) -> None:
         """Interpret and drive a source from where the axes stand.
@@ -339,6 +356,11 @@ class Room:
         if self.work is not None:
             self.work.forgive()
 
+    def fail(self, message: str) -> None:
+        """Something went wrong within the program that simulates: the axes brake, nothing ends."""
+        self.machine.raise_alarm("emergency-stop", message)
+        self.raise_alarm("internal", message)
+
     def _begin_in_alarm(self, code: str) -> None:
         """Begin as the last shift left the machine."""
         message = "the machine was left in this state"
@@ -346,3 +368,9 @@ class Room:
             message = "an axis stands on its limit switch"
             self.machine.raise_alarm("hard-limit", message)
         self.alarm = Notice(code, message, "", 0, 0.0)
+
+
+def _fine(stock: StockTable, tools: tuple[ToolTable, ...]) -> StockTable:
+    """The stock with a grid that is fine enough to be looked at closely."""
+    cell = min(stock.cell or default_cell(tools, stock), min(stock.extent[:2]) / CELLS_ACROSS)
+    return stock.model_copy(update={"cell": cell})

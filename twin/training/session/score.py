@@ -2,6 +2,7 @@
 
 import datetime as dt
 import json
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,9 @@ from twin.version import __version__
 
 LOG_FILE = "log.jsonl"
 SHEET_FILES = ("score.json", "score.html")
+
+WRITTEN_EVERY_S = 1.0
+"""Shortest time between two writings [s]."""
 
 _TEMPLATE = Path(__file__).with_name("score.html.j2")
 
@@ -56,7 +60,7 @@ def score_sheet(session: Session, words: Words) -> dict[str, Any]:
                 "command": entry.command,
                 "refused": entry.refusal,
             }
-            for entry in session.log
+            for entry in tuple(session.log)
         ],
     }
 
@@ -70,7 +74,7 @@ def score_page(sheet: dict[str, Any], words: Words) -> str:
 
 
 class SheetWriter:
-    """Keeps the log and the score sheet of a session on disk."""
+    """Keeps the log and the score sheet of a session on disk, on a thread of its own."""
 
     def __init__(self, session: Session, words: Words, out: Path | None) -> None:
         """Choose a folder of its own for the session.
@@ -80,23 +84,66 @@ class SheetWriter:
             words: Language and control.
             out: Where sessions are kept; None: nothing is written.
         """
+        self._session = session
         self._words = words
-        self._folder: Path | None = None
-        if out is not None:
-            now = dt.datetime.now().astimezone().strftime("%Y-%m-%d_%H%M%S")
-            self._folder = out / f"{session.scene.name}_{now}"
-
-    @property
-    def folder(self) -> Path | None:
-        """Where the files lie."""
-        return self._folder
-
-    def write(self, session: Session) -> None:
-        """Write what there is by now; each file is complete or not there."""
-        if self._folder is None:
+        self._logged = 0
+        self._trouble = ""
+        self.folder: Path | None = None
+        if out is None:
             return
-        sheet = score_sheet(session, self._words)
-        lines = (json.dumps(action, ensure_ascii=False) for action in sheet["actions"])
-        write_text(self._folder / LOG_FILE, "".join(f"{line}\n" for line in lines))
-        write_text(self._folder / "score.json", json.dumps(sheet, ensure_ascii=False, indent=1))
-        write_text(self._folder / "score.html", score_page(sheet, self._words))
+        now = dt.datetime.now().astimezone().strftime("%Y-%m-%d_%H%M%S")
+        self.folder = out / f"{session.scene.name}_{now}"
+        self._due = threading.Event()
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._keep_writing, daemon=True, name="sheet")
+        self._thread.start()
+
+    def changed(self) -> None:
+        """Something was done: the files are due."""
+        if self.folder is not None:
+            self._due.set()
+
+    def trouble(self) -> str:
+        """Why the files could not be written the last time; empty where they were."""
+        return self._trouble
+
+    def close(self) -> None:
+        """Write the last state.
+
+        Raises:
+            OSError: It could not be written.
+        """
+        if self.folder is not None:
+            self._over.set()
+            self._due.set()
+            self._thread.join()
+            self._write(self.folder)
+
+    def _keep_writing(self) -> None:
+        while not self._over.is_set():
+            self._due.wait()
+            self._due.clear()
+            if self.folder is not None and not self._over.is_set():
+                try:
+                    self._write(self.folder)
+                    self._trouble = ""
+                except OSError as error:
+                    self._trouble = f"{self.folder}: {error.strerror or error}"
+                    self._logged = 0
+                    self._due.set()
+                self._over.wait(WRITTEN_EVERY_S)
+
+    def _write(self, folder: Path) -> None:
+        """Write what there is by now: lines are added to the log, the sheet is written anew."""
+        sheet = score_sheet(self._session, self._words)
+        actions = sheet["actions"]
+        log = folder / LOG_FILE
+        lines = [f"{json.dumps(one, ensure_ascii=False)}\n" for one in actions]
+        if self._logged == 0 or not log.is_file():
+            write_text(log, "".join(lines))
+        elif len(lines) > self._logged:
+            with log.open("a", encoding="utf-8") as file:
+                file.writelines(lines[self._logged :])
+        self._logged = len(lines)
+        write_text(folder / "score.json", json.dumps(sheet, ensure_ascii=False, indent=1))
+        write_text(folder / "score.html", score_page(sheet, self._words))

@@ -1,21 +1,29 @@
 """A session: a room, what was done in it and when; it can be frozen, wound back and lived again.
 
-The log is the session: given the scene, the commands at their ticks make the same motion again. So
-going back is living it again up to an earlier tick, and a replay is the same up to the present one.
+The log holds all that was asked for, also what was taken back later. Going back takes a copy of the
+room from a time before and lives the rest again, by the same commands at the same ticks.
 """
 
 import dataclasses
-from typing import Any
+from typing import Any, get_args
 
 from twin.errors import TwinError
 from twin.training.scene.scene_file import Scene
 from twin.training.session.actions import carry_out
+from twin.training.session.checkpoints import Checkpoints
 from twin.training.session.commands import (
     TRAINERS,
     Answer,
     Command,
+    EmergencyStop,
+    EndReplay,
     Finish,
+    Freeze,
     Hint,
+    Rewind,
+    SessionCommand,
+    StartReplay,
+    Unfreeze,
     command_data,
     command_from,
 )
@@ -30,8 +38,9 @@ class Session:
     Attributes:
         scene: The scene.
         room: Its machine.
-        log: Every action, in order.
+        log: Everything that was asked for, in order.
         frozen: Time stands still.
+        replay: What is being shown again; None: the machine itself is seen.
         refusal: Why the last command was refused, empty when it was not.
     """
 
@@ -45,7 +54,10 @@ class Session:
         self.room = Room(scene)
         self.log: list[Entry] = []
         self.frozen = False
+        self.replay: Replay | None = None
         self.refusal = ""
+        self._done: list[Entry] = []
+        self._checkpoints = Checkpoints(self.room)
 
     def submit(self, data: Any, who: Who = "operator") -> bool:
         """Give a command, from anywhere: what is malformed is refused and leaves no other trace.
@@ -55,19 +67,29 @@ class Session:
             who: Who gives it.
 
         Returns:
-            Whether the machine did it.
+            Whether it was done.
         """
         plain: dict[str, Any] = {}
+        tick = self.room.tick
+        command: Command | None = None
         try:
             command = command_from(data)
             plain = command_data(command)
             self._require_allowed(command, who)
-            carry_out(self.room, command)
+            if isinstance(command, get_args(SessionCommand)):
+                self._change_time(command)
+            else:
+                if isinstance(command, EmergencyStop):
+                    self.replay = None
+                carry_out(self.room, command)
             self.refusal = ""
         except TwinError as error:
             self.refusal = str(error)
         if plain:
-            self.log.append(Entry(self.room.tick, who, plain, self.refusal))
+            entry = Entry(tick, who, plain, self.refusal)
+            self.log.append(entry)
+            if not isinstance(command, get_args(SessionCommand)):
+                self._done.append(entry)
         return not self.refusal
 
     def _require_allowed(self, command: Command, who: Who) -> None:
@@ -75,31 +97,46 @@ class Session:
             raise TwinError("only the trainer can do that")
         if self.room.judge.over and isinstance(command, Answer | Finish | Hint):
             raise TwinError("the scene has been handed in already")
+        if self.replay is not None and not isinstance(command, EndReplay | EmergencyStop):
+            raise TwinError("the session is being shown again: end that first")
+
+    def _change_time(self, command: Command) -> None:
+        if isinstance(command, Freeze | Unfreeze):
+            self.frozen = isinstance(command, Freeze)
+        elif isinstance(command, Rewind):
+            self.rewind(command.seconds)
+            self.frozen = True
+        elif isinstance(command, StartReplay):
+            self.replay = Replay(Room(self.scene), self._done, self.room.tick)
+        elif self.replay is None:
+            raise TwinError("nothing is being shown again")
+        else:
+            self.replay = None
 
     def advance(self, slices: int = 1) -> None:
         """Let time go on by slices, unless it is frozen."""
         if not self.frozen:
             self.room.advance(slices)
+            self._checkpoints.note(self.room, len(self._done))
 
     def rewind(self, seconds: float) -> None:
-        """Go back; what was done after that is forgotten.
+        """Go back; what was done after that stays in the log.
 
         Args:
             seconds: How far, in machine time [s].
         """
         back = SLICE * round(seconds / self.room.slice_s)
         tick = max(0, self.room.tick - back)
-        kept = [entry for entry in self.log if entry.tick <= tick]
-        self.room = relive(self.scene, kept, tick)
-        self.log = kept
-        self.refusal = ""
-
-    def replay(self) -> Replay:
-        """What there is to show again."""
-        return Replay(self.scene, self.log, self.room.tick)
+        checkpoint = self._checkpoints.before(tick)
+        self._done = [entry for entry in self._done if entry.tick <= tick]
+        self.room = relive(checkpoint.restored(), self._done[checkpoint.done :], tick)
 
     def snapshot(self) -> Snapshot:
-        """Look at the machine."""
+        """Look at the machine, or at what is being shown again."""
+        replay = self.replay
         return dataclasses.replace(
-            take_snapshot(self.room), frozen=self.frozen, refusal=self.refusal
+            take_snapshot(self.room if replay is None else replay.room),
+            frozen=self.frozen,
+            replaying=replay is not None,
+            refusal=self.refusal,
         )

@@ -6,6 +6,7 @@ import numpy as np
 
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
+from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.modes import Mode
 from twin.training.session.judge import Verdict
 from twin.training.session.notice import Notice
@@ -72,6 +73,7 @@ class Snapshot:
     hints: int
     score: int
     over: bool
+    faults: tuple[FaultTable, ...]
     trail: Row
     """Where the tip is, seen from the part, X Y Z [mm]."""
     frozen: bool = False
@@ -128,6 +130,7 @@ def take_snapshot(room: Room) -> Snapshot:
         hints=room.judge.hints,
         score=room.judge.score,
         over=room.judge.over,
+        faults=tuple(room.faults),
         trail=_row(tip),
     )
 

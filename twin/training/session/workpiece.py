@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
-from twin.cutting.cut import Cutter
+from twin.cutting.cut import Cutter, Rectangle, union
 from twin.cutting.height_map import BoolArray, HeightMap
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
-from twin.run.stock_alarm import stock_alarm
+from twin.run.machining import stock_alarm
 from twin.toolpath.part_frame import PartFrame
 
 CONTACT_MM = 0.02
@@ -22,7 +22,6 @@ class Workpiece:
 
     Attributes:
         removed: Material taken off so far [mm³].
-        version: Grows whenever the stock changes.
     """
 
     def __init__(
@@ -38,7 +37,7 @@ class Workpiece:
         self._zero = zero
         self._cutter = Cutter(stock, tool, part_frame, zero, halts=True)
         self.removed = 0.0
-        self.version = 0
+        self._changed: Rectangle = (0, 0, 0, 0)
 
     @property
     def map(self) -> HeightMap:
@@ -64,13 +63,19 @@ class Workpiece:
         """
         removed = self._cutter.add(tips, rapid, standing)
         self.removed += removed
-        self.version += removed > 0.0
+        if removed > 0.0:
+            self._changed = union(self._changed, self._cutter.changed)
         for event in self._cutter.events():
             if event.what in ("holder", "shank"):
                 message = f"the {event.what} meets the stock, {event.depth_mm:.2f} mm deep"
                 return Alarm("collision", event.line, event.time_s, "", message)
         halted = self._cutter.halted
         return None if halted is None else stock_alarm(halted, self._cutter.tool)
+
+    def take_changed(self) -> Rectangle:
+        """Cells that have changed since the last call; none when the rows end before they begin."""
+        changed, self._changed = self._changed, (0, 0, 0, 0)
+        return changed
 
     def forgive(self) -> None:
         """An alarm has been cleared: only what comes from now on counts."""

@@ -15,10 +15,10 @@ from twin.nc.compiled.kernels.gouge import crosses_passed, gouges, pass_by
 from twin.nc.compiled.kernels.leads import lead_in, lead_out, take_lead
 from twin.nc.compiled.kernels.lookahead import (
     curve_of,
+    flush_lookahead,
     go_around,
     hold_events,
     hold_move,
-    let_go,
     set_curve,
     take_move,
 )
@@ -28,6 +28,7 @@ from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
 from twin.nc.path.compensation import LARGEST_SQUARE, STRAIGHT_ON
+from twin.nc.path.compensation_state import Stage
 from twin.nc.path.contour_registers import (
     CONTOUR,
     ELEMENT,
@@ -41,7 +42,6 @@ from twin.nc.path.contour_registers import (
     WAITING,
     Contour,
 )
-from twin.nc.path.followed import Stage
 from twin.nc.path.segments import IN_PLANE
 
 for _shared in (
@@ -53,7 +53,7 @@ for _shared in (
     curves.leaves_room,
     curves.moved,
     curves.towards,
-    curves.aside_of,
+    curves.parallel_of,
     curves.along,
     curves.within,
     curves.cut,
@@ -120,10 +120,10 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
         if sense < IN_PLANE:
             return BAILOUT
         curve = (True, start, end, center, value[6] * sense)
-    aside = contour.aside[0]
-    if not curves.leaves_room(curve, aside):
+    signed_offset = contour.signed_offset[0]
+    if not curves.leaves_room(curve, signed_offset):
         return BAILOUT
-    element = curves.aside_of(curve, aside)
+    element = curves.parallel_of(curve, signed_offset)
     if stage == _LEADING_IN:
         return lead_in(curve, element, row, first_event, early, behind, contour, rows)
     return _go_on(curve, element, row, first_event, early, behind, contour, rows)
@@ -166,29 +166,35 @@ def _go_on(
     rows: Rows,
 ) -> int:
     """The contour's next element, with its parallel: as ``lead_in``."""
-    counts, aside = contour.counts, contour.aside[0]
+    counts, signed_offset = contour.counts, contour.signed_offset[0]
     held, before = curve_of(contour.curves[CONTOUR]), curve_of(contour.curves[ELEMENT])
     begin = (contour.start[0], contour.start[1])
     turn = curves.turn_from(held, curve)
     clear, rolls, at, follows = _corner(
-        held, before, begin, curve, element, turn, aside, counts[SQUARE] != 0
+        held, before, begin, curve, element, turn, signed_offset, counts[SQUARE] != 0
     )
     if not clear:
         return BAILOUT
     part = curves.cut(before, begin, at)
     box = curves.box_of(part)
-    corner = (True, before[2], element[1], curve[1], abs(turn) if aside < 0.0 else -abs(turn))
+    corner = (
+        True,
+        before[2],
+        element[1],
+        curve[1],
+        abs(turn) if signed_offset < 0.0 else -abs(turn),
+    )
     if gouges(contour, part, box, held):
         return BAILOUT
     if rolls:
-        full = 1 if counts[PASSED] == len(contour.passed) else 0
+        full = 1 if counts[PASSED] == len(contour.gouge_history) else 0
         if curves.crossing_of(part, corner)[0] or crosses_passed(
             contour, corner, curves.box_of(corner), full
         ):
             return BAILOUT
     hold_events(contour, rows, first_event, early)
     take_move(contour, rows, row, early)
-    after = let_go(contour, before, part, at, rows, row, early)
+    after = flush_lookahead(contour, before, part, at, rows, row, early)
     pass_by(contour, part, box, held, True)
     if rolls:
         after = go_around(contour, corner, rows, after)
@@ -207,17 +213,17 @@ def _corner(
     curve: Curve,
     element: Curve,
     turn: float,
-    aside: float,
+    signed_offset: float,
     square: bool,
 ) -> tuple[bool, bool, Point, Point]:
     """Whether the corner is clear, is rolled around, where the held move ends, and the next begins."""
     if abs(turn) < STRAIGHT_ON:
         return (True, False, element[1], element[1])
     straight = not held[0] and not curve[0]
-    if square and straight and turn * aside < 0.0 and abs(turn) <= LARGEST_SQUARE:
+    if square and straight and turn * signed_offset < 0.0 and abs(turn) <= LARGEST_SQUARE:
         count, meeting, _ = curves.meetings(before, element)
         return (count == 1, False, meeting, meeting)
-    if turn * aside < 0.0 or abs(turn) > 180.0 - STRAIGHT_ON:
+    if turn * signed_offset < 0.0 or abs(turn) > 180.0 - STRAIGHT_ON:
         return (True, True, before[2], element[1])
     count, first, second = curves.meetings(before, element)
     found, at, least = False, begin, np.inf

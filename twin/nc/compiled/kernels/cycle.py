@@ -27,9 +27,9 @@ from twin.nc.compiled.kernels.frame import turn_place
 from twin.nc.compiled.kernels.plane import move_length
 from twin.nc.compiled.kernels.target import aim, axis_target
 from twin.nc.compiled.kernels.tokenizer import AXIS, RADIUS, UNSUPPORTED
-from twin.nc.control import drilling_cycle
-from twin.nc.control.drilling_cycle import Act, Cycle, Hole
-from twin.nc.control.motion import LARGEST_COORDINATE
+from twin.nc.control.control import LARGEST_COORDINATE
+from twin.nc.path import drilling_cycle
+from twin.nc.path.drilling_cycle import Act, Cycle, Hole
 from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
 
 for _shared in (

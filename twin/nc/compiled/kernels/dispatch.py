@@ -20,7 +20,7 @@ from twin.nc.bytecode.frames import (
     LAST,
     LINE,
     MADE,
-    NO_PLACE,
+    NO_LOCATION,
     NOTHING_RESTORED,
     OWNS_SCOPE,
     PART,
@@ -90,7 +90,7 @@ def dispatch_loop(
     place = line << PART_BITS | progress[PART]
     budget = progress[INSTRUCTION_BUDGET] - (place <= progress[FURTHEST])
     behind = (line + 1) << PART_BITS if table.operand[row] == 0 else place + 1
-    going, range_end, restores = behind, NO_PLACE, NOTHING_RESTORED
+    going, range_end, restores = behind, NO_LOCATION, NOTHING_RESTORED
     top, words, stores, own, why = NONE_YET, NONE_YET, 0, 0, TRAPPED
     contour, first_event = routine.contour, state.event_count[0]
     has_snapshot = compensates = contour.counts[STAGE] != OFF

@@ -36,11 +36,11 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.kernels.frame import add_up, reframe, to_part, transform
-from twin.nc.control.drilling_cycle import Cycle
-from twin.nc.control.motion import LARGEST_COORDINATE
+from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.geometry import arcs
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
+from twin.nc.path.drilling_cycle import Cycle
 from twin.nc.path.event_columns import (
     AUXILIARY,
     DWELL,

@@ -35,12 +35,12 @@ def crosses_passed(contour: Contour, element: Curve, box: Box, first: int) -> bo
 @kernel
 def _place(contour: Contour, number: int) -> int:
     """The row of an element that was passed, counted from the oldest."""
-    return (contour.counts[OLDEST] + number) % len(contour.passed)
+    return (contour.counts[OLDEST] + number) % len(contour.gouge_history)
 
 
 @kernel
 def _crosses(contour: Contour, number: int, element: Curve, box: Box) -> bool:
-    older = contour.passed[_place(contour, number)]
+    older = contour.gouge_history[_place(contour, number)]
     if older[BOX] > box[2] or older[BOX + 2] < box[0]:
         return False
     if older[BOX + 1] > box[3] or older[BOX + 3] < box[1]:
@@ -53,14 +53,14 @@ def _excused(contour: Contour, number: int, own: Curve) -> bool:
     """The contour crosses itself near an element that was passed."""
     count = contour.counts[PASSED]
     for near in range(max(0, number - 2), min(number + 3, count)):
-        older = contour.passed[_place(contour, near)]
+        older = contour.gouge_history[_place(contour, near)]
         if older[HAS_CONTOUR] == 0.0:
             continue
         around = curve_of(older[CURVE : 2 * CURVE])
         if curves.crossing_of(around, own)[0]:
             return True
         for latest in range(max(0, count - 2), count):
-            other = contour.passed[_place(contour, latest)]
+            other = contour.gouge_history[_place(contour, latest)]
             curve = curve_of(other[CURVE : 2 * CURVE])
             if other[HAS_CONTOUR] != 0.0 and curves.crossing_of(around, curve)[0]:
                 return True
@@ -70,7 +70,7 @@ def _excused(contour: Contour, number: int, own: Curve) -> bool:
 @kernel
 def pass_by(contour: Contour, element: Curve, box: Box, held: Curve, has_contour: bool) -> None:
     """Remember an element that was passed."""
-    counts, passed = contour.counts, contour.passed
+    counts, passed = contour.counts, contour.gouge_history
     if counts[PASSED] == len(passed):
         counts[OLDEST] = (counts[OLDEST] + 1) % len(passed)
         counts[PASSED] -= 1
@@ -79,5 +79,5 @@ def pass_by(contour: Contour, element: Curve, box: Box, held: Curve, has_contour
     set_curve(latest[:CURVE], element)
     set_curve(latest[CURVE : 2 * CURVE], held)
     latest[HAS_CONTOUR] = 1.0 if has_contour else 0.0
-    latest[LINE] = contour.held.codes[2]
+    latest[LINE] = contour.lookahead.codes[2]
     latest[BOX], latest[BOX + 1], latest[BOX + 2], latest[BOX + 3] = box

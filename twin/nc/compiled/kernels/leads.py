@@ -13,10 +13,10 @@ from twin.nc.compiled.kernels.frame import put_part_plane, transfer
 from twin.nc.compiled.kernels.gouge import gouges
 from twin.nc.compiled.kernels.lookahead import (
     curve_of,
+    flush_lookahead,
     go_around,
     hold_events,
     hold_move,
-    let_go,
     level_arc,
     set_curve,
     stands,
@@ -26,6 +26,7 @@ from twin.nc.compiled.kernels.plane import along_axis, place
 from twin.nc.geometry import arcs, curves, lead_curves
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.curves import Curve
+from twin.nc.path.compensation_state import Stage
 from twin.nc.path.contour_registers import (
     CONTOUR,
     ELEMENT,
@@ -40,7 +41,6 @@ from twin.nc.path.contour_registers import (
     WAITING,
     Contour,
 )
-from twin.nc.path.followed import Stage
 
 for _shared in (
     arcs.turned,
@@ -61,7 +61,7 @@ _ARC = int(Shape.ARC)
 def begin_compensation(
     side: int, radius: float, constants: Constants, state: State, contour: Contour
 ) -> bool:
-    """Compensate from the next move on: ``offsets.compensate``; False where that refuses.
+    """Compensate from the next move on: ``tool_compensation.compensate``; False where that refuses.
 
     Args:
         side: +1 left of the contour, -1 right of it.
@@ -77,7 +77,7 @@ def begin_compensation(
         return True
     counts[PLANE_NUMBER] = int(state.modal[PLANE])
     put_part_plane(constants.planes[counts[PLANE_NUMBER]], state, contour.plane)
-    contour.aside[0] = side * transfer(state) * radius
+    contour.signed_offset[0] = side * transfer(state) * radius
     counts[STAGE], counts[PLACED], counts[PASSED], counts[OLDEST] = _STARTED, 0, 0, 0
     counts[SQUARE] = 1 if constants.square_corners else 0
     counts[INDIRECT] = 1 if constants.indirect_leads else 0
@@ -105,13 +105,13 @@ def end_compensation(row: int, events: int, contour: Contour, rows: Rows) -> int
     begin = (contour.start[0], contour.start[1])
     if stage == _LEADING_IN:
         lead = curve_of(contour.curves[CONTOUR])
-        after = let_go(contour, lead, lead, lead[2], rows, row, events)
+        after = flush_lookahead(contour, lead, lead, lead[2], rows, row, events)
     elif stage == _FOLLOWING:
         element = curve_of(contour.curves[ELEMENT])
         part = curves.cut(element, begin, element[2])
         if gouges(contour, part, curves.box_of(part), curve_of(contour.curves[CONTOUR])):
             return BAILOUT
-        after = let_go(contour, element, part, element[2], rows, row, events)
+        after = flush_lookahead(contour, element, part, element[2], rows, row, events)
     counts[STAGE] = _LEADING_OUT if stage == _FOLLOWING else _OFF
     counts[WAITING] = counts[PASSED] = counts[OLDEST] = counts[PLACED] = 0
     return after
@@ -157,18 +157,18 @@ def lead_in(
     Returns:
         The row after those, or ``BAILOUT`` with the contour untouched.
     """
-    aside = contour.aside[0]
+    signed_offset = contour.signed_offset[0]
     begin, touch, turns, arc = (contour.start[0], contour.start[1]), element[1], False, curve
     if contour.counts[INDIRECT] != 0:
-        turns, arc = lead_curves.way_around(begin, element[1], curve[1], aside)
+        turns, arc = lead_curves.way_around(begin, element[1], curve[1], signed_offset)
         if turns:
             touch = arc[1]
     lead = (False, begin, touch, (0.0, 0.0), 0.0)
-    if lead_curves.depth_of(lead, curve, abs(aside)) > 0.0:
+    if lead_curves.depth_of(lead, curve, abs(signed_offset)) > 0.0:
         return BAILOUT
     hold_events(contour, rows, first_event, early)
     take_move(contour, rows, row, early)
-    after = let_go(contour, lead, lead, touch, rows, row, early)
+    after = flush_lookahead(contour, lead, lead, touch, rows, row, early)
     if turns:
         after = go_around(contour, arc, rows, after)
     hold_move(contour, curve, element[1])
@@ -203,10 +203,10 @@ def lead_out(row: int, early: int, behind: int, contour: Contour, rows: Rows) ->
     contour_end = curve_of(contour.curves[CONTOUR])
     arc = contour_end
     if leads and contour.counts[INDIRECT] != 0:
-        turns, arc = lead_curves.way_around(end, here, contour_end[2], -contour.aside[0])
+        turns, arc = lead_curves.way_around(end, here, contour_end[2], -contour.signed_offset[0])
     begin = arc[1] if turns else here
     lead = (False, begin, end, (0.0, 0.0), 0.0)
-    if leads and lead_curves.depth_of(lead, contour_end, abs(contour.aside[0])) > 0.0:
+    if leads and lead_curves.depth_of(lead, contour_end, abs(contour.signed_offset[0])) > 0.0:
         return BAILOUT
     take_move(contour, rows, row, early)
     if turns:

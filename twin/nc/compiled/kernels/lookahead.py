@@ -10,6 +10,7 @@ from twin.nc.compiled.kernels.columns import copy, copy_rows
 from twin.nc.compiled.kernels.plane import along_axis, place
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.curves import Curve
+from twin.nc.path.compensation_state import Stage
 from twin.nc.path.contour_registers import (
     CONTOUR,
     MOVED,
@@ -21,7 +22,6 @@ from twin.nc.path.contour_registers import (
     Contour,
     Row,
 )
-from twin.nc.path.followed import Stage
 
 _LEADING_IN, _FOLLOWING = int(Stage.LEADING_IN), int(Stage.FOLLOWING)
 _ARC = int(Shape.ARC)
@@ -49,9 +49,9 @@ def take_move(contour: Contour, rows: Rows, row: int, events: int) -> None:
 @kernel
 def hold_move(contour: Contour, curve: Curve, start: Point) -> None:
     """Hold the last move until its successor is known; its compensated path begins at a point."""
-    copy(contour.latest.codes, contour.held.codes)
-    copy(contour.latest.values, contour.held.values)
-    copy_rows(contour.latest.positions, contour.held.positions)
+    copy(contour.latest.codes, contour.lookahead.codes)
+    copy(contour.latest.values, contour.lookahead.values)
+    copy_rows(contour.latest.positions, contour.lookahead.positions)
     set_curve(contour.curves[CONTOUR], curve)
     contour.start[0], contour.start[1] = start
     contour.counts[WAITING] = 0
@@ -80,11 +80,11 @@ def set_curve(column: FloatArray, curve: Curve) -> None:
 
 
 @kernel
-def let_go(
+def flush_lookahead(
     contour: Contour, before: Curve, part: Curve, at: Point, rows: Rows, row: int, events: int
 ) -> int:
     """The held move up to a point, then what waits for its end; the row after them."""
-    held, plane, counts = contour.held, contour.plane, contour.counts
+    held, plane, counts = contour.lookahead, contour.plane, contour.counts
     after = row
     for number in range(counts[WAITING] + 1):
         value, position = rows.values[after], rows.positions[after]
@@ -150,7 +150,7 @@ def level_arc(
 @kernel
 def go_around(contour: Contour, corner: Curve, rows: Rows, row: int) -> int:
     """Go around a corner where the path has come to; the row after it."""
-    level_arc(contour.held, contour.plane, corner, contour.here, rows, row)
+    level_arc(contour.lookahead, contour.plane, corner, contour.here, rows, row)
     rows.codes[row, 4] = _EXACT_PATH
     copy(rows.positions[row, 1], contour.here)
     contour.counts[MOVED_ROWS] = row + 1

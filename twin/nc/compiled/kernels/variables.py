@@ -13,7 +13,7 @@ from twin.nc.bytecode.frames import (
     FIRST,
     LAST,
     LINE,
-    NO_PLACE,
+    NO_LOCATION,
     OWNS_SCOPE,
     PART,
     VariableStore,
@@ -68,7 +68,7 @@ def end_parts(progress: IntArray, calls: IntArray) -> None:
     while progress[CALLS] > 0:
         call = calls[progress[CALLS] - 1]
         here = progress[LINE] << PART_BITS | progress[PART]
-        if call[LAST] == NO_PLACE or here <= call[LAST]:
+        if call[LAST] == NO_LOCATION or here <= call[LAST]:
             return
         to = call[FIRST]
         if call[AGAIN] > 0:
@@ -83,6 +83,6 @@ def end_parts(progress: IntArray, calls: IntArray) -> None:
 @kernel
 def innermost(calls: IntArray, called: int) -> int:
     """How many parts are being run up to the innermost that a word ends; 0: there is none."""
-    while called > 0 and calls[called - 1, LAST] != NO_PLACE:
+    while called > 0 and calls[called - 1, LAST] != NO_LOCATION:
         called -= 1
     return called

@@ -45,7 +45,7 @@ from twin.nc.compiled.kernels.tokenizer import (
     RADIUS,
     UNSUPPORTED,
 )
-from twin.nc.control.motion import LARGEST_COORDINATE
+from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path.event_columns import FUNCTION_ALONE
 from twin.nc.text.line_reader import LARGEST_LABEL
 

@@ -1,12 +1,15 @@
 """CODESYS SoftMotion CNC (DIN 66025 with SoftMotion's own codes)."""
 
 from twin.nc.canonical import Corner
-from twin.nc.control.dialect import HEADING, Comment, Dialect, FeedMode, Mark, MCode, Syntax
+from twin.nc.control.codes import MCode
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.codesys import actions, block_compiler, program, subprograms, words
 from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
-from twin.nc.iso import codes
+from twin.nc.iso import base
+from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 CODESYS = Dialect(
     name="codesys",
@@ -44,7 +47,7 @@ CODESYS = Dialect(
     signed=("E", "EF"),
     series="HOL",
     words={
-        "F": codes.set_feed,
+        "F": base.set_feed,
         "E": words.set_acceleration,
         "E-": words.set_acceleration,
         "FF": words.set_rapid_feed,
@@ -126,6 +129,7 @@ CODESYS = Dialect(
     is_local=program.is_local,
     given_variable=program.given_variable,
     place_switches=words.place_switches,
+    rapid_feed=words.own_rapid_feed,
     library=subprograms.with_files,
     compile_block=block_compiler.compile_block,
     disturbed=lambda control: bool(program.variables(control).periods),

@@ -3,13 +3,14 @@
 import math
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
 from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import Action
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
-from twin.nc.iso.offsets import LEFT, RIGHT, compensate, compile_programmed_shift
+from twin.nc.iso.offsets import compile_programmed_shift
+from twin.nc.iso.tool_compensation import LEFT, RIGHT, compensate
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Word
 
@@ -204,7 +205,7 @@ def set_reference(control: Control) -> None:
     programmed = list(control.programmed)
     for index, word in control.take_axis_words():
         programmed[index] = control.axis_value(index, word)
-    control.relabel(programmed, "offset")
+    control.set_position(programmed, "offset")
 
 
 def set_position(control: Control) -> None:
@@ -214,11 +215,11 @@ def set_position(control: Control) -> None:
     can: its axes travel as fast as they can (the manual's ``bAvoidGaps``). Of several in a row the
     last counts (manual).
     """
-    words = control.words.keys() & control.dialect.axis_letters
+    words = control.words.keys() & control.axis_letters
     if not words:
         control.fail("preset", "G92 needs the position from which the path goes on")
     target = control.target()
-    following = control.flow.following()
+    following = control.program_counter.following()
     if following is not None and any(w.address == "G" and w.value == 92.0 for w in following.words):
         return
     if control.has_moved:

@@ -1,7 +1,8 @@
 """Arcs of CODESYS SoftMotion: radius, centre with the 10 % rule, opening angle, any plane."""
 
+from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import ArcRule, Interpolation
+from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry.arcs import (
     SAME_POINT,
     Point,

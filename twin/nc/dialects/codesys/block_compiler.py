@@ -1,23 +1,23 @@
 """Blocks of CODESYS SoftMotion as instructions for the compiled tier: the same as its actions do."""
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import compile_words
+from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.control import Control
-from twin.nc.control.flow import Place
 from twin.nc.dialects.codesys import jumps, program, subprograms
 from twin.nc.text import arithmetic
-from twin.nc.text.blocks import Block, Statement, Word
+from twin.nc.text.blocks import Block, Location, Statement, Word
 from twin.nc.text.expressions import Expression, Variable
 
 _JUMP, _WRITE, _ADD = 20.0, 36.0, 37.0
 
 
-def compile_block(control: Control, block: Block, assembler: Assembler) -> None:
+def compile_block(compiler: BlockCompiler, block: Block) -> None:
     """Write a block.
 
     Raises:
         UnsupportedError: It is left to the interpreter tier.
     """
+    control, assembler = compiler.control, compiler.assembler
     if block.statement is not None:
         _statement(control, block.statement, assembler)
         return
@@ -27,7 +27,7 @@ def compile_block(control: Control, block: Block, assembler: Assembler) -> None:
     elif _WRITE in codes or _ADD in codes:
         _change(control, _words_beside(block, "OD"), assembler, add=_ADD in codes)
     else:
-        compile_words(control, block.words, assembler)
+        compiler.words(block.words)
 
 
 def _words_beside(block: Block, letters: str) -> dict[str, Word]:
@@ -95,6 +95,6 @@ def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
     subprogram, values, _ = subprograms.called(control, statement)
     for each in values:
         assembler.value(each)
-    begin = Place(subprogram.lines.start, 0)
+    begin = Location(subprogram.lines.start, 0)
     deepest, formals = subprograms.DEEPEST_CALL, subprogram.formals
     assembler.call(begin, deepest, formals, restores=subprogram.restores)

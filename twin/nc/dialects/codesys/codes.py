@@ -1,8 +1,8 @@
 """G codes of CODESYS SoftMotion."""
 
-from twin.nc.control.dialect import GCode
-from twin.nc.control.interpolation import Interpolation, LineRule
-from twin.nc.dialects.codesys import actions, jumps, program, words
+from twin.nc.control.codes import GCode, Interpolation
+from twin.nc.control.interpolation import LineRule
+from twin.nc.dialects.codesys import actions, jumps, program
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
     CLOCKWISE_ELLIPSE,
@@ -12,9 +12,9 @@ from twin.nc.dialects.codesys.curves import (
     SPATIAL_SPLINE,
 )
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
-from twin.nc.iso import codes, offsets
-from twin.nc.iso.circular import rapid_line
-from twin.nc.iso.compensation_words import (
+from twin.nc.iso import base, offsets, tool_compensation
+from twin.nc.iso.base import rapid_line
+from twin.nc.iso.tool_compensation import (
     compile_compensation_by_radius,
     compile_end_of_compensation,
 )
@@ -35,26 +35,26 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         meaning=meaning,
         group="plane",
         sets={"plane": plane},
-        action=offsets.refuse_plane_change,
-        compiler=codes.compile_plane(plane),
+        action=tool_compensation.refuse_plane_change,
+        compiler=base.compile_plane(plane),
         ground="manual",
     )
 
 
-RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule(words.own_rapid_feed))
+RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
 
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
 
 CODES: dict[int, GCode] = {
     0: _motion("positioning in a straight line; FF is its feed", RAPID),
-    1: _motion("straight line", codes.FEED, seed=True),
+    1: _motion("straight line", base.FEED, seed=True),
     2: _motion("arc clockwise", CLOCKWISE, seed=True),
     3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
     4: GCode(
         meaning="dwell, seconds in T",
         perform=actions.dwell,
-        compiler=codes.compile_dwell("T"),
+        compiler=base.compile_dwell("T"),
         ground="manual",
     ),
     5: _motion("point of a spline in X Y", FLAT_SPLINE),
@@ -96,7 +96,7 @@ CODES: dict[int, GCode] = {
     40: GCode(
         meaning="radius compensation off",
         group="compensation",
-        action=offsets.end_compensation,
+        action=tool_compensation.end_compensation,
         compiler=compile_end_of_compensation,
         ground="manual",
     ),
@@ -104,14 +104,14 @@ CODES: dict[int, GCode] = {
         meaning="radius compensation left, radius D",
         group="compensation",
         action=actions.left_of_contour,
-        compiler=compile_compensation_by_radius(offsets.LEFT),
+        compiler=compile_compensation_by_radius(tool_compensation.LEFT),
         ground="manual",
     ),
     42: GCode(
         meaning="radius compensation right, radius D",
         group="compensation",
         action=actions.right_of_contour,
-        compiler=compile_compensation_by_radius(offsets.RIGHT),
+        compiler=compile_compensation_by_radius(tool_compensation.RIGHT),
         ground="manual",
     ),
     43: GCode(

@@ -7,8 +7,8 @@ The canonical moves know lines and arcs; a curve becomes chords that leave it by
 import math
 from collections.abc import Callable
 
+from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import Interpolation
 from twin.nc.geometry.arcs import Point, direction
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.circular import start_and_end

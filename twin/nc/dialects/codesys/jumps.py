@@ -1,20 +1,21 @@
 """Jumps of CODESYS SoftMotion."""
 
 from twin.nc.control.control import Control
-from twin.nc.control.flow import Place
 from twin.nc.dialects.codesys.program import COUNTER, read_variable
 from twin.nc.dialects.codesys.subprograms import own_lines
-from twin.nc.text.blocks import Word
+from twin.nc.text.blocks import Location, Word
 
 
-def destination(control: Control, target: Word) -> Place:
+def destination(control: Control, target: Word) -> Location:
     """The block with the number of a word L, among those that may be jumped to.
 
     Raises:
         ProgramError: There is none.
     """
     span = (target.column, target.width)
-    return control.flow.find_label(int(control.number(target)), span, "L", own_lines(control))
+    return control.program_counter.find_label(
+        int(control.number(target)), span, "L", own_lines(control)
+    )
 
 
 def conditional_jump(control: Control) -> None:
@@ -34,14 +35,14 @@ def conditional_jump(control: Control) -> None:
     if condition == 0.0:
         return
     if number is not None:
-        control.flow.go(destination(control, target))
+        control.program_counter.go(destination(control, target))
         return
     here = own_lines(control)
-    if not control.flow.seek(
+    if not control.program_counter.seek(
         lambda block: (
             block.line - 1 in here
             and any(word.address == "L!" and word.value == value for word in block.words)
         )
     ):
         control.warn("label-not-found", f"no L!{value:g} follows: the program ends here", target)
-        control.flow.end()
+        control.program_counter.end()

@@ -5,9 +5,9 @@ from collections.abc import Container, Iterator
 from pathlib import Path
 
 from twin.nc.control.control import Control
-from twin.nc.control.flow import Place, Return
+from twin.nc.control.program_counter import CallFrame
 from twin.nc.dialects.codesys.program import Subprogram, assign, variables
-from twin.nc.text.blocks import Statement
+from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression
 from twin.nc.text.library import named_files, with_called_files
 from twin.nc.text.source import Source
@@ -68,7 +68,7 @@ def _subprograms(control: Control) -> dict[str, Subprogram]:
     known = variables(control)
     if known.subprograms is None:
         known.subprograms = {}
-        lines = control.flow.lines
+        lines = control.program_counter.lines
         found = ((line, _SUBPROGRAM.match(text)) for line, text in enumerate(lines))
         matches = [(line, match) for line, match in found if match is not None]
         for line, match in matches:
@@ -91,12 +91,12 @@ def define(control: Control, statement: Statement) -> None:
     if _FORMAL.fullmatch(statement.text) is None:
         hint = "SUBPROGRAM Name{#a : LREAL} RESTORE"
         control.report.fail("declaration", "the heading cannot be read", statement.column, 10, hint)
-    found = control.flow.seek(
+    found = control.program_counter.seek(
         lambda block: block.statement is not None and block.statement.keyword == "END_SUBPROGRAM"
     )
     if not found:
         control.report.fail("open-subprogram", "END_SUBPROGRAM is missing", statement.column, 10)
-    control.flow.next()
+    control.program_counter.next()
 
 
 def called(control: Control, statement: Statement) -> tuple[Subprogram, list[Expression], int]:
@@ -135,13 +135,15 @@ def call(control: Control, statement: Statement) -> None:
     """``Name{values}``: run a subprogram with its own variables."""
     subprogram, expressions, column = called(control, statement)
     values = [control.compute(each, column) for each in expressions]
-    part = Return(
-        control.flow.place,
-        Place(subprogram.lines.start, 0),
-        own_variables=True,
+    part = CallFrame(
+        control.program_counter.location,
+        Location(subprogram.lines.start, 0),
+        owns_scope=True,
         restores=control.saved_modal() if subprogram.restores else None,
     )
-    control.flow.call(part, DEEPEST_CALL, statement.column, len(statement.keyword.strip()))
+    control.program_counter.call(
+        part, DEEPEST_CALL, statement.column, len(statement.keyword.strip())
+    )
     control.variables.enter(dict(zip(subprogram.formals, values, strict=True)))
 
 
@@ -155,7 +157,7 @@ def assign_or_call(control: Control, statement: Statement) -> None:
 
 def leave_subprogram(control: Control, statement: Statement) -> None:
     """RETURN or END_SUBPROGRAM."""
-    if not control.flow.calls:
+    if not control.program_counter.calls:
         message = f"{statement.keyword} stands outside a subprogram"
         control.report.fail("return-outside", message, statement.column, len(statement.keyword))
-    control.flow.end_part()
+    control.program_counter.end_part()

@@ -2,8 +2,8 @@
 
 import math
 
+from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import WordAction
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.text.blocks import Word
 
@@ -120,7 +120,7 @@ def take_shortest_way(control: Control) -> None:
         if turns:
             programmed = list(control.programmed)
             programmed[index] += turns * period
-            control.relabel(programmed, "turns")
+            control.set_position(programmed, "turns")
 
 
 def place_switches(control: Control, length: float) -> None:

@@ -1,7 +1,8 @@
 """Fagor CNC 8070, milling model."""
 
+from twin.nc.control.codes import MCode
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import Comment, Dialect, Mark, MCode, Syntax
+from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.fagor8070 import (
     arcs,
     block_compiler,
@@ -23,7 +24,8 @@ from twin.nc.dialects.fagor8070.codes import (
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import with_globals
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
-from twin.nc.iso import codes
+from twin.nc.iso import base
+from twin.nc.text.syntax import Comment, Mark, Syntax
 
 
 def _prepare(control: Control) -> None:
@@ -69,7 +71,7 @@ FAGOR8070 = Dialect(
     instead=INSTEAD,
     start=(1, 17, 40, 50, 71, 80, 90, 94, 97, 98, 108, 137, 139, 152, 197, 262, 265),
     m={
-        **codes.M_CODES,
+        **base.M_CODES,
         6: MCode(
             meaning="tool change",
             action=frames.change_tool,
@@ -96,8 +98,8 @@ FAGOR8070 = Dialect(
     motion_words=frozenset("XYZABCUVWIJKRQ") | {"R1"},
     repeat_word="NR",
     words={
-        "F": codes.set_feed,
-        "S": codes.set_spindle,
+        "F": base.set_feed,
+        "S": base.set_spindle,
         "T": frames.select_tool,
         "D": frames.tool_offset,
         "H": auxiliary,
@@ -106,7 +108,7 @@ FAGOR8070 = Dialect(
         "G263": arcs.set_circle_radius,
     },
     word_compilers={
-        "S": codes.compile_spindle,
+        "S": base.compile_spindle,
         "T": frames.compile_tool,
         "D": frames.compile_tool_offset,
         "H": compile_auxiliary,

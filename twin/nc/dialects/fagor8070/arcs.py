@@ -6,8 +6,9 @@ one it is the polar radius.
 
 import math
 
+from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import Interpolation, LineRule
+from twin.nc.control.interpolation import LineRule
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 from twin.nc.geometry.arcs import (

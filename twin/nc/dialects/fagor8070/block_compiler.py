@@ -3,39 +3,39 @@
 from collections.abc import Callable
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import compile_words, sorted_words
 from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.control import Control
-from twin.nc.control.flow import Place
 from twin.nc.dialects.fagor8070 import flow, polar, subroutines
 from twin.nc.dialects.fagor8070.subroutines import DEEPEST_CALL
 from twin.nc.dialects.fagor8070.variables import EXPRESSIONS, assignments
-from twin.nc.text.blocks import Block, Statement
+from twin.nc.text.blocks import Block, Location, Statement
 from twin.nc.text.expressions import Expression
 
 _RETURNS = (17.0, 29.0)
 
 
-def compile_block(control: Control, block: Block, assembler: Assembler) -> None:
+def compile_block(compiler: BlockCompiler, block: Block) -> None:
     """Write a block.
 
     Raises:
         UnsupportedError: It is left to the interpreter tier.
     """
     if block.statement is None:
-        _words(control, block, assembler)
+        _words(compiler, block)
         return
     keyword = " ".join(block.statement.keyword.split())
     if keyword.startswith(("$", "#", "%", "L")):
-        compiler = _STATEMENTS.get(keyword)
-        if compiler is None:
+        compile_statement = _STATEMENTS.get(keyword)
+        if compile_statement is None:
             raise UnsupportedError
-        compiler(control, block.statement, assembler)
+        compile_statement(compiler.control, block.statement, compiler.assembler)
     else:
-        _assign(control, block.statement, assembler)
+        _assign(compiler.control, block.statement, compiler.assembler)
 
 
-def _words(control: Control, block: Block, assembler: Assembler) -> None:
+def _words(compiler: BlockCompiler, block: Block) -> None:
+    assembler = compiler.assembler
     often = [word for word in block.words if word.address == "NR"]
     returns = [word for word in block.words if word.address == "M" and word.value in _RETURNS]
     rest = [word for word in block.words if word not in (*often[:1], *returns[:1])]
@@ -47,19 +47,19 @@ def _words(control: Control, block: Block, assembler: Assembler) -> None:
             assembler.value(count)
         else:
             assembler.constant(count)
-        if any(word.address in control.dialect.word_compilers for word in rest):
+        if any(word.address in compiler.vocabulary.word_compilers for word in rest):
             raise UnsupportedError
-        if any(code.begins_cycle for _, code in sorted_words(control, rest).codes):
+        if any(code.begins_cycle for _, code in compiler.sorted(rest).codes):
             raise UnsupportedError
-        assembler.words(rest, often=control.settings.step_limit)
+        assembler.words(rest, often=compiler.control.settings.step_limit)
     elif returns:
         assembler.check_return()
-        compile_words(control, rest, assembler)
+        compiler.words(rest)
         assembler.end_call()
-    elif polar.is_polar(control, rest):
-        polar.compile_polar(control, rest, assembler)
+    elif polar.is_polar(compiler, rest):
+        polar.compile_polar(compiler, rest)
     else:
-        compile_words(control, rest, assembler)
+        compiler.words(rest)
 
 
 def _assign(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -85,13 +85,13 @@ def _if(control: Control, statement: Statement, assembler: Assembler) -> None:
         assembler.jump_if(flow.destination(control, jump))
         return
     construct = flow.construct_of(control, statement)
-    assembler.jump_if(Place(control.block.line, 0))
+    assembler.jump_if(Location(control.block.line, 0))
     for branch in construct.branches:
         if branch.keyword == "$ELSE":
-            assembler.jump(Place(branch.line + 1, 0))
+            assembler.jump(Location(branch.line + 1, 0))
             return
         assembler.value(flow.value_of(control, flow.statement_at(control, branch.line)))
-        assembler.jump_if(Place(branch.line + 1, 0))
+        assembler.jump_if(Location(branch.line + 1, 0))
     assembler.jump(flow.behind(construct))
 
 
@@ -110,13 +110,13 @@ def _while(control: Control, statement: Statement, assembler: Assembler) -> None
 
 
 def _again(control: Control, statement: Statement, assembler: Assembler) -> None:
-    assembler.jump(Place(flow.construct_of(control, statement).begin, 0))
+    assembler.jump(Location(flow.construct_of(control, statement).begin, 0))
 
 
 def _end_do(control: Control, statement: Statement, assembler: Assembler) -> None:
     construct = flow.construct_of(control, statement)
     assembler.value(flow.value_of(control, statement))
-    assembler.jump_if(Place(construct.begin + 1, 0))
+    assembler.jump_if(Location(construct.begin + 1, 0))
 
 
 def _for(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -132,7 +132,7 @@ def _end_for(control: Control, statement: Statement, assembler: Assembler) -> No
     name, values, _ = flow.for_values(control, flow.statement_at(control, construct.begin))
     for each in values:
         assembler.value(each)
-    assembler.step_for(name, Place(construct.begin + 1, 0))
+    assembler.step_for(name, Location(construct.begin + 1, 0))
 
 
 def _switch(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -140,10 +140,10 @@ def _switch(control: Control, statement: Statement, assembler: Assembler) -> Non
     assembler.value(flow.value_of(control, statement))
     for branch in construct.branches:
         if branch.keyword == "$DEFAULT":
-            assembler.jump(Place(branch.line + 1, 0))
+            assembler.jump(Location(branch.line + 1, 0))
             return
         assembler.value(flow.value_of(control, flow.statement_at(control, branch.line)))
-        assembler.jump_case(Place(branch.line + 1, 0))
+        assembler.jump_case(Location(branch.line + 1, 0))
     assembler.jump(flow.behind(construct))
 
 
@@ -154,7 +154,7 @@ def _break(control: Control, statement: Statement, assembler: Assembler) -> None
 def _continue(control: Control, statement: Statement, assembler: Assembler) -> None:
     construct = flow.enclosing(control, statement, ("$IF", "$SWITCH"))
     assert construct.end is not None
-    assembler.jump(Place(construct.end, 0))
+    assembler.jump(Location(construct.end, 0))
 
 
 def _go_to(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -168,7 +168,7 @@ def _repeat(control: Control, statement: Statement, assembler: Assembler) -> Non
 
 
 def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
-    assembler.call(Place(subroutines.called_line(control, statement), 0), DEEPEST_CALL)
+    assembler.call(Location(subroutines.called_line(control, statement), 0), DEEPEST_CALL)
 
 
 def _call_with_parameters(control: Control, statement: Statement, assembler: Assembler) -> None:
@@ -177,7 +177,7 @@ def _call_with_parameters(control: Control, statement: Statement, assembler: Ass
         assembler.value(value)
         parameters.append(parameter)
     line = subroutines.pcalled_line(control, statement)
-    assembler.call(Place(line, 0), DEEPEST_CALL, parameters)
+    assembler.call(Location(line, 0), DEEPEST_CALL, parameters)
 
 
 def _return(_control: Control, _statement: Statement, assembler: Assembler) -> None:

@@ -1,24 +1,21 @@
 """G codes of the Fagor CNC 8070."""
 
 from collections.abc import Mapping
+from typing import Unpack
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
 from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.canonical import Corner
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Action, Compiler, GCode, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import (
-    Action,
-    Compiler,
-    FeedMode,
-    GCode,
-)
+from twin.nc.control.modal import FeedMode, ModalChanges
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
 from twin.nc.dialects.fagor8070.cycles import CYCLES
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
-from twin.nc.iso import codes, cycles, offsets
-from twin.nc.iso.compensation_words import compile_compensation_by_tool, compile_end_of_compensation
+from twin.nc.iso import base, fixed_cycles, offsets, tool_compensation
+from twin.nc.iso.tool_compensation import compile_compensation_by_tool, compile_end_of_compensation
 from twin.nc.text.blocks import Word
 
 
@@ -69,9 +66,11 @@ def _compensate(side: float) -> Action:
                 "no-such-tool",
                 "compensation needs a tool, and the job has none",
                 None,
-                offsets.NO_TOOL,
+                tool_compensation.NO_TOOL,
             )
-        offsets.compensate(control, side, tool.radius if memory_of(control).offset_on else 0.0)
+        tool_compensation.compensate(
+            control, side, tool.radius if memory_of(control).offset_on else 0.0
+        )
 
     return action
 
@@ -97,11 +96,11 @@ def _and_forget_polar(compiler: Compiler | None) -> Compiler:
     return both
 
 
-def _g(meaning: str, group: str = "", **sets: object) -> GCode:
+def _g(meaning: str, group: str = "", **sets: Unpack[ModalChanges]) -> GCode:
     return GCode(meaning=meaning, group=group, sets=sets, ground="manual")
 
 
-def _motion(meaning: str, interpolation: object, *, seed: bool = False) -> GCode:
+def _motion(meaning: str, interpolation: Interpolation, *, seed: bool = False) -> GCode:
     return GCode(
         meaning=meaning,
         group="motion",
@@ -110,7 +109,7 @@ def _motion(meaning: str, interpolation: object, *, seed: bool = False) -> GCode
     )
 
 
-def _once(meaning: str, **sets: object) -> GCode:
+def _once(meaning: str, **sets: Unpack[ModalChanges]) -> GCode:
     return GCode(meaning=meaning, sets=sets, once=True, ground="manual")
 
 
@@ -120,7 +119,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=frames.change_plane,
-        compiler=codes.compile_plane(plane),
+        compiler=base.compile_plane(plane),
         ground="seed",
     )
 
@@ -179,7 +178,7 @@ CODES: dict[int, GCode] = {
     4: GCode(
         meaning="dwell, seconds in K or right behind",
         perform=dwell,
-        compiler=codes.compile_dwell("K"),
+        compiler=base.compile_dwell("K"),
         ground="manual",
     ),
     5: _g("round corner", "corner", corner=Corner.CONTINUOUS),
@@ -216,21 +215,21 @@ CODES: dict[int, GCode] = {
     39: _decided("corner chamfered at the distance I", corners.chamfer_corner),
     40: _do(
         "radius compensation off",
-        offsets.end_compensation,
+        tool_compensation.end_compensation,
         group="compensation",
         compiler=compile_end_of_compensation,
     ),
     41: _do(
         "compensation, tool left",
-        _compensate(offsets.LEFT),
+        _compensate(tool_compensation.LEFT),
         group="compensation",
-        compiler=compile_compensation_by_tool(offsets.LEFT),
+        compiler=compile_compensation_by_tool(tool_compensation.LEFT),
     ),
     42: _do(
         "compensation, tool right",
-        _compensate(offsets.RIGHT),
+        _compensate(tool_compensation.RIGHT),
         group="compensation",
-        compiler=compile_compensation_by_tool(offsets.RIGHT),
+        compiler=compile_compensation_by_tool(tool_compensation.RIGHT),
     ),
     **_refused("tangential control", "the twin has no axis that turns the tool", range(45, 46)),
     50: _g("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
@@ -284,7 +283,7 @@ CODES: dict[int, GCode] = {
         meaning="constant cutting speed", refused="a mill's radius is the tool's", ground="manual"
     ),
     97: _g("constant spindle speed", "spindle"),
-    **cycles.RETURN,
+    **fixed_cycles.RETURN,
     **_refused("probing", _PROBE, range(100, 105)),
     108: _g("feed blending at the start of the block", "feed blending"),
     109: _g("feed blending at the end of the block", "feed blending"),

@@ -11,7 +11,7 @@ _CODES = re.compile(rb"G[ \t]*0*3[69](?![0-9])", re.IGNORECASE)
 
 def prepare(control: Control) -> None:
     """Hold moves until their successor is known, where the program blends corners at all."""
-    if control.flow.lines.any_holds(_CODES):
+    if control.program_counter.lines.any_holds(_CODES):
         control.path.hold_for_blends()
 
 

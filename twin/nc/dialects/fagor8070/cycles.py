@@ -13,8 +13,12 @@ reference plane, and returns with rapid to C, 1 mm, above where it was.
 
 from collections.abc import Mapping
 
-from twin.nc.control.dialect import GCode, Ground
-from twin.nc.control.drilling_cycle import (
+from twin.nc.control.codes import GCode, Ground, Interpolation
+from twin.nc.control.interpolation import CycleRule
+from twin.nc.dialects.fagor8070.pockets import call_pocket, mill_pocket
+from twin.nc.dialects.fagor8070.polar import take_goal
+from twin.nc.iso.drilling import cycle_code
+from twin.nc.path.drilling_cycle import (
     BOTTOM,
     CHIP_CLEARANCE,
     CLEARANCE,
@@ -31,10 +35,6 @@ from twin.nc.control.drilling_cycle import (
     Pecking,
     Retract,
 )
-from twin.nc.control.interpolation import CycleRule, Interpolation
-from twin.nc.dialects.fagor8070.pockets import call_pocket, mill_pocket
-from twin.nc.dialects.fagor8070.polar import take_goal
-from twin.nc.iso.drilling import cycle_code
 
 _CLEARANCE = 1.0
 """G82: C where it is missing [mm]."""

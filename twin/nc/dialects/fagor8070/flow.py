@@ -3,12 +3,11 @@
 import re
 
 from twin.nc.control.control import Control
-from twin.nc.control.flow import Place
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.structure import Construct, Structure, structure_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
 from twin.nc.dialects.fagor8070.variables import read_variable, refuse
-from twin.nc.text.blocks import Statement
+from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression
 
 _PLACE = re.compile(r"[ \t]*(?:N[ \t]*([0-9]+)|\[[ \t]*([A-Z_]\w*)[ \t]*\])[ \t]*", re.IGNORECASE)
@@ -17,7 +16,7 @@ _PLACE = re.compile(r"[ \t]*(?:N[ \t]*([0-9]+)|\[[ \t]*([A-Z_]\w*)[ \t]*\])[ \t]
 def _structure(control: Control) -> Structure:
     memory = memory_of(control)
     if memory.structure is None:
-        memory.structure = structure_of(control.flow.lines)
+        memory.structure = structure_of(control.program_counter.lines)
     return memory.structure
 
 
@@ -42,7 +41,7 @@ def construct_of(control: Control, statement: Statement) -> Construct:
 def statement_at(control: Control, line: int) -> Statement:
     """The statement of another line of a construct, from 0; errors are that line's from now on."""
     control.report.line = line + 1
-    (block,) = control.flow.lexer.blocks(control.flow.lines[line], line + 1)
+    (block,) = control.program_counter.lexer.blocks(control.program_counter.lines[line], line + 1)
     assert block.statement is not None
     return block.statement
 
@@ -63,16 +62,16 @@ def if_(control: Control, statement: Statement) -> None:
     if goto:
         jump = jump_behind_condition(control, statement, head, target)
         if value:
-            control.flow.go(destination(control, jump))
+            control.program_counter.go(destination(control, jump))
         return
     construct = construct_of(control, statement)
     if value:
         return
     for branch in construct.branches:
         if branch.keyword == "$ELSE" or _compute(control, statement_at(control, branch.line)):
-            control.flow.go(Place(branch.line + 1, 0))
+            control.program_counter.go(Location(branch.line + 1, 0))
             return
-    control.flow.go(behind(construct))
+    control.program_counter.go(behind(construct))
 
 
 def jump_behind_condition(
@@ -85,27 +84,27 @@ def jump_behind_condition(
     return Statement(statement.keyword, target[4:], statement.column, column)
 
 
-def behind(construct: Construct) -> Place:
+def behind(construct: Construct) -> Location:
     """The place behind a construct that has an end."""
     assert construct.end is not None
-    return Place(construct.end + 1, 0)
+    return Location(construct.end + 1, 0)
 
 
 def else_(control: Control, statement: Statement) -> None:
     """$ELSEIF, $ELSE reached from the branch before: go on behind $ENDIF."""
-    control.flow.go(behind(construct_of(control, statement)))
+    control.program_counter.go(behind(construct_of(control, statement)))
 
 
 def while_(control: Control, statement: Statement) -> None:
     """$WHILE: run the body as long as the condition holds."""
     construct = construct_of(control, statement)
     if not _compute(control, statement):
-        control.flow.go(behind(construct))
+        control.program_counter.go(behind(construct))
 
 
 def again(control: Control, statement: Statement) -> None:
     """$ENDWHILE: look at the condition again."""
-    control.flow.go(Place(construct_of(control, statement).begin, 0))
+    control.program_counter.go(Location(construct_of(control, statement).begin, 0))
 
 
 def nothing(control: Control, statement: Statement) -> None:
@@ -117,7 +116,7 @@ def end_do(control: Control, statement: Statement) -> None:
     """$ENDDO condition: run the body again as long as it holds."""
     construct = construct_of(control, statement)
     if _compute(control, statement):
-        control.flow.go(Place(construct.begin + 1, 0))
+        control.program_counter.go(Location(construct.begin + 1, 0))
 
 
 def for_(control: Control, statement: Statement) -> None:
@@ -126,7 +125,7 @@ def for_(control: Control, statement: Statement) -> None:
     name, first, last, step = _for_values(control, statement)
     control.variables.write(name, first)
     if (first - last) * step > 0.0:
-        control.flow.go(behind(construct))
+        control.program_counter.go(behind(construct))
 
 
 def end_for(control: Control, statement: Statement) -> None:
@@ -138,12 +137,12 @@ def end_for(control: Control, statement: Statement) -> None:
     control.variables.write(name, value)
     control.report.line = line
     if (value - last) * step <= 0.0:
-        control.flow.go(Place(construct.begin + 1, 0))
+        control.program_counter.go(Location(construct.begin + 1, 0))
 
 
 def for_values(control: Control, statement: Statement) -> tuple[str, list[Expression], int]:
     """Parameter of a $FOR, its three values, and where these begin."""
-    variable = control.flow.lexer.expressions.variable_at(statement.text.lstrip(), 0)
+    variable = control.program_counter.lexer.expressions.variable_at(statement.text.lstrip(), 0)
     name, equals, values = statement.text.partition("=")
     if variable is None or not equals:
         refuse(control, statement, "structure", "$FOR needs its parameter", "$FOR P1=0,10,1")
@@ -166,9 +165,9 @@ def switch(control: Control, statement: Statement) -> None:
         if branch.keyword == "$DEFAULT" or value == _compute(
             control, statement_at(control, branch.line)
         ):
-            control.flow.go(Place(branch.line + 1, 0))
+            control.program_counter.go(Location(branch.line + 1, 0))
             return
-    control.flow.go(behind(construct))
+    control.program_counter.go(behind(construct))
 
 
 def case(control: Control, statement: Statement) -> None:
@@ -182,14 +181,14 @@ def case(control: Control, statement: Statement) -> None:
 
 def leave_construct(control: Control, statement: Statement) -> None:
     """$BREAK: go on behind the innermost loop or $SWITCH."""
-    control.flow.go(behind(enclosing(control, statement, ("$IF",))))
+    control.program_counter.go(behind(enclosing(control, statement, ("$IF",))))
 
 
 def next_round(control: Control, statement: Statement) -> None:
     """$CONTINUE: go to the end of the innermost loop."""
     construct = enclosing(control, statement, ("$IF", "$SWITCH"))
     assert construct.end is not None
-    control.flow.go(Place(construct.end, 0))
+    control.program_counter.go(Location(construct.end, 0))
 
 
 def enclosing(control: Control, statement: Statement, without: tuple[str, ...]) -> Construct:
@@ -206,10 +205,10 @@ def enclosing(control: Control, statement: Statement, without: tuple[str, ...]) 
 
 def go_to(control: Control, statement: Statement) -> None:
     """$GOTO N10 or $GOTO [NAME]."""
-    control.flow.go(destination(control, statement))
+    control.program_counter.go(destination(control, statement))
 
 
-def destination(control: Control, statement: Statement) -> Place:
+def destination(control: Control, statement: Statement) -> Location:
     """Where a jump leads.
 
     Raises:
@@ -218,7 +217,7 @@ def destination(control: Control, statement: Statement) -> Place:
     match = _PLACE.fullmatch(statement.text)
     if match is None:
         refuse(control, statement, "jump-target", "$GOTO needs N10 or [NAME]")
-    place = control.flow.find_label(
+    place = control.program_counter.find_label(
         label_of(match),
         (statement.text_column, len(statement.text)),
         "$GOTO",

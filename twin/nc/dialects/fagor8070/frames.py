@@ -1,19 +1,14 @@
 """Planes, offsets and tools of the Fagor CNC 8070."""
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
 from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_words import BlockWords
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar, reset_polar_origin
 from twin.nc.geometry.planes import Plane, Vector, cross
-from twin.nc.iso.offsets import (
-    compile_programmed_shift,
-    refuse_plane_change,
-    select_offset,
-    set_length,
-    tool_numbered,
-)
+from twin.nc.iso.offsets import compile_programmed_shift, select_offset
+from twin.nc.iso.tool_compensation import refuse_plane_change, set_length, tool_numbered
 from twin.nc.text.blocks import Word
 
 OFFSETS_BY_NUMBER = 20
@@ -157,5 +152,5 @@ def turn_in_commanded_direction(control: Control, _rapid: bool) -> None:
             start = here - 360.0
         programmed = list(control.programmed)
         programmed[index] = start
-        control.relabel(programmed, "turns")
+        control.set_position(programmed, "turns")
         control.words[name] = word._replace(value=target)

@@ -4,11 +4,12 @@ import dataclasses
 from collections.abc import Iterable
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords, sorted_words
 from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_compiler import BlockCompiler
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import CycleRule, Interpolation
-from twin.nc.control.state import integer_of
+from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.geometry.arcs import (
     SAME_POINT,
@@ -17,7 +18,6 @@ from twin.nc.geometry.arcs import (
     distance,
 )
 from twin.nc.text.blocks import Word
-from twin.nc.text.expressions import Expression
 
 HELIX_ANGLE = 0.1
 """A helix whose pitch misses its end point by more than this earns a warning [deg]."""
@@ -82,63 +82,50 @@ def compile_polar_origin(block: BlockWords, assembler: Assembler) -> None:
     assembler.emit(Opcode.POLAR_ORIGIN, len(given))
 
 
-def is_polar(control: Control, words: Iterable[Word]) -> bool:
+def is_polar(compiler: BlockCompiler, words: Iterable[Word]) -> bool:
     """A block with R or Q goes there, unless it names a coordinate of the plane or makes no move."""
-    words = list(words)
-    addresses = {word.address for word in words} - _words_of_cycle(control, words)
+    words, control = list(words), compiler.control
+    codes = list(compiler.known_codes(words))
+    addresses = {word.address for word in words} - _words_of_cycles(codes)
     names = control.settings.axes.names
     abscissa, ordinate, _ = (names[index] for index in control.modal.plane.axes)
     return (
         not addresses.isdisjoint("RQ")
         and addresses.isdisjoint((abscissa, ordinate, *"IJK"))
-        and not any(_performs(control, word) for word in words)
+        and all(code.perform is None for code in codes)
     )
 
 
-def _performs(control: Control, word: Word) -> bool:
-    """A G code that does something in place of a move: G73 Q."""
-    if word.address != "G" or isinstance(word.value, Expression):
-        return False
-    code = control.dialect.g.get(integer_of(word.value))
-    return code is not None and code.perform is not None
+def _words_of_cycles(codes: Iterable[GCode]) -> set[str]:
+    """Letters that belong to the drilling cycle which one of these codes calls."""
+    rules = [cycle.rule for code in codes if (cycle := code.sets.get("cycle")) is not None]
+    return {letter for rule in rules if isinstance(rule, CycleRule) for letter in rule.words}
 
 
-def _words_of_cycle(control: Control, words: Iterable[Word]) -> set[str]:
-    """Letters that belong to the drilling cycle which a block calls."""
-    letters: set[str] = set()
-    for word in words:
-        if word.address == "G" and not isinstance(word.value, Expression):
-            code = control.dialect.g.get(integer_of(word.value))
-            cycle = None if code is None else code.sets.get("cycle")
-            if isinstance(cycle, Interpolation) and isinstance(cycle.rule, CycleRule):
-                letters.update(cycle.rule.words)
-    return letters
-
-
-def compile_polar(control: Control, words: Iterable[Word], assembler: Assembler) -> None:
+def compile_polar(compiler: BlockCompiler, words: Iterable[Word]) -> None:
     """Write a polar block for the compiled tier.
 
     Raises:
         UnsupportedError: It does more than that.
     """
-    block = sorted_words(control, words)
-    cycles = [(word, code) for word, code in block.codes if code.begins_cycle]
-    block.codes = [pair for pair in block.codes if pair not in cycles]
+    assembler = compiler.assembler
+    codes, functions, block = compiler.sorted(words)
+    cycles = [(word, code) for word, code in codes if code.begins_cycle]
+    others = [(word, code) for word, code in codes if not code.begins_cycle]
     for _, code in cycles:
         if code.compiler is None:
             raise UnsupportedError
         code.compiler(block, assembler)
     radius, angle, feed = block.take("R"), block.take("Q"), block.take("F")
-    addresses = control.dialect.axis_letters
     if (
-        block.functions
-        or block.words.keys() - addresses
-        or any(code.compiler or code.action or code.perform for _, code in block.codes)
+        functions
+        or block.words.keys() - compiler.control.axis_letters
+        or any(code.compiler or code.action or code.perform for _, code in others)
         or any(word is not None and word.incremental for word in (radius, angle))
     ):
         raise UnsupportedError
-    codes = [word for word, _ in block.codes]
-    assembler.codes(codes if feed is None else [*codes, feed])
+    moving = [] if feed is None else [feed]
+    assembler.codes([*(word for word, _ in others), *moving])
     assembler.polar(radius, angle, [*(word for word, _ in cycles), *block.words.values()])
 
 

@@ -4,10 +4,9 @@ import re
 from collections.abc import Callable
 
 from twin.nc.control.control import Control
-from twin.nc.control.flow import Place
 from twin.nc.dialects.fagor8070 import flow, subroutines
 from twin.nc.dialects.fagor8070.variables import assign, refuse
-from twin.nc.text.blocks import Statement
+from twin.nc.text.blocks import Location, Statement
 
 
 def dwell(control: Control, statement: Statement) -> None:
@@ -21,10 +20,10 @@ def dwell(control: Control, statement: Statement) -> None:
 
 def skip_comment(control: Control, statement: Statement) -> None:
     """#COMMENT BEGIN: everything up to #COMMENT END is comment."""
-    lines = control.flow.lines
+    lines = control.program_counter.lines
     for line in range(control.block.line, len(lines)):
         if re.match(r"[ \t]*#COMMENT[ \t]+END\b", lines[line], re.IGNORECASE):
-            control.flow.go(Place(line + 1, 0))
+            control.program_counter.go(Location(line + 1, 0))
             return
     refuse(control, statement, "open-comment", "#COMMENT END is missing")
 
@@ -40,7 +39,7 @@ def stray_comment_end(control: Control, statement: Statement) -> None:
 
 def warn_of_missing_end(control: Control) -> None:
     """The program's last line is reached without M30 or M02 (decision: a warning)."""
-    if control.flow.calls:
+    if control.program_counter.calls:
         control.report.fail("return-outside", "the subroutine has no M17, M29 or #RET")
     control.report.warn("no-end", "the program ends without M30", hint="write M30 at its end")
 

@@ -5,11 +5,11 @@ import re
 from collections.abc import Iterator, Mapping
 
 from twin.nc.control.control import Control
-from twin.nc.control.flow import Place, Return
+from twin.nc.control.program_counter import CallFrame
 from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.variables import refuse
-from twin.nc.text.blocks import Statement
+from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.expressions import Expression, ExpressionError, Number
 
 DEEPEST_CALL = 20
@@ -32,8 +32,8 @@ _SUBROUTINE = re.compile(r"[ \t]*%[ \t]*L[ \t]+([A-Z_0-9]\w*)", re.IGNORECASE)
 class Range:
     """What #RPT repeats: from the first place to the last, so often; the count's column."""
 
-    first: Place
-    last: Place
+    first: Location
+    last: Location
     count: Expression
     column: int
 
@@ -48,18 +48,20 @@ def range_of(control: Control, statement: Statement) -> Range:
     if match is None:
         refuse(control, statement, "repeat-range", "the labels are missing", "#RPT[N10,N20,3]")
     first, last = (
-        control.flow.find_label(
+        control.program_counter.find_label(
             _range_label(match[group]), _span(statement), "#RPT", lines_around(control)
         )
         for group in (1, 2)
     )
-    blocks = control.flow.lexer.blocks(control.flow.lines[last.line], last.line + 1)
+    blocks = control.program_counter.lexer.blocks(
+        control.program_counter.lines[last.line], last.line + 1
+    )
     if len(blocks) != 1 or blocks[0].words or blocks[0].statement is not None:
         message = "the last label must stand alone in its block"
         refuse(control, statement, "repeat-range", message, "give it a block of its own behind")
     if last < first:
         refuse(control, statement, "repeat-range", _NO_RANGE)
-    if first <= Place(control.block.line - 1, 0) <= last:
+    if first <= Location(control.block.line - 1, 0) <= last:
         refuse(control, statement, "repeat-range", "the range must not hold its own #RPT")
     if match[3] is None:
         return Range(first, last, Expression("1", Number(1.0)), statement.text_column)
@@ -73,8 +75,8 @@ def repeat_range(control: Control, statement: Statement) -> None:
     count = control.compute(asked.count, asked.column)
     if count < 1.0 or count != int(count):
         refuse(control, statement, "repeat-range", _NO_RANGE)
-    part = Return(control.flow.place, asked.first, int(count) - 1, asked.last)
-    control.flow.call(part, DEEPEST_CALL, *_span(statement))
+    part = CallFrame(control.program_counter.location, asked.first, int(count) - 1, asked.last)
+    control.program_counter.call(part, DEEPEST_CALL, *_span(statement))
 
 
 def _range_label(text: str) -> int | str:
@@ -88,7 +90,7 @@ def _span(statement: Statement) -> tuple[int, int]:
 
 def begin(control: Control) -> None:
     """The main program is the first heading that is no subroutine's."""
-    memory, lines = memory_of(control), control.flow.lines
+    memory, lines = memory_of(control), control.program_counter.lines
     main = None
     for line, text in lines.holding("%"):
         if not text.lstrip().startswith("%"):
@@ -105,7 +107,7 @@ def begin(control: Control) -> None:
         elif main is None and not memory.library:
             main = line
     if memory.subroutines and main is not None:
-        control.flow.place = Place(main, 0)
+        control.program_counter.location = Location(main, 0)
     memory.main = main
 
 
@@ -114,7 +116,8 @@ def lines_around(control: Control) -> range:
     headings, here = memory_of(control).headings, control.block.line - 1
     begin = max((line for line in headings if line <= here), default=0)
     return range(
-        begin, min((line for line in headings if line > here), default=len(control.flow.lines))
+        begin,
+        min((line for line in headings if line > here), default=len(control.program_counter.lines)),
     )
 
 
@@ -123,7 +126,7 @@ def heading(control: Control, statement: Statement) -> None:
     if control.block.line - 1 in memory_of(control).headings and statement.text.startswith(
         MARK[1:]
     ):
-        control.flow.end()
+        control.program_counter.end()
         return
     if control.block.line - 1 != memory_of(control).main:
         message = "a heading can stand only before the program or a local subroutine"
@@ -184,7 +187,7 @@ def end_modal_call(control: Control, _statement: Statement) -> None:
 def call_after_motion(control: Control) -> None:
     """The modal subroutine, when a block has moved."""
     memory = memory_of(control)
-    if memory.modal_call is not None and not control.flow.calls:
+    if memory.modal_call is not None and not control.program_counter.calls:
         name, values, statement = memory.modal_call
         _call(control, statement, _line_of(control, statement, name), values)
 
@@ -220,7 +223,9 @@ def arguments(control: Control, statement: Statement) -> Iterator[tuple[str, Exp
         if letter is None:
             control.report.fail("call-values", "a letter and its value must stand here", column)
         try:
-            expression, at = control.flow.lexer.expressions.read(statement.text, letter.end())
+            expression, at = control.program_counter.lexer.expressions.read(
+                statement.text, letter.end()
+            )
         except ExpressionError as error:
             control.report.fail(error.code, str(error), column, 1, error.hint)
         yield f"P{ord(letter[1].upper()) - ord('A')}", expression, column
@@ -250,20 +255,22 @@ def _call(
     line: int,
     values: Mapping[str, float] | None = None,
 ) -> None:
-    part = Return(control.flow.place, Place(line, 0), own_variables=values is not None)
-    control.flow.call(part, DEEPEST_CALL, *_span(statement))
+    part = CallFrame(
+        control.program_counter.location, Location(line, 0), owns_scope=values is not None
+    )
+    control.program_counter.call(part, DEEPEST_CALL, *_span(statement))
     if values is not None:
         control.variables.enter(values)
 
 
 def return_(control: Control) -> None:
     """M17, M29, #RET: back to the caller."""
-    calls = control.flow.calls
+    calls = control.program_counter.calls
     if not any(call.last is None for call in calls):
         control.fail("return-outside", "there is no subroutine to return from")
     while calls[-1].last is not None:
         calls.pop()
-    control.flow.end_part()
+    control.program_counter.end_part()
 
 
 def return_statement(control: Control, _statement: Statement) -> None:

@@ -1,10 +1,10 @@
 """Mirror, scale and rotation of the Fagor CNC 8070, and the same for the compiled tier."""
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.block_compiler import BlockWords
 from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Compiler
 from twin.nc.control.control import Control
-from twin.nc.control.dialect import Compiler
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE, rotated, stretched

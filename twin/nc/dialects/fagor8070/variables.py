@@ -154,7 +154,7 @@ def assignments(control: Control, statement: Statement) -> Iterator[Assignment]:
         at = separator.end()
         if at == len(text):
             return
-        following = control.flow.lexer.expressions.variable_at(text, at)
+        following = control.program_counter.lexer.expressions.variable_at(text, at)
         if following is None and text[at : at + 1].upper() == "P":
             name, at = "P", at + 1
             continue
@@ -168,7 +168,7 @@ def assignments(control: Control, statement: Statement) -> Iterator[Assignment]:
 def _read(
     control: Control, statement: Statement, at: int, *, whole: bool = True
 ) -> tuple[Expression, int]:
-    reader = control.flow.lexer.expressions
+    reader = control.program_counter.lexer.expressions
     try:
         return (reader.read if whole else reader.read_operand)(statement.text, at)
     except ExpressionError as error:

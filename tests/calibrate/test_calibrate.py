@@ -1,0 +1,141 @@
+"""From a log to a machine file: what is told is true, and what is not told is said."""
+
+import dataclasses
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import Twin
+from machine_logs import (
+    EMPS,
+    EMPS_MAP,
+    logged,
+    mill,
+    needs_real_logs,
+    strokes,
+    with_axis,
+    without_force,
+    write_log,
+)
+
+from twin.calibrate.calibrate import calibrate
+from twin.calibrate.result import Calibration
+from twin.logs.column_map import read_column_map
+from twin.logs.machine_log import MachineLog, read_machine_log
+from twin.machine.config import read_machine
+
+TRUTH = {
+    "kv": 5.0, "damping_ratio": 0.7, "dry_friction": 350.0, "viscous_friction": 3.0,
+    "constant_force": 40.0, "mass": 800.0,
+}  # fmt: skip
+
+
+def noisy(log: MachineLog, seed: int = 1) -> MachineLog:
+    axis, draw = log.axes["X"], np.random.default_rng(seed)
+    actual = np.round(axis.actual + 0.5e-3 * draw.standard_normal(len(axis.actual)), 3)
+    more = {
+        role: values + 5.0 * draw.standard_normal(len(values)) for role, values in axis.more.items()
+    }
+    return with_axis(log, dataclasses.replace(axis, actual=actual, more=more))
+
+
+@pytest.fixture(scope="module")
+def forced() -> MachineLog:
+    return noisy(logged(mill(**TRUTH)))
+
+
+@pytest.fixture(scope="module")
+def with_force(forced: MachineLog) -> Calibration:
+    return calibrate(mill(), [forced])
+
+
+def test_with_a_force_everything_is_told(with_force: Calibration) -> None:
+    fit = with_force.axes["X"].fit
+    for name, true in TRUTH.items():
+        found = fit.fitted[name]
+        assert found.value == pytest.approx(true, rel=0.03), name
+        assert found.low <= found.value <= found.high
+    assert not fit.conditional
+    (figures,) = with_force.logs
+    assert figures.share < 0.01
+    assert figures.force_share is not None
+    assert figures.force_share < 0.1
+
+
+def test_positions_alone_leave_mass_and_viscous_friction_open(forced: MachineLog) -> None:
+    fit = calibrate(mill(), [without_force(forced)]).axes["X"].fit
+    assert {"mass", "viscous_friction"} <= set(fit.undetermined)
+    assert "mass" not in fit.fitted
+    assert "correlation 1.000" in fit.undetermined["viscous_friction"]
+    assert fit.fitted["kv"].low < TRUTH["kv"] < fit.fitted["kv"].high
+    ratio = 1041.154 / TRUTH["mass"]
+    friction, given = fit.conditional["dry_friction"]
+    assert given == ("mass",)
+    assert friction.value == pytest.approx(TRUTH["dry_friction"] * ratio, rel=0.05)
+
+
+def test_a_log_of_mill4_gives_mill4_back(twin: Twin, tmp_path: Path) -> None:
+    log = write_log(tmp_path / "own.csv", logged(mill()))
+    done = twin("calibrate", log, "--out", tmp_path / "again.toml", "--json", tmp_path / "a.json")
+    assert done.code == 0, done.stderr
+    again, base = read_machine(tmp_path / "again.toml").axis("X"), mill().axis("X")
+    assert again.kv == pytest.approx(base.kv, rel=1e-4)
+    assert again.damping_ratio == pytest.approx(base.damping_ratio, rel=1e-3)
+    assert again.mass == pytest.approx(1041.154, rel=1e-3)
+    assert abs(again.dry_friction) < 0.5
+    told = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))
+    assert told["schema"] == 1
+    assert told["axes"]["X"]["fitted"]["kv"]["unit"] == "(m/min)/mm"
+    assert told["logs"][0]["share"] < 1e-4
+
+
+def test_a_delay_of_the_log_is_told_from_the_loop(forced: MachineLog) -> None:
+    axis = forced.axes["X"]
+    late = np.interp(forced.time - 0.003, forced.time, axis.actual)
+    log = with_axis(forced, dataclasses.replace(axis, actual=late))
+    fit = calibrate(mill(), [log]).axes["X"].fit
+    assert fit.fitted["delay"].value == pytest.approx(0.003, abs=2e-4)
+    assert fit.fitted["kv"].low < TRUTH["kv"] < fit.fitted["kv"].high
+
+
+def test_without_a_reversal_friction_is_not_told_from_a_constant_force() -> None:
+    course = strokes()
+    course = course[(np.cumsum(course[:, 1] < -1e-9) == 0)]
+    fit = calibrate(mill(), [without_force(noisy(logged(mill(**TRUTH), course)))]).axes["X"].fit
+    assert {"dry_friction", "constant_force"} & set(fit.undetermined)
+
+
+def test_gaps_and_jumps_of_the_clock_are_said_and_stepped_over(forced: MachineLog) -> None:
+    time = forced.time.copy()
+    time[3000:] += 0.7
+    time[4200:] -= 2.0
+    result = calibrate(mill(), [dataclasses.replace(forced, time=time)])
+    assert {finding.code for finding in result.findings["own.csv"]} == {"gap", "clock-jump"}
+    assert result.axes["X"].fit.fitted["kv"].value == pytest.approx(TRUTH["kv"], rel=0.03)
+
+
+@needs_real_logs
+def test_emps_is_predicted_beyond_what_was_fitted(tmp_path: Path) -> None:
+    (tmp_path / "map.toml").write_text(EMPS_MAP, encoding="utf-8")
+    log = read_machine_log(EMPS, read_column_map(tmp_path / "map.toml"))
+    first, second = part(log, slice(0, 6000), "first"), part(log, slice(6000, None), "second")
+    result = calibrate(mill(), [first], [second])
+    fitted = result.axes["X"].fit.fitted
+    assert fitted["kv"].value == pytest.approx(9.61, rel=0.01)
+    assert fitted["mass"].value == pytest.approx(95.1, rel=0.03)
+    assert fitted["dry_friction"].value == pytest.approx(20.4, rel=0.10)
+    assert fitted["viscous_friction"].value == pytest.approx(0.2035, rel=0.10)
+    held = result.logs[1]
+    assert held.share < 0.006
+    assert held.force_share is not None
+    assert held.force_share < 0.06
+
+
+def part(log: MachineLog, rows: slice, name: str) -> MachineLog:
+    axis = log.axes["X"]
+    less = dataclasses.replace(
+        axis, command=axis.command[rows], actual=axis.actual[rows],
+        more={role: values[rows] for role, values in axis.more.items()},
+    )  # fmt: skip
+    return MachineLog(name, log.time[rows], {"X": less}, log.line[rows])

@@ -1,0 +1,113 @@
+"""A log that is not what it is said to be is refused with the reason."""
+
+import dataclasses
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import Twin
+from machine_logs import logged, mill, strokes, with_axis, without_force, write_log
+
+from twin.calibrate.calibrate import calibrate
+from twin.calibrate.health import resolution
+from twin.errors import UsageError
+from twin.logs.machine_log import AxisLog, MachineLog
+
+
+@pytest.fixture(scope="module")
+def log() -> MachineLog:
+    return logged(mill(), strokes(4.0))
+
+
+def swapped(axis: AxisLog) -> AxisLog:
+    return dataclasses.replace(axis, command=axis.actual, actual=axis.command)
+
+
+def scaled(factor: float) -> Callable[[AxisLog], AxisLog]:
+    return lambda axis: dataclasses.replace(axis, actual=axis.actual * factor)
+
+
+def both_scaled(factor: float) -> Callable[[AxisLog], AxisLog]:
+    return lambda axis: dataclasses.replace(
+        axis, actual=axis.actual * factor, command=axis.command * factor
+    )
+
+
+def of_another_axis(axis: AxisLog) -> AxisLog:
+    time = np.arange(len(axis.actual))
+    return dataclasses.replace(axis, actual=30.0 * np.sin(time / 211.0))
+
+
+def pushing_back(axis: AxisLog) -> AxisLog:
+    return dataclasses.replace(axis, more={"force": -axis.more["force"]})
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        (swapped, "actual leads command by 8.* swapped"),
+        (scaled(1 / 25.4), "one of them is in inches"),
+        (scaled(1000.0), "micrometres"),
+        (scaled(-1.0), "the other sense"),
+        (both_scaled(1000.0), "the unit of position or of time is another one"),
+        (both_scaled(1e-6), "the unit is another one"),
+        (of_another_axis, "position of another axis"),
+        (pushing_back, "scale of the other sign"),
+        (lambda axis: dataclasses.replace(axis, kind="rotary"), "rotary axis, the base's X"),
+        (lambda axis: dataclasses.replace(axis, command=axis.command * 0), "does not move"),
+    ],
+)
+def test_a_wrong_log_is_refused_with_the_reason(
+    log: MachineLog, wrong: Callable[[AxisLog], AxisLog], told: str
+) -> None:
+    with pytest.raises(UsageError, match=told):
+        calibrate(mill(), [with_axis(log, wrong(log.axes["X"]))])
+
+
+def test_an_axis_that_the_base_lacks_is_refused(log: MachineLog) -> None:
+    with pytest.raises(UsageError, match="no axis U: it has X, Y, Z, C"):
+        calibrate(mill(), [dataclasses.replace(log, axes={"U": log.axes["X"]})])
+    with pytest.raises(UsageError, match="no log has axis Y"):
+        calibrate(mill(), [log], axes=["Y"])
+
+
+def test_a_slow_log_is_fitted_as_far_as_it_tells(log: MachineLog) -> None:
+    axis = log.axes["X"]
+    every = slice(0, None, 50)
+    slow = without_force(
+        dataclasses.replace(
+            log, time=log.time[every], line=log.line[every],
+            axes={"X": dataclasses.replace(
+                axis, command=axis.command[every], actual=axis.actual[every], more={})},
+        )
+    )  # fmt: skip
+    result = calibrate(mill(), [slow])
+    assert [finding.code for finding in result.findings["own.csv"]] == ["slow"]
+    fit = result.axes["X"].fit
+    assert {"kv", "damping_ratio", "mass"} <= set(fit.undetermined)
+    assert fit.parameters.kv == mill().axis("X").kv
+    assert fit.fitted["delay"].low < 0.0 < fit.fitted["delay"].high
+
+
+def test_the_step_of_quantised_values_is_found() -> None:
+    draw = np.random.default_rng(2)
+    values = draw.standard_normal(500)
+    assert resolution(np.round(values, 2)) == pytest.approx(0.01)
+    assert resolution(values) == 0.0
+
+
+def test_require_turns_a_share_into_an_exit_code(
+    twin: Twin, tmp_path: Path, log: MachineLog
+) -> None:
+    first = write_log(tmp_path / "first.csv", log)
+    other = write_log(tmp_path / "other.csv", logged(mill(kv=5.0), strokes(3.0)))
+    for held, code in ((first, 0), (other, 1)):
+        done = twin("calibrate", first, "--hold-out", held, "--require", "0.1")
+        assert done.code == code, done.stderr
+    assert twin("calibrate", first, "--require", "0.1").code == 2
+    assert twin("calibrate", tmp_path / "no.csv").code == 2
+    (tmp_path / "bad.csv").write_text("a,b\n1,2\n3,4\n", encoding="utf-8")
+    done = twin("calibrate", tmp_path / "bad.csv")
+    assert done.code == 2
+    assert "[columns.X]" in done.stderr

@@ -1,0 +1,72 @@
+from pathlib import Path
+
+import pytest
+
+from tests.nc.running import ROOT
+from twin.errors import UsageError
+from twin.nc.dialects import DIALECTS, dialect_named, recognise
+from twin.nc.text.source import read_source, source_from_text
+
+OWN = {
+    "gost": ["G102 C360", "G0 X1 $ подход", "G0 X1 $ approach", "G1 C5 F100 $"],
+    "codesys": [
+        "N10 G1 X1 N20 G2 X5 R5", "N10 G2 I50 J0 T180", "G1 X$a$", "LET #x : LREAL", "G4 T1",
+        "G1 X5 F10 E20 E-30", "SUBPROGRAM A{}",
+    ],
+    "fagor8070": [
+        "G01 R50 Q30", "G30 I5 J5", "$IF P1==1", "P1=5", "G01 X20I", "G01 X1=5", "#RPT[N1,N2]",
+        "G01 X5 ; comment", "G263=50",
+    ],
+    "mefi": ['G00 X1 "pohyb', "N5 X0 G73 L5 Q2", "G09 G02 X0 I100"],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("dialect", "text"), [(d, t) for d, texts in OWN.items() for t in texts])
+def test_own_words_decide(dialect: str, text: str) -> None:
+    assert recognise(source_from_text(f"G0 X0\n{text}\nX1")).name == dialect
+
+
+@pytest.mark.parametrize(
+    ("dialect", "line"),
+    [
+        ("fagor8070", 'G1 X1 ; "finish" costs 5 $ more'),
+        ("mefi", 'N10 G0 X1 " 5 $ ; or so'),
+        ("gost", 'G0 X1 $ "чисто"; готово'),
+    ],
+)
+def test_marks_within_a_comment_decide_nothing(dialect: str, line: str) -> None:
+    assert recognise(source_from_text(line)).name == dialect
+
+
+def test_no_words_of_its_own_ask() -> None:
+    with pytest.raises(UsageError) as raised:
+        recognise(source_from_text("G0 X1\nG1 Y2 F100", "plain.nc"))
+    message = str(raised.value)
+    assert "plain.nc" in message
+    assert "--dialect" in message
+    for name, dialect in DIALECTS.items():
+        assert f"{name}: {dialect.marks[0].shown}" in message
+
+
+def test_comments_in_brackets_decide_nothing() -> None:
+    with pytest.raises(UsageError, match="could be any"):
+        recognise(source_from_text("G0 X1 (from N10 to N20, G102 C360)"))
+
+
+def test_words_of_two_dialects_ask() -> None:
+    with pytest.raises(UsageError, match=r"--dialect(?s:.*)gost: .*\n.*mefi: "):
+        recognise(source_from_text('G102 C360\nG0 X1 "text'))
+
+
+def test_an_unknown_dialect_names_the_known() -> None:
+    with pytest.raises(UsageError, match="gost, codesys, fagor8070, mefi"):
+        dialect_named("fanuc")
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "tests/golden").glob("*/*/*.nc")), ids=str)
+def test_no_program_is_taken_for_another_dialects(path: Path) -> None:
+    try:
+        found = recognise(read_source(path)).name
+    except UsageError as error:
+        found = path.parts[-3] if "could be any dialect" in str(error) else str(error)
+    assert found == path.parts[-3]

@@ -1,0 +1,215 @@
+"""Throws nonsense at the interpreter: it must answer with moves or a diagnostic, never otherwise.
+
+``scripts/fuzz 100000 7`` runs as many tries with that seed and reports the first that fails.
+"""
+
+import collections
+import dataclasses
+import random
+import sys
+import time
+
+import numpy as np
+
+from tests.nc.running import ROOT, SETTINGS
+from twin.nc.canonical import Chunk, Moves, Shape
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.settings import ToolData
+from twin.nc.dialects import DIALECTS
+from twin.nc.interpreter import Interpretation
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.source import source_from_bytes
+
+FUZZ_SETTINGS = dataclasses.replace(
+    SETTINGS,
+    step_limit=500,
+    tools={1: ToolData(2.0, 60.0), 2: ToolData(3.0, 50.0)},
+    offsets={"G55": {"X": 10.0}},
+    machine_zero={"Z": 300.0},
+)
+LONGEST_SECONDS = 1.0
+SECONDS_PER_MOVE = 2e-4
+"""Processor time that a program may take, and each move that it makes: a spline is one of many."""
+RAN = "ran to its end"
+
+PIECES = {
+    "gost": "G102 C360|G102 C0|G9|G61|G64|G99|$ текст|C721|C-721|G83 Q2|...",
+    "codesys": "T90|T720|G16|G20 L1|K0|LET #a : LREAL := 2|#a|#a:=#a+1|$v$|G36 O#a D3|G37 D1|G6"
+    "|G8|G5|G10|G51 D2|G52 D3|G50|G61|G60|EF3|EF-4|D2|H1|O0.5|L-1|SUBPROGRAM S{#x}|END_SUBPROGRAM|S{1}|L?4|L!4|PC360|FF5|(x)|//|E5|E-5|FX3|N2|G71 L6|G70 L6|G70|G92 X3|C40",
+    "fagor8070": "Q90|R30|Q360|G30|G31|G08|G09|G263=20|R1=30|X20I|X1=5|NR3|P1=2|P[P1]=3|[P1+2]"
+    "|$IF P1==2|$ELSE|$ENDIF|$WHILE P1<5|$ENDWHILE|$FOR P2=1,3,1|$ENDFOR|$GOTO N1|#RPT[N1,N2,2]"
+    "|%L SUB|M17|LL SUB|#PCALL SUB A1|#MCALL SUB|#MDOFF|G73 Q30|G72 S2|G11|G10|G14 X-1|G20 X1 Z2"
+    "|;|$SWITCH P1|$CASE 2|$ENDSWITCH|$BREAK|#TIME [1]|G04 1|SIN[30]|G06|G136|G36 I2|G39 I1|G138|G139|G264|G82 Z1 I-5 B2|G87 J9 K7 I-3 B2|G88 J8 I-3 B1|G158 X3|G159=2",
+    "mefi": 'G10 Z1|G09|G98|G73 L1 Q2|G73 L2|L1|Q3|"text|I100',
+}  # fmt: skip
+COMMON = (
+    "G0|G1|G2|G3|G1|G4 P1|G17|G18|G19|G40|G41|G42|G54|G55|G53|G70|G71|G80|G81 Z-2 R1|G90|G91|G92"
+    "|G94|G95|X10|Y-5|Z2.5|C90|X0|Y0|X7|Y9|I5|J-5|K2|R10|R-10|F100|F50|S500|T1|M3|M5|M6|X1e5"
+)
+JUNK = [
+    "X99999999999999999",
+    "X..5",
+    "-",
+    "+",
+    "(",
+    ")",
+    "[",
+    "]",
+    "=",
+    "%",
+    "/",
+    "\x00",
+    "\x7f",
+    "Х",
+    "é",
+    "A1",
+    "B2",
+    "G999",
+    "M99",
+    "M30",
+]
+
+
+def _texts(dialect: Dialect) -> list[bytes]:
+    paths = [*(ROOT / "programs" / dialect.name).glob("*.nc")]
+    paths += (ROOT / "tests" / "golden" / dialect.name).glob("*/*.nc")
+    return [path.read_bytes() for path in sorted(paths)]
+
+
+REAL = {name: _texts(dialect) for name, dialect in DIALECTS.items()}
+
+
+def program(random_: random.Random, dialect: Dialect) -> bytes:
+    """Random bytes, a mutated or spliced real program, or words of the dialect in any order."""
+    kind = random_.random()
+    if kind < 0.1:
+        return random_.randbytes(random_.randrange(200))
+    if kind < 0.4:
+        return spliced(random_, REAL[dialect.name])
+    if kind < 0.7:
+        of = dialect.name if random_.random() < 0.9 else random_.choice(list(REAL))
+        return mutated(random_, random_.choice(REAL[of]))
+    own, common = PIECES[dialect.name].split("|"), COMMON.split("|")
+    lines = ["G1 X1 Y2 F100"]
+    for number in range(random_.randrange(1, 12)):
+        words = [
+            random_.choice(JUNK if random_.random() < 0.01 else random_.choice([own, common]))
+            for _ in range(random_.randrange(1, 4))
+        ]
+        label = f"N{number} " if random_.random() < 0.3 else ""
+        lines.append(label + " ".join(words))
+    return "\n".join(lines).encode()
+
+
+def spliced(random_: random.Random, programs: list[bytes]) -> bytes:
+    """Lines of several programs, in the order of each: plausible blocks in an unplanned state."""
+    lines = [line for text in random_.sample(programs, 3) for line in text.splitlines()]
+    kept = [line for line in lines if random_.random() < 0.7]
+    return b"\n".join([b"F100", *kept])
+
+
+def mutated(random_: random.Random, data: bytes) -> bytes:
+    """A program with bytes changed, removed, repeated or swapped."""
+    changed = bytearray(data)
+    for _ in range(random_.randrange(1, 6)):
+        at, size = random_.randrange(len(changed) + 1), random_.randrange(1, 12)
+        change = random_.randrange(4)
+        if change == 0:
+            changed[at : at + size] = b""
+        elif change == 1:
+            changed[at:at] = changed[at : at + size * 4]
+        elif change == 2:
+            changed[at : at + 1] = bytes([random_.randrange(256)])
+        else:
+            changed[at:at] = random_.choice(
+                [b"G", b"X", b"-", b"9" * size, b"\n", b"Q", b"$", b"["]
+            )
+    return bytes(changed)
+
+
+def check(data: bytes, dialect: Dialect) -> str:
+    """Interpret; complain of anything but consistent moves and a diagnostic; the latter's code."""
+    begin = time.process_time()
+    source = source_from_bytes(data, "fuzz.nc", dialect)
+    interpretation = Interpretation(source, dialect, FUZZ_SETTINGS)
+    before, moves = None, 0
+    try:
+        for chunk in interpretation.chunks():
+            before = check_chunk(chunk, before)
+            moves += len(chunk.moves)
+    except ProgramError as error:
+        line, outcome = error.diagnostic.line if str(error) else 0, error.diagnostic.code
+    else:
+        line, outcome = 1, RAN
+    assert 1 <= line <= max(1, len(source.lines))
+    longest = LONGEST_SECONDS + moves * SECONDS_PER_MOVE
+    assert time.process_time() - begin < longest, "too slow"
+    return outcome
+
+
+def check_chunk(chunk: Chunk, before: np.ndarray | None) -> np.ndarray | None:
+    """Check a chunk's moves; where they end, or where those before did."""
+    moves = chunk.moves
+    if not len(moves):
+        return before
+    ends = moves.end if before is None else np.concatenate([before[None], moves.end])
+    np.testing.assert_array_equal(moves.start[before is None :], ends[:-1])
+    assert np.isfinite(moves.end).all()
+    assert (moves.length > 0.0).all()
+    arcs = moves[moves.shape == Shape.ARC]
+    if len(arcs):
+        check_arcs_end_where_they_say(arcs)
+    return moves.end[-1]
+
+
+def check_arcs_end_where_they_say(arcs: Moves) -> None:
+    assert np.isfinite(arcs.center).all()
+    np.testing.assert_allclose(np.linalg.norm(arcs.normal, axis=1), 1.0, atol=1e-9)
+    start, end, normal = arcs.start[:, :3], arcs.end[:, :3], arcs.normal
+    angle, spoke = np.deg2rad(arcs.sweep)[:, None], start - arcs.center
+    turned = (
+        spoke * np.cos(angle)
+        + np.cross(normal, spoke) * np.sin(angle)
+        + normal * _along(normal, spoke) * (1.0 - np.cos(angle))
+    )
+    reached = arcs.center + turned + _along(end - start, normal) * normal
+    off = np.abs(reached - end).max(axis=1)
+    assert (off <= 2e-6 * (1.0 + np.abs(spoke).max(axis=1))).all()
+
+
+def _along(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return (a * b).sum(axis=1)[:, None]
+
+
+def main(tries: int, seed: int = 1) -> dict[str, int]:
+    """Run as many tries.
+
+    Returns:
+        How many programs were run to their end, and how many were refused with each code.
+
+    Raises:
+        AssertionError: A try failed; the program is printed.
+    """
+    random_ = random.Random(seed)  # noqa: S311 (nonsense needs no cryptography)
+    outcomes: collections.Counter[str] = collections.Counter()
+    for number in range(tries):
+        dialect = random_.choice(list(DIALECTS.values()))
+        data = program(random_, dialect)
+        try:
+            outcomes[check(data, dialect)] += 1
+        except BaseException:
+            sys.stderr.write(f"try {number}, {dialect.name}: {data!r}\n")
+            raise
+    return dict(outcomes.most_common())
+
+
+if __name__ == "__main__":
+    arguments = [int(argument) for argument in sys.argv[1:]]
+    tries, seed = [*arguments, *[100_000, 1][len(arguments) :]]
+    begin = time.perf_counter()
+    found = main(tries, seed)
+    seconds = time.perf_counter() - begin
+    sys.stdout.write(
+        f"{tries} programs in {seconds:.0f} s, seed {seed}: {found.pop(RAN, 0)} ran, the others:\n"
+    )
+    sys.stdout.writelines(f"{count:7d}  {code}\n" for code, count in found.items())

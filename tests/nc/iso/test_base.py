@@ -1,0 +1,23 @@
+"""A jog as a block: the same move on every control, whatever its F counts."""
+
+import pytest
+
+from tests.nc.running import run
+from twin.nc.dialects import DIALECTS, dialect_named
+from twin.nc.iso.base import jog_block
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+@pytest.mark.parametrize(("axis", "distance"), [("X", -12.3456), ("C", 90.0)])
+def test_jog_goes_by_its_distance_at_its_feed(dialect: str, axis: str, distance: float) -> None:
+    outcome = run(jog_block(dialect_named(dialect), axis, distance, 600.0), dialect)
+    assert outcome.error is None
+    assert len(outcome.moves) == 1
+    delta = outcome.delta(0)
+    assert delta.pop(axis) == pytest.approx(distance, abs=1e-9)
+    assert set(delta.values()) == {0.0}
+    assert outcome.moves.feed[0] == pytest.approx(600.0, rel=1e-6)
+
+
+def test_codesys_counts_its_f_per_second() -> None:
+    assert jog_block(dialect_named("codesys"), "X", 1.0, 600.0).endswith("X1 F10")

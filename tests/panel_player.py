@@ -1,0 +1,197 @@
+"""An operator at the real page: plays a scene's steps with the keys that the panel has."""
+
+import contextlib
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from chromium import CHROMIUM, QUIET
+
+from twin.training.scene.scene_file import Scene, StepTable
+from twin.training.server.launch import OpenRoom, open_room
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, BrowserContext, Page
+
+PATIENCE_S = 90.0
+STEPS = (10.0, 1.0, 0.1, 0.01)
+
+
+@contextlib.contextmanager
+def served(scene: Scene, out: Path | None = None) -> Iterator[OpenRoom]:
+    """A room whose machine runs on a thread of its own."""
+    with open_room(scene, out=out) as room:
+        thread = threading.Thread(target=room.serve, daemon=True)
+        thread.start()
+        try:
+            yield room
+        finally:
+            room.stop()
+            thread.join(timeout=PATIENCE_S)
+
+
+@contextlib.contextmanager
+def browser() -> Iterator["Browser"]:
+    """A headless browser."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
+        yield opened
+        opened.close()
+
+
+def open_page(
+    room: OpenRoom, context: "Browser | BrowserContext", role: str = "operator", query: str = ""
+) -> "Page":
+    """Open the page of a role and wait for its panel; what its scripts say wrong is an error."""
+    page = context.new_page()
+    page.set_default_timeout(1e3 * PATIENCE_S)
+    place, token = room.addresses[role].split("#")
+    page.goto(f"{place}{query}#{token}")
+    page.wait_for_selector("body[data-ready=yes]")
+    return page
+
+
+def without_view(page: "Page | BrowserContext") -> None:
+    """Leave the view out: drawing by a processor is what costs."""
+    page.route("**/view_worker.js", lambda route: route.abort())
+
+
+class Player:
+    """Somebody at the page."""
+
+    def __init__(self, room: OpenRoom, page: "Page") -> None:
+        self.room = room
+        self.page = page
+
+    @property
+    def machine(self):
+        """The machine as it is."""
+        return self.room.session.room
+
+    def until(self, come: Callable[[], bool], what: str) -> None:
+        """Wait until the room shows it."""
+        end = time.monotonic() + PATIENCE_S
+        while not come():
+            alarm = self.machine.alarm
+            assert time.monotonic() < end, f"waited for {what}: {self.room.session.refusal} {alarm}"
+            time.sleep(0.005)
+
+    def done(self, name: str) -> int:
+        """How often a command has been done."""
+        return sum(e.command["do"] == name and not e.refusal for e in self.room.session.log)
+
+    def press(self, name: str, does: str) -> None:
+        """Click a key, and wait until the machine has done what it does."""
+        before = self.done(does)
+        self.page.click(f'[data-key="{name}"]')
+        self.until(lambda: self.done(does) > before, name)
+
+    def play(self, steps: tuple[StepTable, ...]) -> None:
+        """Play steps to their end, and hand in."""
+        for number, step in enumerate(steps):
+            if step.wait is not None:
+                if step.wait != "contact":
+                    self._wait(step)
+            elif not self._is_let_go(step):
+                after = steps[number + 1] if number + 1 < len(steps) else None
+                feels = after is not None and after.wait == "contact"
+                self._do(step.do or "", step.give, feels=feels)
+        self.page.click("#tab-tasks")
+        self.press("finish", "finish")
+
+    @staticmethod
+    def _is_let_go(step: StepTable) -> bool:
+        return step.do == "jog_stop"
+
+    def _do(self, name: str, give: dict, *, feels: bool) -> None:
+        page = self.page
+        if name == "mode":
+            self.press(f"mode_{give['mode']}", "mode")
+        elif name == "override":
+            before = self.done("override")
+            page.locator(f"[data-key={give['dial']}_override]").fill(str(give["percent"]))
+            self.until(lambda: self.done("override") > before, "the dial")
+        elif name == "emergency_stop":
+            before = self.done("emergency_stop")
+            # As an operator does: the button is pressed again once it shows that it is pressed.
+            page.wait_for_selector(
+                f"#emergency[aria-pressed={'false' if give.get('pressed', True) else 'true'}]"
+            )
+            page.click("#emergency")
+            self.until(lambda: self.done("emergency_stop") > before, "the emergency stop")
+        elif name == "jog":
+            self._jog(give, feels=feels)
+        elif name == "set_zero":
+            page.click("#tab-offsets")
+            page.fill(f"#reading-{give['axis']}", str(give["reading"]))
+            self.press(f"preset {give['axis']}", "set_zero")
+        elif name == "set_tool":
+            page.click("#tab-tools")
+            self.press("touch off", "set_tool")
+        elif name == "answer":
+            page.click("#tab-tasks")
+            self.press(f"answer {give['task']} {give['choice']}", "answer")
+        elif name == "edit":
+            self._edit(give)
+        elif name in ("spindle", "coolant"):
+            stands = self.machine.spindle.started if name == "spindle" else self.machine.coolant
+            if stands != give["on"]:
+                self.press(name, name)
+        else:
+            self.press(name, name)
+
+    def _edit(self, give: dict) -> None:
+        """A line, and lines below it one by one."""
+        page, text = self.page, give["text"].split("\n")
+        page.click(f"#line{give['line']}")
+        for number, line in enumerate(text):
+            page.fill("[data-key=edited]", line)
+            self.press("insert" if number else "edit", "edit")
+            page.wait_for_selector(f"#line{give['line'] + number} >> text={line.strip()[:12]}")
+
+    def _jog(self, give: dict, *, feels: bool) -> None:
+        axis, direction = give["axis"], give["direction"]
+        name = f"jog {axis}{'+' if direction > 0 else '-'}"
+        left = give.get("step")
+        if feels:
+            left = self._free_way(axis, direction)
+        assert left is not None
+        for step in STEPS:
+            self.page.click(f'[data-key="step {step:g}"]')
+            while left > step - 1e-6 and not (feels and self.machine.touches):
+                self.press(name, "jog")
+                self.until(lambda: self.machine.run is None and not self.machine.moving, "rest")
+                left -= step
+        while feels and not self.machine.touches:
+            self.press(name, "jog")
+            self.until(lambda: self.machine.run is None and not self.machine.moving, "rest")
+
+    def _free_way(self, axis: str, direction: int) -> float:
+        """What an eye sees: about how far the tool is from the blank."""
+        room = self.machine
+        work, column = room.work, room.machine.machine.axes.names.index(axis)
+        assert work is not None
+        low, high = 0.0, 200.0
+        for _ in range(40):
+            middle = 0.5 * (low + high)
+            place = room.machine.position - room.tables.longer
+            place[column] += direction * middle
+            low, high = (low, middle) if work.touches(place) else (middle, high)
+        return max(0.0, low - 0.005)
+
+    def _wait(self, step: StepTable) -> None:
+        room = self.machine
+        begin = room.time_s
+        come = {
+            "rest": lambda: not room.moving and (room.run is None or room.held),
+            "moving": lambda: room.moving,
+            "alarm": lambda: room.alarm is not None and not room.moving,
+            "line": lambda: int(room.machine.setpoint.line[0]) == step.value,
+            "end": lambda: room.run is None and not room.moving,
+            "seconds": lambda: room.time_s >= begin + step.value,
+        }[step.wait or "rest"]
+        self.until(come, f"{step.wait} {step.value:g}")

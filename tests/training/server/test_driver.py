@@ -1,0 +1,189 @@
+"""The machine's thread: held keys, frozen time, replays, and that nothing ends it."""
+
+import time
+
+import numpy as np
+import pytest
+
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.scene.vocabulary import Words
+from twin.training.server.driver import HELD_S, Driver
+from twin.training.session.log import Who
+from twin.training.session.score import score_sheet
+from twin.training.session.session import Session
+
+PAGE = 7
+
+
+@pytest.fixture
+def driver():
+    return Driver(Session(read_scene(scene_path("fagor_first_steps"))))
+
+
+def run_for(driver: Driver, seconds: float) -> None:
+    """Let the wall's clock go on."""
+    for _ in range(round(seconds / 0.01)):
+        driver._step(0.01)
+
+
+def ask(driver: Driver, name: str, who: Who = "operator", **given: object) -> None:
+    driver.ask({"do": name, **given}, who, PAGE)
+    driver._step(0.0)
+
+
+def test_a_held_key_moves_while_its_page_speaks_and_stops_when_it_falls_silent(driver):
+    room = driver.session.room
+    ask(driver, "mode", mode="jog")
+    ask(driver, "jog", axis="X", direction=1)
+    for _ in range(30):
+        driver.beat(PAGE)
+        run_for(driver, 0.01)
+    assert room.running == "jog"
+    assert room.moving
+    time.sleep(HELD_S)
+    run_for(driver, 0.01)
+    assert driver.session.log[-1].command == {"do": "jog_stop"}
+    run_for(driver, 0.5)
+    assert not room.moving
+    assert room.running == ""
+
+
+def test_a_page_that_is_gone_holds_no_key(driver):
+    ask(driver, "mode", mode="jog")
+    ask(driver, "jog", axis="X", direction=1)
+    run_for(driver, 0.02)
+    driver.leave(PAGE)
+    run_for(driver, 0.01)
+    assert driver.session.log[-1].command == {"do": "jog_stop"}
+
+
+def test_a_jog_by_a_step_needs_no_held_key(driver):
+    ask(driver, "mode", mode="jog")
+    ask(driver, "jog", axis="X", direction=1, step=1.0)
+    driver.leave(PAGE)
+    place = driver.session.room.machine.position[0]
+    run_for(driver, 1.0)
+    assert driver.session.room.machine.position[0] == pytest.approx(place + 1.0, abs=1e-3)
+
+
+def test_a_frozen_machine_stands_until_it_goes_on(driver):
+    ask(driver, "cycle_start")
+    run_for(driver, 0.3)
+    ask(driver, "freeze", "trainer")
+    before = driver.session.room.time_s
+    run_for(driver, 0.1)
+    assert driver.session.room.time_s == before
+    ask(driver, "go_on", "trainer")
+    run_for(driver, 0.1)
+    assert driver.session.room.time_s > before
+
+
+def test_a_replay_comes_back_to_where_the_session_is_and_can_be_ended(driver):
+    ask(driver, "cycle_start")
+    run_for(driver, 1.0)
+    there = driver.session.room.time_s
+    place = driver.session.room.machine.position.copy()
+    ask(driver, "replay", "trainer")
+    run_for(driver, 0.05)
+    assert driver.seen is not driver.session.room
+    assert driver.look.now.replaying
+    ask(driver, "reset")
+    assert "shown again" in driver.session.refusal
+    run_for(driver, there / 4.0)
+    assert driver.seen is driver.session.room
+    assert driver.session.room.time_s == pytest.approx(there, abs=0.1)
+    ask(driver, "replay", "trainer")
+    ask(driver, "end_replay", "trainer")
+    assert driver.session.replay is None
+    assert np.linalg.norm(driver.session.room.machine.position - place) < 10.0
+
+
+def test_the_emergency_stop_works_while_a_replay_runs(driver):
+    ask(driver, "cycle_start")
+    run_for(driver, 0.5)
+    ask(driver, "replay", "trainer")
+    ask(driver, "emergency_stop")
+    assert driver.session.replay is None
+    assert driver.session.room.alarm is not None
+
+
+def test_whatever_goes_wrong_becomes_an_alarm_and_time_goes_on(driver, monkeypatch):
+    room = driver.session.room
+
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("of no use")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(room, "_setpoints", broken)
+        run_for(driver, 0.02)
+    assert room.alarm is not None
+    assert room.alarm.code == "internal"
+    assert "of no use" in room.alarm.message
+    ask(driver, "reset")
+    assert room.alarm is None
+    before = room.time_s
+    run_for(driver, 0.1)
+    assert room.time_s > before
+
+
+def test_a_tool_that_is_not_there_is_an_alarm(driver):
+    ask(driver, "mode", mode="mdi")
+    ask(driver, "mdi", text="T2 M6")
+    ask(driver, "cycle_start")
+    run_for(driver, 0.1)
+    alarm = driver.session.room.alarm
+    assert alarm is not None
+    assert (alarm.code, alarm.message) == ("program", "no tool 2")
+
+
+def test_a_program_that_loops_for_ever_keeps_neither_time_nor_the_emergency_stop_waiting(driver):
+    session = driver.session
+    for line in range(len(session.room.lines), 1, -1):
+        ask(driver, "edit", line=line)
+    ask(driver, "edit", line=1, text="%LOOP\n$GOTO N1\nN1 $GOTO N2\nN2 $GOTO N1")
+    ask(driver, "cycle_start")
+    slowest = 0.0
+    for _ in range(40):
+        begin = time.perf_counter()
+        driver._step(0.01)
+        slowest = max(slowest, time.perf_counter() - begin)
+    assert session.room.time_s == pytest.approx(0.4)
+    ask(driver, "emergency_stop")
+    assert session.room.alarm is not None
+
+
+def test_only_the_trainer_breaks_things_and_repair_takes_everything_back(driver):
+    tables = driver.session.room.tables
+    zero = tables.zero.copy()
+    ask(driver, "inject", fault={"kind": "backlash", "axis": "X", "value": 0.2})
+    assert "only the trainer" in driver.session.refusal
+    for fault in (
+        {"kind": "backlash", "axis": "X", "value": 0.2},
+        {"kind": "backlash", "axis": "X", "value": 0.3},
+        {"kind": "dull_drive", "axis": "Y", "value": 0.5},
+        {"kind": "lost_offset", "axis": "X", "value": 2.0},
+    ):
+        ask(driver, "inject", "trainer", fault=fault)
+    shown = [(fault.kind, fault.value) for fault in driver.session.room.faults]
+    assert shown == [("backlash", 0.3), ("dull_drive", 0.5), ("lost_offset", 2.0)]
+    ask(driver, "repair", "trainer")
+    machine = driver.session.room.machine.machine
+    sound = driver.session.scene.preparation.machine
+    assert [machine.axis(n) for n in machine.axes.names] == [
+        sound.axis(n) for n in sound.axes.names
+    ]
+    assert np.array_equal(tables.zero, zero)
+    assert not driver.session.room.faults
+
+
+def test_the_log_keeps_what_was_taken_back_and_names_who(driver):
+    ask(driver, "cycle_start")
+    run_for(driver, 0.5)
+    ask(driver, "rewind", "trainer", seconds=100.0)
+    assert driver.session.room.time_s == 0.0
+    assert driver.session.frozen
+    sheet = score_sheet(driver.session, Words("en", "fagor8070"))
+    assert [(one["who"], one["command"]["do"]) for one in sheet["actions"]] == [
+        ("operator", "cycle_start"),
+        ("trainer", "rewind"),
+    ]

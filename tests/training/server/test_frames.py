@@ -1,0 +1,98 @@
+"""What pages are sent."""
+
+import struct
+import zlib
+
+import numpy as np
+
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.server.driver import Driver
+from twin.training.server.frames import LEVELS, Changes, StockFeed, panel_words, state_message
+from twin.training.server.seats import MESSAGES, MOST_PAGES, Seats
+from twin.training.session.session import Session
+
+
+def heights(message: bytes) -> tuple[slice, slice, np.ndarray]:
+    kind, epoch, row, column, rows, columns = struct.unpack("<BxxxIHHHH", message[:16])
+    assert kind == 2
+    assert epoch > 0
+    levels = np.frombuffer(zlib.decompress(message[16:]), "<u2").reshape(rows, columns)
+    return slice(row, row + rows), slice(column, column + columns), levels
+
+
+def test_a_page_that_follows_has_the_stock_as_it_is_cut():
+    session = Session(read_scene(scene_path("fagor_first_steps")))
+    room, feed = session.room, StockFeed()
+    assert room.work is not None
+    shown = np.zeros(room.work.map.heights.shape)
+    assert min(shown.shape) >= 400
+    session.submit({"do": "cycle_start"})
+    epoch = version = -1
+    sizes = []
+    for _ in range(60):
+        session.advance(10)
+        feed.note(room)
+        message, epoch, version = feed.patch(epoch, version)
+        if message is not None:
+            rows, columns, levels = heights(message)
+            shown[rows, columns] = levels / LEVELS
+            sizes.append(len(message))
+    stock = room.work.map
+    there = (stock.heights - stock.bottom) / (stock.top - stock.bottom)
+    assert room.work.removed > 0.0
+    assert np.abs(shown - there).max() <= 0.51 / LEVELS
+    assert max(sizes[1:]) < 20_000
+    # A page that comes late, and one that sees the machine taken back, get the whole stock.
+    assert heights(feed.patch(-1, -1)[0] or b"")[2].shape == shown.shape
+    session.rewind(100.0)
+    feed.note(session.room)
+    assert (heights(feed.patch(epoch, version)[0] or b"")[2] == LEVELS).all()
+
+
+def test_words_are_sent_when_they_change():
+    driver = Driver(Session(read_scene(scene_path("fagor_first_steps"))))
+    changes = Changes()
+    assert {"program", "mode", "alarm", "verdicts"} <= set(
+        changes.since_last(panel_words(driver.look))
+    )
+    assert not changes.since_last(panel_words(driver.look))
+    driver.ask({"do": "mode", "mode": "jog"}, "operator", 1)
+    driver._step(0.01)
+    assert changes.since_last(panel_words(driver.look)) == {"mode": "jog"}
+    assert len(state_message(driver.look, cutting=False)) == 8 + 8 * (7 + 5 * 4)
+
+
+def test_the_panel_is_asked_for_and_given():
+    seats = Seats()
+    first, second, trainer = seats.sit("operator"), seats.sit("operator"), seats.sit("trainer")
+    watcher = seats.sit("watcher")
+    assert first is not None
+    assert second is not None
+    assert trainer is not None
+    assert watcher is not None
+    start, stop = {"do": "cycle_start"}, {"do": "emergency_stop"}
+    assert [seats.may(one, start) for one in (first, second, trainer, watcher)] == [True, False, True, False]  # fmt: skip
+    assert [seats.may(one, stop) for one in (first, second, trainer, watcher)] == [True, True, True, False]  # fmt: skip
+    assert not seats.may(second, stop | {"pressed": False})
+    for what in ("give", "keep"):
+        seats.hand_over(second, what)
+    seats.hand_over(watcher, "ask")
+    seats.hand_over(second, "ask")
+    assert seats.may(first, start)
+    assert seats.words(first)["somebody_asks"]
+    seats.hand_over(first, "keep")
+    assert not seats.words(first)["somebody_asks"]
+    seats.hand_over(second, "ask")
+    seats.hand_over(first, "give")
+    assert [seats.may(one, start) for one in (first, second)] == [False, True]
+    seats.leave(second)
+    assert seats.may(first, start)
+
+
+def test_there_is_an_end_to_pages_and_to_what_one_may_say():
+    seats = Seats()
+    pages = [seats.sit("watcher") for _ in range(MOST_PAGES + 1)]
+    assert pages[-1] is None
+    page = pages[0]
+    assert page is not None
+    assert sum(page.may_speak() for _ in range(10_000)) < 2 * MESSAGES

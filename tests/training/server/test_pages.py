@@ -1,0 +1,200 @@
+"""The whole room in a browser: what is pressed on the page happens at the machine."""
+
+import importlib.util
+import json
+import time
+
+import pytest
+from chromium import CHROMIUM
+from panel_player import Player, browser, open_page, served, without_view
+
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.web.files import THREE
+
+pytestmark = [
+    pytest.mark.skipif(
+        CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
+    ),
+    pytest.mark.skipif(
+        importlib.util.find_spec("playwright") is None, reason="no playwright to lead the browser"
+    ),
+    pytest.mark.skipif(
+        not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py"
+    ),
+]
+
+SIZES = [(1024, 768, 1), (1280, 720, 1), (1366, 768, 1), (1920, 1080, 1), (1280, 720, 2), (820, 1180, 2), (1180, 820, 2)]  # fmt: skip
+INSIDE = """() => [...document.querySelectorAll(
+  "#desk button, #desk input, #desk output, #views button, #tabs button, #axes td, .chip, #clock, #control, #language, #speeds span"
+)].filter((one) => one.checkVisibility()).map((one) => {
+  const box = one.getBoundingClientRect(), out = [];
+  if (box.width < 1 || box.height < 1) out.push("no size");
+  if (box.left < -0.5 || box.top < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5) out.push("off the page");
+  if (one.matches("button, .chip, td, .key") && (one.scrollWidth > one.clientWidth + 1 || one.scrollHeight > one.clientHeight + 1)) out.push("cut off");
+  for (let up = one.parentElement; up; up = up.parentElement) {
+    const outer = up.getBoundingClientRect();
+    if (getComputedStyle(up).overflow !== "visible" && (box.right > outer.right + 1 || box.bottom > outer.bottom + 1)) out.push(`beyond ${up.id}`);
+  }
+  return out.length ? `${one.dataset.key || one.id || one.className || one.textContent}: ${out.join()}` : null;
+}).concat((() => {
+  const keys = [...document.querySelectorAll("#desk .key, #emergency, #steps button, .dial")].filter((one) => one.checkVisibility());
+  return keys.flatMap((a, i) => keys.slice(i + 1).map((b) => {
+    const [p, q] = [a.getBoundingClientRect(), b.getBoundingClientRect()];
+    const over = p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 1 && q.top < p.bottom - 1;
+    return over ? `${a.dataset.key || a.id || a.className} over ${b.dataset.key || b.id || b.className}` : null;
+  }));
+})()).filter(Boolean)"""
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with browser() as opened:
+        yield opened
+
+
+def play(chromium, tmp_path, name: str, what: str) -> dict:
+    scene = read_scene(scene_path(name))
+    with served(scene, tmp_path) as room:
+        room.driver.speed = 5.0
+        page = chromium.new_page()
+        page.close()
+        context = chromium.new_context()
+        without_view(context)
+        player = Player(room, open_page(room, context))
+        player.play(getattr(scene.file, what))
+        states = [verdict.state for verdict in player.machine.judge.verdicts]
+        context.close()
+    failed = tuple(number for number, state in enumerate(states, 1) if state == "failed")
+    assert failed == (() if what == "solution" else scene.file.mistake_fails)
+    sheet = next(tmp_path.glob("*/score.json"))
+    return json.loads(sheet.read_text(encoding="utf-8"))
+
+
+def test_the_first_scene_is_solved_with_the_keys_of_the_page(chromium, tmp_path):
+    sheet = play(chromium, tmp_path, "fagor_first_steps", "solution")
+    assert (sheet["points"], sheet["of"], sheet["handed_in"]) == (10, 10, True)
+    assert sheet["actions"][0]["command"] == {"do": "cycle_start"}
+
+
+def test_questions_and_edits_are_played_on_the_page(chromium, tmp_path):
+    sheet = play(chromium, tmp_path, "codesys_opening_angle", "mistake")
+    assert sheet["points"] < sheet["of"]
+
+
+@pytest.fixture
+def room(tmp_path):
+    with served(read_scene(scene_path("mefi_helix_hold")), tmp_path) as opened:
+        yield opened
+
+
+@pytest.fixture
+def context(chromium):
+    opened = chromium.new_context()
+    without_view(opened)
+    yield opened
+    opened.close()
+
+
+@pytest.mark.parametrize("language", ["en", "ru", "it", "cs"])
+def test_nothing_is_cut_off_on_any_screen(chromium, room, language):
+    room.driver.ask({"do": "emergency_stop"}, "trainer", 0)
+    sizes = SIZES if language == "ru" else SIZES[:1]
+    for width, height, ratio in sizes:
+        context = chromium.new_context(
+            viewport={"width": width, "height": height}, device_scale_factor=ratio
+        )
+        without_view(context)
+        page = open_page(room, context, query=f"?language={language}")
+        page.wait_for_selector("#emergency[aria-pressed=true]")
+        assert page.evaluate(INSIDE) == [], (width, height, ratio, language)
+        context.close()
+
+
+def test_the_emergency_stop_works_from_every_field_and_for_all_who_act(room, context):
+    player = Player(room, open_page(room, context))
+    page = player.page
+    player.press("mode_mdi", "mode")
+    page.fill("[data-key=mdi]", "G0 X1")
+    page.press("[data-key=mdi]", "Escape")
+    player.until(lambda: player.machine.alarm is not None, "the alarm")
+    page.wait_for_selector("#emergency.pressed")
+    page.click("#emergency")
+    player.until(lambda: not player.machine.pressed, "the button turned free")
+    player.press("reset", "reset")
+    second = open_page(room, context)
+    assert second.is_disabled("[data-key=cycle_start]")
+    second.keyboard.press("Space")
+    second.click("#emergency")
+    player.until(lambda: player.machine.alarm is not None, "the second page's stop")
+    assert player.done("cycle_start") == 0
+    watcher = open_page(room, context, "watcher")
+    assert watcher.is_disabled("#emergency")
+    assert watcher.is_visible("#axes")
+    assert watcher.inner_text("#state-chip") == "ALARM"
+    log = len(room.session.log)
+    for key in ("F3", "r", "Escape"):
+        watcher.keyboard.press(key)
+    watcher.wait_for_timeout(200)
+    assert len(room.session.log) == log
+
+
+def test_a_held_key_stops_when_it_is_let_go_or_its_page_freezes(room, context):
+    player = Player(room, open_page(room, context))
+    page, machine = player.page, player.machine
+    player.press("mode_jog", "mode")
+    page.click('[data-key="step held"]')
+    for lost in (False, True):
+        page.hover('[data-key="jog X+"]')
+        page.mouse.down()
+        player.until(lambda: machine.moving, "the jog")
+        if lost:
+            # A page that hangs says nothing more, and cannot say so.
+            page.evaluate("() => setTimeout(() => { const end = Date.now() + 1500; while (Date.now() < end); }, 0)")  # fmt: skip
+        else:
+            page.mouse.up()
+        player.until(lambda: machine.run is None and not machine.moving, "rest")
+        assert room.session.log[-1].command == {"do": "jog_stop"}
+        page.mouse.up()
+
+
+def test_the_panel_is_handed_over_and_the_trainer_acts_beside_it(room, context):
+    first = open_page(room, context)
+    second = open_page(room, context)
+    second.click('[data-key="panel ask"]')
+    first.click('[data-key="panel give"]')
+    second.wait_for_selector("[data-key=cycle_start]:enabled")
+    first.wait_for_selector("[data-key=cycle_start]:disabled")
+    trainer = Player(room, open_page(room, context, "trainer"))
+    trainer.page.click("#tab-trainer")
+    trainer.page.select_option("[data-key='fault kind']", "backlash")
+    assert trainer.page.input_value("[data-key='fault value']") == "0.05"
+    trainer.press("inject", "inject")
+    trainer.page.wait_for_selector("#sheet li.failed")
+    trainer.press("repair", "repair")
+    trainer.page.wait_for_selector("#sheet li.failed", state="detached")
+    trainer.press("freeze", "freeze")
+    assert second.is_enabled("[data-key=cycle_start]")
+    assert room.session.log[-1].who == "trainer"
+
+
+def test_a_lost_page_stops_nothing_and_the_next_one_finds_it(room, context):
+    player = Player(room, open_page(room, context))
+    player.press("cycle_start", "cycle_start")
+    player.page.close()
+    time.sleep(0.2)
+    assert player.machine.running == "program"
+    again = Player(room, open_page(room, context))
+    again.press("feed_hold", "feed_hold")
+    again.until(lambda: again.machine.held, "the hold")
+
+
+def test_the_view_is_drawn(chromium, room):
+    context = chromium.new_context(viewport={"width": 1024, "height": 768})
+    page = open_page(room, context)
+    wrong: list[str] = []
+    page.on("console", lambda message: wrong.append(message.text))
+    page.wait_for_selector("body[data-view=ready]")
+    page.wait_for_selector("body[data-pictures]:not([data-pictures='0'])")
+    page.click('[data-key="view top"]')
+    assert not wrong
+    context.close()

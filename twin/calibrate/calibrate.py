@@ -1,0 +1,265 @@
+"""Logs in, a calibration out: the stages in their order, axis by axis."""
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from twin.calibrate.fit.parameters import Parameters, coordinates, of_base
+from twin.calibrate.fit.ramps import axes_with_ramps, find_cycle, find_ramps, predict_ramp
+from twin.calibrate.fit.slow import SlowLog, fit_slow, slow_force
+from twin.calibrate.fit.stages import AxisFit, fit_axis
+from twin.calibrate.fit.stretch import Stretch, predict, stretches_of
+from twin.calibrate.health import SLOW_S, Finding, Health, look_at_axis, look_at_clock
+from twin.calibrate.refusal import refuse_wrong_force, refuse_wrong_log
+from twin.calibrate.result import FIT, HOLD_OUT, AxisResult, Calibration, Course, LogFigures
+from twin.errors import UsageError
+from twin.logs.machine_log import AxisLog, MachineLog
+from twin.machine.config import Machine
+from twin.machine.model import build_spec, compiled, drives
+from twin.nc.canonical import FloatArray
+from twin.units import AxisKind
+
+_FASTEST_S = 1e-3
+"""A log with shorter periods is averaged to this one [s]."""
+_SEEN_MOVING = 0.02
+"""Share of the greatest speed from which an axis counts as moving."""
+_NOTHING = np.zeros(0)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Log:
+    log: MachineLog
+    role: str
+    health: Health
+    cycle_s: float
+
+
+def calibrate(
+    machine: Machine,
+    logs: Sequence[MachineLog],
+    hold_out: Sequence[MachineLog] = (),
+    axes: Sequence[str] = (),
+) -> Calibration:
+    """Fit a machine's drives to logs.
+
+    Args:
+        machine: The base: what logs do not determine stays as it has it.
+        logs: What is fitted.
+        hold_out: What the fit is judged by.
+        axes: Which to fit; all that the logs have by default.
+
+    Raises:
+        UsageError: A log is not what it is said to be, or has nothing to fit.
+    """
+    fitted = [_prepared(log, FIT) for log in logs]
+    held = [_prepared(log, HOLD_OUT) for log in hold_out]
+    names = _axes(machine, fitted, axes)
+    masses = _masses(machine)
+    findings = {
+        item.log.name: item.health.findings + _axis_findings(machine, item, names)
+        for item in fitted + held
+    }
+    results: dict[str, AxisResult] = {}
+    figures: list[LogFigures] = []
+    for name in names:
+        kind = machine.axis(name).kind
+        base = of_base(machine.axis(name), masses[name])
+        own = [item for item in fitted if name in item.log.axes]
+        fit = _fit(kind, name, own, base)
+        results[name] = AxisResult(kind, fit, _units(kind), _limits(name, own))
+        figures += [
+            _figures(item, name, fit.parameters) for item in fitted + held if name in item.log.axes
+        ]
+    order = {item.log.name: number for number, item in enumerate(fitted + held)}
+    figures.sort(key=lambda one: (one.role != FIT, order[one.log]))
+    return Calibration(machine.file.name, results, tuple(figures), findings)
+
+
+def _prepared(log: MachineLog, role: str) -> _Log:
+    health = look_at_clock(log)
+    if not health.stretches:
+        raise UsageError(
+            f"{log.name}: has no stretch of 50 samples in a row without a gap: nothing can be fitted"
+        )
+    times = round(_FASTEST_S / health.period_s)
+    if times > 1:
+        log = _averaged(log, health, times)
+        health = look_at_clock(log)
+    slow = health.period_s > SLOW_S
+    cycle = find_cycle(log, health.stretches) if slow and axes_with_ramps(log) else 0.0
+    return _Log(log, role, health, cycle)
+
+
+def _averaged(log: MachineLog, health: Health, times: int) -> MachineLog:
+    """A log with fewer samples, each the mean of some: what is linear stays as it is."""
+
+    def mean(values: FloatArray) -> FloatArray:
+        parts = [values[a : a + (b - a) // times * times] for a, b in health.stretches]
+        return np.concatenate([part.reshape(-1, times).mean(axis=1) for part in parts])
+
+    axes = {
+        name: dataclasses.replace(
+            axis, command=mean(axis.command), actual=mean(axis.actual),
+            more={role: mean(values) for role, values in axis.more.items()},
+        )
+        for name, axis in log.axes.items()
+    }  # fmt: skip
+    time = mean(log.time)
+    return MachineLog(log.name, time, axes, np.zeros(len(time), np.int64))
+
+
+def _axes(machine: Machine, logs: Sequence[_Log], wanted: Sequence[str]) -> list[str]:
+    logged = {name for item in logs for name in item.log.axes}
+    unknown = sorted((set(wanted) | logged) - set(machine.axes.names))
+    if unknown:
+        raise UsageError(
+            f"{machine.file.name} has no axis {unknown[0]}: it has {', '.join(machine.axes.names)}"
+        )
+    absent = [name for name in wanted if name not in logged]
+    if absent:
+        raise UsageError(f"no log has axis {absent[0]}: they have {', '.join(sorted(logged))}")
+    return [name for name in machine.axes.names if name in (wanted or logged)]
+
+
+def _masses(machine: Machine) -> dict[str, float]:
+    found = drives(machine, compiled(build_spec(machine), machine))
+    return {name: drive.moved for name, drive in zip(machine.axes.names, found, strict=True)}
+
+
+def _axis_findings(machine: Machine, item: _Log, names: Sequence[str]) -> tuple[Finding, ...]:
+    """Refuse what cannot be, tell what is poor."""
+    found: list[Finding] = []
+    for name in names:
+        if name not in item.log.axes:
+            continue
+        axis, place = item.log.axes[name], f"{item.log.name}: axis {name}"
+        for begin, end in item.health.stretches[:1]:
+            part = slice(begin, end)
+            piece = dataclasses.replace(axis, command=axis.command[part], actual=axis.actual[part])
+            refuse_wrong_log(item.log.name, name, piece, machine.axis(name), item.health.period_s)
+            if "force" in axis.more and item.health.period_s <= SLOW_S:
+                speed = np.gradient(piece.actual, item.health.period_s)
+                window = np.ones(9) / 9
+                smooth = np.convolve(np.gradient(speed, item.health.period_s), window, "same")
+                refuse_wrong_force(place, axis.more["force"][part], smooth)
+        found += look_at_axis(name, axis, item.health)
+    return tuple(found)
+
+
+def _units(kind: AxisKind) -> dict[str, str]:
+    return {name: way.unit for name, way in coordinates(kind, 1.0).items()}
+
+
+def _fit(kind: AxisKind, name: str, logs: Sequence[_Log], base: Parameters) -> AxisFit:
+    fast = [item for item in logs if item.health.period_s <= SLOW_S]
+    if not fast:
+        return fit_slow(kind, [_slow(item, name) for item in logs], base)
+    pieces = [piece for item in fast for piece in _stretches(item, name)]
+    return fit_axis(kind, pieces, base)
+
+
+def _stretches(item: _Log, name: str) -> list[Stretch]:
+    return stretches_of(
+        item.log.axes[name], item.log.time, item.health.period_s, item.health.stretches
+    )
+
+
+def _slow(item: _Log, name: str) -> SlowLog:
+    ramps = []
+    if name in axes_with_ramps(item.log):
+        ramps = find_ramps(item.log, name, item.health.stretches, item.cycle_s)
+    return SlowLog(item.log.axes[name], item.health.stretches, ramps, item.health.period_s)
+
+
+def _limits(name: str, logs: Sequence[_Log]) -> Mapping[str, float]:
+    """What the commands reach: a planner's limits are at least that."""
+    reached = {"velocity": 0.0, "acceleration": 0.0}
+    for item in logs:
+        axis = item.log.axes[name]
+        for begin, end in item.health.stretches:
+            speed: FloatArray = np.gradient(axis.command[begin:end], item.health.period_s)
+            change: FloatArray = np.gradient(speed, item.health.period_s)
+            if item.health.period_s > SLOW_S:
+                speed = axis.more.get("command_velocity", speed)
+                change = axis.more.get("command_acceleration", np.zeros(1))
+            for key, values in (("velocity", speed), ("acceleration", change)):
+                reached[key] = max(reached[key], float(np.quantile(np.abs(values), 0.999)))
+    return reached
+
+
+def _figures(item: _Log, name: str, parameters: Parameters) -> LogFigures:
+    axis = item.log.axes[name]
+    if item.health.period_s > SLOW_S:
+        return _slow_figures(item, name, axis, parameters)
+    pieces = _stretches(item, name)
+    predicted = [predict(parameters, piece) for piece in pieces]
+    lag = np.concatenate([piece.lag for piece in pieces])
+    model = np.concatenate([
+        piece.asked[piece.first :] - one.actual
+        for piece, one in zip(pieces, predicted, strict=True)
+    ])  # fmt: skip
+    time = np.concatenate([piece.time[piece.first :] for piece in pieces])
+    force_share = correlation = None
+    logged_force = model_force = _NOTHING
+    if all(piece.force is not None for piece in pieces):
+        logged_force = np.concatenate(
+            [piece.force[piece.first :] for piece in pieces if piece.force is not None]
+        )
+        model_force = np.concatenate([one.force for one in predicted])
+        force_share = _rms(model_force - logged_force) / max(_rms(logged_force), 1e-12)
+    elif all(piece.current is not None for piece in pieces):
+        logged_force = np.concatenate(
+            [piece.current[piece.first :] for piece in pieces if piece.current is not None]
+        )
+        model_force = np.concatenate([one.current for one in predicted])
+        speed = np.abs(
+            np.concatenate(
+                [
+                    piece.command.position[:: piece.command.every, 1][piece.first :]
+                    for piece in pieces
+                ]
+            )
+        )
+        moves = speed > _SEEN_MOVING * speed.max(initial=1e-9)
+        correlation = _correlation(logged_force[moves], model_force[moves])
+        force_share = _rms(model_force - logged_force) / max(_rms(logged_force), 1e-12)
+    return LogFigures(
+        item.log.name, item.role, name, axis.kind, _rms(lag), _rms(lag - model), force_share,
+        correlation, None, Course(time, lag, model, False, logged_force, model_force),
+    )  # fmt: skip
+
+
+def _slow_figures(item: _Log, name: str, axis: AxisLog, parameters: Parameters) -> LogFigures:
+    slow = _slow(item, name)
+    seen = [predict_ramp(parameters, ramp).lag for ramp in slow.ramps]
+    logged, model = np.array([ramp.lag for ramp in slow.ramps]), np.array(seen)
+    share = _rms(model - logged) / _rms(logged) if len(logged) and _rms(logged) else None
+    whole = axis.command - axis.actual
+    loop = (1.0 - parameters.velocity_feedforward) / (parameters.kv * 1000.0 / 60.0)
+    speed = axis.more.get("command_velocity", np.gradient(axis.command, item.health.period_s))
+    force, moves = slow_force(slow, parameters, axis.kind)
+    correlation, shown, current = None, _NOTHING, _NOTHING
+    if "current" in axis.more:
+        shown = axis.more["current"][moves]
+        current = (force / parameters.current_scale + parameters.current_at_rest)[moves]
+        correlation = _correlation(shown, current)
+    rows = [ramp.row for ramp in slow.ramps]
+    course = Course(
+        item.log.time[rows], logged, model, True, shown, current,
+    )  # fmt: skip
+    left = whole - speed * (loop + parameters.delay)
+    return LogFigures(
+        item.log.name, item.role, name, axis.kind, _rms(whole), _rms(left), None, correlation,
+        share, course,
+    )  # fmt: skip
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0
+
+
+def _correlation(one: FloatArray, other: FloatArray) -> float | None:
+    if len(one) < 3 or np.ptp(one) == 0.0 or np.ptp(other) == 0.0:
+        return None
+    return float(np.corrcoef(one, other)[0, 1])

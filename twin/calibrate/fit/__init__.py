@@ -1,0 +1,1 @@
+"""The drive model of one axis, simulated and fitted to what was logged."""

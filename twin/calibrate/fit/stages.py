@@ -1,0 +1,274 @@
+"""The stages of a fit: the linear loop, friction and mass, what else the log asks for."""
+
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+
+from twin.calibrate.fit.parameters import Parameters, coordinates
+from twin.calibrate.fit.solve import (
+    BATCHES,
+    Interval,
+    Problem,
+    Solution,
+    promised_cost,
+    solve,
+)
+from twin.calibrate.fit.stretch import Stretch, predict
+from twin.nc.canonical import FloatArray, IntArray
+from twin.units import AxisKind, kv_per_second, to_si
+
+WORTH = 0.9
+"""What is not needed is not fitted: one parameter more must leave less than this share."""
+_HOPE = 0.97
+"""A parameter is tried where the tangent at the optimum promises less than this share."""
+_EXTRAS = ("delay", "velocity_feedforward", "acceleration_feedforward", "measuring_filter")
+_DAMPINGS = (0.3, 0.5, 0.8, 1.2, 2.0)
+_WIDE = 0.5
+"""A parameter whose interval reaches further than this share to a side is not determined."""
+_VISCOUS_SHARE = 0.05
+"""Viscous friction is taken to be at most this share of the velocity loop's gain: where positions
+alone are logged, that is how much higher than fitted the loop gain may be."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class AxisFit:
+    """What the logs of one axis came to.
+
+    Attributes:
+        parameters: Those of the machine file and of the log.
+        fitted: What the log determines, by name.
+        conditional: What it determines only as long as a base's value is true: name to interval and
+            the names that it stands on.
+        undetermined: What it does not determine, and why.
+        names: In the order of ``correlations``.
+        correlations: Of what was fitted, shape (p, p).
+    """
+
+    parameters: Parameters
+    fitted: dict[str, Interval]
+    conditional: dict[str, tuple[Interval, tuple[str, ...]]]
+    undetermined: dict[str, str]
+    names: tuple[str, ...]
+    correlations: FloatArray
+
+
+def fit_axis(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters) -> AxisFit:
+    """Fit one axis.
+
+    Args:
+        kind: Of the axis.
+        stretches: All that is fitted.
+        base: What is not determined stays at.
+    """
+    start = _first_guess(kind, stretches, base)
+    free = _core(stretches)
+    problem = _weighted(kind, stretches, start)
+    best = min(
+        (
+            solve(problem, dataclasses.replace(start, damping_ratio=z), free)
+            for z in _DAMPINGS[1::2]
+        ),
+        key=lambda solution: solution.cost,
+    )
+    problem = _weighted(kind, stretches, best.parameters)
+    best = solve(problem, best.parameters, free)
+    best = _with_extras(problem, best)
+    best, undetermined = _without_undetermined(problem, best, base)
+    fitted = dict(best.intervals)
+    if "delay" not in fitted and "delay" not in undetermined:
+        other = solve(problem, best.parameters, [*best.free, "delay"])
+        fitted = {
+            name: interval.spanning(other.intervals[name]) for name, interval in fitted.items()
+        }
+        fitted["delay"] = Interval(0.0, 0.0, 0.0).spanning(other.intervals["delay"])
+    return _told(stretches, best, fitted, undetermined)
+
+
+def _core(stretches: Sequence[Stretch]) -> list[str]:
+    names = ["kv", "damping_ratio", "dry_friction", "constant_force"]
+    if _has(stretches, "force"):
+        return [*names, "mass", "viscous_friction"]
+    if _has(stretches, "current"):
+        return [*names, "viscous_friction", "current_scale", "current_at_rest"]
+    return names
+
+
+def _has(stretches: Sequence[Stretch], role: str) -> bool:
+    return all(getattr(stretch, role) is not None for stretch in stretches)
+
+
+def _first_guess(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters) -> Parameters:
+    """Loop gain from the lag over speed, mass or scale from force over acceleration."""
+    speed = np.concatenate([_kinematics(stretch)[:, 0] for stretch in stretches])
+    change = np.concatenate([_kinematics(stretch)[:, 1] for stretch in stretches])
+    lag = np.concatenate([stretch.lag for stretch in stretches])
+    slope = float(speed @ lag / max(speed @ speed, 1e-12))
+    trail = (1.0 - base.velocity_feedforward) / kv_per_second(base.kv)
+    kv = base.kv * trail / slope if slope > 0.05 * trail and trail else base.kv
+    guess = dataclasses.replace(base, kv=kv)
+    columns = np.column_stack([change, speed, np.sign(speed), np.ones(len(speed))])
+    if _has(stretches, "force"):
+        force = np.concatenate([s.force[s.first :] for s in stretches if s.force is not None])
+        found, *_ = np.linalg.lstsq(columns, force, rcond=None)
+        mass = max(float(found[0]) / to_si(kind), 1e-3 * base.mass)
+        guess = dataclasses.replace(guess, mass=mass)
+    elif _has(stretches, "current"):
+        shown = np.concatenate([s.current[s.first :] for s in stretches if s.current is not None])
+        found, *_ = np.linalg.lstsq(columns, shown, rcond=None)
+        scale = base.mass * to_si(kind) / max(float(found[0]), 1e-9 * base.mass)
+        guess = dataclasses.replace(guess, current_scale=scale, current_at_rest=float(found[3]))
+    small = 2e-3 * _force_scale(kind, stretches, guess)
+    return dataclasses.replace(guess, dry_friction=max(guess.dry_friction, small))
+
+
+def _kinematics(stretch: Stretch) -> FloatArray:
+    """Commanded speed and acceleration at the samples that are looked at, (n, 2)."""
+    return stretch.command.position[:: stretch.command.every, 1:][stretch.first :]
+
+
+def _force_scale(kind: AxisKind, stretches: Sequence[Stretch], of: Parameters) -> float:
+    change = np.concatenate([_kinematics(stretch)[:, 1] for stretch in stretches])
+    return max(of.mass * to_si(kind) * float(np.sqrt(np.mean(change**2))), 1e-9)
+
+
+def _weighted(kind: AxisKind, stretches: Sequence[Stretch], at: Parameters) -> Problem:
+    """The problem, every column weighted by what is left of it at some parameters."""
+    left = [np.concatenate(column) for column in zip(*_columns_left(stretches, at), strict=True)]
+    weights = [1.0 / max(float(np.sqrt(np.mean(column**2))), 1e-9) for column in left]
+
+    def residuals(parameters: Parameters) -> FloatArray:
+        parts = _columns_left(stretches, parameters)
+        whole = [
+            weight * column
+            for columns in parts
+            for weight, column in zip(weights, columns, strict=True)
+        ]
+        return np.nan_to_num(np.concatenate(whole), nan=1e6, posinf=1e6, neginf=-1e6)
+
+    return Problem(
+        residuals, _batches(stretches, len(weights)),
+        coordinates(kind, _force_scale(kind, stretches, at)),
+    )  # fmt: skip
+
+
+def _columns_left(stretches: Sequence[Stretch], parameters: Parameters) -> list[list[FloatArray]]:
+    """What the model leaves, by stretch and by logged column."""
+    forced, shown = _has(stretches, "force"), _has(stretches, "current")
+    parts = []
+    for stretch in stretches:
+        predicted = predict(parameters, stretch)
+        columns = [predicted.actual - stretch.actual[stretch.first :]]
+        if forced and stretch.force is not None:
+            columns.append(predicted.force - stretch.force[stretch.first :])
+        elif shown and stretch.current is not None:
+            columns.append(predicted.current - stretch.current[stretch.first :])
+        parts.append(columns)
+    return parts
+
+
+def _batches(stretches: Sequence[Stretch], columns: int) -> IntArray:
+    """Which of the stretches of time each residual belongs to."""
+    total = sum(len(stretch.time) - stretch.first for stretch in stretches)
+    before, parts = 0, []
+    for stretch in stretches:
+        rows = len(stretch.time) - stretch.first
+        number = (before + np.arange(rows)) * BATCHES // total
+        parts += [number] * columns
+        before += rows
+    return np.concatenate(parts).astype(np.int64)
+
+
+def _with_extras(problem: Problem, best: Solution) -> Solution:
+    """Take in what else the log asks for, one after the other."""
+    left: list[str] = list(_EXTRAS)
+    while left:
+        hopeful = [name for name in left if promised_cost(problem, best, name) < _HOPE * best.cost]
+        tried = [(solve(problem, best.parameters, [*best.free, name]), name) for name in hopeful]
+        better, name = min(tried, key=lambda pair: pair[0].cost, default=(best, ""))
+        if better.cost > WORTH * best.cost:
+            return best
+        best = better
+        left.remove(name)
+    return best
+
+
+def _without_undetermined(
+    problem: Problem, best: Solution, base: Parameters
+) -> tuple[Solution, dict[str, str]]:
+    """Let go of what is anybody's guess, the worst first; it stays at the base's value."""
+    told: dict[str, str] = {}
+    while True:
+        widths = {
+            name: _width(problem, name, interval) for name, interval in best.intervals.items()
+        }
+        worst = max(widths, key=lambda name: widths[name], default="")
+        if not worst or widths[worst] <= _WIDE or len(best.free) == 1:
+            return best, told
+        interval = best.intervals[worst]
+        told[worst] = _why(best, worst, interval, problem.coordinates[worst].unit)
+        kept = [name for name in best.free if name != worst]
+        stays = dataclasses.replace(best.parameters, **{worst: getattr(base, worst)})
+        best = solve(problem, stays, kept)
+
+
+def _width(problem: Problem, name: str, interval: Interval) -> float:
+    """How far an interval reaches, as a share of what would matter."""
+    way = problem.coordinates[name]
+    reach = max(interval.high - interval.value, interval.value - interval.low)
+    if name in ("delay", "force_delay", "measuring_filter"):
+        return reach / max(abs(interval.value), 2e-3)
+    if name in ("velocity_feedforward", "acceleration_feedforward"):
+        return reach
+    if name == "current_at_rest":
+        return 0.0
+    if way.logarithmic:
+        return reach / interval.value
+    return reach / max(abs(interval.value), 1e2 * way.step)
+
+
+def _why(best: Solution, name: str, interval: Interval, unit: str) -> str:
+    index = best.free.index(name)
+    others = np.abs(best.correlations[index]).copy()
+    others[index] = 0.0
+    twin = int(np.argmax(others))
+    span = f"anything from {interval.low:.3g} to {interval.high:.3g} {unit}".rstrip()
+    if others[twin] > 0.95:
+        return (
+            f"the log does not tell it from {best.free[twin]} (correlation {others[twin]:.3f}): "
+            f"{span} would fit as well"
+        )
+    return f"the log hardly depends on it: {span} would fit as well"
+
+
+def _told(
+    stretches: Sequence[Stretch], best: Solution, fitted: dict[str, Interval],
+    undetermined: dict[str, str],
+) -> AxisFit:  # fmt: skip
+    """Say what each value stands on."""
+    told = dict(undetermined)
+    conditional: dict[str, tuple[Interval, tuple[str, ...]]] = {}
+    mass = best.parameters.mass
+    if not _has(stretches, "force"):
+        known = _has(stretches, "current")
+        told["mass"] = (
+            "a current of unknown scale does not tell it" if known
+            else "positions alone do not tell it"
+        )  # fmt: skip
+        for name in ("dry_friction", "constant_force", "viscous_friction", "current_scale"):
+            if name in fitted:
+                conditional[name] = (fitted.pop(name), ("mass",))
+                told[name] = (
+                    f"only its ratio to the mass is told; {conditional[name][0].value:.4g} holds "
+                    f"for the base's {mass:.5g}"
+                )
+        if not known:
+            told["viscous_friction"] = (
+                "positions alone do not tell it from kv (correlation 1.000); kv holds from the base's "
+                f"viscous friction to {100 * _VISCOUS_SHARE:g} % of the velocity loop's gain"
+            )
+            gain = fitted.get("kv")
+            if gain is not None:
+                high = gain.high * (1.0 + _VISCOUS_SHARE)
+                fitted["kv"] = Interval(gain.value, gain.low, high)
+    return AxisFit(best.parameters, fitted, conditional, told, best.free, best.correlations)

@@ -1,0 +1,141 @@
+"""The health of a log: its clock, its resolution, its columns; what it cannot tell, and why."""
+
+import dataclasses
+import itertools
+
+import numpy as np
+
+from twin.logs.machine_log import AxisLog, MachineLog
+from twin.nc.canonical import FloatArray
+
+GAP = 1.5
+"""A step of the clock above this, in periods, is a gap."""
+SLOW_S = 0.025
+"""A log with longer periods does not show how a position loop settles [s]."""
+SHORTEST = 50
+"""Samples of a stretch that is fitted."""
+_JITTER = 0.2
+_HELD = 0.5
+"""Share of samples that repeat the one before while the command moves, above which it is held."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Finding:
+    """Something about a log that a person should know.
+
+    Attributes:
+        code: ``gap``, ``clock-jump``, ``slow``, ``coarse``, ``held``, ``jitter``.
+        message: In words, with what can still be fitted.
+    """
+
+    code: str
+    message: str
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Health:
+    """What the clock of a log is like.
+
+    Attributes:
+        period_s: Between samples [s].
+        stretches: First and last row, exclusive, of what was sampled evenly.
+        findings: About the clock.
+    """
+
+    period_s: float
+    stretches: tuple[tuple[int, int], ...]
+    findings: tuple[Finding, ...]
+
+
+def look_at_clock(log: MachineLog) -> Health:
+    """Find the period of a log and where its clock breaks."""
+    steps = np.diff(log.time)
+    rising = steps[steps > 0]
+    period = float(np.median(rising)) if len(rising) else 1.0
+    gaps = steps > GAP * period
+    jumps = steps <= 0
+    cuts = np.flatnonzero(gaps | jumps) + 1
+    edges = [0, *cuts.tolist(), len(log.time)]
+    long = [(a, b) for a, b in itertools.pairwise(edges) if b - a >= SHORTEST]
+    findings = []
+    if gaps.any():
+        lost = float(np.sum(steps[gaps]) - period * np.count_nonzero(gaps))
+        findings.append(
+            Finding(
+                "gap",
+                f"{np.count_nonzero(gaps)} gaps, {lost:.3g} s without samples; what lies between is "
+                "fitted piece by piece",
+            )
+        )
+    if jumps.any():
+        first = float(log.time[np.flatnonzero(jumps)[0]])
+        findings.append(
+            Finding(
+                "clock-jump",
+                f"the clock stands or jumps back {np.count_nonzero(jumps)} times, first at "
+                f"{first:.6g} s; what lies between is fitted piece by piece",
+            )
+        )
+    even = rising[rising < GAP * period]
+    if len(even) and float(np.std(even)) > _JITTER * period:
+        findings.append(
+            Finding("jitter", f"samples come every {period * 1e3:.3g} ms, but unevenly; they are "
+                    "taken as even, which blurs what is faster")
+        )  # fmt: skip
+    if period > SLOW_S:
+        findings.append(
+            Finding(
+                "slow",
+                f"{1 / period:.3g} samples a second are too few for the dynamics of a drive; what "
+                "can still be fitted: the lag as a whole, friction where a force is logged, and "
+                "ramps where velocities are logged",
+            )
+        )
+    return Health(period, tuple(long), tuple(findings))
+
+
+def resolution(values: FloatArray) -> float:
+    """The step that values come in, 0 where they come in none.
+
+    The least difference counts when (nearly) all others are its multiples.
+    """
+    steps = np.abs(np.diff(np.unique(values)))
+    steps = steps[steps > 1e-12 * max(1.0, float(np.abs(values).max()))]
+    if len(steps) < 2:
+        return 0.0
+    least = float(np.min(steps))
+    parts = steps / least
+    even = np.abs(parts - np.round(parts)) < 0.02 * np.maximum(1.0, parts * 0.0 + 1.0)
+    return least if float(np.mean(even)) > 0.95 else 0.0
+
+
+def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
+    """What one axis's columns cannot tell."""
+    findings = []
+    lag = axis.command - axis.actual
+    unit, small = ("mm", "µm") if axis.kind == "linear" else ("deg", "mdeg")
+    step = max(resolution(axis.command), resolution(axis.actual))
+    peak = float(np.abs(lag - np.median(lag)).max())
+    if step > 0.05 * peak > 0:
+        findings.append(
+            Finding(
+                "coarse",
+                f"{name}: positions come in steps of {step * 1e3:.3g} {small}, its lag is at most "
+                f"{peak * 1e3:.3g} {small}: small effects drown in the steps",
+            )
+        )
+    moving = np.abs(np.diff(axis.command)) > 0
+    if health.period_s <= SLOW_S and moving.mean() < 0.9:
+        runs = np.flatnonzero(moving)
+        between = np.diff(runs)
+        if len(between) and np.median(between) >= 2 and float(np.mean(between >= 2)) > _HELD:
+            held = float(np.median(between)) * health.period_s * 1e3
+            findings.append(
+                Finding(
+                    "held",
+                    f"{name}: the command changes every {held:.3g} ms only, in steps: the log is "
+                    "faster than the interpolator; steps are taken as they are",
+                )
+            )
+    del unit
+    return findings

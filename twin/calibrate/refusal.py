@@ -1,0 +1,127 @@
+"""Logs that cannot be what they are said to be: swapped columns, another axis, another unit."""
+
+import numpy as np
+
+from twin.errors import UsageError
+from twin.logs.machine_log import AxisLog
+from twin.machine.config import AxisTable
+from twin.nc.canonical import FloatArray
+
+_FOLLOWS = 0.3
+"""What a straight law of lag and speed may leave of the deviation, as a share of the motion."""
+_RIGHT = 0.02
+"""A ratio of actual to commanded motion may be off by this."""
+_TOO_FAST = 3.0
+"""Times the base's velocity that no log of such an axis reaches."""
+_TOO_SLOW = 1e-3
+_LEADS_S = 5e-4
+"""An actual position that leads by more is not one [s]."""
+_KNOWN_RATIOS = {
+    25.4: "inches", 1 / 25.4: "inches", 1e3: "micrometres or metres", 1e-3: "micrometres or metres",
+    57.29578: "radians", 1 / 57.29578: "radians", 10.0: "centimetres", 0.1: "centimetres",
+    -1.0: "the other sense", 2.0: "diameters", 0.5: "diameters",
+}  # fmt: skip
+
+
+def refuse_wrong_log(
+    where: str, name: str, axis: AxisLog, base: AxisTable, period_s: float
+) -> None:
+    """Refuse columns that cannot be commanded and actual position of such an axis.
+
+    Args:
+        where: The log.
+        name: Of the axis.
+        axis: Its columns.
+        base: The axis in the base machine.
+        period_s: Between samples [s].
+
+    Raises:
+        UsageError: With the reason, and what would make it right.
+    """
+    place = f"{where}: axis {name}"
+    if axis.kind != base.kind:
+        raise UsageError(
+            f"{place}: the log is in units of a {axis.kind} axis, the base's {name} is {base.kind}"
+        )
+    unit = "mm" if axis.kind == "linear" else "deg"
+    travelled = float(np.ptp(axis.command))
+    if travelled <= 0.0:
+        raise UsageError(f"{place}: the command does not move; there is nothing to fit")
+    _refuse_speed(place, axis, base, period_s, unit)
+    speed = np.gradient(axis.command, period_s)
+    change = np.gradient(speed, period_s)
+    ratio, lead = _ratio_and_lead(axis, speed, change)
+    if abs(ratio - 1.0) > _RIGHT:
+        told = next(
+            (what for known, what in _KNOWN_RATIOS.items() if abs(ratio / known - 1.0) < 0.03), None
+        )
+        left = _left(axis, speed, change)
+        if told is not None and left < _FOLLOWS:
+            raise UsageError(
+                f"{place}: actual moves {ratio:.4g} times as far as command: one of them is in {told}; "
+                "give it its own unit or scale in the map"
+            )
+    left = _left(axis, speed, change)
+    if left > _FOLLOWS or abs(ratio - 1.0) > 10 * _RIGHT:
+        raise UsageError(
+            f"{place}: actual does not follow command ({100 * left:.0f} % of the motion is left "
+            f"unexplained, and it moves {ratio:.3g} times as far): it is the position of another axis, "
+            "or another quantity"
+        )
+    if lead > max(_LEADS_S, 0.02 * period_s):
+        raise UsageError(
+            f"{place}: actual leads command by {lead * 1e3:.3g} ms: the columns are swapped, or "
+            "logged at different times; swap them in the map, or give the delay of a column, delay_s"
+        )
+
+
+def _refuse_speed(place: str, axis: AxisLog, base: AxisTable, period_s: float, unit: str) -> None:
+    steps = np.abs(np.diff(axis.command)) / period_s
+    fastest = float(np.quantile(steps, 0.999))
+    if fastest > _TOO_FAST * base.velocity:
+        raise UsageError(
+            f"{place}: the command moves at up to {fastest:.3g} {unit}/s, the base at "
+            f"{base.velocity:g} {unit}/s: the unit of position or of time is another one, or the "
+            "base is no such machine"
+        )
+    if fastest < _TOO_SLOW * base.velocity:
+        raise UsageError(
+            f"{place}: the command moves at no more than {fastest:.3g} {unit}/s, of "
+            f"{base.velocity:g} {unit}/s that the base does: the unit is another one (metres, "
+            "inches?), or the log shows no motion"
+        )
+
+
+def _ratio_and_lead(axis: AxisLog, speed: FloatArray, change: FloatArray) -> tuple[float, float]:
+    """How far actual moves per command, and how early it is [s]."""
+    columns = np.column_stack([axis.command, speed, change, np.ones(len(speed))])
+    found, *_ = np.linalg.lstsq(columns, axis.actual, rcond=None)
+    return float(found[0]), float(found[1])
+
+
+def _left(axis: AxisLog, speed: FloatArray, change: FloatArray) -> float:
+    columns = np.column_stack([axis.command, speed, change, np.ones(len(speed))])
+    found, *_ = np.linalg.lstsq(columns, axis.actual, rcond=None)
+    rest = axis.actual - columns @ found
+    return float(np.std(rest) / max(np.std(axis.actual), 1e-12))
+
+
+def refuse_wrong_force(place: str, force: FloatArray, acceleration: FloatArray) -> None:
+    """Refuse a force that pushes against the motion that it makes.
+
+    Args:
+        place: Log and axis.
+        force: Of the drive, shape (n,) [N or N m].
+        acceleration: Of the axis, shape (n,).
+
+    Raises:
+        UsageError: Its sign is wrong, or it is constant.
+    """
+    if float(np.ptp(force)) <= 0.0:
+        raise UsageError(f"{place}: the force never changes: it is another column")
+    joint = float(np.corrcoef(force, acceleration)[0, 1])
+    if joint < -0.3:
+        raise UsageError(
+            f"{place}: the force pushes against the acceleration (correlation {joint:.2f}): give its "
+            "column a scale of the other sign"
+        )

@@ -1,0 +1,184 @@
+"""What a calibration came to: by axis what was fitted, by log how well it is predicted."""
+
+import dataclasses
+import math
+from collections.abc import Mapping
+
+from twin.calibrate.fit.solve import Interval
+from twin.calibrate.fit.stages import AxisFit
+from twin.calibrate.health import Finding
+from twin.nc.canonical import FloatArray
+from twin.units import AxisKind
+
+FIT, HOLD_OUT = "fit", "hold-out"
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Course:
+    """Logged and predicted over time, for plots; shape (n,) each.
+
+    Attributes:
+        time: [s].
+        logged: Lag of position [mm or deg], or of velocity where a log is slow.
+        predicted: The same of the model.
+        slow: Whether it is the lag of velocity at single samples within ramps.
+        logged_force: Force [N or N m] or what the control shows [A]; empty where none is logged.
+        predicted_force: The same of the model.
+    """
+
+    time: FloatArray
+    logged: FloatArray
+    predicted: FloatArray
+    slow: bool
+    logged_force: FloatArray
+    predicted_force: FloatArray
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class LogFigures:
+    """How well one axis of one log is predicted.
+
+    Attributes:
+        log: Its file.
+        role: ``fit`` or ``hold-out``.
+        axis: Name.
+        kind: Of the axis.
+        logged_rms: Of the logged following error [mm or deg].
+        left_rms: Of what the model leaves of it [mm or deg].
+        force_share: What it leaves of the force, as a share; None where none is logged.
+        current_correlation: Of logged and predicted current where the axis moves; None likewise.
+        velocity_share: What it leaves of the lag of velocity in ramps; None where not looked at.
+        course: For plots.
+    """
+
+    log: str
+    role: str
+    axis: str
+    kind: AxisKind
+    logged_rms: float
+    left_rms: float
+    force_share: float | None
+    current_correlation: float | None
+    velocity_share: float | None
+    course: Course
+
+    @property
+    def share(self) -> float:
+        """What is left of the following error; where the log is slow, of the lag of velocity."""
+        if self.velocity_share is not None:
+            return self.velocity_share
+        return self.left_rms / self.logged_rms if self.logged_rms else math.inf
+
+    def as_contract(self) -> dict[str, object]:
+        """As ``--json`` writes it."""
+        unit = "um" if self.kind == "linear" else "mdeg"
+        told: dict[str, object] = {
+            "log": self.log,
+            "role": self.role,
+            "axis": self.axis,
+            f"logged_rms_{unit}": self.logged_rms * 1e3,
+            f"left_rms_{unit}": self.left_rms * 1e3,
+            "share": self.share,
+        }
+        for name in ("force_share", "current_correlation", "velocity_share"):
+            if getattr(self, name) is not None:
+                told[name] = getattr(self, name)
+        return told
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class AxisResult:
+    """One axis.
+
+    Attributes:
+        kind: Of the axis.
+        fit: What its logs came to.
+        units: Of the parameters, by name.
+        limits: Greatest commanded velocity, acceleration and jerk [mm or deg, per s, s², s³].
+    """
+
+    kind: AxisKind
+    fit: AxisFit
+    units: Mapping[str, str]
+    limits: Mapping[str, float]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Calibration:
+    """The whole.
+
+    Attributes:
+        base: Name of the base machine.
+        axes: By name.
+        logs: In the order of the command line.
+        findings: About the logs, by file.
+    """
+
+    base: str
+    axes: Mapping[str, AxisResult]
+    logs: tuple[LogFigures, ...]
+    findings: Mapping[str, tuple[Finding, ...]]
+
+    def as_contract(self) -> dict[str, object]:
+        """As ``--json`` writes it."""
+        return {
+            "schema": 1,
+            "base": self.base,
+            "axes": {name: _axis_contract(axis) for name, axis in self.axes.items()},
+            "logs": [figures.as_contract() for figures in self.logs],
+            "findings": [
+                {"log": log, "code": finding.code, "message": finding.message}
+                for log, findings in self.findings.items()
+                for finding in findings
+            ],
+        }
+
+
+def _axis_contract(axis: AxisResult) -> dict[str, object]:
+    fit = axis.fit
+    return {
+        "fitted": {
+            name: _interval_contract(interval, axis.units[name])
+            for name, interval in fit.fitted.items()
+        },
+        "conditional": {
+            name: _interval_contract(interval, axis.units[name]) | {"given": list(given)}
+            for name, (interval, given) in fit.conditional.items()
+        },
+        "undetermined": dict(fit.undetermined),
+        "limits": dict(axis.limits),
+        "correlations": {
+            "names": list(fit.names),
+            "matrix": [[round(float(value), 4) for value in row] for row in fit.correlations],
+        },
+    }
+
+
+def _interval_contract(interval: Interval, unit: str) -> dict[str, object]:
+    return {
+        "value": interval.value,
+        "low": _finite(interval.low),
+        "high": _finite(interval.high),
+        "unit": unit,
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) -> str:
+    """The answer in one sentence."""
+    own = [figures for figures in logs if figures.axis == name]
+    unseen = [figures for figures in own if figures.role == HOLD_OUT]
+    judged = unseen or own
+    what = "lag of velocity in ramps" if judged and judged[0].velocity_share is not None else "lag"
+    shares = max((figures.share for figures in judged), default=math.inf)
+    seen = "of a log that it has not seen" if unseen else "of the log that it was fitted to"
+    sentence = f"{name}: predicts the {what} {seen} to {100 * shares:.2g} %"
+    open_ones = [told for told in axis.fit.undetermined if told not in axis.fit.conditional]
+    if not open_ones:
+        return f"{sentence}; nothing is undetermined."
+    first = open_ones[0]
+    rest = f", and so are {', '.join(open_ones[1:])}" if open_ones[1:] else ""
+    return f"{sentence}; {first} is undetermined ({axis.fit.undetermined[first]}){rest}."

@@ -1,0 +1,35 @@
+"""The way from logs of a real machine to its machine file: ``twin calibrate``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def calibrate(
+    logs: Annotated[list[Path], typer.Argument(help="Logs to fit.", show_default=False)],
+    base: Annotated[
+        str, typer.Option("--base", help="Machine that keeps what the logs do not tell.")
+    ] = "mill4",
+    columns: Annotated[
+        Path | None, typer.Option("--columns", help="Map of columns and units (TOML).")
+    ] = None,
+    hold_out: Annotated[
+        list[Path] | None, typer.Option("--hold-out", help="Log to judge by; again for more.")
+    ] = None,
+    axes: Annotated[str | None, typer.Option("--axes", help="Only these: X,Y.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Write the machine file there.")] = None,
+    json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    require: Annotated[
+        float | None,
+        typer.Option("--require", help="Exit 1 if more of a held-out lag than this share is left."),
+    ] = None,
+) -> None:
+    """Fit a machine's drives to logs of a real one, and say what the logs do not tell."""
+    from twin.commands.calibrate import calibrate_and_print
+
+    code = calibrate_and_print(
+        logs, base=base, columns=columns, hold_out=hold_out or [], axes=axes, out=out,
+        json_file=json_file, require=require,
+    )  # fmt: skip
+    raise typer.Exit(code)

@@ -1,0 +1,55 @@
+"""The command's output: a reader who goes away, and a terminal that knows no µ."""
+
+import codecs
+import io
+import os
+import sys
+
+CLOSED_PIPE = 141
+"""Exit code of a command whose output nobody reads to its end, as shells give it (128 + SIGPIPE)."""
+
+_TRANSLITERATED = str.maketrans(
+    {"µ": "u", "–": "-", "—": "-", "°": "deg", "²": "2", "³": "3", "·": "*", "×": "x", "…": "..."}
+)
+_ERRORS = "mill-twin-plain"
+
+
+class _Pipe(io.FileIO):
+    """Ends the process when the reader of the pipe has gone (``twin interpret ... | head``)."""
+
+    def write(self, data: object, /) -> int | None:
+        try:
+            return super().write(data)  # pyright: ignore[reportArgumentType] (a buffer of any kind)
+        except BrokenPipeError:
+            # What is still in the buffers goes nowhere, without a complaint of Python's.
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self.fileno())
+            os.close(nowhere)
+            raise SystemExit(CLOSED_PIPE) from None
+
+
+def prepare_streams() -> None:
+    """Let stdout and stderr end the command when they are closed, and write in any encoding."""
+    codecs.register_error(_ERRORS, _plain)
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if not isinstance(stream, io.TextIOWrapper):
+            continue  # closed from the start, or put there by a test
+        stream.flush()
+        raw = _Pipe(stream.fileno(), "w", closefd=False)
+        prepared = io.TextIOWrapper(
+            io.BufferedWriter(raw),
+            encoding=stream.encoding,
+            errors=_ERRORS,
+            line_buffering=stream.line_buffering or name == "stderr",
+            write_through=stream.write_through,
+        )
+        setattr(sys, name, prepared)
+
+
+def _plain(error: UnicodeError) -> tuple[str | bytes, int]:
+    """What a narrow encoding shows instead of a character that it lacks."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    shown = error.object[error.start : error.end].translate(_TRANSLITERATED)
+    return shown.encode("ascii", "backslashreplace").decode("ascii"), error.end

@@ -1,0 +1,145 @@
+"""``twin calibrate LOG...``: a machine file, a report and figures from logs of a real machine."""
+
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from twin.errors import ExitCode, UsageError
+from twin.files.atomic import write_text
+from twin.files.shipped import machine_file
+from twin.logs.column_map import read_column_map
+from twin.logs.machine_log import MachineLog, read_machine_log
+from twin.machine.config import read_machine
+
+if TYPE_CHECKING:
+    from twin.calibrate.result import Calibration
+
+
+def calibrate_and_print(
+    logs: Sequence[Path],
+    *,
+    base: str,
+    columns: Path | None = None,
+    hold_out: Sequence[Path] = (),
+    axes: str | None = None,
+    out: Path | None = None,
+    json_file: Path | None = None,
+    require: float | None = None,
+) -> ExitCode:
+    """Fit the base machine's drives to logs; write what was asked for and print the figures.
+
+    Args:
+        logs: Logs to fit.
+        base: Machine that keeps what they do not determine.
+        columns: Map of their columns; by default what their headings say.
+        hold_out: Logs to judge the fit by.
+        axes: Names, separated by commas; all that the logs have by default.
+        out: Where the machine file goes.
+        json_file: Where the figures go.
+        require: Largest share of the following error that may be left on held-out logs.
+
+    Returns:
+        ``FAILED`` when ``require`` does not hold, else ``OK``.
+
+    Raises:
+        UsageError: A log, the map or the command line is wrong.
+        ConfigError: The base is wrong.
+    """
+    machine = read_machine(machine_file(base))
+    if require is not None and not hold_out:
+        raise UsageError("--require judges held-out logs: give --hold-out LOG")
+    if require is not None and not 0 < require < float("inf"):
+        raise UsageError(f"--require must be a positive share, not {require:g}")
+    _need_scipy()
+    from twin.calibrate.calibrate import calibrate
+    from twin.calibrate.machine_text import machine_text
+
+    meant = None if columns is None else read_column_map(columns)
+
+    def read(paths: Sequence[Path]) -> list[MachineLog]:
+        return [read_machine_log(path, meant, units_needed=True) for path in paths]
+
+    wanted = [name.strip().upper() for name in axes.split(",")] if axes else []
+    result = calibrate(machine, read(logs), read(hold_out), wanted)
+    if out is not None:
+        write_text(out, machine_text(result, base=_base_for(base, out), name=out.stem))
+    if json_file is not None:
+        write_text(json_file, json.dumps(result.as_contract(), indent=2, ensure_ascii=False) + "\n")
+    _print(result)
+    judged = [figures for figures in result.logs if figures.role == "hold-out"]
+    failed = require is not None and any(figures.share > require for figures in judged)
+    return ExitCode.FAILED if failed else ExitCode.OK
+
+
+def _need_scipy() -> None:
+    try:
+        import scipy  # noqa: F401 (asked for before anything is read)
+    except ImportError as error:
+        raise UsageError(
+            "twin calibrate needs scipy: pip install 'mill-twin[calibrate]'"
+        ) from error
+
+
+def _base_for(base: str, out: Path) -> str:
+    """The base as a machine file beside ``out`` names it."""
+    path = Path(base)
+    if not path.exists():
+        return base
+    return os.path.relpath(path.resolve(), out.parent.resolve())
+
+
+def _print(result: "Calibration") -> None:
+    from twin.calibrate.result import verdict_sentence
+
+    for log, findings in result.findings.items():
+        for finding in findings:
+            typer.echo(f"{log}: {finding.message}", err=True)
+    console = Console(width=110)
+    for name, axis in result.axes.items():
+        table = Table(box=None, pad_edge=False)
+        table.add_column(f"axis {name}")
+        for heading in ("value", "low", "high"):
+            table.add_column(heading, justify="right")
+        for heading in ("unit", "given"):
+            table.add_column(heading)
+        conditional = axis.fit.conditional.items()
+        for parameter, interval, given in [
+            *((key, interval, "") for key, interval in axis.fit.fitted.items()),
+            *((key, interval, ", ".join(names)) for key, (interval, names) in conditional),
+        ]:
+            numbers = [f"{value:.5g}" for value in (interval.value, interval.low, interval.high)]
+            table.add_row(parameter, *numbers, axis.units[parameter], given)
+        console.print(table)
+        for parameter, why in axis.fit.undetermined.items():
+            typer.echo(f"  {parameter} undetermined: {why}")
+        typer.echo()
+    _print_logs(console, result)
+    for name, axis in result.axes.items():
+        typer.echo(verdict_sentence(name, axis, result.logs))
+
+
+def _print_logs(console: Console, result: "Calibration") -> None:
+    table = Table(box=None, pad_edge=False)
+    for heading in ("log", "role", "axis"):
+        table.add_column(heading)
+    for heading in ("logged rms", "left rms", "share", "force left", "current corr."):
+        table.add_column(heading, justify="right")
+    for figures in result.logs:
+        unit = "µm" if figures.kind == "linear" else "mdeg"
+        table.add_row(
+            Path(figures.log).name, figures.role, figures.axis,
+            f"{figures.logged_rms * 1e3:.2f} {unit}", f"{figures.left_rms * 1e3:.2f} {unit}",
+            f"{100 * figures.share:.2f} %", _share(figures.force_share),
+            "" if figures.current_correlation is None else f"{figures.current_correlation:.3f}",
+        )  # fmt: skip
+    console.print(table)
+
+
+def _share(value: float | None) -> str:
+    return "" if value is None else f"{100 * value:.1f} %"

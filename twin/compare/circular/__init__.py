@@ -1,0 +1,1 @@
+"""Circular figures after ISO 230-4."""

@@ -1,0 +1,202 @@
+"""Circular figures after ISO 230-4, from points on a nominal circle.
+
+The definitions, as they are computed here (angles about the nominal centre, deviations positive
+outside):
+
+* **radial deviation F**: distance of an actual point from the nominal centre minus the nominal
+  radius; its greatest and least value are given. The nominal centre is the commanded one.
+* **circular deviation G**: least radial distance between two concentric circles that enclose the
+  actual path, evaluated about the least-squares circle, as the standard allows. An arc of less
+  than a full turn does not determine its own centre: about the commanded centre, so that
+  G = F_max - F_min.
+* **bidirectional circular deviation G(b)**: the same for the clockwise and the counter-clockwise
+  path together, about the least-squares circle of both.
+* **mean bidirectional radial deviation D**: radius of that common circle minus the nominal radius.
+* **hysteresis H**: greatest difference of the radial deviation between the two directions at the
+  same angle.
+"""
+
+import dataclasses
+
+import numpy as np
+
+from twin.compare.circular.circle_kernels import collect_by_angle
+from twin.nc.canonical import FloatArray, IntArray
+from twin.units import UM_PER_MM
+
+BINS_PER_TURN = 7200
+"""Angular resolution of the collected path: 0.05 degrees."""
+FULL_TURN_GAP = 5.0
+"""A path without a gap wider than this covers the full turn [deg]."""
+
+
+class CirclePath:
+    """An actual path around a nominal circle, in bounded memory.
+
+    A short path is kept point by point, a longer one by angle: of every bin the points with the
+    least and the greatest radial deviation, so that however long the path is, no peak is lost.
+
+    Args:
+        radius: Nominal [mm].
+
+    Attributes:
+        radius: Nominal [mm].
+        radial_min: Least radial deviation so far [mm]; infinite without points.
+        radial_max: Greatest radial deviation so far [mm]; minus infinite without points.
+    """
+
+    def __init__(self, radius: float) -> None:
+        self.radius = radius
+        self.radial_min, self.radial_max = np.inf, -np.inf
+        self._points: list[FloatArray] = []
+        self._count = 0
+        self._bins: _Bins | None = None
+
+    def add(self, points: FloatArray) -> None:
+        """Take in points relative to the nominal centre, shape (n, 2) [mm]."""
+        deviation = np.sqrt((points * points).sum(axis=1)) - self.radius
+        self.radial_min = min(self.radial_min, float(deviation.min(initial=np.inf)))
+        self.radial_max = max(self.radial_max, float(deviation.max(initial=-np.inf)))
+        self._points.append(points)
+        self._count += len(points)
+        if self._count > BINS_PER_TURN:
+            self._binned()
+
+    def _binned(self) -> "_Bins":
+        """All points so far by angle."""
+        if self._bins is None:
+            self._bins = _Bins()
+        for points in self._points:
+            self._bins.add(points, self.radius)
+        self._points, self._count = [], 0
+        return self._bins
+
+    def mean(self) -> FloatArray:
+        """Mean angle [rad] and radial deviation [mm] of the filled bins, shape (m, 2).
+
+        They weigh all angles alike in the least-squares circle, wherever the tool moved slowly.
+        """
+        return self._binned().mean()
+
+    def extremes(self) -> FloatArray:
+        """Angle [rad] and radial deviation [mm] of the kept points, shape (2 m, 2)."""
+        return self._binned().extremes()
+
+    def covers_full_turn(self) -> bool:
+        """Whether no gap in the angles is wider than ``FULL_TURN_GAP``."""
+        if self._bins is None:
+            points = np.concatenate([np.zeros((0, 2)), *self._points])
+            angle = np.sort(np.arctan2(points[:, 1], points[:, 0]))
+        else:
+            angle = self._binned().filled() * (2.0 * np.pi / BINS_PER_TURN)
+        gaps = np.diff(np.append(angle, angle[:1] + 2.0 * np.pi))
+        return bool(len(angle) >= 3 and np.degrees(gaps.max()) <= FULL_TURN_GAP)
+
+
+class _Bins:
+    """Points by angle: of each bin how many, their mean, the innermost and the outermost."""
+
+    def __init__(self) -> None:
+        self._count = np.zeros(BINS_PER_TURN, np.int64)
+        self._angle = np.zeros(BINS_PER_TURN)
+        self._deviation = np.zeros(BINS_PER_TURN)
+        self._least = np.full((BINS_PER_TURN, 2), np.inf)
+        self._greatest = np.full((BINS_PER_TURN, 2), -np.inf)
+
+    def add(self, points: FloatArray, radius: float) -> None:
+        collect_by_angle(
+            points, radius, self._count, self._angle, self._deviation, self._least, self._greatest
+        )
+
+    def filled(self) -> IntArray:
+        return np.flatnonzero(self._count)
+
+    def mean(self) -> FloatArray:
+        filled = self._count > 0
+        count = self._count[filled]
+        return np.column_stack([self._angle[filled] / count, self._deviation[filled] / count])
+
+    def extremes(self) -> FloatArray:
+        filled = self._count > 0
+        return np.concatenate([self._least[filled], self._greatest[filled]])[:, ::-1]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class CircleFigures:
+    """Figures of one path, or of both directions together.
+
+    Attributes:
+        circular_deviation_um: G, or G(b) of two paths [µm].
+        radial_max_um: F_max [µm].
+        radial_min_um: F_min [µm].
+        mean_radius_error_um: Least-squares radius minus nominal; D of two paths; NaN where they do
+            not cover the full turn, which would determine it [µm].
+    """
+
+    circular_deviation_um: float
+    radial_max_um: float
+    radial_min_um: float
+    mean_radius_error_um: float
+
+
+def circle_figures(*paths: CirclePath) -> CircleFigures:
+    """Evaluate one path, or the clockwise and the counter-clockwise path together.
+
+    Raises:
+        ValueError: There is no path, or a path without points.
+    """
+    if not paths or any(path.radial_max < path.radial_min for path in paths):
+        raise ValueError("circular figures need paths with points")
+    radius = paths[0].radius
+    least = min(path.radial_min for path in paths)
+    greatest = max(path.radial_max for path in paths)
+    width, mean_error = greatest - least, np.nan
+    if all(path.covers_full_turn() for path in paths):
+        means = np.concatenate([path.mean() for path in paths])
+        extremes = np.concatenate([path.extremes() for path in paths])
+        center, mean_radius = _least_squares_circle(_points(means, radius))
+        width = np.ptp(np.linalg.norm(_points(extremes, radius) - center, axis=1))
+        mean_error = mean_radius - radius
+    return CircleFigures(
+        circular_deviation_um=float(width) * UM_PER_MM,
+        radial_max_um=greatest * UM_PER_MM,
+        radial_min_um=least * UM_PER_MM,
+        mean_radius_error_um=mean_error * UM_PER_MM,
+    )
+
+
+def hysteresis_um(one: CirclePath, other: CirclePath) -> float:
+    """H: greatest difference between the two directions at the same angle [µm].
+
+    Either path is a chain of straight pieces over the angle. The difference of two such chains is
+    greatest where one of them bends, so that reading both at the bends of both finds it exactly,
+    however narrow the peak is that a reversal leaves.
+    """
+    paths = [path.mean() for path in (one, other)]
+    bends = np.concatenate([path[:, 0] for path in paths])
+    read = [np.interp(bends, path[:, 0], path[:, 1], period=2.0 * np.pi) for path in paths]
+    return float(np.abs(read[0] - read[1]).max()) * UM_PER_MM
+
+
+def _points(polar: FloatArray, radius: float) -> FloatArray:
+    distance = radius + polar[:, 1]
+    return np.column_stack([distance * np.cos(polar[:, 0]), distance * np.sin(polar[:, 0])])
+
+
+def _least_squares_circle(points: FloatArray) -> tuple[FloatArray, float]:
+    """Centre and radius that minimise the squared radial distances (Gauss-Newton).
+
+    The start is the nominal centre, which an actual path misses by little.
+    """
+    center = np.zeros(2)
+    radius = float(np.linalg.norm(points, axis=1).mean())
+    for _ in range(20):
+        offset = points - center
+        distance = np.linalg.norm(offset, axis=1)
+        outward = offset / distance[:, None]
+        slope = np.column_stack([outward, np.ones(len(points))])
+        change = np.linalg.solve(slope.T @ slope, slope.T @ (distance - radius))
+        center, radius = center + change[:2], radius + float(change[2])
+        if np.abs(change).max() < 1e-10:
+            break
+    return center, radius

@@ -1,0 +1,1 @@
+"""The contour error of every sample, by block, feature and corner."""

@@ -1,0 +1,111 @@
+"""Corners: where the path turns sharply, and how far the tool rounds them."""
+
+import numpy as np
+
+from twin.compare.contour.corner_kernels import pass_corners
+from twin.compare.figures import CornerFigures
+from twin.compare.statistics import Distribution
+from twin.nc.canonical import FloatArray, IntArray, Moves
+from twin.toolpath.nearest import PathColumns, ends_of
+from twin.units import UM_PER_MM
+
+SMALLEST_TURN = 1.0
+"""From this change of direction on, the end of a block is a corner [deg]."""
+CORNER_REACH_MM = 1.0
+"""A tool whose place on the path is no farther than this from a corner is at the corner: a right
+angle that a control rounds by 0.1 mm leaves the path over a quarter of that."""
+
+
+class CornerCollector:
+    """Follows the tool past the corners of the moves at hand, in step with the comparison."""
+
+    def __init__(self) -> None:
+        self._point = np.zeros((0, 3))
+        self._speed = np.zeros((0, 2))
+        self._sharp = np.zeros(0, np.bool_)
+        self._begins_sharp = np.zeros(0, np.bool_)
+        self._nearest = np.zeros(0)
+        self._when = np.zeros(0)
+        self._leaving = np.zeros(3)
+        self._before: FloatArray | None = None
+        self._roundings = Distribution()
+        self._worst = (0, 0.0)
+
+    def expect(self, path: PathColumns) -> None:
+        """Announce the next moves of the program, in the part's frame."""
+        if not len(path.sweep):
+            return
+        ends = ends_of(path)
+        leaving = np.concatenate([self._leaving[None], ends.leaving])
+        begins = _turns_sharply(leaving[:-1], ends.arriving)
+        if len(self._sharp):
+            self._sharp[-1] = begins[0]
+        # The last at hand is no corner as long as its successor is not known.
+        self._sharp = np.concatenate([self._sharp, begins[1:], [False]])
+        self._begins_sharp = np.concatenate([self._begins_sharp, begins])
+        self._point = np.concatenate([self._point, ends.point])
+        self._speed = np.concatenate([self._speed, ends.speed])
+        self._nearest = np.append(self._nearest, np.full(len(begins), np.inf))
+        self._when = np.append(self._when, np.zeros(len(begins)))
+        self._leaving = leaving[-1]
+
+    def add(self, point: FloatArray, place: IntArray, time: FloatArray) -> None:
+        """Take in a chunk of n samples.
+
+        Args:
+            point: Simulated tool points in the part's frame, shape (n, 3) [mm].
+            place: Move at hand of each sample's nearest place, shape (n,).
+            time: Shape (n,) [s].
+        """
+        before = point[0] if self._before is None else self._before
+        pass_corners(
+            self._point, self._sharp, before, point, place, time, self._nearest, self._when
+        )
+        self._before = point[-1].copy()
+
+    def at_corner(self, place: IntArray, fraction: FloatArray) -> np.ndarray:
+        """Which places on the path are within ``CORNER_REACH_MM`` of a corner, shape (n,)."""
+        behind = fraction * self._speed[place, 0]
+        ahead = (1.0 - fraction) * self._speed[place, 1]
+        return (self._begins_sharp[place] & (behind <= CORNER_REACH_MM)) | (
+            self._sharp[place] & (ahead <= CORNER_REACH_MM)
+        )
+
+    def drop(self, moves: Moves, count: int) -> None:
+        """Evaluate the first ``count`` moves at hand and let them go."""
+        self._worst = self._evaluate(moves, count, self._roundings, self._worst)
+        self._point, self._speed = self._point[count:].copy(), self._speed[count:].copy()
+        self._sharp = self._sharp[count:].copy()
+        self._begins_sharp = self._begins_sharp[count:].copy()
+        self._nearest, self._when = self._nearest[count:].copy(), self._when[count:].copy()
+
+    def figures(self, moves: Moves) -> CornerFigures:
+        """The corners so far, those of the moves at hand included."""
+        roundings = self._roundings.copy()
+        line, time = self._evaluate(moves, len(self._nearest), roundings, self._worst)
+        return CornerFigures(
+            count=roundings.count,
+            rounding_um=roundings.greatest,
+            line=line,
+            time_s=time,
+            rms_um=roundings.rms,
+            p99_um=roundings.percentile(99.0),
+        )
+
+    def _evaluate(
+        self, moves: Moves, count: int, roundings: Distribution, worst: tuple[int, float]
+    ) -> tuple[int, float]:
+        """Take the corners of the first moves in; line and time of the most rounded so far."""
+        passed = np.flatnonzero(self._sharp[:count] & np.isfinite(self._nearest[:count]))
+        greatest = roundings.add(self._nearest[passed] * UM_PER_MM)
+        if greatest is None:
+            return worst
+        row = int(passed[greatest])
+        return int(moves.line[row]), float(self._when[row])
+
+
+def _turns_sharply(leaving: FloatArray, arriving: FloatArray) -> np.ndarray:
+    """Where a path turns from one unit direction to the next; standing still is no direction."""
+    cosine = np.einsum("ij,ij->i", leaving, arriving)
+    moving = np.any(leaving, axis=1) & np.any(arriving, axis=1)
+    return moving & (cosine < np.cos(np.deg2rad(SMALLEST_TURN)))

@@ -1,0 +1,69 @@
+"""What a compiled kernel was made from, as one hash: it is the kernel's only mark of age.
+
+Times and paths do not count: a moved, restored or copied environment finds what was compiled before.
+"""
+
+import functools
+import hashlib
+import re
+import sys
+from pathlib import Path
+
+import llvmlite
+import numba
+import numpy as np
+
+PACKAGE = Path(__file__).resolve().parents[1]
+_COMPILERS = (
+    sys.implementation.cache_tag,
+    numba.__version__,
+    llvmlite.__version__,
+    # Within a minor version NumPy keeps the layout of arrays and the types of results.
+    ".".join(np.__version__.split(".")[:2]),
+)
+_IMPORT = re.compile(
+    r"^(?:from (?P<origin>twin[\w.]*) import (?P<names>\([^)]*\)|[^\n]*)|import (?P<module>twin[\w.]+))",
+    re.MULTILINE,
+)
+
+
+@functools.cache
+def content_key(file: Path) -> str:
+    """Hash of a file, of all files of the package that it imports, and of the compilers' versions."""
+    digest = hashlib.sha256("\n".join(_COMPILERS).encode())
+    for source in sorted(_closure(file)):
+        digest.update(source.relative_to(PACKAGE).as_posix().encode() + b"\0")
+        digest.update(_digest(source))
+    return digest.hexdigest()[:24]
+
+
+def _closure(file: Path) -> set[Path]:
+    found: set[Path] = set()
+    waiting = [file]
+    while waiting:
+        source = waiting.pop()
+        if source not in found:
+            found.add(source)
+            waiting.extend(_imported(source))
+    return found
+
+
+@functools.cache
+def _digest(file: Path) -> bytes:
+    return hashlib.sha256(file.read_bytes()).digest()
+
+
+@functools.cache
+def _imported(file: Path) -> tuple[Path, ...]:
+    """The package's files that a file imports at its head."""
+    modules: list[str] = []
+    for match in _IMPORT.finditer(file.read_text(encoding="utf-8")):
+        if match["module"]:
+            modules.append(match["module"])
+            continue
+        modules.append(match["origin"])
+        modules += [f"{match['origin']}.{name}" for name in re.findall(r"\w+", match["names"])]
+    places = {PACKAGE.parent.joinpath(*module.split(".")) for module in modules}
+    files = {place.with_suffix(".py") for place in places}
+    files |= {place / "__init__.py" for place in places}
+    return tuple(sorted(each for each in files if each.is_file()))

@@ -1,0 +1,178 @@
+"""What a program says beside its moves, by the number of the move that it holds from."""
+
+import bisect
+import dataclasses
+from typing import Generic, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from twin.cutting.tools import ToolPlan
+from twin.errors import ConfigError
+from twin.job.job_file import JobFile, ToolTable
+from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
+from twin.nc.functions import (
+    PROGRAM_ENDS,
+    SPINDLE_COUNTER_CLOCKWISE,
+    SPINDLE_SPEED,
+    SPINDLE_STARTS,
+    SPINDLE_STOPS,
+    TOOL_CHANGE,
+)
+
+BoolArray = npt.NDArray[np.bool_]
+ValueT = TypeVar("ValueT")
+
+SPINDLE_OFF = SPINDLE_STOPS | PROGRAM_ENDS
+"""The program's end stops the spindle too (ISO 6983-1)."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Steps(Generic[ValueT]):
+    """A value that changes between moves.
+
+    Attributes:
+        first_move: Number of the first move that each value holds for, never falling from 0.
+        values: As many.
+    """
+
+    first_move: tuple[int, ...]
+    values: tuple[ValueT, ...]
+
+    def at(self, move: int) -> ValueT:
+        """The value during a move."""
+        return self.values[bisect.bisect_right(self.first_move, max(move, 0)) - 1]
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class ProgramSummary:
+    """What a whole program says beside its moves.
+
+    Attributes:
+        tools: What is in the spindle when, at which speed.
+        rapid: Whether each move is a rapid, shape (n,).
+        spindle: Its speed [1/min], negative where it turns counter-clockwise, 0 where it stands;
+            None where nothing is known of it.
+        shown: What the control's screen adds to the axes' positions, shape (k,) each [mm or deg];
+            none: nothing ever.
+    """
+
+    tools: ToolPlan
+    rapid: BoolArray = dataclasses.field(default_factory=lambda: np.zeros(0, np.bool_))
+    spindle: Steps[float | None] = Steps((0,), (None,))
+    shown: Steps[FloatArray] | None = None
+
+    def is_rapid(self, move: IntArray) -> BoolArray:
+        """Which samples belong to rapids, by their move numbers, shape (n,); -1 does not."""
+        known = (move >= 0) & (move < len(self.rapid))
+        result = np.zeros(len(move), np.bool_)
+        result[known] = self.rapid[move[known]]
+        return result
+
+
+class SummaryBuilder:
+    """Reads a program along, chunk by chunk."""
+
+    def __init__(self, job: JobFile) -> None:
+        """Begin with the job's first tool in a spindle of which nothing was said.
+
+        Args:
+            job: Its tools are those that the program may bring.
+        """
+        self._tools = {tool.number: tool for tool in job.tools}
+        # Without a list of tools every number means the default tool, as in a run without one.
+        self._any_tool = "tools" not in job.model_fields_set
+        self._cuts = job.stock is not None
+        self._selected: int | None = None
+        self._tool = job.tools[0]
+        self._speed = job.tools[0].speed
+        self._turns: float | None = self._speed
+        self._plan: list[tuple[int, ToolTable]] = [(0, self._tool)]
+        self._spindle: list[tuple[int, float | None]] = [(0, self._turns)]
+        self._shown: list[tuple[int, FloatArray]] = []
+        self._rapid = bytearray()
+
+    def add(self, chunk: Chunk) -> None:
+        """Take note of moves and functions that follow the last ones.
+
+        Raises:
+            ConfigError: The program brings a tool that the job does not list.
+        """
+        before, moves = len(self._rapid), chunk.moves
+        self._rapid += (moves.motion == Motion.RAPID).tobytes()
+        for event in chunk.events:
+            if isinstance(event, Function):
+                self._function(event, before + event.before)
+        if not len(moves):
+            return
+        added = moves.display - moves.end
+        last = self._shown[-1][1] if self._shown else np.zeros(added.shape[1])
+        steps = np.abs(np.diff(added, axis=0, prepend=last[None])).max(axis=1) > _SHOWN_STEP
+        self._shown += [(before + int(i), added[i].copy()) for i in np.flatnonzero(steps)]
+
+    def summary(self) -> ProgramSummary:
+        """All that was noted."""
+        shown = None
+        if self._shown:
+            zero = np.zeros_like(self._shown[0][1])
+            shown = _steps([(0, zero), *self._shown])
+        first_move, tools = zip(*self._plan, strict=True)
+        return ProgramSummary(
+            tools=ToolPlan(tools, first_move),
+            rapid=np.frombuffer(bytes(self._rapid), np.bool_),
+            spindle=_steps(self._spindle),
+            shown=shown,
+        )
+
+    def _function(self, event: Function, move: int) -> None:
+        word = event.word
+        if word[:1] == "T" and word[1:].isdigit():
+            self._selected = int(word[1:])
+        elif word == TOOL_CHANGE and self._selected is not None:
+            self._change_tool(self._selected, event.line, move)
+        elif word in SPINDLE_STARTS:
+            self._speed = event.arguments.get("S", self._speed)
+            self._turn(
+                None
+                if self._speed is None
+                else (1 - 2 * (word == SPINDLE_COUNTER_CLOCKWISE)) * self._speed,
+                move,
+            )
+        elif word in SPINDLE_OFF:
+            self._turn(0.0, move)
+        elif word == SPINDLE_SPEED:
+            self._speed = event.arguments["S"]
+            if self._turns:
+                self._turn(float(np.copysign(self._speed, self._turns)), move)
+
+    def _change_tool(self, number: int, line: int, move: int) -> None:
+        tool = self._tools.get(number)
+        if tool is None and not self._any_tool and self._cuts:
+            known = ", ".join(str(number) for number in self._tools)
+            raise ConfigError(
+                f"line {line} of the program brings tool {number}, but the job lists {known}: "
+                f"add a [[tools]] table with number = {number}"
+            )
+        if tool is not None:
+            self._tool = tool
+            self._plan.append((move, self._turning()))
+
+    def _turn(self, turns: float | None, move: int) -> None:
+        self._turns = turns
+        self._spindle.append((move, turns))
+        self._plan.append((move, self._turning()))
+
+    def _turning(self) -> ToolTable:
+        """The tool at the speed that the program gave it; the job's, where it never spoke of one."""
+        if len(self._spindle) == 1:
+            return self._tool
+        return self._tool.model_copy(update={"speed": abs(self._turns) if self._turns else None})
+
+
+_SHOWN_STEP = 1e-9
+"""Changes of what the screen adds that are the arithmetic's doing [mm or deg]."""
+
+
+def _steps(pairs: list[tuple[int, ValueT]]) -> Steps[ValueT]:
+    first_move, values = zip(*pairs, strict=True)
+    return Steps(first_move, values)

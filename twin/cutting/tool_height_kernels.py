@@ -1,0 +1,108 @@
+"""How low a tool that moves straight comes over a place: the rule that sweep and overlap share."""
+
+import math
+
+from twin.compilation.kernel import array_kernel
+from twin.nc.canonical import FloatArray
+
+_BISECTIONS = 40
+"""Halvings of a sweep in search of its lowest point: 1e-12 of its length."""
+
+
+@array_kernel
+def below_capsule(
+    x: float, y: float, z: float, a: FloatArray, b: FloatArray, radius: float
+) -> bool:
+    """Whether a point no higher than a swept ball's centres is outside of it: a cheap refusal."""
+    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    px, py, pz = x - a[0], y - a[1], z - a[2] - radius
+    if pz > min(0.0, dz):
+        return False
+    squared = dx * dx + dy * dy + dz * dz
+    if squared > 0.0:
+        t = min(1.0, max(0.0, (px * dx + py * dy + pz * dz) / squared))
+        px, py, pz = px - t * dx, py - t * dy, pz - t * dz
+    return px * px + py * py + pz * pz >= radius * radius
+
+
+@array_kernel
+def lowest_height(
+    x: float, y: float, a: FloatArray, b: FloatArray, profile: tuple[float, float, float, float]
+) -> float:
+    """Lowest height over (x, y) of a tool that moves straight from a to b; inf if it misses.
+
+    With t from 0 to 1 the distance from the axis is convex in t, the profile is convex and rises
+    with the distance, and the tip's height is linear: their sum is convex, so that its only
+    minimum is an end of the stretch in reach or the place where its slope changes sign.
+    """
+    radius, flat, corner, slope = profile
+    dx, dy, dz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    squared = dx * dx + dy * dy
+    px, py = x - a[0], y - a[1]
+    if squared == 0.0:
+        return min(a[2], b[2]) + profile_height(math.hypot(px, py), radius, flat, corner, slope)
+    nearest = (px * dx + py * dy) / squared
+    across = px * dx + py * dy
+    offset = max(px * px + py * py - across * across / squared, 0.0)
+    reach = radius * radius - offset
+    if reach < 0.0:
+        return math.inf
+    half = math.sqrt(reach / squared)
+    first, last = max(0.0, nearest - half), min(1.0, nearest + half)
+    if first > last:
+        return math.inf
+    if dz == 0.0:
+        t = min(last, max(first, nearest))
+    elif flat >= radius:
+        t = last if dz < 0.0 else first
+    elif flat == 0.0 and corner > 0.0:
+        steepest = math.sqrt(reach / (squared * (squared + dz * dz)))
+        t = min(last, max(first, nearest - dz * steepest))
+    else:
+        t = _turning_point(first, last, nearest, squared, offset, dz, profile)
+    along = t - nearest
+    distance = math.sqrt(offset + squared * along * along)
+    return a[2] + t * dz + profile_height(min(distance, radius), radius, flat, corner, slope)
+
+
+@array_kernel
+def profile_height(
+    distance: float, radius: float, flat: float, corner: float, slope: float
+) -> float:
+    """Height of the edge above the tip at a distance from the axis [mm]; inf beyond the edge."""
+    if distance > radius:
+        return math.inf
+    beyond = max(distance - flat, 0.0)
+    if corner > 0.0:
+        return corner - math.sqrt(max(corner * corner - beyond * beyond, 0.0))
+    return slope * beyond
+
+
+@array_kernel
+def _turning_point(
+    first: float,
+    last: float,
+    nearest: float,
+    squared: float,
+    offset: float,
+    dz: float,
+    profile: tuple[float, float, float, float],
+) -> float:
+    """Where the height over a cell stops falling, by halving the stretch [share of the line]."""
+    _, flat, corner, slope = profile
+    for _ in range(_BISECTIONS):
+        t = 0.5 * (first + last)
+        along = t - nearest
+        distance = math.sqrt(offset + squared * along * along)
+        rise = dz
+        if distance > flat:
+            beyond = distance - flat
+            steepness = slope
+            if corner > 0.0:
+                steepness = beyond / math.sqrt(max(corner * corner - beyond * beyond, 1e-18))
+            rise += steepness * squared * along / distance
+        if rise > 0.0:
+            last = t
+        else:
+            first = t
+    return 0.5 * (first + last)

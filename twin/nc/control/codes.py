@@ -1,0 +1,134 @@
+"""G and M codes: what a dialect declares of each, and how axis words become a move."""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import Literal, Protocol
+
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.control import Control
+from twin.nc.control.interpolation import MotionMode
+from twin.nc.control.modal import ModalChanges
+from twin.nc.text.blocks import Statement, Word
+
+Action = Callable[[Control], None]
+WordAction = Callable[[Control, Word], None]
+StatementAction = Callable[[Control, Statement], None]
+Compiler = Callable[[BlockWords, Assembler], None]
+"""Writes as instructions what a code or a word does, taking the words that belong to it."""
+
+Ground = Literal["seed", "manual", "decision"]
+"""On what a code's meaning rests: the control's own page, its manuals, or this project."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Interpolation(MotionMode):
+    """How axis words become a move.
+
+    Attributes:
+        perform: Takes the block's words and moves.
+    """
+
+    perform: Action
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class GCode:
+    """One G code.
+
+    Attributes:
+        meaning: For people, in a few words.
+        group: Modal group; codes of one group exclude each other in a block. Empty: not modal.
+        sets: What it puts into force.
+        action: Done before the block moves.
+        perform: Done in place of a move.
+        takes: Addresses that ``perform`` wants although they have a modal meaning elsewhere.
+        after: Done when the block has moved.
+        once: What it sets holds for its block only.
+        alone: No other word may stand in its block.
+        refused: Why the twin refuses a code that the control knows; empty: it does not.
+        compiler: Compiles what ``action`` or ``perform`` does; None: it has no compiled form.
+        ground: On what the meaning rests.
+    """
+
+    meaning: str
+    group: str = ""
+    sets: ModalChanges = dataclasses.field(default_factory=ModalChanges)
+    action: Action | None = None
+    perform: Action | None = None
+    takes: str = ""
+    after: Action | None = None
+    once: bool = False
+    alone: bool = False
+    refused: str = ""
+    compiler: Compiler | None = None
+    ground: Ground = "decision"
+
+    @property
+    def begins_cycle(self) -> bool:
+        """It calls a canned cycle."""
+        return self.sets.get("cycle") is not None
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class MCode:
+    """One M code.
+
+    Attributes:
+        meaning: For people.
+        group: Codes of one group exclude each other in a block; empty: it has none.
+        late: Takes effect when the block has moved.
+        ends: Ends the program.
+        action: What it does besides being reported as a function.
+        silent: It is not reported.
+        compiler: Compiles what ``action`` does; None: it has no compiled form.
+        ground: On what the meaning rests.
+    """
+
+    meaning: str
+    group: str = ""
+    late: bool = False
+    ends: bool = False
+    silent: bool = False
+    action: Action | None = None
+    compiler: Compiler | None = None
+    ground: Ground = "decision"
+
+
+class Vocabulary(Protocol):
+    """What compiling words needs to know of a dialect; attributes as in ``Dialect``."""
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Modal groups in the order in which they take effect."""
+        ...
+
+    @property
+    def g(self) -> Mapping[int, GCode]:
+        """G codes by number."""
+        ...
+
+    @property
+    def m(self) -> Mapping[int, MCode]:
+        """M codes by number."""
+        ...
+
+    @property
+    def any_m(self) -> bool:
+        """M codes outside the table are functions too."""
+        ...
+
+    @property
+    def words(self) -> Mapping[str, WordAction]:
+        """Addresses with a modal meaning, and what they do."""
+        ...
+
+    @property
+    def word_compilers(self) -> Mapping[str, Compiler]:
+        """The compilers of those that have one."""
+        ...
+
+    @property
+    def function_letters(self) -> str:
+        """Addresses that belong to an M function of their block."""
+        ...

@@ -1,0 +1,304 @@
+"""Runs the blocks of a program, whatever its dialect: in which order a block takes effect.
+
+A block takes effect in a fixed order: modal codes by group, set-up actions, modal words (F, S, T),
+early M functions, the motion or what stands in its place, late M functions, jumps. Every word must
+be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
+"""
+
+import dataclasses
+from typing import NoReturn
+
+from twin.nc.control.codes import GCode, Interpolation, MCode
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.modal import ModalChanges
+from twin.nc.control.settings import ControlSettings
+from twin.nc.control.state import integer_of, number_of
+from twin.nc.text.blocks import Block, Statement, Word
+from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.text.source import Source
+
+
+class Executor(Control):
+    """One control while it runs one program.
+
+    Attributes:
+        dialect: The language it reads.
+    """
+
+    def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
+        super().__init__(dialect, settings, source)
+        self.dialect = dialect
+        self._codes: list[tuple[Word, GCode]] = []
+        self.modal.apply(dialect.start_state)
+        for number in dialect.start:
+            self.put_into_force(number, dialect.g[number])
+
+    def put_into_force(self, number: int, code: GCode) -> None:
+        """Apply a modal code."""
+        self.modal.apply(code.sets)
+        if self.modal.cycle is None:
+            self.forget_cycle()
+        if code.group:
+            self.active[code.group] = number
+
+    def run(self, block: Block) -> None:
+        """Run one block.
+
+        Raises:
+            ProgramError: It is wrong.
+        """
+        self.block = block
+        self.report.line = block.line
+        if block.skippable and self.settings.block_skip:
+            return
+        if self.dialect.repeat_word:
+            block = self._repeated(block)
+        if block.statement is not None:
+            self._run_statement(block.statement)
+            return
+        functions = self._sort_words(block)
+        codes = self._codes
+        restore = self._apply_codes()
+        for _, code in codes:
+            if code.action is not None:
+                code.action(self)
+        instead = next((code for _, code in codes if code.perform is not None), None)
+        self._run_modal_words("" if instead is None else instead.takes)
+        for word, function in functions:
+            if not function.late:
+                self._run_function(word, function)
+        if instead is not None and instead.perform is not None:
+            instead.perform(self)
+        else:
+            self._move()
+        for _, code in codes:
+            if code.after is not None:
+                code.after(self)
+        for word, function in functions:
+            if function.late:
+                self._run_function(word, function)
+        if self.words or self.series:
+            self._refuse_unused()
+        for replaced in restore:
+            self.modal.apply(replaced)
+
+    def prepare(self) -> None:
+        """The program begins."""
+        if self.dialect.prepare is not None:
+            self.dialect.prepare(self)
+
+    def _repeated(self, block: Block) -> Block:
+        """Run a block with a repeat word as often as it says, but once; return it without."""
+        words = [word for word in block.words if word.address == self.dialect.repeat_word]
+        if not words:
+            return block
+        word = words[0]
+        value = word.value
+        count = self.evaluate(value, word) if isinstance(value, Expression) else value
+        rest = tuple(each for each in block.words if each is not word)
+        if count < 1.0 or count != int(count):
+            self.fail("repeat-count", f"{word.address} must count 1 or more runs", word)
+        if any(each.address in "MTDH" for each in rest):
+            self.fail("repeat-count", f"{word.address} repeats motion only, no M, T, D or H", word)
+        if count > self.settings.step_limit:
+            self.fail("endless-program", f"more than {self.settings.step_limit} runs", word)
+        plain = dataclasses.replace(block, words=rest)
+        for _ in range(int(count) - 1):
+            self.run(plain)
+        return plain
+
+    def _run_statement(self, statement: Statement) -> None:
+        self.words, self.codes = {}, ()
+        action = self.dialect.statements.get(statement.keyword, self.dialect.other_statement)
+        assert action is not None
+        action(self, statement)
+
+    def finish(self) -> None:
+        """The program has ended, by an end code or by its last line."""
+        if not self.program_counter.begun:
+            self.report.line = 1
+            self.report.warn("empty-program", "no line holds a block", hint="is this the program?")
+        elif not self.ended and self.dialect.finish is not None:
+            self.dialect.finish(self)
+        self.path.finish()
+
+    def _apply_codes(self) -> list[ModalChanges]:
+        """Apply the block's codes; what those for this block only have replaced."""
+        restore: list[ModalChanges] = []
+        for word, code in self._codes:
+            if code.once:
+                restore.append(self.modal.values(code.sets))
+            if code.alone and len(self.block.words) > 1:
+                self.fail("alone", f"{word.text} must stand alone in its block", word)
+            self.put_into_force(int(number_of(word)), code)
+        return restore
+
+    def _sort_words(self, block: Block) -> list[tuple[Word, MCode]]:
+        self.codes = self._codes = []
+        self.words = {}
+        self.series = []
+        functions: list[tuple[Word, MCode]] = []
+        for word in block.words:
+            if isinstance(word.value, Expression) and word.address not in self.dialect.references:
+                word = word._replace(value=self.evaluate(word.value, word))
+            if word.address in self.dialect.signed and number_of(word) < 0.0:
+                word = word._replace(address=f"{word.address}-")
+            if word.address == "G":
+                self._codes.append((word, self._g_code(word)))
+            elif word.address == "M":
+                functions.append((word, self._m_code(word)))
+            elif word.address in self.dialect.series and self._has_switch(block):
+                if isinstance(word.value, Expression):
+                    word = word._replace(value=self.evaluate(word.value, word))
+                self.series.append(word)
+            elif word.address in self.words:
+                self.fail("duplicate-word", f"'{word.address}' stands twice in the block", word)
+            else:
+                self.words[word.address] = word
+        if len(self._codes) > 1:
+            self._check_groups()
+        if len(functions) > 1:
+            self._check_functions(functions)
+        return functions
+
+    def _has_switch(self, block: Block) -> bool:
+        return any(word.address == self.dialect.series[0] for word in block.words)
+
+    def _g_code(self, word: Word) -> GCode:
+        number = integer_of(number_of(word))
+        code = self.dialect.g.get(number)
+        if code is None:
+            known = ", ".join(f"G{number}" for number in sorted(self.dialect.g))
+            instead = self.dialect.instead.get(number)
+            self.fail(
+                "unknown-g",
+                f"{word.text} is unknown to {self.dialect.name}",
+                word,
+                hint=f"known: {known}" if instead is None else instead,
+            )
+        if code.refused:
+            self.fail("unsupported-g", f"{word.text} ({code.meaning}): {code.refused}", word)
+        return code
+
+    def _m_code(self, word: Word) -> MCode:
+        number = integer_of(number_of(word))
+        code = self.dialect.m.get(number)
+        if code is None and self.dialect.any_m and number >= 0:
+            return MCode(meaning="machine function")
+        if code is None:
+            self.fail(
+                "unknown-m",
+                f"{word.text} is unknown to {self.dialect.name}",
+                word,
+                hint=f"known: {', '.join(f'M{number}' for number in sorted(self.dialect.m))}",
+            )
+        return code
+
+    def _check_groups(self) -> None:
+        seen: dict[str, Word] = {}
+        performing: Word | None = None
+        for word, code in self._codes:
+            if code.group and code.group in seen:
+                other = seen[code.group]
+                self.fail(
+                    "conflicting-codes",
+                    f"{other.text} and {word.text} exclude each other ({code.group})",
+                    word,
+                    hint="write them in two blocks",
+                )
+            seen[code.group] = word
+            if code.perform is not None:
+                if performing is not None:
+                    message = f"{performing.text} and {word.text} cannot share a block"
+                    self.fail("conflicting-codes", message, word, hint="write them in two blocks")
+                performing = word
+        order = {group: rank for rank, group in enumerate(self.dialect.groups)}
+        self._codes.sort(key=lambda pair: order.get(pair[1].group, len(order)))
+
+    def _check_functions(self, functions: list[tuple[Word, MCode]]) -> None:
+        seen: dict[str, Word] = {}
+        for word, function in functions:
+            other = seen.setdefault(function.group or word.text, word)
+            if other is not word:
+                message = f"{other.text} and {word.text} exclude each other"
+                self.fail("conflicting-codes", message, word, hint="write them in two blocks")
+
+    def _run_modal_words(self, reserved: str) -> None:
+        words = self.words
+        for address, action in self.dialect.words.items():
+            if address in words and address not in reserved:
+                action(self, words.pop(address))
+
+    def _run_function(self, word: Word, code: MCode) -> None:
+        if code.action is not None:
+            code.action(self)
+        if code.silent:
+            return
+        arguments = self.take_function_arguments(word)
+        self.function(f"M{integer_of(number_of(word))}", arguments)
+        if code.ends:
+            self.ended = True
+
+    def take_function_arguments(self, word: Word) -> dict[str, float]:
+        """What belongs to an M function: its own words, and for a spindle start the speed."""
+        arguments = {
+            address: self.take_computed(address)
+            for address in self.dialect.function_letters
+            if address in self.words
+        }
+        if integer_of(number_of(word)) in (3, 4) and self.spindle is not None:
+            arguments["S"] = self.spindle
+        return arguments
+
+    def _move(self) -> None:
+        words = self.words
+        starts_cycle = any(code.begins_cycle for _, code in self._codes)
+        motion_words = self.dialect.motion_words
+        if not starts_cycle and not any(address in motion_words for address in words):
+            return
+        interpolation = self.modal.cycle or self.modal.interpolation
+        if interpolation is None:
+            word = next(each for each in words.values() if each.address in motion_words)
+            if word.address not in self.dialect.axis_letters:
+                message = f"'{word.text}' belongs to a motion, and no motion code is in force"
+                self.fail("no-motion-code", message, word, self._meaning_of(word.address))
+            self.fail(
+                "no-motion-code",
+                f"'{word.text}' would move, but no motion code is in force",
+                word,
+                hint="write G0, G1, G2 or G3",
+            )
+        if self.dialect.before_motion is not None:
+            self.dialect.before_motion(self, interpolation.rapid)
+        assert isinstance(interpolation, Interpolation)
+        interpolation.perform(self)
+        if self.dialect.after_motion is not None:
+            self.dialect.after_motion(self)
+
+    def _refuse_unused(self) -> NoReturn:
+        word = next(iter(self.words.values()), None) or self.series[0]
+        if word.address in self.dialect.word_meanings:
+            message = f"nothing in this block uses '{word.text}'"
+            self.fail("unused-word", message, word, self._meaning_of(word.address))
+        known = ", ".join(self.dialect.word_meanings)
+        self.fail(
+            "unknown-word",
+            f"'{word.address}' is no word of {self.dialect.name}",
+            word,
+            hint=f"words of {self.dialect.name}: {known}",
+        )
+
+    def _meaning_of(self, address: str) -> str:
+        return f"{address} in {self.dialect.name}: {self.dialect.word_meanings[address]}"
+
+    def place_switches(self, length: float) -> None:
+        """Report the block's switch points, told the length of its move."""
+        if self.dialect.place_switches is not None:
+            self.dialect.place_switches(self, length)
+
+    def read_variable(self, name: str, index: float | None) -> float:
+        """Value of a variable of the program, for expressions."""
+        if self.dialect.read_variable is None:
+            raise ExpressionError("unknown-variable", f"there is no variable {name}")
+        return self.dialect.read_variable(self, name, index)

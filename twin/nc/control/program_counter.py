@@ -1,0 +1,326 @@
+"""Which block comes next: straight on, jumps, and a guard against programs without an end."""
+
+import dataclasses
+import re
+from collections.abc import Callable, Container, Iterator
+from typing import NamedTuple, NoReturn
+
+from twin.nc.canonical import NO_BLOCK_NUMBER
+from twin.nc.control.modal import SavedModal
+from twin.nc.text.blocks import Block, Location
+from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.lexer import Lexer
+from twin.nc.text.lines import Lines
+from twin.nc.text.reporter import Reporter
+from twin.nc.text.source import Source
+
+_LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
+_CACHED_LINES = 10_000
+"""Lines whose blocks are remembered once a program has jumped."""
+
+
+@dataclasses.dataclass(slots=True)
+class CallFrame:
+    """What happens when a called part of the program ends.
+
+    Attributes:
+        back: Where to go on.
+        first: Where it begins.
+        again: How often the part still runs anew before that.
+        last: Its last block where it ends by its location; None where it ends by a word.
+        owns_scope: It has local variables of its own, which its end forgets.
+        restores: What is put back into force at its end; None: nothing.
+    """
+
+    back: Location
+    first: Location
+    again: int = 0
+    last: Location | None = None
+    owns_scope: bool = False
+    restores: SavedModal | None = None
+
+
+class Progress(NamedTuple):
+    """How far a program has come.
+
+    Attributes:
+        location: What comes next.
+        furthest: The furthest location that was run.
+        instruction_budget: Blocks that may still be run again.
+    """
+
+    location: Location
+    furthest: Location
+    instruction_budget: int
+
+
+class ProgramCounter:
+    """The program counter.
+
+    Attributes:
+        location: The block that comes next.
+        calls: The parts of the program that are being run for a caller, the innermost last.
+    """
+
+    def __init__(
+        self,
+        source: Source,
+        lexer: Lexer,
+        step_limit: int,
+        report: Reporter,
+        leave: Callable[[CallFrame], None],
+    ) -> None:
+        """Stand before the program.
+
+        Args:
+            source: The program.
+            lexer: Reads its lines.
+            step_limit: Blocks that may be run again.
+            report: Where diagnostics go.
+            leave: Done when a called part ends.
+        """
+        self._lines = source.lines
+        self._lexer = lexer
+        self._report = report
+        self._leave = leave
+        self._step_limit = step_limit
+        self._steps_left = step_limit
+        self._furthest = Location(-1, 0)
+        self._labels: dict[int | str, list[Location]] | None = None
+        self._cache: dict[int, tuple[Block, ...]] = {}
+        self._jumped = False
+        self._told_to_end = False
+        self._here: tuple[Block, ...] = ()
+        self._here_line = -1
+        self.location = Location(0, 0)
+        self.calls: list[CallFrame] = []
+
+    @property
+    def lines(self) -> Lines:
+        """The program's text."""
+        return self._lines
+
+    @property
+    def lexer(self) -> Lexer:
+        """Reads the program's lines."""
+        return self._lexer
+
+    @property
+    def begun(self) -> bool:
+        """A block was run."""
+        return self._furthest.line >= 0
+
+    def next(self) -> Block | None:
+        """The next block, or None at the end of the program.
+
+        Raises:
+            ProgramError: Its line cannot be read, or the program runs without end.
+        """
+        while self.calls and self._past_end(self.calls[-1]):
+            self.end_part()
+        line, part = self.location
+        while line < len(self._lines):
+            blocks = self._blocks(line)
+            if part < len(blocks):
+                self.location = Location(line, part + 1)
+                self._count(Location(line, part))
+                return blocks[part]
+            line, part = line + 1, 0
+        self.location = Location(line, 0)
+        if not self._told_to_end:
+            self._run_out()
+        return None
+
+    def _run_out(self) -> None:
+        """The last line has been passed; what is to be said of that stands at the last text."""
+        written = (line for line in range(len(self._lines), 0, -1) if self._lines[line - 1].strip())
+        self._report.line = next(written, 0)
+
+    def progress(self) -> Progress:
+        """How far the program has come."""
+        line, part = self.location
+        if part > 0 and line == self._here_line and part >= len(self._here):
+            line, part = line + 1, 0
+        return Progress(Location(line, part), self._furthest, self._steps_left)
+
+    def resume(self, progress: Progress, calls: list[CallFrame]) -> None:
+        """The program has gone on past here, into these calls."""
+        self.location, self._furthest, self._steps_left = progress
+        self.calls = calls
+        self._jumped = self._jumped or self.location <= self._furthest
+
+    def quiet_blocks(self, line: int) -> tuple[Block, ...] | None:
+        """A line's blocks, read before it is run; None where there is something to say of it."""
+        before = self._report.line, len(self._report.warnings)
+        try:
+            blocks = self._lexer.blocks(self._lines[line], line + 1)
+        except ProgramError:
+            return None
+        finally:
+            said = len(self._report.warnings) - before[1]
+            self._report.line = before[0]
+            del self._report.warnings[before[1] :]
+        if said:
+            return None
+        if blocks:
+            self._here, self._here_line = blocks, line
+        return blocks
+
+    def _past_end(self, call: CallFrame) -> bool:
+        return call.last is not None and self.location > call.last
+
+    def call(self, call: CallFrame, deepest: int, column: int, width: int) -> None:
+        """Run a part of the program for the block that asks for it.
+
+        Raises:
+            ProgramError: More than ``deepest`` parts call each other.
+        """
+        if len(self.calls) >= deepest:
+            message = f"more than {deepest} calls within calls"
+            self._report.fail("call-depth", message, column, width)
+        self._jumped = True
+        self.calls.append(call)
+        self.location = call.first
+
+    def end_part(self) -> None:
+        """The innermost called part has ended: run it again, or go back to its caller."""
+        call = self.calls[-1]
+        if call.again > 0:
+            call.again -= 1
+            self.location = call.first
+            return
+        self.calls.pop()
+        self.location = call.back
+        self._leave(call)
+
+    def go(self, location: Location) -> None:
+        """Go on at a location."""
+        self._jumped = True
+        self.location = location
+
+    def end(self) -> None:
+        """Go on behind the last line, which ends the program here."""
+        self._told_to_end = True
+        self.location = Location(len(self._lines), 0)
+
+    def seek(self, wanted: Callable[[Block], bool]) -> bool:
+        """Go on at the next block that is wanted; stay where it is when there is none."""
+        for block in self._ahead():
+            if wanted(block):
+                self.location = Location(block.line - 1, block.part)
+                return True
+        return False
+
+    def following(self) -> Block | None:
+        """The block behind this one in the text, as far as it can be read."""
+        return next(self._ahead(), None)
+
+    def _ahead(self) -> Iterator[Block]:
+        line, part = self.location
+        for number in range(line, len(self._lines)):
+            for block in self._readable_blocks(number):
+                if number > line or block.part >= part:
+                    yield block
+
+    def jump(self, number: int, fail_at: tuple[int, int], word: str) -> None:
+        """Go on at the block with an N number.
+
+        Args:
+            number: The N number.
+            fail_at: Column and width of the word that asks for it, for the diagnostic.
+            word: That word's meaning, for the diagnostic.
+
+        Raises:
+            ProgramError: No block or more than one has it.
+        """
+        self.go(self.find_label(number, fail_at, word))
+
+    def find_label(
+        self,
+        label: int | str,
+        fail_at: tuple[int, int],
+        word: str,
+        within: Container[int] | None = None,
+    ) -> Location:
+        """Where the block with an N number or a name stands; arguments as for ``jump``.
+
+        ``within``, where it is given, holds the lines, from 0, that may have it.
+
+        Raises:
+            ProgramError: No block or more than one has it.
+        """
+        locations = self.labels().get(label, [])
+        if within is not None:
+            locations = [location for location in locations if location.line in within]
+        if len(locations) != 1:
+            self._refuse_label(label, len(locations), fail_at, word)
+        return locations[0]
+
+    def labels(self) -> dict[int | str, list[Location]]:
+        """Where every N number and every name of a block stands."""
+        if self._labels is None:
+            self._labels = {}
+            for line, text in enumerate(self._lines):
+                if _LABEL.search(text) is not None:
+                    for block in self._readable_blocks(line):
+                        label = block.name or block.number
+                        if label != NO_BLOCK_NUMBER:
+                            self._labels.setdefault(label, []).append(Location(line, block.part))
+        return self._labels
+
+    def _readable_blocks(self, line: int) -> tuple[Block, ...]:
+        """A line's blocks; a line that cannot be read has no labels until it is run."""
+        before = self._report.line, len(self._report.warnings)
+        try:
+            return self._blocks(line)
+        except ProgramError:
+            return ()
+        finally:
+            self._report.line = before[0]
+            del self._report.warnings[before[1] :]
+
+    def _blocks(self, line: int) -> tuple[Block, ...]:
+        if line == self._here_line:
+            return self._here
+        blocks = self._cache.get(line)
+        if blocks is None:
+            previous = self._lines[line - 1] if line else ""
+            blocks = self._lexer.blocks(self._lines[line], line + 1, previous)
+            if self._jumped and len(self._cache) < _CACHED_LINES:
+                self._cache[line] = blocks
+        self._here, self._here_line = blocks, line
+        return blocks
+
+    def _count(self, location: Location) -> None:
+        if location > self._furthest:
+            self._furthest = location
+            return
+        self._steps_left -= 1
+        if self._steps_left < 0:
+            self._report.line = location.line + 1
+            self._report.fail(
+                "endless-program",
+                f"more than {self._step_limit} blocks were repeated",
+                hint="if the program is meant to run this long, raise the job's step_limit",
+            )
+
+    def _refuse_label(
+        self, label: int | str, count: int, fail_at: tuple[int, int], word: str
+    ) -> NoReturn:
+        known = [_shown(each) for each in self.labels()]
+        shown = ", ".join(known[:_SHOWN_LABELS])
+        name = _shown(label)
+        more = ", ..." if len(known) > _SHOWN_LABELS else ""
+        code, message = "unknown-label", f"{word} names {name}, and no block has it"
+        if count > 1:
+            code, message = "ambiguous-label", f"{word} names {name}, and {count} blocks have it"
+        self._report.fail(
+            code, message, *fail_at, hint=f"blocks here: {shown}{more}" if known else None
+        )
+
+
+_SHOWN_LABELS = 12
+
+
+def _shown(label: int | str) -> str:
+    return f"[{label}]" if isinstance(label, str) else f"N{label}"

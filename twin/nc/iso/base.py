@@ -1,0 +1,288 @@
+"""The ISO 6983-1 base that several dialects share: codes, words and what they do."""
+
+import re
+
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.opcodes import Opcode
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Compiler, GCode, Interpolation, MCode
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import Dialect
+from twin.nc.control.interpolation import LineRule
+from twin.nc.control.modal import FEED_FACTORS, FeedMode
+from twin.nc.geometry.planes import PLANE_ORDER, XY, YZ, ZX, Plane
+from twin.nc.iso.circular import arc_rule, clockwise_arc, counter_clockwise_arc
+from twin.nc.iso.fixed_cycles import CYCLES
+from twin.nc.iso.offsets import OFFSETS, PRESET
+from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH, refuse_plane_change
+from twin.nc.text.blocks import Word
+
+
+def rapid_line(control: Control) -> None:
+    """G0: straight to the target at the machine's own speed."""
+    control.line_to(control.target(), rapid=True)
+
+
+def feed_line(control: Control) -> None:
+    """G1: straight to the target with the feed."""
+    control.line_to(control.target(), rapid=False)
+
+
+RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
+FEED = Interpolation(feed_line, rule=LineRule())
+CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=arc_rule(clockwise=False))
+
+
+# Nothing is given back once it is taken (``++``): else dots could be shared out in endless ways.
+_ELLIPSIS = re.compile(
+    r"[ \t]*+(?:N[ \t]*+[0-9]++)?(?:[ \t]*+(?:[A-Z][ \t]*+)?\.{3,}+)+[ \t]*+(?:[$\"].*)?",
+    re.IGNORECASE,
+)
+
+
+def is_ellipsis(line: str) -> bool:
+    """Dots alone or in place of values, by which documents show what they leave out."""
+    return _ELLIPSIS.fullmatch(line) is not None
+
+
+def excuse_ellipsis(line: str, _previous: str) -> str | None:
+    """Why a line that is no block may be left out: it is an ellipsis."""
+    return "ellipsis" if is_ellipsis(line) else None
+
+
+def set_feed(control: Control, word: Word) -> None:
+    """F: the feed; must be positive."""
+    feed = control.number(word)
+    if not feed > 0.0:
+        control.fail("feed-range", f"the feed {word.text} is not positive", word)
+    control.feed = feed
+
+
+def set_spindle(control: Control, word: Word) -> None:
+    """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
+    speed = control.number(word)
+    if speed < 0.0:
+        control.fail("spindle-range", f"the speed {word.text} is negative", word)
+    control.spindle = speed
+    if not any(other.address == "M" and other.value in (3.0, 4.0) for other in control.block.words):
+        control.function("S", {"S": speed})
+
+
+def compile_spindle(block: BlockWords, assembler: Assembler) -> None:
+    """S, for the compiled tier."""
+    assembler.word_value(block.words.pop("S"))
+    assembler.emit(Opcode.SPEED, 0 if block.starts_spindle() else 1)
+
+
+def compile_tool(block: BlockWords, assembler: Assembler) -> None:
+    """T, for the compiled tier."""
+    assembler.word_value(block.words.pop("T"))
+    assembler.emit(Opcode.TOOL)
+
+
+def select_tool(control: Control, word: Word) -> None:
+    """T: the tool that comes next."""
+    number = control.number(word)
+    if number < 0.0 or number != int(number):
+        control.fail("tool-number", f"{word.text} is no tool number", word)
+    control.tools.selected = int(number)
+    control.function(f"T{int(number)}", {})
+
+
+def change_tool(control: Control) -> None:
+    """M6: the selected tool goes into the spindle."""
+    control.tools.change()
+
+
+def compile_tool_change(_block: BlockWords, assembler: Assembler) -> None:
+    """M6, for the compiled tier."""
+    assembler.emit(Opcode.CHANGE_TOOL)
+
+
+def compile_dwell(letters: str) -> Compiler:
+    """A dwell whose time stands in one of these words, for the compiled tier."""
+
+    def write(block: BlockWords, assembler: Assembler) -> None:
+        words = [block.words.pop(letter) for letter in letters if letter in block.words]
+        if len(words) != 1:
+            raise UnsupportedError
+        assembler.word_value(words[0])
+        assembler.emit(Opcode.DWELL)
+
+    return write
+
+
+def compile_plane(plane: Plane) -> Compiler:
+    """G17, G18, G19, for the compiled tier."""
+    return lambda _block, assembler: assembler.emit(Opcode.PLANE, PLANE_ORDER.index(plane))
+
+
+def dwell_seconds(control: Control) -> None:
+    """G4: wait for the seconds of P, X or F."""
+    words = [control.words.pop(letter) for letter in "PXF" if letter in control.words]
+    if len(words) != 1:
+        control.fail("dwell", "G4 needs its time", hint="write G4 P and the seconds")
+    seconds = control.number(words[0])
+    if seconds < 0.0:
+        control.fail("dwell", f"{words[0].text} is no time", words[0])
+    control.dwell(seconds)
+
+
+def _plane(meaning: str, plane: Plane) -> GCode:
+    return GCode(
+        meaning=meaning,
+        group="plane",
+        sets={"plane": plane},
+        action=refuse_plane_change,
+        compiler=compile_plane(plane),
+    )
+
+
+PLANES = {
+    17: _plane("plane X Y", XY),
+    18: _plane("plane Z X", ZX),
+    19: _plane("plane Y Z", YZ),
+}
+DISTANCE = {
+    90: GCode(meaning="absolute coordinates", group="distance", sets={"incremental": False}),
+    91: GCode(meaning="incremental coordinates", group="distance", sets={"incremental": True}),
+}
+UNITS = {
+    70: GCode(meaning="inches", group="units", sets={"unit": 25.4}),
+    71: GCode(meaning="millimetres", group="units", sets={"unit": 1.0}),
+}
+MOTION = {
+    0: GCode(
+        meaning="rapid positioning", group="motion", sets={"interpolation": RAPID, "cycle": None}
+    ),
+    1: GCode(meaning="straight line", group="motion", sets={"interpolation": FEED, "cycle": None}),
+    2: GCode(
+        meaning="arc clockwise", group="motion", sets={"interpolation": CLOCKWISE, "cycle": None}
+    ),
+    3: GCode(
+        meaning="arc counter-clockwise",
+        group="motion",
+        sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None},
+    ),
+}
+DWELL = {
+    4: GCode(
+        meaning="dwell, seconds in P, X or F",
+        perform=dwell_seconds,
+        takes="F",
+        compiler=compile_dwell("PXF"),
+    )
+}
+
+FEEDS = {
+    94: GCode(meaning="feed per minute", group="feed", sets={"feed_mode": FeedMode.PER_MINUTE}),
+    95: GCode(
+        meaning="feed per revolution of the spindle",
+        group="feed",
+        sets={"feed_mode": FeedMode.PER_REVOLUTION},
+    ),
+}
+
+INSTEAD = {
+    20: "inches are G70",
+    21: "millimetres are G71",
+    28: "write G53 and the axes",
+    30: "write G53 and the axes",
+    52: "write G92, or a work offset of the job",
+    93: "F is a feed per minute (G94) or per revolution (G95)",
+}
+"""Codes of other controls, and what the base has for them."""
+
+CODES = {
+    **MOTION,
+    **DWELL,
+    **PLANES,
+    **COMPENSATION,
+    **LENGTH,
+    **OFFSETS,
+    **UNITS,
+    **CYCLES,
+    **DISTANCE,
+    **PRESET,
+    **FEEDS,
+}
+"""The base that ``gost`` and ``mefi`` share; each replaces what its own page says otherwise."""
+
+START = (17, 40, 49, 71, 80, 90, 94)
+"""Codes in force when a program starts: none moves until one is programmed (decision)."""
+
+GROUPS = (
+    "units",
+    "plane",
+    "distance",
+    "feed",
+    "corner",
+    "offset",
+    "length",
+    "return plane",
+    "compensation",
+    "motion",
+    "cycle",
+)
+
+M_CODES = {
+    0: MCode(meaning="program stop", group="stop", late=True),
+    1: MCode(meaning="optional stop", group="stop", late=True),
+    2: MCode(meaning="end of program", group="stop", late=True, ends=True),
+    3: MCode(meaning="spindle clockwise", group="spindle"),
+    4: MCode(meaning="spindle counter-clockwise", group="spindle"),
+    5: MCode(meaning="spindle stop", group="spindle", late=True),
+    6: MCode(meaning="tool change", action=change_tool, compiler=compile_tool_change),
+    7: MCode(meaning="mist on"),
+    8: MCode(meaning="coolant on", group="coolant"),
+    9: MCode(meaning="coolant off", group="coolant", late=True),
+    30: MCode(meaning="end of program and back to its start", group="stop", late=True, ends=True),
+}
+
+WORDS = {"F": set_feed, "S": set_spindle, "T": select_tool}
+WORD_COMPILERS = {"S": compile_spindle, "T": compile_tool}
+
+WORD_MEANINGS = {
+    "N": "block number",
+    "G": "preparatory code",
+    "X": "X axis",
+    "Y": "Y axis",
+    "Z": "Z axis",
+    "A": "A axis",
+    "B": "B axis",
+    "C": "C axis",
+    "U": "U axis",
+    "V": "V axis",
+    "W": "W axis",
+    "I": "centre along X, from the start of the arc",
+    "J": "centre along Y",
+    "K": "centre along Z",
+    "R": "radius of the arc, negative: the larger of the two; reference plane of a cycle",
+    "D": "tool whose radius compensates",
+    "H": "tool whose length compensates",
+    "P": "seconds of a dwell",
+    "Q": "depth of one peck (G83)",
+    "F": "feed",
+    "S": "spindle speed",
+    "T": "tool",
+    "M": "machine function",
+}
+
+
+def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
+    """One straight move by a distance, in a control's own language.
+
+    Args:
+        dialect: The control's.
+        axis: Name of the axis.
+        distance: How far, and which way [mm or deg].
+        feed: [mm/min or deg/min]
+    """
+    mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
+    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / FEED_FACTORS[mode])}"
+
+
+def _written(number: float) -> str:
+    """A number to a nanometre, without an exponent and without zeros that say nothing."""
+    return f"{number:.6f}".rstrip("0").rstrip(".")

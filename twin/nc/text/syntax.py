@@ -1,0 +1,88 @@
+"""How a dialect writes its blocks, and by what its programs are known."""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from twin.nc.text.expressions import ExpressionSyntax
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Comment:
+    """A kind of comment.
+
+    Attributes:
+        opening: What begins it.
+        closing: What ends it; empty: the end of the line.
+        whole_line: It can only begin its line, such as a program's heading.
+    """
+
+    opening: str
+    closing: str = ""
+    whole_line: bool = False
+
+
+HEADING = Comment("%", whole_line=True)
+"""The start of a program and its name: without effect where a dialect does not say otherwise."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Syntax:
+    """How a dialect writes its blocks.
+
+    Attributes:
+        address: Regular expression of an address.
+        comments: Kinds of comments.
+        expressions: How values are computed; None where only numbers are written.
+        statement: Regular expression of what begins a statement; its group 1 is the keyword.
+        trailing_prose: Words of prose behind a block's words are left out with a warning.
+        several_blocks: A further N begins a further block on the same line.
+        named_labels: ``[NAME]`` at its begin names a block.
+        incremental_suffix: ``X20I`` makes one word incremental.
+        aliases: Addresses that mean another one.
+        excused: Why a line that cannot be read may be left out, given it and the line before:
+            code of the warning, or None.
+    """
+
+    address: str = "[A-Z]"
+    comments: tuple[Comment, ...]
+    expressions: ExpressionSyntax | None = None
+    statement: str | None = None
+    trailing_prose: bool = False
+    several_blocks: bool = False
+    named_labels: bool = False
+    incremental_suffix: bool = False
+    aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    excused: Callable[[str, str], str | None] = lambda _line, _previous: None
+
+
+class Language(Protocol):
+    """What reading lines needs to know of a dialect."""
+
+    @property
+    def name(self) -> str:
+        """As given on the command line."""
+        ...
+
+    @property
+    def syntax(self) -> Syntax:
+        """How blocks are written."""
+        ...
+
+    @property
+    def statements(self) -> Mapping[str, object]:
+        """Keywords of statements."""
+        ...
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Mark:
+    """Something that only this dialect's programs hold.
+
+    Attributes:
+        pattern: Regular expression, searched line by line without regard to case.
+        shown: How a person would say it.
+    """
+
+    pattern: str
+    shown: str

@@ -1,0 +1,1 @@
+"""What draws a MuJoCo model: OpenGL or Filament."""

@@ -1,0 +1,1 @@
+"""The machine, the part and the trail as they are drawn."""

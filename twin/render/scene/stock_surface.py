@@ -1,0 +1,218 @@
+"""The stock as it is drawn: tiles of a mesh on the rotary table, of which only changed ones move.
+
+A tile that is still level is drawn as two triangles; one that was cut, as a fine mesh. So the
+cost of a picture follows what was machined, not the size of the stock. Normals are smooth on
+gentle slopes and sharp at steps.
+"""
+
+import dataclasses
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from twin.cutting.colours import RAW_RGB
+from twin.cutting.cut import Rectangle
+from twin.cutting.height_map import HeightMap
+from twin.cutting.net import Net, net, open_edges
+from twin.nc.canonical import FloatArray, IntArray
+from twin.render.drawing.canvas import Canvas
+from twin.render.scene.live_mesh import LiveMesh, add_live_mesh
+from twin.render.scene.placement import Placement
+from twin.render.scene.shading import corner_normals
+from twin.render.scene.skin import MATERIAL, Skin
+
+TILE = 24
+"""Squares along a tile's side."""
+
+SIDE = "stock_side"
+FLAT_FACES = np.array([[0, 1, 2], [0, 2, 3]])
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Tile:
+    """A rectangle of the net, drawn by one of two geoms.
+
+    Attributes:
+        rows: Rows of the net, borders included.
+        columns: Columns of the net, borders included.
+        corners: Vertices of the faces, numbered within the tile, shape (n, 3).
+        whole: Whether every square of it belongs to the blank.
+        name: Of its fine mesh.
+    """
+
+    rows: slice
+    columns: slice
+    corners: IntArray
+    whole: bool
+    name: str
+
+    @property
+    def flat_name(self) -> str:
+        """Of its mesh of two triangles."""
+        return f"{self.name}_flat"
+
+    @property
+    def ends(self) -> list[int]:
+        """Its four corners, counter-clockwise from above, numbered as ``corners`` are."""
+        width = self.columns.stop - self.columns.start
+        last = (self.rows.stop - self.rows.start) * width - 1
+        return [0, width - 1, last, last - width + 1]
+
+
+class StockSurface:
+    """Draws a height map on the rotary table.
+
+    Use in this order: make it, ``add_to`` the specification, compile, ``bind``, then ``update``
+    before every picture.
+    """
+
+    def __init__(self, height_map: HeightMap, skin: Skin, step: int) -> None:
+        """Lay the drawn net.
+
+        Args:
+            height_map: The stock before it is cut.
+            skin: What paints it.
+            step: Cells from one vertex to the next.
+        """
+        self._map = height_map
+        self._skin = skin
+        self._step = step
+        self._net = net(height_map, step)
+        self._z = self._net.heights(height_map)
+        self._tiles = _tiles(self._net)
+        self._edges = open_edges(self._net.patches)
+        self._side_normals = _side_normals(self._net, self._edges)
+        self._meshes: dict[str, LiveMesh] = {}
+
+    def add_to(self, spec: mujoco.MjSpec) -> None:
+        """Add the stock's meshes, geoms and texture to a machine's specification."""
+        self._skin.add_to(spec)
+        raw = [value / 255 for value in (*RAW_RGB, 255)]
+        spec.add_material(
+            name=SIDE, rgba=raw, specular=0.45, shininess=0.55, metallic=0.3, roughness=0.45
+        )
+        texels = self._skin.texels(self._net.x, self._net.y)
+        for tile in self._tiles:
+            block = texels[tile.rows, tile.columns].reshape(-1, 2)
+            add_live_mesh(spec, tile.name, MATERIAL, block, tile.corners)
+            if tile.whole:
+                add_live_mesh(spec, tile.flat_name, MATERIAL, block[tile.ends], FLAT_FACES)
+        quads = np.arange(4 * len(self._edges)).reshape(-1, 4)
+        self._side_faces = np.concatenate([quads[:, [1, 0, 2]], quads[:, [1, 2, 3]]])
+        nowhere = np.zeros((4 * len(self._edges), 2))
+        add_live_mesh(spec, SIDE, SIDE, nowhere, self._side_faces)
+
+    def bind(self, model: mujoco.MjModel, placement: Placement) -> None:
+        """Take over the compiled meshes and lay them where the part's frame is."""
+        names = [SIDE, *(tile.name for tile in self._tiles)]
+        names += [tile.flat_name for tile in self._tiles if tile.whole]
+        self._meshes = {name: LiveMesh(model, name, placement) for name in names}
+        self._skin.bind(model)
+        for tile in self._tiles:
+            self._set_tile(tile)
+        self._set_side()
+
+    def update(self, canvas: Canvas, changed: Rectangle) -> None:
+        """Draw the map as it is now.
+
+        Args:
+            canvas: What draws the model that was bound.
+            changed: Cells of the height map that changed since the last update.
+        """
+        row, row_end, column, column_end = changed
+        if row >= row_end:
+            return
+        first_row, last_row = row // self._step, row_end // self._step + 2
+        first_column, last_column = column // self._step, column_end // self._step + 2
+        before = self._z.ravel()[self._edges]
+        self._z = self._net.heights(self._map)
+        for tile in self._tiles:
+            if (
+                tile.rows.stop >= first_row
+                and tile.rows.start <= last_row
+                and tile.columns.stop >= first_column
+                and tile.columns.start <= last_column
+            ):
+                canvas.upload_mesh(self._set_tile(tile))
+        if not np.array_equal(self._z.ravel()[self._edges], before):
+            canvas.upload_mesh(self._set_side())
+        self._skin.update(canvas, changed)
+
+    def _vertices(self, tile: _Tile) -> FloatArray:
+        block = (tile.rows, tile.columns)
+        return np.stack([self._net.x[block], self._net.y[block], self._z[block]], -1).reshape(-1, 3)
+
+    def _set_tile(self, tile: _Tile) -> int:
+        """Bring one tile up to date; returns the mesh that is shown now."""
+        heights = self._z[tile.rows, tile.columns]
+        level = tile.whole and float(np.ptp(heights)) == 0.0
+        vertices = self._vertices(tile)
+        fine = self._meshes[tile.name]
+        fine.show(not level)
+        if tile.whole:
+            left = float(heights.max()) > self._map.bottom
+            self._meshes[tile.flat_name].show(level and left)
+        if level:
+            flat = self._meshes[tile.flat_name]
+            flat.put(vertices[tile.ends], np.tile([0.0, 0.0, 1.0], (6, 1)))
+            return flat.id
+        corner = vertices[tile.corners]
+        solid = np.any(corner[..., 2] > self._map.bottom, axis=1)
+        fine.put_faces(np.where(solid[:, None], tile.corners, 0))
+        normals = corner_normals(
+            self._z, tile.rows, tile.columns, self._net.spacing, corner, tile.corners
+        )
+        fine.put(vertices, normals)
+        return fine.id
+
+    def _side_vertices(self) -> FloatArray:
+        start, end = self._edges.T
+        x, y, z = self._net.x.ravel(), self._net.y.ravel(), self._z.ravel()
+        bottom = np.full(len(start), self._map.bottom)
+        corners = [
+            np.stack([x[start], y[start], z[start]], 1),
+            np.stack([x[end], y[end], z[end]], 1),
+            np.stack([x[start], y[start], bottom], 1),
+            np.stack([x[end], y[end], bottom], 1),
+        ]
+        return np.stack(corners, 1).reshape(-1, 3)
+
+    def _set_side(self) -> int:
+        normals = np.repeat(np.concatenate([self._side_normals] * 2), 3, axis=0)
+        self._meshes[SIDE].put(self._side_vertices(), normals)
+        return self._meshes[SIDE].id
+
+
+def _tiles(grid: Net) -> list[_Tile]:
+    tiles = []
+    rows, columns = grid.patches.shape
+    for row in range(0, rows, TILE):
+        for column in range(0, columns, TILE):
+            patches = grid.patches[row : row + TILE, column : column + TILE]
+            if not patches.any():
+                continue
+            height, width = patches.shape
+            inner_row, inner_column = np.nonzero(patches)
+            a = inner_row * (width + 1) + inner_column
+            b, c, d = a + 1, a + width + 2, a + width + 1
+            corners = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+            tiles.append(
+                _Tile(
+                    slice(row, row + height + 1),
+                    slice(column, column + width + 1),
+                    corners,
+                    bool(patches.all()),
+                    f"{MATERIAL}_{row}_{column}",
+                )
+            )
+    return tiles
+
+
+def _side_normals(grid: Net, edges: IntArray) -> npt.NDArray[np.float64]:
+    """Horizontal normals of the walls below the edges, shape (n, 3)."""
+    start, end = edges.T
+    x, y = grid.x.ravel(), grid.y.ravel()
+    normals = np.stack([y[end] - y[start], x[start] - x[end], np.zeros(len(start))], 1)
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return normals / np.maximum(length, 1e-30)

@@ -1,0 +1,71 @@
+// Small parts: elements, keys that act when they are pressed, the words of a language.
+
+/** Make an element; attributes that begin with "on" are listeners. */
+export function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (value === true) element.setAttribute(name, "");
+    else if (value !== false && value !== null && value !== undefined) element.setAttribute(name, value);
+  }
+  element.append(...children.filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+/** A key of the desk. It keeps the focus where it is, so that the keyboard stays the machine's. */
+export function key(label, act, { lamp = "cyan", atOnce = false, name = null, className = "" } = {}) {
+  const button = make("button", { type: "button", class: `key ${className}`, "data-key": name }, label);
+  button.style.setProperty("--lamp", `var(--${lamp})`);
+  act_on(button, act, atOnce);
+  return button;
+}
+
+/** Put a word on a key, in smaller letters where its longest part is too long for the key. */
+export function label_key(button, text) {
+  const span = make("span", {}, text);
+  span.style.setProperty("--longest", Math.max(...text.split(/[\s-]/).map((part) => part.length)));
+  button.replaceChildren(span);
+}
+
+/** Let a button act: when it is let go, or at once; by the keyboard too. */
+export function act_on(button, act, atOnce = false) {
+  button.addEventListener("mousedown", (event) => event.preventDefault());
+  if (!atOnce) return button.addEventListener("click", act);
+  button.addEventListener("pointerdown", (event) => { if (event.button === 0 && !button.disabled) act(event); });
+  // A click without a pointer is the keyboard's.
+  return button.addEventListener("click", (event) => { if (event.detail === 0) act(event); });
+}
+
+export function light(button, on) {
+  button.classList.toggle("lit", on);
+  button.setAttribute("aria-pressed", on);
+}
+
+/** Set a text only where it changes: what is read aloud or laid out need not be done again. */
+export function write(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+export class Words {
+  constructor(language, { labels, alarms }) {
+    Object.assign(this, { language, labels, alarms });
+  }
+
+  label(name, values = {}) {
+    return (this.labels[name] ?? name).replace(/\{(\w+)\}/g, (_, key) => values[key] ?? "");
+  }
+
+  /** A text of a scene or of the machine, in this language or the nearest that there is. */
+  text(texts) {
+    return typeof texts === "string" ? texts : texts[this.language] ?? texts.en ?? Object.values(texts)[0] ?? "";
+  }
+
+  alarm(code) {
+    return this.alarms[code] ?? { name: code, advice: "" };
+  }
+
+  fill(root) {
+    for (const element of root.querySelectorAll("[data-word]")) write(element, this.label(element.dataset.word));
+    for (const element of root.querySelectorAll("[data-name]")) element.setAttribute("aria-label", this.label(element.dataset.name));
+  }
+}

@@ -1,0 +1,156 @@
+// The sheets beside the view: tasks, part zero, tools, view, and the trainer's.
+
+import { act_on, make } from "./parts.js";
+
+const MARKS = { open: "○", done: "●", failed: "×" };
+const BACK_S = [10, 60];
+const SHOWN = ["trail", "stock", "collision"];
+
+export class Sheets {
+  constructor(scene, line, view) {
+    Object.assign(this, { scene, line, view, sheet: "tasks", shown: { trail: true, stock: true, collision: false }, drawn: "", state: null });
+    document.addEventListener("next-sheet", () => {
+      const names = this.names();
+      this.choose(names[(names.indexOf(this.sheet) + 1) % names.length]);
+    });
+    document.addEventListener("measure-tool", () => this.measure());
+  }
+
+  names() {
+    return ["tasks", "offsets", "tools", "display", ...(this.now.role === "trainer" ? ["trainer"] : [])];
+  }
+
+  choose(sheet) {
+    this.sheet = sheet;
+    this.show(this.now, this.words);
+  }
+
+  show(now, words) {
+    Object.assign(this, { now, words });
+    const tabs = document.getElementById("tabs"), sheet = document.getElementById("sheet");
+    const names = this.names();
+    const key = JSON.stringify([names, words.language]);
+    if (key !== this.tabs) {
+      this.tabs = key;
+      tabs.replaceChildren(...names.map((name) => {
+        const tab = make("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "sheet", "data-key": `tab ${name}` }, words.label(name));
+        act_on(tab, () => this.choose(name));
+        return tab;
+      }));
+    }
+    for (const tab of tabs.children) tab.setAttribute("aria-selected", tab.id === `tab-${this.sheet}`);
+    sheet.setAttribute("aria-labelledby", `tab-${this.sheet}`);
+    const acts = now.role === "trainer" || now.has_panel;
+    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over], offsets: [now.zero], tools: [now.tools, now.tool], display: [this.shown], trainer: [now.faults, now.frozen, now.replaying] };
+    const drawn = JSON.stringify([this.sheet, words.language, acts, what[this.sheet]]);
+    if (drawn === this.drawn) return;
+    const typed = this.drawn && JSON.parse(this.drawn)[0] === this.sheet ? new Map([...sheet.querySelectorAll("input:not([type=checkbox]), select")].map((field) => [field.id, field.value])) : new Map();
+    this.drawn = drawn;
+    sheet.replaceChildren(...this[this.sheet]());
+    if (!acts) for (const field of sheet.querySelectorAll("button, input, select")) field.disabled = this.sheet !== "display";
+    for (const [id, value] of typed) if (id && sheet.querySelector(`#${id}`)) sheet.querySelector(`#${id}`).value = value;
+  }
+
+  button(name, text, act) {
+    const made = make("button", { type: "button", "data-key": name }, text);
+    act_on(made, act);
+    return made;
+  }
+
+  tasks() {
+    const { scene, now, words, line } = this, answers = new Map(now.answers);
+    const tasks = scene.tasks.map((task, index) => {
+      const { state } = now.verdicts[index], number = index + 1;
+      const choices = task.choices && !answers.has(number) && !now.over
+        ? task.choices.map((choice) => this.button(`answer ${number} ${choice}`, choice, () => line.say({ do: "answer", task: number, choice }))) : [];
+      return make("li", { class: state }, make("span", { "aria-hidden": "true" }, `${MARKS[state]} `), `${words.text(task.text)} (${task.points}) `, make("span", { class: "sr", hidden: true }, state), ...choices);
+    });
+    const hints = scene.hints.slice(0, now.hints).map((hint) => make("p", { class: "hint" }, words.text(hint)));
+    const more = now.hints < scene.hints.length && !now.over
+      ? this.button("hint", `${words.label("hint")} (${words.label("hint_cost", { cost: scene.hint_cost })})`, () => line.say({ do: "hint" })) : null;
+    const finish = now.over ? make("b", { class: "done" }, words.label("over")) : this.button("finish", words.label("finish"), () => line.say({ do: "finish" }));
+    return [
+      make("h2", {}, words.text(scene.title)), make("p", { class: "quiet" }, words.text(scene.story)), make("ul", {}, ...tasks), ...hints,
+      make("p", { class: "points" }, `${words.label("score")}: ${now.score} / ${scene.points}`), make("div", { class: "row" }, more, finish),
+    ];
+  }
+
+  offsets() {
+    const { now, words, line } = this;
+    const rows = now.axes.map((axis, index) => {
+      const field = make("input", { id: `reading-${axis}`, inputmode: "decimal", value: "0", "aria-label": `${words.label("preset_help")} ${axis}` });
+      const set = () => line.say({ do: "set_zero", axis, reading: number(field.value) });
+      field.addEventListener("keydown", (event) => { if (event.key === "Enter") set(); });
+      return make("div", { class: "row" }, make("b", {}, axis), make("span", { class: "number" }, now.zero[index].toFixed(3)), field, this.button(`preset ${axis}`, words.label("preset"), set));
+    });
+    return [make("p", { class: "quiet" }, words.label("preset_help")), ...rows];
+  }
+
+  tools() {
+    const { now, words } = this;
+    return now.tools.flatMap((tool) => {
+      const here = tool.number === now.tool;
+      return [
+        make("h3", {}, `T${tool.number}${here ? " ◂" : ""}  ${words.label(`tool_${tool.kind}`)}`),
+        make("div", { class: "row" }, `${words.label("diameter")} ${tool.diameter} · ${words.label("length")} ${tool.length.toFixed(3)}`),
+        here ? make("div", { class: "row" }, this.button("touch off", words.label("touch_off"), () => this.measure())) : null,
+      ].filter(Boolean);
+    });
+  }
+
+  /** The tool in the spindle is as long as it must be for its tip to stand on Z0. */
+  measure() {
+    const { now, line, state } = this, tool = now.tools.find(({ number: one }) => one === now.tool);
+    if (tool && state) line.say({ do: "set_tool", number: tool.number, length: Math.round(1e4 * (tool.length + state.position[now.axes.indexOf("Z")])) / 1e4 });
+  }
+
+  display() {
+    return SHOWN.map((name) => {
+      const box = make("input", { type: "checkbox", id: `show-${name}`, "data-key": `show ${name}` });
+      box.checked = this.shown[name];
+      box.addEventListener("change", () => {
+        this.shown = { ...this.shown, [name]: box.checked };
+        this.view.say("show", { [name]: box.checked });
+      });
+      return make("div", { class: "row" }, make("label", {}, box, this.words.label(name)));
+    });
+  }
+
+  trainer() {
+    const { now, words, line, scene } = this;
+    const ask = (name, given = {}, label = name, values = {}) => this.button(label === "rewind" ? `rewind ${given.seconds}` : name, words.label(label, values), () => line.say({ do: name, ...given }));
+    const time = [
+      now.frozen ? ask("go_on") : ask("freeze"), ...BACK_S.map((seconds) => ask("rewind", { seconds }, "rewind", { seconds })),
+      now.replaying ? ask("end_replay") : ask("replay"),
+    ];
+    const kinds = Object.keys(scene.faults);
+    const kind = make("select", { id: "fault-kind", "data-key": "fault kind", "aria-label": words.label("inject") }, ...kinds.map((name) => make("option", { value: name }, words.label(`fault_${name}`))));
+    const axis = make("select", { id: "fault-axis", "data-key": "fault axis", "aria-label": words.label("axis") }, ...now.axes.map((name) => make("option", {}, name)));
+    const value = make("input", { id: "fault-value", inputmode: "decimal", "data-key": "fault value", "aria-label": words.label("value") });
+    const unit = make("span");
+    const fit = () => {
+      const [normal, linear, rotary] = scene.faults[kind.value];
+      const turns = now.units[now.axes.indexOf(axis.value)] === "deg";
+      value.value = normal;
+      unit.textContent = turns ? rotary : linear;
+      for (const part of [axis, value, unit]) part.hidden = kind.value === "alarm";
+    };
+    kind.addEventListener("change", fit);
+    axis.addEventListener("change", () => { unit.textContent = scene.faults[kind.value][now.units[now.axes.indexOf(axis.value)] === "deg" ? 2 : 1]; });
+    fit();
+    const inject = this.button("inject", words.label("inject"), () => line.say({
+      do: "inject", fault: kind.value === "alarm" ? { kind: "alarm" } : { kind: kind.value, axis: axis.value, value: number(value.value) },
+    }));
+    const active = now.faults.map((fault) => make("li", { class: "failed" }, `● ${words.label(`fault_${fault.kind}`)} ${fault.axis} ${fault.value} ${scene.faults[fault.kind][now.units[now.axes.indexOf(fault.axis)] === "deg" ? 2 : 1]}`));
+    return [
+      make("div", { class: "row" }, ...time), make("h3", {}, words.label("inject")), make("div", { class: "row" }, kind), make("div", { class: "row" }, axis, value, unit), make("div", { class: "row" }, inject),
+      make("h3", {}, words.label("active_faults")), active.length ? make("ul", {}, ...active) : make("p", { class: "quiet" }, words.label("no_faults")), make("div", { class: "row" }, ask("repair")),
+    ];
+  }
+}
+
+/** A number as it is typed, with a point or a comma; null where it is none, which the machine refuses. */
+function number(text) {
+  const found = Number(text.trim().replace(",", "."));
+  return text.trim() === "" || !Number.isFinite(found) ? null : found;
+}

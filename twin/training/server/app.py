@@ -1,0 +1,243 @@
+"""The application behind the guard: pages, the drawn machine, and the stream of a running session."""
+
+import asyncio
+import contextlib
+import functools
+import json
+from pathlib import Path
+from typing import Any
+
+import anyio.to_thread
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import FileResponse, JSONResponse, Response
+from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from twin.nc.iso.base import jog_block
+from twin.render.machine_glb import DrawnMachine, drawn_machine
+from twin.training.scene.fault_table import FAULT_DEFAULTS
+from twin.training.scene.modes import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
+from twin.training.scene.phrases import translated
+from twin.training.scene.texts import LANGUAGES, Language
+from twin.training.scene.vocabulary import Words
+from twin.training.server.driver import Driver
+from twin.training.server.frames import Changes, StockFeed, panel_words, state_message
+from twin.training.server.seats import Page, Seats
+from twin.web.files import ASSETS
+
+ROLES = ("operator", "trainer", "watcher")
+PAGE = Path(__file__).resolve().parent.parent / "page"
+
+PICTURES_PER_S = 30.0
+"""How often a page is told of the machine, at most."""
+LONGEST_SEND_S = 10.0
+"""Time for a page to read what it was sent."""
+_EXAMPLE = (10.0, 600.0)
+"""Way [mm] and feed [mm/min] of the block that the empty MDI line shows."""
+
+
+class RoomApp:
+    """What the pages of a room are served.
+
+    Attributes:
+        seats: Who sits where.
+        bytes_sent: Through all streams so far.
+        messages: Heard from all pages so far.
+    """
+
+    def __init__(self, driver: Driver, language: Language) -> None:
+        """Prepare it.
+
+        Args:
+            driver: Steps the session.
+            language: What the pages speak unless they choose another.
+        """
+        self._driver = driver
+        self._language = language
+        self.seats = Seats()
+        self.bytes_sent = 0
+        self.messages = 0
+        self._stock = StockFeed()
+        self._drawn = functools.cache(self._draw)
+        inner = [
+            Route("/", self._page),
+            Route("/scene.json", self._scene),
+            Route("/words/{language}.json", self._words),
+            Route("/machine.json", self._machine),
+            Route("/machine.glb", self._glb),
+            WebSocketRoute("/stream", self._stream),
+            Mount("/view", StaticFiles(directory=ASSETS, follow_symlink=False)),
+            Mount("/page", StaticFiles(directory=PAGE, follow_symlink=False)),
+        ]
+        self.asgi = Starlette(routes=[Mount(f"/{role}", routes=inner) for role in ROLES])
+
+    async def _page(self, _request: Request) -> Response:
+        return FileResponse(PAGE / "panel.html")
+
+    async def _scene(self, _request: Request) -> Response:
+        scene = self._driver.session.scene
+        file = scene.file
+        machine = scene.preparation.machine
+        return JSONResponse(
+            {
+                "name": scene.name,
+                "language": self._language,
+                "languages": LANGUAGES,
+                "title": file.title,
+                "story": file.story,
+                "tasks": [
+                    {
+                        "text": task.text,
+                        "points": task.points,
+                        "choices": None if task.question is None else task.question.choices,
+                    }
+                    for task in file.tasks
+                ],
+                "hints": file.hints,
+                "hint_cost": file.hint_cost,
+                "points": scene.points,
+                "modes": MODES,
+                "overrides": {"feed": FEED_OVERRIDES, "rapid": RAPID_OVERRIDES},
+                "fastest": {
+                    name: 60.0 * machine.axis(name).velocity for name in machine.axes.names
+                },
+                "faults": FAULT_DEFAULTS,
+                "camera": file.picture.camera,
+                "example": jog_block(scene.preparation.dialect, "X", *_EXAMPLE),
+            }
+        )
+
+    async def _words(self, request: Request) -> Response:
+        language = request.path_params["language"]
+        if language not in LANGUAGES:
+            return Response(status_code=404)
+        words = Words(language, self._driver.session.scene.preparation.dialect.name)
+        return JSONResponse(words.as_data())
+
+    async def _machine(self, request: Request) -> Response:
+        drawn = await self._drawing(request)
+        if drawn is None:
+            return Response(status_code=404)
+        described = drawn[0].description()
+        work = self._driver.session.room.work
+        if work is not None:
+            stock = work.map
+            described["stock"] = {
+                "origin": stock.origin,
+                "cell": stock.cell,
+                "rows": stock.heights.shape[0],
+                "columns": stock.heights.shape[1],
+                "bottom": stock.bottom,
+                "top": stock.top,
+            }
+        return JSONResponse(described)
+
+    async def _glb(self, request: Request) -> Response:
+        drawn = await self._drawing(request)
+        if drawn is None:
+            return Response(status_code=404)
+        return Response(drawn[1], media_type="model/gltf-binary")
+
+    async def _drawing(self, request: Request) -> tuple[DrawnMachine, bytes] | None:
+        tools = self._driver.session.room.tables.tools
+        number = request.query_params.get("tool", "")
+        if not number.isdecimal() or int(number) not in tools:
+            return None
+        return await anyio.to_thread.run_sync(self._drawn, int(number))
+
+    def _draw(self, number: int) -> tuple[DrawnMachine, bytes]:
+        room = self._driver.session.room
+        scene = room.scene.preparation
+        drawn = drawn_machine(
+            scene.machine,
+            room.tables.tools[number],
+            room.part_frame.turn_zero,
+            scene.job.file.stock,
+            room.tables.true_zero,
+        )
+        return drawn, drawn.glb()
+
+    async def _stream(self, socket: WebSocket) -> None:
+        role = socket.scope["path"].split("/")[1]
+        page = self.seats.sit(role)
+        await socket.accept()
+        if page is None:
+            return await socket.close(1013)
+        tell = asyncio.create_task(self._tell_until_gone(socket, page))
+        try:
+            await self._hear(socket, page)
+        except (WebSocketDisconnect, RuntimeError):
+            pass  # The page is gone; nothing is left to say to it.
+        finally:
+            tell.cancel()
+            self.seats.leave(page)
+            self._driver.leave(page.number)
+
+    async def _hear(self, socket: WebSocket, page: Page) -> None:
+        """Do what a page asks for, until it goes or says too much."""
+        while True:
+            text = await socket.receive_text()
+            self.messages += 1
+            if not page.may_speak():
+                return await socket.close(1008)
+            try:
+                said = json.loads(text)
+            except ValueError:
+                return await socket.close(1008)
+            if not isinstance(said, dict):
+                return await socket.close(1008)
+            if "beat" in said:
+                self._driver.beat(page.number)
+            elif "panel" in said:
+                self.seats.hand_over(page, str(said["panel"]))
+            elif self.seats.may(page, said):
+                who = "trainer" if page.role == "trainer" else "operator"
+                self._driver.ask(said, who, page.number)
+
+    async def _tell_until_gone(self, socket: WebSocket, page: Page) -> None:
+        """Show a page the machine until it is gone, or reads no more."""
+        try:
+            await self._tell(socket, page)
+        except (WebSocketDisconnect, RuntimeError):
+            pass  # Gone; whoever hears it notices too.
+        except TimeoutError:
+            with contextlib.suppress(RuntimeError):
+                await socket.close(1008)
+
+    async def _tell(self, socket: WebSocket, page: Page) -> None:
+        """Show a page the machine, no faster than it reads."""
+        changes = Changes()
+        epoch = version = -1
+        while True:
+            began = asyncio.get_running_loop().time()
+            look = self._driver.look
+            self._stock.note(self._driver.seen)
+            patch, epoch, version = self._stock.patch(epoch, version)
+            words = changes.since_last(self._translated(panel_words(look)) | self.seats.words(page))
+            messages: list[bytes | str] = [state_message(look, cutting=patch is not None)]
+            if words:
+                messages.append(json.dumps(words, ensure_ascii=False))
+            if patch is not None:
+                messages.append(patch)
+            for message in messages:
+                self.bytes_sent += len(message)
+                send = socket.send_bytes if isinstance(message, bytes) else socket.send_text
+                await asyncio.wait_for(send(message), LONGEST_SEND_S)  # pyright: ignore[reportArgumentType]
+            spent = asyncio.get_running_loop().time() - began
+            await asyncio.sleep(max(0.001, 1.0 / PICTURES_PER_S - spent))
+
+    @staticmethod
+    def _translated(words: dict[str, Any]) -> dict[str, Any]:
+        """The machine's sentences in every language, so that each page can choose its own."""
+        alarm = words["alarm"]
+        if alarm is not None:
+            words["alarm"] = alarm | {"message": _in_all(alarm["message"])}
+        words["refusal"] = words["refusal"] and _in_all(words["refusal"])
+        return words
+
+
+@functools.lru_cache(maxsize=256)
+def _in_all(message: str) -> dict[str, str]:
+    return {language: translated(message, language) for language in LANGUAGES}

@@ -1,0 +1,190 @@
+"""Lets the machine's time go on with the wall's, on a thread that nothing ends but the room's end."""
+
+import contextlib
+import dataclasses
+import queue
+import threading
+import time
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+from twin.errors import TwinError
+from twin.training.session.log import Who
+from twin.training.session.room import Room
+from twin.training.session.session import Session
+from twin.training.session.snapshot import Snapshot
+
+SHORTEST_REST_S = 0.001
+"""What the machine always leaves to the server between two looks at the clock [s]."""
+MOST_BEHIND_S = 0.25
+"""How far machine time may fall behind the wall's before it is given up, and shown as lost [s]."""
+REPLAY_SPEED = 4.0
+"""Times faster than it was, a session is shown again."""
+HELD_S = 0.1
+"""A key counts as let go when its page has not said for so long that it is held [s]."""
+SHOWN_EVERY_S = 0.03
+"""Between two looks at the machine for the pages [s]."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Look:
+    """The machine as the pages show it.
+
+    Attributes:
+        now: The snapshot.
+        lost_s: Time on the wall that the machine did not keep up with so far [s].
+        trouble: What went wrong outside the machine, as with the results' folder.
+    """
+
+    now: Snapshot
+    lost_s: float
+    trouble: str
+
+
+class Driver:
+    """Steps a session and does what the pages ask for.
+
+    Attributes:
+        session: What is played.
+        speed: Machine time per time on the wall.
+        lost_s: Time on the wall that the machine did not keep up with so far [s].
+        trouble: Says what is wrong outside the machine.
+        look: The last look at the machine.
+    """
+
+    def __init__(self, session: Session, changed: Callable[[], None] = lambda: None) -> None:
+        """Prepare a session.
+
+        Args:
+            session: What is played.
+            changed: Told after everything that was asked for.
+        """
+        self.session = session
+        self.speed = 1.0
+        self.lost_s = 0.0
+        self.trouble: Callable[[], str] = str
+        self._changed = changed
+        self._asked: queue.SimpleQueue[tuple[Any, Who, int]] = queue.SimpleQueue()
+        self._wake = threading.Event()
+        self._over = threading.Event()
+        self._beats: dict[int, float] = {}
+        self._holder: int | None = None
+        self._owed_s = 0.0
+        self._kept_up = 1.0
+        self._shown = -1.0
+        self.look = Look(session.snapshot(), 0.0, "")
+
+    @property
+    def seen(self) -> Room:
+        """The room that the pages see: the machine's, or that of a replay."""
+        replay = self.session.replay
+        return self.session.room if replay is None else replay.room
+
+    def ask(self, command: Any, who: Who, page: int) -> None:
+        """Ask for a command, from any thread.
+
+        Args:
+            command: As plain data.
+            who: Who gives it.
+            page: Number of the page that it comes from.
+        """
+        self._beats[page] = time.perf_counter()
+        self._asked.put((command, who, page))
+        self._wake.set()
+
+    def beat(self, page: int) -> None:
+        """A page says that its key is still held."""
+        self._beats[page] = time.perf_counter()
+
+    def leave(self, page: int) -> None:
+        """A page is gone, and its key with it."""
+        self._beats.pop(page, None)
+        self._wake.set()
+
+    def stop(self) -> None:
+        """End ``serve``, which runs on another thread."""
+        self._over.set()
+        self._wake.set()
+
+    def serve(self) -> None:
+        """Let time go on until the room is stopped."""
+        wall = time.perf_counter()
+        while not self._over.is_set():
+            now = time.perf_counter()
+            passed, wall = now - wall, now
+            self._step(passed)
+            due = self.session.room.slice_s - self._owed_s - (time.perf_counter() - now)
+            self._wake.wait(max(due / self.speed, SHORTEST_REST_S))
+            self._wake.clear()
+
+    def _step(self, passed: float) -> None:
+        """One turn; whatever goes wrong in it becomes an alarm."""
+        try:
+            self._do_what_was_asked()
+            self._let_go_of_lost_keys()
+            self._go_on(passed)
+        except TwinError as error:
+            self.session.room.fail(str(error))
+        except Exception as error:  # noqa: BLE001 (a class loses its room by whatever ends this thread)
+            where = traceback.extract_tb(error.__traceback__)[-1]
+            self.session.room.fail(f"{type(error).__name__}: {error} ({where.name})")
+        if time.perf_counter() - self._shown >= SHOWN_EVERY_S:
+            self._shown = time.perf_counter()
+            self.look = Look(
+                dataclasses.replace(self.session.snapshot(), speed=self._kept_up),
+                self.lost_s,
+                self.trouble(),
+            )
+
+    def _do_what_was_asked(self) -> None:
+        done = False
+        with contextlib.suppress(queue.Empty):
+            while True:
+                command, who, page = self._asked.get_nowait()
+                done = True
+                accepted = self.session.submit(command, who)
+                if accepted and _moves_while_held(command):
+                    # From here on: what it took to begin the motion is no silence of the page.
+                    self._holder = page
+                    self._beats[page] = time.perf_counter()
+        if done:
+            self._shown = -1.0
+            self._changed()
+
+    def _let_go_of_lost_keys(self) -> None:
+        """Dead man's key: what moves while a key is held stops when its page falls silent."""
+        if self._holder is None:
+            return
+        heard = self._beats.get(self._holder, -1.0)
+        if self.session.room.running != "jog":
+            self._holder = None
+        elif time.perf_counter() - heard > HELD_S:
+            self._holder = None
+            self.session.submit({"do": "jog_stop"})
+            self._changed()
+
+    def _go_on(self, passed: float) -> None:
+        session = self.session
+        if session.replay is not None:
+            session.replay.advance(REPLAY_SPEED * min(passed, MOST_BEHIND_S))
+            if session.replay.over:
+                session.submit({"do": "end_replay"}, "trainer")
+            self._owed_s = 0.0
+            return
+        if session.frozen:
+            self._owed_s = 0.0
+            return
+        slice_s = session.room.slice_s
+        self._owed_s += self.speed * passed
+        kept = min(self._owed_s, self.speed * MOST_BEHIND_S)
+        self.lost_s += self._owed_s - kept
+        share = kept / self._owed_s if self._owed_s > 0.0 else 1.0
+        self._kept_up += 0.02 * (self.speed * share - self._kept_up)
+        slices = int(kept / slice_s)
+        self._owed_s = kept - slices * slice_s
+        session.advance(slices)
+
+
+def _moves_while_held(command: Any) -> bool:
+    return isinstance(command, dict) and command.get("do") == "jog" and command.get("step") is None

@@ -1,0 +1,158 @@
+"""What a page is sent: the machine's state as a few numbers, the stock's patches, words on change."""
+
+import dataclasses
+import json
+import struct
+import threading
+import zlib
+from collections import deque
+from typing import Any
+
+import numpy as np
+
+from twin.cutting.cut import Rectangle, union
+from twin.cutting.height_map import HeightMap
+from twin.training.server.driver import Look
+from twin.training.session.room import Room
+from twin.training.session.snapshot import Snapshot
+
+STATE, PATCH = 1, 2
+"""First byte of a binary message."""
+PATCHES_KEPT = 512
+"""Changes of the stock that are remembered; a page that is further behind gets the whole stock."""
+LEVELS = 65535
+"""Heights travel as so many steps between the blank's underside and its top."""
+
+_STATE_ALONE = (
+    "time_s",
+    "position",
+    "machine_position",
+    "distance_to_go",
+    "following_error",
+    "load",
+)
+_IN_STATE = frozenset({*_STATE_ALONE, "feed", "speed", "trail", "moving"})
+
+
+def state_message(look: Look, cutting: bool) -> bytes:
+    """The state: kind, flags, number of axes k, then numbers of 64 bits.
+
+    Numbers: time [s], machine time per time on the wall, feed, spindle speed, the tip's X, Y, Z in
+    the part's frame [mm]; then k each of: position as the screen shows it, machine position,
+    distance to go, following error [mm or deg], load [share]. Flags: 1 moving, 2 the feeler lamp,
+    4 the spindle turns, 8 coolant, 16 material is being cut.
+    """
+    now = look.now
+    flags = now.moving | now.touches << 1 | now.spindle.turns << 2 | now.coolant << 3 | cutting << 4
+    rows = [getattr(now, name) for name in _STATE_ALONE[1:]]
+    numbers = [now.time_s, now.speed, now.feed, now.spindle.speed or 0.0, *now.trail]
+    for row in rows:
+        numbers += row
+    return struct.pack(f"<BBHI{len(numbers)}d", STATE, flags, len(now.axes), 0, *numbers)
+
+
+def panel_words(look: Look) -> dict[str, Any]:
+    """All that a page shows and that is not in the state, as plain data."""
+    now: Snapshot = look.now
+    found: dict[str, Any] = {}
+    for field in dataclasses.fields(now):
+        if field.name not in _IN_STATE:
+            value = getattr(now, field.name)
+            found[field.name] = _plain(value)
+    found["lost_s"] = round(look.lost_s, 1)
+    found["trouble"] = look.trouble
+    return found
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "model_dump"):
+        return value.model_dump()
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return dataclasses.asdict(value)
+    if isinstance(value, tuple):
+        return [_plain(each) for each in value]
+    return value
+
+
+class Changes:
+    """Which words a page has not been sent yet."""
+
+    def __init__(self) -> None:
+        self._sent: dict[str, str] = {}
+
+    def since_last(self, words: dict[str, Any]) -> dict[str, Any]:
+        """Those whose value has changed since the last call."""
+        found = {}
+        for name, value in words.items():
+            text = json.dumps(value)
+            if self._sent.get(name) != text:
+                self._sent[name] = text
+                found[name] = value
+        return found
+
+
+class StockFeed:
+    """The live stock as patches; the machine's thread notes changes, the server's reads them.
+
+    Attributes:
+        epoch: Grows when all that was sent is void.
+        version: Grows with every change.
+    """
+
+    def __init__(self) -> None:
+        self.epoch = 0
+        self.version = 0
+        self._map: HeightMap | None = None
+        self._changes: deque[tuple[int, Rectangle]] = deque(maxlen=PATCHES_KEPT)
+        self._seen = (-1, -1.0)
+        self._lock = threading.Lock()
+
+    def note(self, room: Room) -> None:
+        """Look at the stock of the room that is seen."""
+        work = room.work
+        if work is None:
+            return
+        with self._lock:
+            if work.map is not self._map:
+                self._map = work.map
+                self.epoch += 1
+                self.version += 1
+                self._changes.clear()
+            changed = work.take_changed()
+            if changed[0] < changed[1]:
+                self.version += 1
+                self._changes.append((self.version, changed))
+
+    def patch(self, epoch: int, version: int) -> tuple[bytes | None, int, int]:
+        """What a page lacks.
+
+        Args:
+            epoch: Of what the page has.
+            version: Of what the page has.
+
+        Returns:
+            A message, or None where it lacks nothing; and what the page has with it.
+        """
+        with self._lock:
+            stock = self._map
+            if stock is None or (epoch, version) == (self.epoch, self.version):
+                return None, epoch, version
+            rows, columns = stock.heights.shape
+            rectangle: Rectangle = (0, rows, 0, columns)
+            known = self._changes[0][0] - 1 if self._changes else self.version
+            if epoch == self.epoch and version >= known:
+                rectangle = (0, 0, 0, 0)
+                for number, changed in self._changes:
+                    if number > version:
+                        rectangle = union(rectangle, changed)
+            return patch_message(stock, rectangle, self.epoch), self.epoch, self.version
+
+
+def patch_message(stock: HeightMap, rectangle: Rectangle, epoch: int) -> bytes:
+    """Heights of a rectangle of cells: kind, epoch, row, column, rows, columns, deflated levels."""
+    row, row_end, column, column_end = rectangle
+    heights = stock.heights[row:row_end, column:column_end]
+    share = (heights - stock.bottom) / (stock.top - stock.bottom)
+    levels = np.rint(LEVELS * np.clip(share, 0.0, 1.0)).astype("<u2")
+    head = struct.pack("<BxxxIHHHH", PATCH, epoch, row, column, *levels.shape)
+    return head + zlib.compress(levels.tobytes(), 1)

@@ -1,0 +1,293 @@
+// Draws the machine on a thread of its own, so that the page is free to hear keys however slow the
+// drawing is. It draws only when something has changed.
+
+import * as THREE from "./three/three.module.js";
+import { GLTFLoader } from "./three/GLTFLoader.js";
+import { RoomEnvironment } from "./three/RoomEnvironment.js";
+import { Chips, Coolant, Trail } from "./effects.js";
+import { Stock } from "./stock.js";
+import { readPatch, readState } from "./wire.js";
+
+const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
+const FASTEST_MS = 33;
+const SLOW_MS = 120;
+
+let renderer, scene, camera, base, fine, size = [1, 1], dirty = true, busy = false, last = 0, pictures = 0, drawing = 0, dots = 1, slow = 0;
+let machine = null, patches = Promise.resolve(), wanted = 0;
+const orbit = { azimuth: -0.9, elevation: 0.42, distance: 2.4, target: new THREE.Vector3(0, 0, 1), follows: "part" };
+const shown = { trail: true, stock: true, collision: false };
+const trail = new Trail();
+let path = null;
+
+function open({ canvas, width, height, ratio, address, quality }) {
+  fine = quality === "fine" || (quality !== "plain" && !drawn_by_processor());
+  renderer = new THREE.WebGLRenderer({ canvas, antialias: fine, powerPreference: "high-performance" });
+  base = address;
+  renderer.toneMapping = THREE.ACESFilmicToneMapping;
+  renderer.toneMappingExposure = 1.0;
+  dots = fine ? ratio : Math.min(ratio, 1);
+  renderer.setPixelRatio(dots);
+  scene = new THREE.Scene();
+  scene.background = new THREE.Color(0x11161b);
+  scene.fog = new THREE.Fog(0x11161b, 6, 14);
+  camera = new THREE.PerspectiveCamera(34, 1, 0.01, 40);
+  camera.up.set(0, 0, 1);
+  light();
+  resize([width, height]);
+}
+
+function drawn_by_processor() {
+  const context = new OffscreenCanvas(1, 1).getContext("webgl2");
+  const info = context?.getExtension("WEBGL_debug_renderer_info");
+  return !info || SOFTWARE.test(context.getParameter(info.UNMASKED_RENDERER_WEBGL));
+}
+
+function light() {
+  if (fine) {
+    const maker = new THREE.PMREMGenerator(renderer);
+    scene.environment = maker.fromScene(new RoomEnvironment(), 0.04).texture;
+    scene.environmentIntensity = 0.55;
+    scene.environmentRotation = new THREE.Euler(Math.PI / 2, 0, 0);
+    renderer.shadowMap.enabled = true;
+  } else {
+    scene.add(new THREE.HemisphereLight(0xdfe9f5, 0x40454c, 1.1));
+  }
+  const key = new THREE.DirectionalLight(0xfff4e6, fine ? 2.2 : 1.5);
+  key.position.set(-1.6, -2.4, 3.6);
+  key.castShadow = fine;
+  key.shadow.mapSize.set(2048, 2048);
+  Object.assign(key.shadow.camera, { left: -1.4, right: 1.4, top: 1.4, bottom: -1.4, near: 0.5, far: 8 });
+  key.shadow.bias = -0.0004;
+  key.target.position.set(0, 0, 0.9);
+  const rim = new THREE.DirectionalLight(0x9ec8ff, 0.9);
+  rim.position.set(2.5, 2, 2);
+  scene.add(key, key.target, rim);
+  const floor = new THREE.Mesh(new THREE.CircleGeometry(9, 64), new THREE.MeshStandardMaterial({ color: 0x1b2127, roughness: 0.95, metalness: 0 }));
+  floor.receiveShadow = fine;
+  scene.add(floor);
+}
+
+function resize([width, height]) {
+  size = [Math.max(1, width), Math.max(1, height)];
+  renderer.setSize(size[0], size[1], false);
+  camera.aspect = size[0] / size[1];
+  camera.updateProjectionMatrix();
+  dirty = true;
+}
+
+/** Fetch and set up the machine with a tool in its spindle. */
+async function load(tool) {
+  const mine = ++wanted;
+  const described = await (await fetch(`${base}machine.json?tool=${tool}`)).json();
+  const file = await (await fetch(`${base}machine.glb?tool=${tool}`)).arrayBuffer();
+  const drawn = await new GLTFLoader().parseAsync(file, "");
+  if (mine !== wanted) return;
+  const first = machine === null;
+  if (!first) scene.remove(machine.root);
+  machine = assemble(described, drawn.scene);
+  scene.add(machine.root);
+  dirty = true;
+  if (first) {
+    look("start");
+    postMessage({ ready: true, fine });
+  }
+}
+
+function assemble(described, root) {
+  const named = (name) => root.getObjectByName(THREE.PropertyBinding.sanitizeNodeName(name));
+  const collision = THREE.PropertyBinding.sanitizeNodeName(described.collision);
+  const bodies = [];
+  root.traverse((node) => {
+    if (node.isMesh) {
+      node.castShadow = node.receiveShadow = fine;
+      // Without surroundings to mirror, metal would be black.
+      if (!fine) node.material.metalness *= 0.2;
+      const hidden = [node.name, node.parent?.name].some((name) => name?.startsWith(collision));
+      if (hidden) {
+        node.material = new THREE.MeshBasicMaterial({ color: 0xff5544, wireframe: true });
+        bodies.push(node);
+      }
+    }
+  });
+  const joints = described.joints.map((joint) => {
+    const node = named(joint.body);
+    return { ...joint, node, at: node.position.clone(), turned: node.quaternion.clone(), way: new THREE.Vector3(...joint.direction) };
+  });
+  const part = frame(described.part, named);
+  const tip = frame(described.tip, named);
+  const found = { root, joints, part, tip, bodies, cutter: named(described.cutter), radius: described.tool.diameter / 2, stock: null };
+  if (described.stock) {
+    found.stock = machine?.stock ?? new Stock(described.stock, fine ? 1 : 3);
+    part.add(found.stock.mesh);
+  }
+  part.add(trail.line);
+  if (path) part.add(path);
+  found.chips = new Chips(0xe8d9b0, 0.0014);
+  found.coolant = new Coolant(described.tool.length);
+  tip.add(found.chips.points, found.coolant.points);
+  show(found);
+  return found;
+}
+
+function frame(place, named) {
+  const group = new THREE.Group();
+  group.matrixAutoUpdate = false;
+  group.matrix.fromArray(place.matrix);
+  named(place.body).add(group);
+  return group;
+}
+
+function show(target) {
+  if (!target) return;
+  trail.line.visible = shown.trail;
+  if (target.stock) target.stock.mesh.visible = shown.stock;
+  for (const body of target.bodies) body.visible = shown.collision;
+  dirty = true;
+}
+
+/** Move the nodes to where the axes stand [mm or deg]. */
+function move(machineCoordinates) {
+  const turn = new THREE.Quaternion();
+  machine.joints.forEach((joint, number) => {
+    const way = machineCoordinates[number] * joint.scale;
+    if (joint.slides) joint.node.position.copy(joint.at).addScaledVector(joint.way, way);
+    else joint.node.quaternion.copy(joint.turned).multiply(turn.setFromAxisAngle(joint.way, way));
+  });
+}
+
+let state = null;
+function take(buffer) {
+  const before = state;
+  state = readState(buffer);
+  if (!machine) return;
+  if (before && state.time < before.time) trail.clear();
+  trail.add(state.tip);
+  const still = before && before.machine.every((value, i) => Math.abs(value - state.machine[i]) < 1e-5);
+  if (!still || state.turns || state.coolant) dirty = true;
+  move(state.machine);
+}
+
+function centre(what) {
+  const point = new THREE.Vector3();
+  machine.root.updateMatrixWorld(true);
+  if (what === "tool") return machine.tip.getWorldPosition(point);
+  if (what === "part") {
+    const grid = machine.stock?.grid;
+    if (grid) point.set(grid.origin[0] + 0.5 * grid.cell * grid.columns, grid.origin[1] + 0.5 * grid.cell * grid.rows, grid.top);
+    return machine.part.localToWorld(point);
+  }
+  return new THREE.Box3().setFromObject(machine.root).getCenter(point);
+}
+
+/** Choose a view by its name. */
+function look(name) {
+  if (!machine) return;
+  const grid = machine.stock?.grid;
+  const part = grid ? 0.001 * grid.cell * Math.hypot(grid.rows, grid.columns) : 0.2;
+  const views = {
+    start: ["part", -1.12, 0.5, 5.5 * part], front: ["part", -Math.PI / 2, 0.12, 5.5 * part], top: ["part", -Math.PI / 2, 1.5533, 2.6 * part],
+    tool: ["tool", -1.0, 0.35, 0.42], part: ["part", -1.0, 0.75, 2.4 * part], fit: ["fit", -1.05, 0.32, 6.2],
+  };
+  const [about, azimuth, elevation, distance] = views[name] ?? views.start;
+  Object.assign(orbit, { azimuth, elevation, distance: distance * Math.max(1, 1.1 / camera.aspect), follows: about });
+  orbit.target.copy(centre(about));
+  dirty = true;
+}
+
+function turn({ azimuth = 0, elevation = 0, zoom = 1, pan = [0, 0] }) {
+  orbit.azimuth -= azimuth;
+  orbit.elevation = Math.min(1.5533, Math.max(-0.25, orbit.elevation + elevation));
+  orbit.distance = Math.min(12, Math.max(0.05, orbit.distance * zoom));
+  if (pan[0] || pan[1]) {
+    orbit.follows = "";
+    const right = new THREE.Vector3().setFromMatrixColumn(camera.matrix, 0), up = new THREE.Vector3().setFromMatrixColumn(camera.matrix, 1);
+    orbit.target.addScaledVector(right, -pan[0] * orbit.distance).addScaledVector(up, pan[1] * orbit.distance);
+  }
+  dirty = true;
+}
+
+function aim() {
+  if (orbit.follows && orbit.follows !== "fit") orbit.target.lerp(centre(orbit.follows), 0.5);
+  const level = orbit.distance * Math.cos(orbit.elevation);
+  camera.position.set(
+    orbit.target.x + level * Math.cos(orbit.azimuth), orbit.target.y + level * Math.sin(orbit.azimuth),
+    Math.max(0.05, orbit.target.z + orbit.distance * Math.sin(orbit.elevation)),
+  );
+  camera.near = Math.max(0.005, 0.05 * orbit.distance);
+  camera.updateProjectionMatrix();
+  camera.lookAt(orbit.target);
+}
+
+/** One picture, if anything has changed. What draws slowly leaves the processor to the machine for as long again. */
+function draw() {
+  setTimeout(draw, Math.max(FASTEST_MS, drawing));
+  const now = performance.now();
+  if (!machine) return;
+  const seconds = Math.min(0.1, 0.001 * (now - last));
+  last = now;
+  if (state) {
+    if (machine.chips.step(seconds, state.cutting && state.turns, machine.radius)) dirty = true;
+    machine.coolant.step(seconds, state.coolant);
+    if (state.turns && machine.cutter) machine.cutter.rotateZ(-14 * seconds);
+  }
+  if (!dirty) return;
+  dirty = false;
+  aim();
+  const began = performance.now();
+  renderer.render(scene, camera);
+  if (!fine) wait_for_picture();
+  drawing = performance.now() - began;
+  pictures += 1;
+}
+
+setInterval(() => postMessage({ pictures, drawing_ms: drawing }), 1000);
+
+/** What a processor draws slowly is drawn with fewer dots. */
+function wait_for_picture() {
+  const context = renderer.getContext();
+  context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, new Uint8Array(4));
+  slow = drawing > SLOW_MS ? slow + 1 : 0;
+  if (slow > 2 && dots > 0.6) {
+    slow = 0;
+    renderer.setPixelRatio(dots *= 0.8);
+    renderer.setSize(size[0], size[1], false);
+  }
+}
+
+/** The whole path of a run: places [mm] and colours, as lines. */
+function drawPath({ places, colours }) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));
+  geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+  path = new THREE.Line(geometry, new THREE.LineBasicMaterial({ vertexColors: true }));
+  path.frustumCulled = false;
+  machine?.part.add(path);
+  dirty = true;
+}
+
+const heard = {
+  open(given) { open(given); draw(); },
+  load,
+  state: take,
+  patch(buffer) {
+    patches = patches.then(async () => {
+      const patch = await readPatch(buffer);
+      machine?.stock?.put(patch);
+      dirty = true;
+    });
+  },
+  levels(patch) { machine?.stock?.put(patch); dirty = true; },
+  path: drawPath,
+  size: resize,
+  look,
+  turn,
+  show(what) { Object.assign(shown, what); show(machine); if (path) path.visible = shown.trail; },
+};
+
+onmessage = async ({ data: [what, given] }) => {
+  try {
+    await heard[what](given);
+  } catch (error) {
+    postMessage({ failed: String(error?.message ?? error) });
+  }
+};

@@ -1,0 +1,30 @@
+// The binary messages of a machine: its state, and patches of the stock.
+
+export const STATE = 1;
+export const PATCH = 2;
+
+const NAMES = ["position", "machine", "toGo", "lag", "load"];
+
+/** The state as numbers; rows have one per axis. */
+export function readState(buffer) {
+  const head = new DataView(buffer);
+  const flags = head.getUint8(1);
+  const axes = head.getUint16(2, true);
+  const numbers = new Float64Array(buffer, 8);
+  const state = {
+    time: numbers[0], speed: numbers[1], feed: numbers[2], rpm: numbers[3],
+    tip: [numbers[4], numbers[5], numbers[6]],
+    moving: !!(flags & 1), touches: !!(flags & 2), turns: !!(flags & 4), coolant: !!(flags & 8), cutting: !!(flags & 16),
+  };
+  NAMES.forEach((name, row) => { state[name] = Array.from(numbers.subarray(7 + row * axes, 7 + (row + 1) * axes)); });
+  return state;
+}
+
+/** A patch: its cells, and their heights as shares of the blank's own height. */
+export async function readPatch(buffer) {
+  const head = new DataView(buffer);
+  const [epoch, row, column, rows, columns] = [head.getUint32(4, true), ...[8, 10, 12, 14].map((at) => head.getUint16(at, true))];
+  const inflated = new Blob([new Uint8Array(buffer, 16)]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const levels = new Uint16Array(await new Response(inflated).arrayBuffer());
+  return { epoch, row, column, rows, columns, levels };
+}
