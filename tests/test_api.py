@@ -51,3 +51,13 @@ def test_functions_stay_what_they_are_when_rooms_of_their_names_are_loaded():
     assert twin.run is api.run
     assert twin.compare is api.compare
     assert {"run", "plan", "interpret", "compare"} <= set(dir(twin))
+
+
+def test_moves_are_a_table_for_data_frames(tmp_path: Path):
+    moves = api.interpret(write_job(tmp_path, "part"))
+    table = moves.table()
+    assert {len(column) for column in table.values()} == {len(moves)}
+    assert table["end_Y"][-1] == pytest.approx(-4.25)
+    assert {column.ndim for column in table.values()} == {1}
+    rows = list(moves)
+    assert (len(rows), rows[-1]["end_Y"]) == (len(moves), table["end_Y"][-1])

@@ -63,7 +63,28 @@ compare = compare_files
 def interpret(
     program: str | Path, *, dialect: str | None = None, machine: str | None = None
 ) -> Moves:
-    """The canonical moves of a program or job, as columns in part coordinates."""
+    """The canonical moves of a program or job, as columns in part coordinates.
+
+    Args:
+        program: NC program, job file, or a shipped program's name (``mefi/helix``).
+        dialect: One of ``twin dialects``; told by the program's words by default.
+        machine: A shipped machine's name, or a machine file; the job's by default.
+
+    Returns:
+        n moves over k axes. ``start``, ``end``: shape (n, k) [mm or deg]; ``feed``: shape (n,)
+        [mm/min or deg/min], NaN for rapids; ``line``: shape (n,); arcs with ``center`` and ``normal``,
+        shape (n, 3), ``radius`` [mm] and ``sweep`` [deg]. ``pandas.DataFrame(moves)`` has a column for
+        each, ``start`` and ``end`` by axis.
+
+    Raises:
+        ProgramError: The program is wrong; the message has the line and a caret.
+        UsageError: A file is missing or wrong.
+
+    Example:
+        >>> moves = twin.interpret("part.nc")
+        >>> moves.end[-1]
+        array([20.5 , -4.25,  0.  ,  0.  ])
+    """
     preparation = prepare(Path(program), dialect=dialect, machine=machine)
     chunks = preparation.interpretation().chunks()
     return concatenate([chunk.moves for chunk in chunks], preparation.machine.axes)
@@ -72,7 +93,26 @@ def interpret(
 def plan(
     program: str | Path, *, dialect: str | None = None, machine: str | None = None
 ) -> Setpoints:
-    """The setpoints of a program or job at the servo period, in machine coordinates."""
+    """The setpoints of a program or job at the servo period, in machine coordinates.
+
+    Args:
+        program: NC program, job file, or a shipped program's name.
+        dialect: One of ``twin dialects``; told by the program's words by default.
+        machine: A shipped machine's name, or a machine file; the job's by default.
+
+    Returns:
+        n samples over k axes: ``time`` [s] and ``line``, shape (n,); ``position`` [mm or deg],
+        ``velocity`` [per s] and ``acceleration`` [per s²], shape (n, k).
+
+    Raises:
+        ProgramError: The program is wrong.
+        UsageError: A file is missing or wrong.
+
+    Example:
+        >>> setpoints = twin.plan("part.nc")
+        >>> setpoints.time[-1]  # the cycle time [s]
+        2.31
+    """
     return join(list(setpoints(Run(prepare(Path(program), dialect=dialect, machine=machine)))))
 
 
@@ -98,6 +138,25 @@ def run(
     """Simulate, compare and cut a program or job.
 
     Writes what ``twin run`` writes into the folder ``out``: result, report, recording, part.
+
+    Args:
+        program: NC program, job file, or a shipped program's name.
+        out: The folder; made when missing.
+        dialect: One of ``twin dialects``; told by the program's words by default.
+        machine: A shipped machine's name, or a machine file; the job's by default.
+
+    Returns:
+        ``outcome`` with verdict and figures [µm, mdeg], and ``column(name)`` for the datasets of the
+        recording, such as ``joint/position``, shape (n, k) [mm or deg].
+
+    Raises:
+        ProgramError: The program is wrong.
+        UsageError: A file is missing or wrong, or another run holds the folder.
+
+    Example:
+        >>> done = twin.run("part.toml", out="out/part")
+        >>> done.outcome.verdict.outcome, done.outcome.figures.contour.max
+        ('pass', 3.4)
     """
     folder = Path(out)
     chain = Run(prepare(Path(program), dialect=dialect, machine=machine))

@@ -6,10 +6,12 @@ from typing import Annotated, NoReturn
 import typer
 
 from twin.command_line.calibration import calibrate
+from twin.command_line.examples import epilog
 from twin.command_line.knowledge import dialects, doctor, explain
 from twin.command_line.machines import machine_app
+from twin.command_line.monitoring import serve
 from twin.command_line.pictures import render
-from twin.command_line.programs import interpret, plan, run
+from twin.command_line.programs import init, interpret, plan, run
 from twin.command_line.training import train
 from twin.command_line.verdicts import check, compare, export, sweep
 from twin.errors import ExitCode, TwinError
@@ -20,7 +22,7 @@ app = typer.Typer(
     help="A digital twin of a 4-axis mill: NC text in, a verdict, a part and a picture out.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 
@@ -53,11 +55,13 @@ for command in (
     calibrate,
     export,
     train,
+    serve,
     dialects,
     explain,
     doctor,
+    init,
 ):
-    app.command()(command)
+    app.command(epilog=epilog(command.__name__))(command)
 app.add_typer(machine_app, name="machine")
 
 

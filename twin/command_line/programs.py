@@ -1,4 +1,4 @@
-"""What one program does: ``twin interpret``, ``plan`` and ``run``."""
+"""What one program does: ``twin interpret``, ``plan`` and ``run``; and ``init``, its first job."""
 
 from typing import Annotated
 
@@ -54,4 +54,17 @@ def run(
     from twin.commands.run import run_and_print
 
     code = run_and_print(job, out, dialect=dialect, machine=machine, video=video, strict=strict)
+    raise typer.Exit(code)
+
+
+def init(
+    program: Program,
+    dialect: DialectOption = None,
+    machine: MachineOption = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace a job file.")] = False,
+) -> None:
+    """Write a first job file beside a program: stock and tools as the program tells them."""
+    from twin.commands.init import init_and_print
+
+    code = init_and_print(program, dialect=dialect, machine=machine, force=force)
     raise typer.Exit(code)

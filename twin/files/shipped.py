@@ -25,6 +25,29 @@ def resource_root(kind: str) -> Path:
     raise UsageError(f"this installation has no '{kind}' folder; looked in {candidates}")
 
 
+def is_shipped(path: Path) -> bool:
+    """Whether a path lies in what ships with the package."""
+    roots = (resource_root(kind) for kind in ("models", "programs"))
+    return any(path.resolve().is_relative_to(root.resolve()) for root in roots)
+
+
+def shipped_program(name: str) -> Path | None:
+    """A shipped program's job by its name, such as ``helix`` or ``mefi/helix``; None for no such.
+
+    Raises:
+        UsageError: Several are called so.
+    """
+    jobs = {
+        path.relative_to(resource_root("programs")).with_suffix("").as_posix(): path
+        for path in sorted(resource_root("programs").rglob("*.toml"))
+        if path.with_suffix(".nc").is_file()
+    }
+    found = [each for each in jobs if each == name or each.endswith(f"/{name}")]
+    if len(found) > 1:
+        raise UsageError(f"{name}: several shipped programs are called so: {', '.join(found)}")
+    return jobs[found[0]] if found else None
+
+
 def machine_names() -> tuple[str, ...]:
     """Names of the shipped machines, sorted."""
     return tuple(

@@ -49,13 +49,13 @@ def read_toml(
     return checked(data, table, str(path))
 
 
-def checked(data: Data, table: type[TableT], where: str) -> TableT:
+def checked(data: Data, table: type[TableT], where: str | Callable[[str], str | Path]) -> TableT:
     """Check content against a table model.
 
     Args:
         data: The content.
         table: The model that names its keys.
-        where: What a message begins with, such as the file.
+        where: What a message begins with, such as the file; or what tells it for a key with dots.
 
     Raises:
         ConfigError: A wrong key or value.
@@ -63,7 +63,10 @@ def checked(data: Data, table: type[TableT], where: str) -> TableT:
     try:
         return table.model_validate(data)
     except pydantic.ValidationError as error:
-        lines = "\n".join(f"{where}: {_explain(detail, table)}" for detail in error.errors())
+        lines = "\n".join(
+            f"{where if isinstance(where, str) else where(_key(detail))}: {_explain(detail, table)}"
+            for detail in error.errors()
+        )
         raise ConfigError(lines) from error
 
 
@@ -108,7 +111,7 @@ _TOO_DEEP = f"has tables or lists within each other, more than {DEEPEST} deep"
 
 
 def _explain(detail: ErrorDetails, table: type[pydantic.BaseModel]) -> str:
-    key = ".".join(str(part) for part in detail["loc"]) or "(file)"
+    key = _key(detail) or "(file)"
     if detail["type"] == "missing":
         return f"'{key}' is missing"
     if detail["type"] != "extra_forbidden":
@@ -119,6 +122,10 @@ def _explain(detail: ErrorDetails, table: type[pydantic.BaseModel]) -> str:
     nearest = difflib.get_close_matches(str(detail["loc"][-1]), known, n=1)
     hint = f"did you mean '{nearest[0]}'?" if nearest else f"known keys: {', '.join(sorted(known))}"
     return f"unknown key '{key}'; {hint}"
+
+
+def _key(detail: ErrorDetails) -> str:
+    return ".".join(str(part) for part in detail["loc"])
 
 
 def _known_keys(model: Any, path: tuple[int | str, ...]) -> list[str]:

@@ -1,6 +1,7 @@
 """The job file: which program, on which machine, with which stock, tools and tolerances."""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -10,8 +11,9 @@ from pydantic import Field
 from twin.errors import ConfigError
 from twin.files.overrides import Change, changed
 from twin.files.stl import stl_extent
-from twin.files.toml import Data, Table, checked, read_toml
+from twin.files.toml import Data, Table, checked, load_toml
 from twin.job.fixture import FixtureTable
+from twin.job.layers import extended_layers, laid_over, layer_of, shared_layers
 
 Positive = Annotated[float, Field(gt=0)]
 
@@ -205,7 +207,11 @@ class VideoTable(Table):
 
 
 class JobFile(Table):
-    """A job file; every key but ``program`` has a default."""
+    """A job file; every key but ``program`` has a default.
+
+    ``extends = "other.toml"`` takes what the job does not say from another file, and a ``twin.toml``
+    in its folder or above it is taken so without being named.
+    """
 
     program: str
     """NC program, relative to the job file."""
@@ -274,14 +280,11 @@ class Job:
         self.path = path
 
 
-def _runs(job: Job, program: Path) -> bool:
-    return job.program.resolve() == program.resolve()
-
-
 def read_job(path: Path, changes: Sequence[Change] = ()) -> Job:
     """Read a job file, or make the default job of an NC program.
 
-    An NC program with a job file of the same stem beside it is run by that job.
+    An NC program with a job file of the same stem beside it is run by that job. What a job leaves
+    open it takes from the files that it shares with others (``twin.job.layers``).
 
     Args:
         path: A ``.toml`` job file, or an NC program.
@@ -290,19 +293,24 @@ def read_job(path: Path, changes: Sequence[Change] = ()) -> Job:
     Raises:
         ConfigError: The job file is wrong, or the program does not exist.
     """
-
-    def change(data: Data) -> Data:
-        return changed(data, "job", changes)
-
     beside = path.with_suffix(".toml")
     if path.suffix == ".toml":
-        job = Job(path.parent, read_toml(path, JobFile, prepare=change), path)
-    elif beside.is_file() and _runs(
-        job := Job(path.parent, read_toml(beside, JobFile, prepare=change), beside), path
-    ):
-        pass
+        job = _layered(path, load_toml(path), changes, path)
+    elif beside.is_file() and _names(beside, path):
+        job = _layered(beside, load_toml(beside), changes, beside)
     else:
-        job = Job(path.parent, checked(change({"program": path.name}), JobFile, str(path)))
+        job = _layered(path, {"program": path.name}, changes, None)
     if not job.program.is_file():
         raise ConfigError(f"{job.program}: no such NC program")
     return job
+
+
+def _names(job: Path, program: Path) -> bool:
+    """Whether a job file runs a program; one that names none is a job with an error."""
+    named = load_toml(job).get("program", program.name)
+    return isinstance(named, str) and (job.parent / named).resolve() == program.resolve()
+
+
+def _layered(path: Path, data: Data, changes: Sequence[Change], job: Path | None) -> Job:
+    layers = [*extended_layers(path, changed(data, "job", changes)), *shared_layers(path.parent)]
+    return Job(path.parent, checked(laid_over(layers), JobFile, partial(layer_of, layers)), job)

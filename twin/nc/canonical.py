@@ -21,7 +21,7 @@ Conventions, once for all rooms:
 
 import dataclasses
 import enum
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -161,6 +161,24 @@ class Moves:
     def __getitem__(self, index: slice | npt.NDArray[np.bool_] | IntArray) -> "Moves":
         """A selection of the moves, as columns again."""
         return Moves(self.axes, **{name: getattr(self, name)[index] for name in _COLUMNS})
+
+    def __iter__(self) -> Iterator[dict[str, float | int]]:
+        """One flat row a move, for people and data frames; calculations take the columns."""
+        table = self.table()
+        for row in zip(*(column.tolist() for column in table.values()), strict=True):
+            yield dict(zip(table, row, strict=True))
+
+    def table(self) -> dict[str, npt.NDArray[np.generic]]:
+        """Flat columns of n values by name, vectors taken apart (``end_X``): for a data frame."""
+        columns: dict[str, npt.NDArray[np.generic]] = {}
+        for name in _COLUMNS:
+            column = getattr(self, name)
+            parts = self.axes.names if name in _AXIS_ROWS else SPATIAL_AXES
+            if column.ndim == 1:
+                columns[name] = column
+            else:
+                columns |= {f"{name}_{part}": column[:, at] for at, part in enumerate(parts)}
+        return columns
 
     @staticmethod
     def empty(axes: Axes) -> "Moves":

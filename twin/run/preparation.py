@@ -9,7 +9,7 @@ import pydantic
 
 from twin.errors import RecordingError, UsageError
 from twin.files.overrides import Change
-from twin.files.shipped import machine_file
+from twin.files.shipped import machine_file, shipped_program
 from twin.job.job_file import Job, JobFile, read_job
 from twin.machine.config import Machine, read_machine
 from twin.nc.canonical import FloatArray
@@ -77,7 +77,10 @@ def prepare(
     if path.is_dir():
         raise UsageError(f"{path}: a folder; twin check runs the programs in a folder")
     if not path.is_file():
-        raise UsageError(f"{path}: no such file")
+        shipped = None if path.suffix else shipped_program(str(path))
+        if shipped is None:
+            raise UsageError(f"{path}: no such file")
+        path = shipped
     return prepare_job(
         read_job(path, changes), dialect=dialect, machine=machine, strict=strict, changes=changes
     )

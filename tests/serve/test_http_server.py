@@ -1,0 +1,190 @@
+"""The agent as a client sees it: over HTTP, from a machine that is made up."""
+
+import contextlib
+import http.client
+import re
+import socket
+import threading
+import time
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from itertools import count, pairwise
+
+import pytest
+
+from twin.nc.canonical import Axes
+from twin.serve.agent import Agent
+from twin.serve.buffer import NORMAL, Condition
+from twin.serve.clock import Clock
+from twin.serve.device import device_of
+from twin.serve.playback import Tick, feed
+
+uvicorn = pytest.importorskip("uvicorn", reason="the web server of the extra 'serve' is missing")
+from twin.serve.http_server import application  # noqa: E402 (it needs that web server)
+
+AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
+STREAMS = "{urn:mtconnect.org:MTConnectStreams:2.0}"
+DEVICES = "{urn:mtconnect.org:MTConnectDevices:2.0}"
+ERROR = "{urn:mtconnect.org:MTConnectError:2.0}"
+FAULT = Condition("Fault", "hard-limit", "X < -300 & stays \x01 there")
+HOSTILE_BLOCK = 'N5 "]]> <X> & \x00 \ud800'
+PERIOD_S = 0.01
+
+
+def machine() -> Iterator[Tick]:
+    """A hundred positions a second, and a fault at the very first."""
+    yield Tick(0.0, {"execution": "READY", "system": NORMAL, "block": HOSTILE_BLOCK})
+    yield Tick(0.0, {"execution": "STOPPED", "system": FAULT})
+    for number in count(1):
+        yield Tick(number * PERIOD_S, {"X_position": f"{number:.3f}"})
+
+
+@pytest.fixture
+def port() -> Iterator[int]:
+    """Where an agent of this machine listens; its buffer holds five seconds."""
+    agent = Agent(device_of("mill", AXES), Clock(), "made up", size=500)
+    config = uvicorn.Config(
+        application(agent, lambda: feed(agent, machine())),
+        log_level="error",
+        timeout_graceful_shutdown=1,
+    )
+    server = uvicorn.Server(config)
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        yield listener.getsockname()[1]
+        server.should_exit = True
+        thread.join()
+
+
+def ask(port: int, target: str, method: str = "GET") -> tuple[int, ET.Element]:
+    with contextlib.closing(
+        http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+    ) as connection:
+        connection.request(method, target)
+        answer = connection.getresponse()
+        return answer.status, ET.fromstring(answer.read())  # noqa: S314 (own server)
+
+
+@contextlib.contextmanager
+def stream(port: int, target: str) -> Iterator[Iterator[ET.Element]]:
+    """The documents of a stream."""
+    with contextlib.closing(
+        http.client.HTTPConnection("127.0.0.1", port, timeout=20)
+    ) as connection:
+        connection.request("GET", target)
+        with connection.getresponse() as answer:
+            kind = answer.getheader("Content-Type") or ""
+            boundary = re.fullmatch(r"multipart/x-mixed-replace;boundary=(\w+)", kind)
+            assert boundary
+            yield parts(answer, boundary[1])
+
+
+def test_the_probe_names_every_item_once(port: int) -> None:
+    for target in ("/", "/probe", "/mill/probe"):
+        status, root = ask(port, target)
+        assert status == 200
+        assert root.tag == f"{DEVICES}MTConnectDevices"
+        found = [item.attrib["id"] for item in root.iter(f"{DEVICES}DataItem")]
+        assert len(found) == len(set(found)) == 3 + 4 * 3 + 1 + 2 + 8
+        assert [axis.attrib["name"] for axis in root.iter(f"{DEVICES}Linear")] == ["X", "Y", "Z"]
+
+
+def test_current_tells_faults_and_hostile_texts(port: int) -> None:
+    status, root = ask(port, "/current?path=//Controller")
+    assert status == 200
+    (fault,) = root.iter(f"{STREAMS}Fault")
+    assert fault.attrib["nativeCode"] == "hard-limit"
+    assert fault.text == "X < -300 & stays \N{REPLACEMENT CHARACTER} there"
+    (block,) = root.iter(f"{STREAMS}Block")
+    assert block.text == 'N5 "]]> <X> & \N{REPLACEMENT CHARACTER} '
+    (execution,) = root.iter(f"{STREAMS}Execution")
+    assert execution.text == "STOPPED"
+    (mode,) = root.iter(f"{STREAMS}ControllerMode")
+    assert mode.text == "UNAVAILABLE"
+    assert not list(root.iter(f"{STREAMS}Position"))
+
+
+def test_requests_go_on_where_the_last_one_ended(port: int) -> None:
+    following, seen = "1", []
+    while len(seen) < 60:
+        _, root = ask(port, f"/sample?from={following}&count=7&path=//Linear[@name='X']")
+        (header,) = root.iter(f"{STREAMS}Header")
+        following = header.attrib["nextSequence"]
+        seen += [
+            float(each.text or "")
+            for each in root.iter(f"{STREAMS}Position")
+            if each.text != "UNAVAILABLE"
+        ]
+        time.sleep(0.01)
+    assert seen == [float(number + 1) for number in range(len(seen))]
+
+
+def test_a_stream_has_no_gap_and_a_heartbeat(port: int) -> None:
+    with stream(port, "/sample?interval=50&path=//DataItem[@id='X_position']") as documents:
+        numbers = [value for _ in range(12) for value in positions(next(documents))]
+    assert len(numbers) > 20
+    assert all(after - before == 1.0 for before, after in pairwise(numbers))
+    rare = "/sample?interval=10&heartbeat=100&path=//DataItem[@type='EXECUTION']"
+    with stream(port, rare) as documents:
+        assert list(next(documents).iter(f"{STREAMS}Execution"))
+        for _ in range(2):
+            assert not list(next(documents).iter(f"{STREAMS}Execution"))
+
+
+def parts(answer: http.client.HTTPResponse, boundary: str) -> Iterator[ET.Element]:
+    while answer.readline() == f"--{boundary}\r\n".encode():
+        assert answer.readline() == b"Content-type: text/xml\r\n"
+        length = int(answer.readline().partition(b":")[2])
+        assert answer.readline() == b"\r\n"
+        yield ET.fromstring(answer.read(length))  # noqa: S314 (own server)
+        assert answer.readline() == b"\r\n"
+
+
+def positions(root: ET.Element) -> list[float]:
+    found = [each.text or "" for each in root.iter(f"{STREAMS}Position")]
+    return [float(text) for text in found if text != "UNAVAILABLE"]
+
+
+@pytest.mark.parametrize(
+    ("target", "status", "code"),
+    [
+        ("/sample?from=999999", 404, "OUT_OF_RANGE"),
+        ("/sample?from=-1", 404, "OUT_OF_RANGE"),
+        ("/sample?count=0", 404, "OUT_OF_RANGE"),
+        ("/sample?count=1e3", 400, "INVALID_REQUEST"),
+        ("/sample?count=" + "9" * 5000, 400, "INVALID_REQUEST"),
+        ("/sample?interval=soon", 400, "INVALID_REQUEST"),
+        ("/sample?heartbeat=0", 404, "OUT_OF_RANGE"),
+        ("/current?at=999999", 404, "OUT_OF_RANGE"),
+        ("/current?path=//%5B", 400, "INVALID_XPATH"),
+        ("/current?path=//Nothing", 400, "INVALID_XPATH"),
+        ("/current?path=" + "/" * 2000, 400, "INVALID_XPATH"),
+        ("/current?path=", 400, "INVALID_XPATH"),
+        ("/lathe/current", 404, "NO_DEVICE"),
+        ("/assets", 404, "INVALID_URI"),
+        ("/%00%ff/probe", 404, "NO_DEVICE"),
+    ],
+)
+def test_what_cannot_be_answered_is_an_error_document(
+    port: int, target: str, status: int, code: str
+) -> None:
+    found, root = ask(port, target)
+    (error,) = root.iter(f"{ERROR}Error")
+    assert (found, error.attrib["errorCode"]) == (status, code)
+
+
+def test_nobody_can_write(port: int) -> None:
+    for method in ("POST", "PUT", "DELETE"):
+        status, root = ask(port, "/current", method)
+        (error,) = root.iter(f"{ERROR}Error")
+        assert (status, error.attrib["errorCode"]) == (405, "UNSUPPORTED")
+
+
+def test_a_client_that_the_buffer_passed_by_is_told() -> None:
+    agent = Agent(device_of("mill", AXES), Clock(), "made up", size=30)
+    query = agent.query("sample", {"from": "1"})
+    for number in range(100):
+        agent.observe(number * PERIOD_S, {"X_position": str(number)})
+    with pytest.raises(Exception, match="the buffer holds 97 to 126"):
+        agent.answer(query)

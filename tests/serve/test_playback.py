@@ -1,0 +1,109 @@
+"""A run that is told part after part, and the command that serves it."""
+
+import os
+import signal
+import subprocess
+import sys
+import urllib.request
+from collections.abc import Iterator
+from itertools import takewhile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from twin.machine.alarms import Alarm
+from twin.recording.reader import open_recording
+from twin.run.preparation import prepare
+from twin.run.progress import no_progress
+from twin.run.run import Run
+from twin.serve.buffer import Condition
+from twin.serve.playback import BEFORE_START_S, TICK_S, Production, Tick, ticks
+
+PROGRAM = """N1 X0 Y0 Z0 C0 G00
+N2 G01 F1500
+N3 G01 X20 Y5 C30
+N4 G02 X0 Y5 I-10 J0
+N5 M30
+"""
+
+
+@pytest.fixture(scope="module")
+def production(tmp_path_factory: pytest.TempPathFactory) -> Production:
+    folder = tmp_path_factory.mktemp("serve")
+    program = folder / "part.nc"
+    program.write_text(PROGRAM, encoding="utf-8")
+    run = Run(prepare(program, dialect="mefi"))
+    dry_run = run.dry_run()
+    outcome = run.execute(dry_run, folder, no_progress)
+    return Production(
+        machine=run.preparation.machine,
+        program="part.nc",
+        source=run.preparation.source.lines,
+        summary=dry_run.summary,
+        recording=folder / "recording.h5",
+        alarms=outcome.alarms,
+    )
+
+
+def one_part(machine: Iterator[Tick]) -> list[Tick]:
+    """From one start to the next end."""
+    next(tick for tick in machine if tick.values.get("execution") == "ACTIVE")
+    return list(takewhile(lambda tick: "execution" not in tick.values, machine))
+
+
+def test_each_part_is_made_by_the_recorded_motion(production: Production):
+    machine = ticks(production)
+    first, second = one_part(machine), one_part(machine)
+    assert [tick.values for tick in first] == [tick.values for tick in second]
+    steps = np.diff([tick.elapsed_s for tick in first])
+    assert steps == pytest.approx(np.full(len(steps), TICK_S))
+    assert production.recording is not None
+    with open_recording(production.recording) as recording:
+        every = round(TICK_S / recording.header.period_s)
+        joint = recording.column("joint/position")[::every]
+    told = [[tick.values[f"{axis}_position"] for axis in "XYZC"] for tick in first]
+    assert np.array(told, np.float64) == pytest.approx(joint, abs=1e-6)
+
+
+def test_feed_and_block_are_those_of_the_program(production: Production):
+    circle = [tick.values for tick in one_part(ticks(production)) if tick.values["line"] == "4"]
+    assert {values["block"] for values in circle} == {"N4 G02 X0 Y5 I-10 J0"}
+    middle = circle[len(circle) // 2]
+    assert float(str(middle["path_feedrate"])) == pytest.approx(1500.0 / 60.0, rel=0.001)
+
+
+def test_an_alarm_is_a_fault_until_somebody_resets_it(production: Production):
+    alarm = Alarm("soft-limit", 3, 0.25, "X", "X would leave its travel")
+    machine = ticks(production._replace(recording=None, alarms=(alarm,)))
+    told: list[tuple[object, object]] = []
+    at = []
+    while len(told) < 8:
+        tick = next(machine)
+        if "system" in tick.values or "execution" in tick.values:
+            told.append((tick.values.get("execution"), tick.values.get("system")))
+            at.append(tick.elapsed_s)
+    fault = Condition("Fault", "soft-limit", "X would leave its travel")
+    assert told[:3] == [("READY", Condition("Normal")), ("ACTIVE", None), ("STOPPED", fault)]
+    assert told[3:6] == told[:3]
+    assert at[2] == pytest.approx(BEFORE_START_S + 0.25)
+
+
+def test_the_command_prints_its_address_and_ends_on_request(tmp_path: Path):
+    program = tmp_path / "part.nc"
+    program.write_text(PROGRAM, encoding="utf-8")
+    command = [sys.executable, "-m", "twin", "serve", str(program), "--dialect", "mefi"]
+    with subprocess.Popen(
+        [*command, "--speed", "5"], stdout=subprocess.PIPE, text=True, env=os.environ
+    ) as process:
+        assert process.stdout is not None
+        address = process.stdout.readline().strip()
+        try:
+            assert address.startswith("http://127.0.0.1:")
+            with urllib.request.urlopen(address + "current", timeout=20) as answer:  # noqa: S310 (own server)
+                document = answer.read().decode()
+            assert "<Availability" in document
+            assert "part.nc</Program>" in document
+        finally:
+            process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=30) == 0

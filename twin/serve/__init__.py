@@ -1,0 +1,1 @@
+"""An MTConnect agent: what the machine does, read over HTTP."""

@@ -1,0 +1,212 @@
+"""What the agent answers: requests after MTConnect Part 1, without the network around them."""
+
+import dataclasses
+import re
+import time
+import uuid
+import xml.etree.ElementTree as ET  # only searches in what was made here
+from collections.abc import Mapping
+
+from twin.serve.buffer import BUFFER_SIZE, Observation, ObservationBuffer, OutOfRangeError, Value
+from twin.serve.clock import Clock
+from twin.serve.device import Component
+from twin.serve.documents import (
+    Header,
+    device_element,
+    devices_document,
+    error_document,
+    item_ids,
+    sender_name,
+    streams_document,
+)
+
+REQUESTS = ("probe", "current", "sample")
+COUNT = 100
+"""Observations of one answer, where the request does not say."""
+HEARTBEAT_MS = 10_000
+LEAST_INTERVAL_MS = 10
+LONGEST_PAUSE_MS = 600_000
+_LONGEST_PATH = 1000
+_NUMBER = re.compile(r"[+-]?[0-9]{1,18}")
+
+
+class RequestError(Exception):
+    """A request that cannot be met.
+
+    Attributes:
+        code: One of the standard's error codes.
+        status: Of HTTP.
+    """
+
+    def __init__(self, code: str, message: str, status: int = 400) -> None:
+        super().__init__(message)
+        self.code = code
+        self.status = status
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Query:
+    """A request of observations.
+
+    Attributes:
+        request: ``current`` or ``sample``.
+        wanted: Identifiers of the data items.
+        first: Number of the first observation, or of the moment; None for the default.
+        count: How many observations.
+        interval_ms: Least pause between two documents of a stream; None for one document.
+        heartbeat_ms: Longest pause between two documents of a stream.
+    """
+
+    request: str
+    wanted: frozenset[str]
+    first: int | None
+    count: int
+    interval_ms: int | None
+    heartbeat_ms: int
+
+
+class Agent:
+    """Answers about one device.
+
+    Attributes:
+        device: What is observed.
+        clock: The twin's.
+        buffer: What was observed.
+    """
+
+    def __init__(
+        self, device: Component, clock: Clock, description: str, size: int = BUFFER_SIZE
+    ) -> None:
+        """Start with nothing observed.
+
+        Args:
+            device: What is observed.
+            clock: The twin's.
+            description: Of the device, for people.
+            size: How many observations are remembered.
+        """
+        self.device = device
+        self.clock = clock
+        items = [item.id for component in device.walk() for item in component.items]
+        self.buffer = ObservationBuffer(items, clock.at(0.0), size)
+        self._uuid = str(uuid.uuid5(uuid.NAMESPACE_DNS, f"{device.name}.mill-twin"))
+        self._instance = int(time.time())
+        self._element = device_element(device, self._uuid, description)
+
+    def observe(self, elapsed_s: float, values: Mapping[str, Value]) -> None:
+        """Remember what changed.
+
+        Args:
+            elapsed_s: When, by the twin's clock since its start [s].
+            values: By identifier of the data item.
+        """
+        moment = self.clock.at(elapsed_s)
+        for item, value in values.items():
+            self.buffer.add(item, moment, value)
+
+    def require_device(self, name: str) -> None:
+        """Refuse a device that this agent does not know.
+
+        Raises:
+            RequestError: It has neither this name nor this identifier.
+        """
+        if name not in (self.device.name, self._uuid):
+            message = f"no device '{name[:_LONGEST_PATH]}': there is {self.device.name}"
+            raise RequestError("NO_DEVICE", message, 404)
+
+    def probe(self) -> bytes:
+        """The document that describes the device."""
+        return devices_document(self._header(), self._element)
+
+    def query(self, request: str, parameters: Mapping[str, str]) -> Query:
+        """Read the parameters of ``current`` or ``sample``.
+
+        Raises:
+            RequestError: One is wrong; the message says what would have worked.
+        """
+        interval = None
+        if "interval" in parameters:
+            asked = _number(parameters, "interval", 0, LONGEST_PAUSE_MS)
+            interval = max(asked or 0, LEAST_INTERVAL_MS)
+        heartbeat = _number(parameters, "heartbeat", 1, LONGEST_PAUSE_MS)
+        count = _number(parameters, "count")
+        return Query(
+            request=request,
+            wanted=self._wanted(parameters.get("path")),
+            first=_number(parameters, "from" if request == "sample" else "at", 0),
+            count=min(COUNT, self.buffer.size) if count is None else count,
+            interval_ms=interval,
+            heartbeat_ms=HEARTBEAT_MS if heartbeat is None else heartbeat,
+        )
+
+    def answer(self, query: Query) -> tuple[bytes, int, bool]:
+        """One document of observations.
+
+        Returns:
+            The document, the number with which the next request goes on, and whether the document
+            holds any observation.
+
+        Raises:
+            RequestError: The buffer does not hold what is asked for.
+        """
+        buffer = self.buffer
+        try:
+            if query.request == "current":
+                found = buffer.current(query.wanted, query.first)
+                following = buffer.next_sequence
+            else:
+                found, following = buffer.sample(query.wanted, query.first, query.count)
+        except OutOfRangeError as error:
+            raise RequestError("OUT_OF_RANGE", str(error), 404) from error
+        return self._streams(found, following), following, bool(found)
+
+    def error(self, error: RequestError) -> bytes:
+        """The document that tells of an error."""
+        return error_document(self._header(), error.code, str(error))
+
+    def _streams(self, found: list[Observation], following: int) -> bytes:
+        first, last = self.buffer.first_sequence, self.buffer.next_sequence - 1
+        sequences = (first, last, following)
+        return streams_document(self._header(), self.device, self._uuid, found, sequences)
+
+    def _header(self) -> Header:
+        return Header(
+            time=self.clock.now(),
+            instance=self._instance,
+            buffer_size=self.buffer.size,
+            sender=sender_name(),
+        )
+
+    def _wanted(self, path: str | None) -> frozenset[str]:
+        if path is None:
+            return frozenset(item_ids([self._element]))
+        if len(path) > _LONGEST_PATH:
+            raise RequestError("INVALID_XPATH", f"'path' is longer than {_LONGEST_PATH} letters")
+        devices = ET.Element("MTConnectDevices")
+        ET.SubElement(devices, "Devices").append(self._element)
+        found: set[str] = set()
+        for part in path.split("|"):
+            search = part.strip()
+            try:
+                found |= item_ids(devices.iterfind(f".{search}" if search[:1] == "/" else search))
+            except (SyntaxError, KeyError, ValueError, TypeError, IndexError) as error:
+                message = f"'path' cannot be read at '{search}': //Axes//DataItem[@type='LOAD'] can"
+                raise RequestError("INVALID_XPATH", message) from error
+        if not found:
+            raise RequestError("INVALID_XPATH", "'path' names no data item of the device")
+        return frozenset(found)
+
+
+def _number(
+    parameters: Mapping[str, str], name: str, least: int | None = None, most: int | None = None
+) -> int | None:
+    text = parameters.get(name)
+    if text is None:
+        return None
+    number = int(text) if _NUMBER.fullmatch(text) else None
+    if number is None:
+        raise RequestError("INVALID_REQUEST", f"'{name}' must be a whole number")
+    if (least is not None and number < least) or (most is not None and number > most):
+        limits = f"{least} or more" if most is None else f"{least} to {most}"
+        raise RequestError("OUT_OF_RANGE", f"'{name}' is {number}; it must be {limits}", 404)
+    return number

@@ -1,0 +1,132 @@
+"""What the agent tells of a machine: components and data items after MTConnect Part 2."""
+
+import dataclasses
+from collections.abc import Iterator
+from typing import Literal
+
+from twin.nc.canonical import Axes
+
+Category = Literal["SAMPLE", "EVENT", "CONDITION"]
+UNAVAILABLE = "UNAVAILABLE"
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class DataItem:
+    """One thing that is observed.
+
+    Attributes:
+        id: Unique on the device.
+        category: Samples are measured, events change in steps, conditions tell of health.
+        type: In the words of the standard, such as ``PATH_FEEDRATE``.
+        units: Of a sample; empty for others.
+        sub_type: ``ACTUAL`` or ``COMMANDED``, where the type has such.
+    """
+
+    id: str
+    category: Category
+    type: str
+    units: str = ""
+    sub_type: str = ""
+
+    @property
+    def element(self) -> str:
+        """Name of its observations' elements: the type in Pascal case."""
+        return "".join(word.capitalize() for word in self.type.split("_"))
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Component:
+    """A part of the machine.
+
+    Attributes:
+        element: In the words of the standard, such as ``Linear``.
+        id: Unique on the device.
+        name: What people call it.
+        items: What is observed of it.
+        components: What it consists of.
+    """
+
+    element: str
+    id: str
+    name: str
+    items: tuple[DataItem, ...] = ()
+    components: tuple["Component", ...] = ()
+
+    def walk(self) -> Iterator["Component"]:
+        """This component and all that it consists of, outermost first."""
+        yield self
+        for component in self.components:
+            yield from component.walk()
+
+
+def device_of(name: str, axes: Axes) -> Component:
+    """The device that a machine is to a monitor.
+
+    Identifiers begin with what they are about: ``X_position``, ``X_position_commanded``, ``X_load``,
+    ``path_feedrate``, ``system``.
+
+    Args:
+        name: Of the machine.
+        axes: Its axes, in order.
+    """
+    pairs = zip(axes.names, axes.kinds, strict=True)
+    spindle = Component(
+        "Rotary",
+        "S",
+        "S",
+        (DataItem("spindle_speed", "SAMPLE", "ROTARY_VELOCITY", "REVOLUTION/MINUTE", "ACTUAL"),),
+    )
+    path = Component(
+        "Path",
+        "path",
+        "path",
+        (
+            DataItem("path_feedrate", "SAMPLE", "PATH_FEEDRATE", "MILLIMETER/SECOND", "ACTUAL"),
+            DataItem("block", "EVENT", "BLOCK"),
+            DataItem("execution", "EVENT", "EXECUTION"),
+            DataItem("line", "EVENT", "LINE_NUMBER", sub_type="ABSOLUTE"),
+            DataItem("mode", "EVENT", "CONTROLLER_MODE"),
+            DataItem("part_count", "EVENT", "PART_COUNT", sub_type="ALL"),
+            DataItem("program", "EVENT", "PROGRAM"),
+            DataItem("tool_number", "EVENT", "TOOL_NUMBER"),
+        ),
+    )
+    controller = Component(
+        "Controller",
+        "controller",
+        "controller",
+        (
+            DataItem("emergency_stop", "EVENT", "EMERGENCY_STOP"),
+            DataItem("system", "CONDITION", "SYSTEM"),
+        ),
+        (path,),
+    )
+    return Component(
+        "Device",
+        "device",
+        name,
+        (
+            DataItem("availability", "EVENT", "AVAILABILITY"),
+            DataItem("asset_changed", "EVENT", "ASSET_CHANGED"),
+            DataItem("asset_removed", "EVENT", "ASSET_REMOVED"),
+        ),
+        (
+            Component("Axes", "axes", "base", (), (*(_axis(*pair) for pair in pairs), spindle)),
+            controller,
+        ),
+    )
+
+
+def _axis(name: str, kind: str) -> Component:
+    linear = kind == "linear"
+    what, units = ("POSITION", "MILLIMETER") if linear else ("ANGLE", "DEGREE")
+    return Component(
+        "Linear" if linear else "Rotary",
+        name,
+        name,
+        (
+            DataItem(f"{name}_position", "SAMPLE", what, units, "ACTUAL"),
+            DataItem(f"{name}_position_commanded", "SAMPLE", what, units, "COMMANDED"),
+            DataItem(f"{name}_load", "SAMPLE", "LOAD", "PERCENT"),
+        ),
+    )

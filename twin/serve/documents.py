@@ -1,0 +1,221 @@
+"""The documents of MTConnect 2.0: Devices, Streams and Error, as XML."""
+
+import dataclasses
+import io
+import xml.etree.ElementTree as ET  # only writes; nothing from outside is parsed
+from collections.abc import Iterable, Mapping, Sequence
+
+from twin.serve.buffer import Condition, Observation
+from twin.serve.device import UNAVAILABLE, Component, DataItem
+from twin.version import __version__
+
+VERSION = "2.0"
+_SCHEMA_INSTANCE = "http://www.w3.org/2001/XMLSchema-instance"
+_CATEGORIES = {"SAMPLE": "Samples", "EVENT": "Events", "CONDITION": "Condition"}
+"""Of each category the element that holds its observations, in the order of the schema."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Header:
+    """What stands at the head of every document.
+
+    Attributes:
+        time: When the document was made, by the twin's clock, ISO 8601.
+        instance: Number of this start of the agent; sequence numbers of another mean nothing here.
+        buffer_size: How many observations are remembered.
+        sender: Who answers.
+    """
+
+    time: str
+    instance: int
+    buffer_size: int
+    sender: str
+
+    def attributes(self) -> dict[str, str]:
+        """As attributes; ``testIndicator`` says that no real machine stands behind them."""
+        return {
+            "creationTime": self.time,
+            "sender": self.sender,
+            "instanceId": str(self.instance),
+            "version": VERSION,
+            "bufferSize": str(self.buffer_size),
+            "testIndicator": "true",
+        }
+
+
+def device_element(device: Component, uuid: str, description: str) -> ET.Element:
+    """The device with its components and data items; ``path`` requests search in it.
+
+    Args:
+        device: The device.
+        uuid: Its identifier everywhere.
+        description: For people.
+    """
+    element = _component_element(device)
+    element.set("uuid", uuid)
+    about = ET.Element("Description", manufacturer="mill-twin", model=device.name)
+    about.text = description
+    element.insert(0, about)
+    return element
+
+
+def _component_element(component: Component) -> ET.Element:
+    element = ET.Element(component.element, id=component.id, name=component.name)
+    if component.items:
+        items = ET.SubElement(element, "DataItems")
+        for item in component.items:
+            ET.SubElement(items, "DataItem", _item_attributes(item))
+    if component.components:
+        inner = ET.SubElement(element, "Components")
+        inner.extend(_component_element(each) for each in component.components)
+    return element
+
+
+def _item_attributes(item: DataItem) -> dict[str, str]:
+    attributes = {"category": item.category, "id": item.id, "type": item.type}
+    if item.sub_type:
+        attributes["subType"] = item.sub_type
+    if item.units:
+        attributes |= {"units": item.units, "nativeUnits": item.units}
+    return attributes
+
+
+def devices_document(header: Header, device: ET.Element) -> bytes:
+    """The answer to ``probe``."""
+    root = _root("Devices")
+    counts = {"assetBufferSize": "1", "assetCount": "0", "deviceModelChangeTime": header.time}
+    ET.SubElement(root, "Header", header.attributes() | counts)
+    ET.SubElement(root, "Devices").append(device)
+    return _bytes(root)
+
+
+def streams_document(
+    header: Header,
+    device: Component,
+    uuid: str,
+    observations: Sequence[Observation],
+    sequences: tuple[int, int, int],
+) -> bytes:
+    """The answer to ``current`` and ``sample``.
+
+    Args:
+        header: Its head.
+        device: The device that was observed.
+        uuid: Its identifier everywhere.
+        observations: In order.
+        sequences: Number of the first and the last observation that is remembered, and of the one
+            with which the next request goes on.
+    """
+    root = _root("Streams")
+    first, last, following = (str(number) for number in sequences)
+    numbers = {"firstSequence": first, "lastSequence": last, "nextSequence": following}
+    ET.SubElement(root, "Header", header.attributes() | numbers)
+    stream = ET.SubElement(ET.SubElement(root, "Streams"), "DeviceStream")
+    stream.attrib |= {"name": device.name, "uuid": uuid}
+    by_item: dict[str, list[Observation]] = {}
+    for observation in observations:
+        by_item.setdefault(observation.item, []).append(observation)
+    for component in device.walk():
+        _component_stream(stream, component, by_item)
+    return _bytes(root)
+
+
+def _component_stream(
+    stream: ET.Element, component: Component, by_item: Mapping[str, Sequence[Observation]]
+) -> None:
+    seen = [item for item in component.items if item.id in by_item]
+    if not seen:
+        return
+    element = ET.SubElement(stream, "ComponentStream", component=component.element)
+    element.attrib |= {"name": component.name, "componentId": component.id}
+    for category, holder in _CATEGORIES.items():
+        found = [
+            (item, observation)
+            for item in seen
+            if item.category == category
+            for observation in by_item[item.id]
+        ]
+        if found:
+            found.sort(key=lambda pair: pair[1].sequence)
+            inner = ET.SubElement(element, holder)
+            inner.extend(_observation_element(*pair) for pair in found)
+
+
+def _observation_element(item: DataItem, observation: Observation) -> ET.Element:
+    value = observation.value
+    attributes = {
+        "dataItemId": item.id,
+        "sequence": str(observation.sequence),
+        "timestamp": observation.time,
+    }
+    if item.category == "CONDITION":
+        condition = value if isinstance(value, Condition) else Condition("Unavailable")
+        element = ET.Element(condition.level, attributes | {"type": item.type})
+        if condition.code:
+            element.set("nativeCode", condition.code)
+        element.text = _legal(condition.text) or None
+        return element
+    element = ET.Element(item.element, attributes)
+    if item.sub_type:
+        element.set("subType", item.sub_type)
+    if item.type in ("ASSET_CHANGED", "ASSET_REMOVED"):
+        element.set("assetType", "")
+    element.text = UNAVAILABLE if isinstance(value, Condition) else _legal(value)
+    return element
+
+
+def error_document(header: Header, code: str, message: str) -> bytes:
+    """The answer to a request that cannot be met.
+
+    Args:
+        header: Its head.
+        code: One of the standard's, such as ``OUT_OF_RANGE``.
+        message: What would have worked.
+    """
+    root = _root("Error")
+    ET.SubElement(root, "Header", header.attributes())
+    error = ET.SubElement(ET.SubElement(root, "Errors"), "Error", errorCode=code)
+    error.text = _legal(message)
+    return _bytes(root)
+
+
+def _root(kind: str) -> ET.Element:
+    space = f"urn:mtconnect.org:MTConnect{kind}:{VERSION}"
+    return ET.Element(
+        f"MTConnect{kind}",
+        {
+            "xmlns": space,
+            "xmlns:xsi": _SCHEMA_INSTANCE,
+            "xsi:schemaLocation": (
+                f"{space} http://schemas.mtconnect.org/schemas/MTConnect{kind}_{VERSION}.xsd"
+            ),
+        },
+    )
+
+
+def _legal(text: str) -> str:
+    """A program may hold control characters, which no XML document can, escaped or not."""
+    return "".join(
+        letter if letter >= " " or letter in "\t\n" else "\N{REPLACEMENT CHARACTER}"
+        for letter in text
+        if not "\ud800" <= letter <= "\udfff" and letter not in "\ufffe\uffff"
+    )
+
+
+def _bytes(root: ET.Element) -> bytes:
+    out = io.BytesIO()
+    ET.ElementTree(root).write(out, encoding="UTF-8", xml_declaration=True)
+    return out.getvalue()
+
+
+def item_ids(elements: Iterable[ET.Element]) -> set[str]:
+    """Identifiers of the data items in some elements of a device, themselves included."""
+    found: set[str] = set()
+    for element in elements:
+        found |= {item.attrib["id"] for item in element.iter("DataItem")}
+    return found
+
+
+def sender_name() -> str:
+    """How the agent calls itself."""
+    return f"mill-twin {__version__}"

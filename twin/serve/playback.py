@@ -1,0 +1,157 @@
+"""A finished run as a machine that makes one part after the other, for the agent to observe.
+
+The job is deterministic: each part is made by the same motion, so that it is simulated once and
+its recording is gone through again and again. Nobody who reads can change a bit of it.
+"""
+
+import asyncio
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.cutting.program_summary import ProgramSummary
+from twin.machine.alarms import Alarm
+from twin.machine.config import Machine
+from twin.nc.canonical import FloatArray
+from twin.recording.form import Samples
+from twin.recording.reader import open_recording
+from twin.serve.agent import Agent
+from twin.serve.buffer import NORMAL, Condition, Value
+from twin.toolpath.part_frame import PartFrame
+
+TICK_S = 0.01
+"""Machine time between two observations of the axes [s]."""
+BEFORE_START_S = 1.0
+"""How long the machine stands ready before each part [s]."""
+STANDSTILL_S = 5.0
+"""How long it stands with an alarm before somebody resets it [s]."""
+_WAKE_S = 0.02
+"""Pause between two looks at the clock [s]."""
+_PERCENT = 100.0
+
+
+class Production(NamedTuple):
+    """What is made, and how a run of it went.
+
+    Attributes:
+        machine: What makes it.
+        program: Name of the NC program.
+        source: Its lines.
+        summary: What is in the spindle when, and how fast it turns.
+        recording: Of the run; None where nothing moved.
+        alarms: Of the run, in order.
+    """
+
+    machine: Machine
+    program: str
+    source: Sequence[str]
+    summary: ProgramSummary
+    recording: Path | None
+    alarms: tuple[Alarm, ...]
+
+
+class Tick(NamedTuple):
+    """What is to be observed at a moment: seconds since the start, values by data item."""
+
+    elapsed_s: float
+    values: Mapping[str, Value]
+
+
+def ticks(production: Production) -> Iterator[Tick]:
+    """The machine, part after part, without an end."""
+    now, parts = 0.0, 0
+    yield Tick(
+        now,
+        {
+            "availability": "AVAILABLE",
+            "emergency_stop": "ARMED",
+            "mode": "AUTOMATIC",
+            "program": production.program,
+            "tool_number": str(production.summary.tools.at(0).number),
+        },
+    )
+    while True:
+        ready = {"execution": "READY", "system": NORMAL, "part_count": str(parts)}
+        yield Tick(now, ready)
+        now += BEFORE_START_S
+        yield Tick(now, {"execution": "ACTIVE"})
+        began = now
+        for tick in _motion(production):
+            now = began + tick.elapsed_s
+            yield Tick(now, tick.values)
+        if production.alarms:
+            alarm = production.alarms[0]
+            now = max(now, began + alarm.time_s)
+            fault = Condition("Fault", alarm.code, alarm.message)
+            yield Tick(now, {"system": fault, "execution": "STOPPED", "path_feedrate": "0"})
+            now += STANDSTILL_S
+        else:
+            parts += 1
+            now += TICK_S
+            yield Tick(now, {"execution": "PROGRAM_COMPLETED", "path_feedrate": "0"})
+            now += TICK_S
+
+
+def _motion(production: Production) -> Iterator[Tick]:
+    if production.recording is None:
+        return
+    with open_recording(production.recording) as recording:
+        every = max(1, round(TICK_S / recording.header.period_s))
+        frame, before, seen = recording.header.part_frame, None, 0
+        for samples in recording.chunks():
+            thin = samples[slice(-seen % every, None, every)]
+            seen += len(samples)
+            if len(thin):
+                yield from _ticks_of(production, thin, frame, before)
+                before = thin[slice(-1, None)]
+
+
+def _ticks_of(
+    production: Production, samples: Samples, frame: PartFrame, before: Samples | None
+) -> Iterator[Tick]:
+    setpoint = samples.setpoint
+    feed = _path_feed(samples, frame, before)
+    axes = production.machine.axes.names
+    limits = [production.machine.axis(name).force_limit for name in axes]
+    for row in range(len(samples)):
+        values: dict[str, Value] = {"path_feedrate": f"{feed[row]:.4f}"}
+        for column, name in enumerate(axes):
+            values[f"{name}_position"] = f"{samples.joint_position[row, column]:.6f}"
+            values[f"{name}_position_commanded"] = f"{setpoint.position[row, column]:.6f}"
+            if limits[column] > 0.0:
+                load = _PERCENT * abs(samples.drive_force[row, column]) / limits[column]
+                values[f"{name}_load"] = f"{load:.2f}"
+        move, line = int(setpoint.move[row]), int(setpoint.line[row])
+        values["line"] = str(line)
+        if 0 < line <= len(production.source):
+            values["block"] = production.source[line - 1].strip()
+        values["tool_number"] = str(production.summary.tools.at(move).number)
+        spindle = production.summary.spindle.at(move)
+        if spindle is not None:
+            values["spindle_speed"] = f"{spindle:g}"
+        yield Tick(float(setpoint.time[row]), values)
+
+
+def _path_feed(samples: Samples, frame: PartFrame, before: Samples | None) -> FloatArray:
+    """How fast the tool moves over the part, from tick to tick, shape (n,) [mm/s]."""
+    first = samples[slice(0, 1)] if before is None else before
+    point = np.concatenate([frame.position(each.joint_position) for each in (first, samples)])
+    way = np.linalg.norm(np.diff(point, axis=0), axis=1)
+    time = np.diff(samples.setpoint.time, prepend=first.setpoint.time)
+    return np.divide(way, time, out=np.zeros(len(way)), where=time > 0.0)
+
+
+async def feed(agent: Agent, machine: Iterator[Tick]) -> None:
+    """Let an agent observe a machine, as the twin's clock goes on; ends when it is cancelled.
+
+    Args:
+        agent: What observes.
+        machine: What is to be observed, in order of time.
+    """
+    for tick in machine:
+        while tick.elapsed_s > agent.clock.elapsed_s():
+            await asyncio.sleep(_WAKE_S)
+        await asyncio.sleep(0)  # clients are answered between two ticks that are both due
+        agent.observe(tick.elapsed_s, tick.values)
