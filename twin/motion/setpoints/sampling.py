@@ -52,7 +52,10 @@ def _sample_part(
         )
         if count == 0:
             return
-        where = PathSamples(*(column[:count] for column in room))
+        where = PathSamples(
+            room.piece[:count], room.path[:count],
+            room.other_piece[:count], room.other_path[:count], room.other_begins[:count],
+        )  # fmt: skip
         piece = where.piece
         samples = AxisSamples(
             np.zeros(count), *(np.zeros((count, len(part_zero))) for _ in range(3))
