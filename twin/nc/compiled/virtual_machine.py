@@ -266,7 +266,7 @@ def compiles_beside(machine: VirtualMachine) -> bool:
     from twin.compilation.beside import beside
     from twin.compilation.folders import lasts
 
-    compilation = beside("twin.nc.compiled.compile_all")
+    compilation = beside("twin.nc.compile_all")
     if compilation.is_running():
         return True
     if machine.is_compiled():
