@@ -21,6 +21,7 @@ from twin.nc.compiled.kernels.frame import turn_arc
 from twin.nc.compiled.kernels.plane import SHORTEST
 from twin.nc.compiled.kernels.tokenizer import AXIS, CENTER, RADIUS
 from twin.nc.geometry import arcs
+from twin.nc.geometry.arcs import Point
 
 
 @compilable
@@ -96,17 +97,8 @@ def emit_arc(
         else:
             center = (start[0] + first, start[1] + second)
     if fits:
-        given = center
-        near, far = arcs.distance(start, given), arcs.distance(end, given)
-        gap, longer = abs(near - far), max(near, far)
-        if not (
-            min(near, far) >= arcs.SAME_POINT
-            and gap <= tables.mismatch[interpolation]
-            and gap <= tables.mismatch_share[interpolation] * longer
-        ):
-            return False
-        center = arcs.equidistant(start, end, given)
-        if not arcs.distance(given, center) <= tables.shift[interpolation]:
+        fitted, center = _fitted(center, start, end, interpolation, tables)
+        if not fitted:
             return False
     sweep = arcs.sweep_between(start, end, center, clockwise)
     length = arcs.distance(start, center) * abs(sweep) * state.registers[SCALE]
@@ -124,3 +116,20 @@ def emit_arc(
         for axis in range(3):
             value[axis] += state.total[axis]
     return True
+
+
+@inlined
+def _fitted(
+    given: Point, start: Point, end: Point, interpolation: int, tables: BlockTables
+) -> tuple[bool, Point]:
+    """Whether a given centre is within the bounds of its interpolation, and the one that fits both ends."""
+    near, far = arcs.distance(start, given), arcs.distance(end, given)
+    gap, longer = abs(near - far), max(near, far)
+    if not (
+        min(near, far) >= arcs.SAME_POINT
+        and gap <= tables.mismatch[interpolation]
+        and gap <= tables.mismatch_share[interpolation] * longer
+    ):
+        return False, given
+    center = arcs.equidistant(start, end, given)
+    return arcs.distance(given, center) <= tables.shift[interpolation], center

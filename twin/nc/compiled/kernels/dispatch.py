@@ -40,20 +40,18 @@ from twin.nc.compiled.kernels.block import (
 )
 from twin.nc.compiled.kernels.cycle import NO_ROOM
 from twin.nc.compiled.kernels.effects import polar_target, run_effect
-from twin.nc.compiled.kernels.expression import binary, ternary, unary
+from twin.nc.compiled.kernels.expression import evaluate
 from twin.nc.compiled.kernels.leads import begin_compensation, end_compensation
 from twin.nc.compiled.kernels.lookahead import hold_events
 from twin.nc.compiled.kernels.tokenizer import NUMBER
 from twin.nc.compiled.kernels.variables import (
     NO_SLOT,
     innermost,
-    load,
     own_value,
     slot_of_number,
     store,
 )
 from twin.nc.path.contour_registers import OFF, STAGE
-from twin.nc.text.expressions import LARGEST_NUMBER
 
 DONE = -1
 """The block was run."""
@@ -101,55 +99,10 @@ def dispatch_loop(
     while budget >= 0:
         row += 1
         opcode, operand = table.opcode[row], table.operand[row]
-        if opcode == opcodes.CONSTANT:
-            stack[top] = table.immediate[row]
-            top += 1
-        elif opcode == opcodes.LOAD:
-            value = load(memory, depth, operand)
-            if np.isnan(value):
+        if opcodes.CONSTANT <= opcode <= opcodes.DROP:
+            top = evaluate(opcode, operand, row, stack, top, depth, table, memory)
+            if top < 0:
                 break
-            stack[top] = value
-            top += 1
-        elif opcode == opcodes.BINARY:
-            top -= 1
-            value = binary(operand, stack[top - 1], stack[top])
-            if not abs(value) <= LARGEST_NUMBER:
-                break
-            stack[top - 1] = value
-        elif opcode == opcodes.UNARY:
-            value = unary(operand, stack[top - 1])
-            if not abs(value) <= LARGEST_NUMBER:
-                break
-            stack[top - 1] = value
-        elif opcode == opcodes.TERNARY:
-            top -= 2
-            value = ternary(operand, stack[top - 1], stack[top], stack[top + 1])
-            if not abs(value) <= LARGEST_NUMBER:
-                break
-            stack[top - 1] = value
-        elif opcode == opcodes.NEGATE:
-            stack[top - 1] = -stack[top - 1]
-        elif opcode == opcodes.LOAD_NUMBERED:
-            slot = slot_of_number(table.numbered, stack[top - 1])
-            value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
-            if np.isnan(value):
-                break
-            stack[top - 1] = value
-        elif opcode in (opcodes.LOAD_BELOW, opcodes.LOAD_NUMBERED_BELOW):
-            slot = operand
-            if opcode == opcodes.LOAD_NUMBERED_BELOW:
-                slot = slot_of_number(table.numbered, stack[top - 2])
-            value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
-            if np.isnan(value):
-                break
-            stack[top] = stack[top - 1]
-            stack[top - 1] = value
-            top += 1
-        elif opcode == opcodes.DEFINED:
-            stack[top] = 0.0 if np.isnan(load(memory, depth, operand)) else 1.0
-            top += 1
-        elif opcode == opcodes.DROP:
-            top -= 1
         elif opcode in (opcodes.STORE, opcodes.STORE_DECLARED, opcodes.STORE_NUMBERED):
             top -= 1
             slot = operand

@@ -8,8 +8,15 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from twin.compilation.compilable import compilable_arithmetic
+from twin.compilation.compilable import compilable_arithmetic, inlined
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import BytecodeTable
+from twin.nc.bytecode.frames import VariableStore
+from twin.nc.bytecode.registers import BAILOUT
+from twin.nc.canonical import FloatArray
+from twin.nc.compiled.kernels.variables import NO_SLOT, load, slot_of_number
 from twin.nc.text import arithmetic
+from twin.nc.text.expressions import LARGEST_NUMBER
 
 UNARY_FUNCTIONS: Mapping[Callable[..., float], int] = {
     arithmetic.inverted_bits: 0,
@@ -176,3 +183,81 @@ def ternary(function: int, a: float, b: float, c: float) -> float:
     if function == 0:
         return arithmetic.limited(a, b, c)
     return arithmetic.chosen(a, b, c)
+
+
+@inlined
+def evaluate(
+    opcode: int,
+    operand: int,
+    row: int,
+    stack: FloatArray,
+    top: int,
+    depth: int,
+    table: BytecodeTable,
+    memory: VariableStore,
+) -> int:
+    """Run an instruction that does nothing but compute.
+
+    Args:
+        opcode: One from ``CONSTANT`` to ``DROP``.
+        operand: Its operand.
+        row: Its row.
+        stack: Values.
+        top: How many there are.
+        depth: Row of the local variables.
+        table: The instructions.
+        memory: The variables.
+
+    Returns:
+        How many values there are then, or ``BAILOUT`` where one is undefined.
+    """
+    if opcode == opcodes.CONSTANT:
+        stack[top] = table.immediate[row]
+        top += 1
+    elif opcode == opcodes.LOAD:
+        value = load(memory, depth, operand)
+        if np.isnan(value):
+            return BAILOUT
+        stack[top] = value
+        top += 1
+    elif opcode == opcodes.BINARY:
+        top -= 1
+        value = binary(operand, stack[top - 1], stack[top])
+        if not abs(value) <= LARGEST_NUMBER:
+            return BAILOUT
+        stack[top - 1] = value
+    elif opcode == opcodes.UNARY:
+        value = unary(operand, stack[top - 1])
+        if not abs(value) <= LARGEST_NUMBER:
+            return BAILOUT
+        stack[top - 1] = value
+    elif opcode == opcodes.TERNARY:
+        top -= 2
+        value = ternary(operand, stack[top - 1], stack[top], stack[top + 1])
+        if not abs(value) <= LARGEST_NUMBER:
+            return BAILOUT
+        stack[top - 1] = value
+    elif opcode == opcodes.NEGATE:
+        stack[top - 1] = -stack[top - 1]
+    elif opcode == opcodes.LOAD_NUMBERED:
+        slot = slot_of_number(table.numbered, stack[top - 1])
+        value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
+        if np.isnan(value):
+            return BAILOUT
+        stack[top - 1] = value
+    elif opcode in (opcodes.LOAD_BELOW, opcodes.LOAD_NUMBERED_BELOW):
+        slot = operand
+        if opcode == opcodes.LOAD_NUMBERED_BELOW:
+            slot = slot_of_number(table.numbered, stack[top - 2])
+        value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
+        if np.isnan(value):
+            return BAILOUT
+        stack[top] = stack[top - 1]
+        stack[top - 1] = value
+        top += 1
+    elif opcode == opcodes.DEFINED:
+        stack[top] = 0.0 if np.isnan(load(memory, depth, operand)) else 1.0
+        top += 1
+    elif opcode == opcodes.DROP:
+        top -= 1
+    return top
