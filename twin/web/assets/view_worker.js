@@ -297,8 +297,10 @@ const heard = {
   moment(seen) { take(seen, false); cut_until(seen.time); },
   cuts: (given) => { cuts = given.map((one) => ({ ...one, before: null })); },
   patch(buffer) {
+    // Inflated beside each other, put in their order.
+    const read = readPatch(buffer);
     patches = patches.then(async () => {
-      machine?.stock?.put(await readPatch(buffer));
+      machine?.stock?.put(await read);
       dirty = true;
     }).catch((error) => postMessage({ failed: String(error) }));
   },
