@@ -124,7 +124,7 @@ function assemble(described, root) {
   const tip = frame(described.tip, named);
   const found = { root, joints, part, tip, bodies, cutter: named(described.cutter), radius: described.tool.diameter / 2, stock: null };
   if (described.stock) {
-    found.stock = machine?.stock ?? new Stock(described.stock, fine ? 1 : 3);
+    found.stock = machine?.stock ?? new Stock(described.stock, by_processor ? 3 : 1);
     part.add(found.stock.mesh);
   }
   part.add(trail.line);
