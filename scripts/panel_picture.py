@@ -51,7 +51,7 @@ def take_panel(
             _until(lambda: not machine.moving)
         page.click('[data-key="view part"]')
         before = _pictures(page)
-        _until(lambda: _pictures(page) > before + 1, look_s=0.5)
+        _until(lambda: _pictures(page) > before + 2, look_s=0.5)
         time.sleep(SETTLED_S)
         page.screenshot(path=out)
 

@@ -64,6 +64,7 @@ setup_vulkan() {
 }
 
 setup_browser() {
-    # For the test of the report's page, which is left out without one.
+    # For the tests of pages, which are left out without one; axe-core holds them to accessibility.
     command -v chromium >/dev/null || _need_packages chromium || true
+    .venv/bin/python scripts/fetch_three.py --axe || true
 }

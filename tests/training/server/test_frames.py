@@ -5,9 +5,10 @@ import zlib
 
 import numpy as np
 
+from twin.cutting.patches import LEVELS
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.driver import Driver
-from twin.training.server.frames import LEVELS, Changes, StockFeed, panel_words, state_message
+from twin.training.server.frames import Changes, StockFeed, panel_words, state_message
 from twin.training.server.seats import MESSAGES, MOST_PAGES, Seats
 from twin.training.session.session import Session
 
