@@ -40,10 +40,11 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "iso",
         "compiled dialects",
         "interpreter",
+        "compile_all",
         "jsonl",
     ),
     "twin.motion": (
-        "limits",
+        "limits ramp_kernels",
         "blocks",
         "pieces",
         "profile",
