@@ -43,7 +43,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "jsonl",
     ),
     "twin.motion": (
-        "limits",
+        "limits ramp_kernels",
         "blocks",
         "pieces",
         "profile",

@@ -259,7 +259,16 @@ def clearance_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
     Raises:
         ConfigError: The specification does not compile.
     """
-    return compiled(_without(spec, VISUAL_GROUP), machine)
+    lean = _without(spec, VISUAL_GROUP)
+    lean.compiler.fusestatic = True
+    lean.option.ccd_tolerance = _DISTANCE_TOLERANCE
+    lean.option.ccd_iterations = _DISTANCE_ITERATIONS
+    return compiled(lean, machine)
+
+
+_DISTANCE_TOLERANCE = 1e-9
+"""What distances are measured to [m]: the planes that clear a run between two looks rely on it."""
+_DISTANCE_ITERATIONS = 200
 
 
 def _without(spec: mujoco.MjSpec, *groups: int) -> mujoco.MjSpec:
@@ -267,7 +276,9 @@ def _without(spec: mujoco.MjSpec, *groups: int) -> mujoco.MjSpec:
     for geom in list(lean.geoms):
         if geom.group in groups:
             lean.delete(geom)
-    for unseen in [*lean.meshes, *lean.cameras, *lean.lights]:
+    used = {geom.meshname for geom in lean.geoms}
+    unused = [mesh for mesh in lean.meshes if mesh.name not in used]
+    for unseen in [*unused, *lean.cameras, *lean.lights]:
         lean.delete(unseen)
     lean.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     return lean

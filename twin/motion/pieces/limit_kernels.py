@@ -7,6 +7,7 @@ import numpy as np
 
 from twin.compilation.kernel import array_arithmetic_kernel
 from twin.motion.blocks.blocks import BoolArray
+from twin.motion.limits import MachineLimits
 from twin.motion.pieces.bound_kernels import DerivativeBounds
 from twin.motion.pieces.reachable_velocity_kernels import Along, lower_to_reachable
 from twin.nc.canonical import FloatArray, IntArray
@@ -34,22 +35,6 @@ class BlockLimits(NamedTuple):
     deceleration: FloatArray
     parameter_scale: FloatArray
     rotary_alone: BoolArray
-
-
-class MachineLimits(NamedTuple):
-    """``MotionLimits``, for compiled code.
-
-    Attributes:
-        velocity: Of each axis, shape (k,).
-        acceleration: Of each axis, shape (k,).
-        jerk: Of each axis, shape (k,).
-        path: Acceleration and jerk of the path, and of one of rotary axes alone.
-    """
-
-    velocity: FloatArray
-    acceleration: FloatArray
-    jerk: FloatArray
-    path: tuple[float, float, float, float]
 
 
 @array_arithmetic_kernel

@@ -93,7 +93,9 @@ class Room:
         self.part_frame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
         self.work = None
         if job.stock is not None:
-            self.work = Workpiece(_fine(job.stock, job.tools), job.tools[0], self.part_frame, zero)
+            head = self.machine.head.above_tip
+            stock = _fine(job.stock, job.tools)
+            self.work = Workpiece(stock, job.tools[0], self.part_frame, zero, head)
         self.mode: Mode = file.start.mode
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
