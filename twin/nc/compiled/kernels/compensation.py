@@ -5,9 +5,8 @@ Each step is the one of ``Compensation`` between two moves of a contour, with th
 """
 
 import numpy as np
-from numba.extending import register_jitable
 
-from twin.compilation.kernel import kernel
+from twin.compilation.compilable import compilable
 from twin.nc.bytecode.registers import BAILOUT, Rows
 from twin.nc.canonical import Shape
 from twin.nc.compiled.kernels.columns import copy, copy_rows
@@ -44,31 +43,6 @@ from twin.nc.path.contour_registers import (
 )
 from twin.nc.path.segments import IN_PLANE
 
-for _shared in (
-    curves.radius_of,
-    curves.length_of,
-    curves.unit,
-    curves.tangent_of,
-    curves.scale_of,
-    curves.leaves_room,
-    curves.moved,
-    curves.towards,
-    curves.parallel_of,
-    curves.along,
-    curves.within,
-    curves.cut,
-    curves.box_of,
-    curves.turn_from,
-    curves.half_chord,
-    curves.line_line,
-    curves.line_circle,
-    curves.circle_circle,
-    curves.meetings,
-    curves.inside,
-    curves.crossing_of,
-):
-    register_jitable(_shared)
-
 _STARTED, _LEADING_IN, _LEADING_OUT = (
     int(Stage.STARTED),
     int(Stage.LEADING_IN),
@@ -77,7 +51,7 @@ _STARTED, _LEADING_IN, _LEADING_OUT = (
 _ARC = int(Shape.ARC)
 
 
-@kernel
+@compilable
 def follow(row: int, made: int, first_event: int, behind: int, contour: Contour, rows: Rows) -> int:
     """Compensate what a block has made.
 
@@ -129,7 +103,7 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
     return _go_on(curve, element, row, first_event, early, behind, contour, rows)
 
 
-@kernel
+@compilable
 def _along_normal(
     row: int, first_event: int, early: int, behind: int, contour: Contour, rows: Rows
 ) -> int:
@@ -154,7 +128,7 @@ def _along_normal(
     return row
 
 
-@kernel
+@compilable
 def _go_on(
     curve: Curve,
     element: Curve,
@@ -205,7 +179,7 @@ def _go_on(
     return after
 
 
-@kernel
+@compilable
 def _corner(
     held: Curve,
     before: Curve,
