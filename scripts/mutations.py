@@ -58,7 +58,7 @@ CODE = (
     Change("an arc became a line", r"\bG0?[23]\b", "G01"),
     Change("a rapid for a feed", r"\bG0?1\b", "G00"),
     Change("a line lost", r"(?m)^.*\b[XY]-?\d.*\n", ""),
-    Change("a line twice, moved by 1 mm", rf"\b(X){NUMBER}", _scaled(1.0, 1.0)),
+    Change("a coordinate 1 mm off", rf"\b(X){NUMBER}", _scaled(1.0, 1.0)),
 )
 JOB = (
     Change(
