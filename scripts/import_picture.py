@@ -40,6 +40,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "iso",
         "compiled dialects",
         "interpreter",
+        "compile_all",
         "jsonl",
     ),
     "twin.motion": (

@@ -85,6 +85,10 @@ def test_the_alarm_is_raised_at_its_line_and_the_recording_up_to_it_is_kept(
     assert result["verdict"] == "alarm"
     (alarm,) = result["alarms"]
     assert (alarm["code"], alarm["line"]) == (code, line)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    drawn = f"<figcaption>Line {line}, " in page and (tmp_path / "collision.png").is_file()
+    untold = "no picture of the collision: " not in done.stderr
+    assert drawn == (code == "collision" and untold)
     if code == "soft-limit":
         assert alarm["time_s"] == 0.0
         assert not (tmp_path / "recording.h5").exists()

@@ -20,6 +20,7 @@ from twin.machine.tool_shape import (
 )
 from twin.machine.transmission import (
     FASTEST,
+    FASTEST_SPRING,
     add_friction_and_give,
     add_inertia,
     has_give,
@@ -159,11 +160,12 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
     springs = []
     if axis.stiffness:
         swings = swinging(axis, drive.moved)
-        springs.append(("stiffness", axis.stiffness, swings, "0 is rigid"))
+        springs.append(("stiffness", axis.stiffness, swings, FASTEST_SPRING, "0 is rigid"))
     if axis.lugre is not None:
-        springs.append(("lugre.stiffness", axis.lugre.stiffness, drive.moved, "none is Coulomb"))
-    for key, stiffness, swings, otherwise in springs:
-        most = swings * (FASTEST / period) ** 2 * to_si(axis.kind)
+        bristles = axis.lugre.stiffness
+        springs.append(("lugre.stiffness", bristles, drive.moved, FASTEST, "none is Coulomb"))
+    for key, stiffness, swings, fastest, otherwise in springs:
+        most = swings * (fastest / period) ** 2 * to_si(axis.kind)
         if stiffness > most:
             raise ConfigError(
                 f"{machine.path}: axes.{name}.{key} = {stiffness:g} swings faster than the servo "

@@ -124,7 +124,7 @@ function assemble(described, root) {
   const tip = frame(described.tip, named);
   const found = { root, joints, part, tip, bodies, cutter: named(described.cutter), radius: described.tool.diameter / 2, stock: null };
   if (described.stock) {
-    found.stock = machine?.stock ?? new Stock(described.stock, fine ? 1 : 3);
+    found.stock = machine?.stock ?? new Stock(described.stock, by_processor ? 3 : 1);
     part.add(found.stock.mesh);
   }
   part.add(trail.line);
@@ -297,8 +297,10 @@ const heard = {
   moment(seen) { take(seen, false); cut_until(seen.time); },
   cuts: (given) => { cuts = given.map((one) => ({ ...one, before: null })); },
   patch(buffer) {
+    // Inflated beside each other, put in their order.
+    const read = readPatch(buffer);
     patches = patches.then(async () => {
-      machine?.stock?.put(await readPatch(buffer));
+      machine?.stock?.put(await read);
       dirty = true;
     }).catch((error) => postMessage({ failed: String(error) }));
   },

@@ -3,9 +3,7 @@
 The geometry is that of ``arcs``, compiled as it stands there.
 """
 
-from numba.extending import register_jitable
-
-from twin.compilation.kernel import inlined_kernel, kernel
+from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.registers import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
@@ -24,17 +22,8 @@ from twin.nc.compiled.kernels.plane import SHORTEST
 from twin.nc.compiled.kernels.tokenizer import AXIS, CENTER, RADIUS
 from twin.nc.geometry import arcs
 
-for _shared in (
-    arcs.distance,
-    arcs.sweep_between,
-    arcs.reaches,
-    arcs.center_at_radius,
-    arcs.equidistant,
-):
-    register_jitable(_shared)
 
-
-@kernel
+@compilable
 def value_of(token_kind: int, token_kinds: IntArray, values: FloatArray) -> float:
     """Value of the word with a token_kind; 0 where there is none."""
     for word in range(len(token_kinds)):
@@ -43,7 +32,7 @@ def value_of(token_kind: int, token_kinds: IntArray, values: FloatArray) -> floa
     return 0.0
 
 
-@inlined_kernel
+@inlined
 def emit_arc(
     token_kinds: IntArray,
     values: FloatArray,

@@ -1,12 +1,13 @@
 """One compiled block: its instructions on a stack, all of them or none.
 
-Each does what ``opcodes.Opcode`` says of it.
+Each does what ``opcodes`` says of it.
 """
 
 import numpy as np
 
-from twin.compilation.kernel import NONE_YET, inlined_kernel
+from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import PART_BITS, BytecodeTable
 from twin.nc.bytecode.frames import (
     AGAIN,
     BACK,
@@ -30,7 +31,6 @@ from twin.nc.bytecode.frames import (
     TRAPPED,
     ExecutionState,
 )
-from twin.nc.bytecode.opcodes import PART_BITS, BytecodeTable
 from twin.nc.bytecode.registers import BAILOUT, CYCLE, BlockTables, Constants, Rows, State
 from twin.nc.compiled.kernels.block import (
     Scratch,
@@ -61,9 +61,10 @@ DONE = -1
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@inlined_kernel
+@inlined
 def dispatch_loop(
     row: int,
+    words: int,
     table: BytecodeTable,
     tables: BlockTables,
     constants: Constants,
@@ -76,6 +77,7 @@ def dispatch_loop(
 
     Args:
         row: Row of its ``BLOCK``.
+        words: How many words have been read already.
         table: The instructions.
         tables: What words mean.
         constants: What stays.
@@ -91,7 +93,7 @@ def dispatch_loop(
     budget = progress[INSTRUCTION_BUDGET] - (place <= progress[FURTHEST])
     behind = (line + 1) << PART_BITS if table.operand[row] == 0 else place + 1
     going, range_end, restores = behind, NO_LOCATION, NOTHING_RESTORED
-    top, words, stores, own, why = NONE_YET, NONE_YET, 0, 0, TRAPPED
+    top, stores, own, why = 0, 0, 0, TRAPPED
     contour, first_event = routine.contour, state.event_count[0]
     has_snapshot = compensates = contour.counts[STAGE] != OFF
     if compensates:

@@ -7,49 +7,9 @@ import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numba.extending import register_jitable
 
-from twin.compilation.kernel import arithmetic_kernel
+from twin.compilation.compilable import compilable_arithmetic
 from twin.nc.text import arithmetic
-
-for _shared in (
-    arithmetic.inverted_bits,
-    arithmetic.sine_of_degrees,
-    arithmetic.cosine_of_degrees,
-    arithmetic.tangent_of_degrees,
-    arithmetic.arc_sine_in_degrees,
-    arithmetic.arc_cosine_in_degrees,
-    arithmetic.arc_tangent_in_degrees,
-    arithmetic.square,
-    arithmetic.power_of_ten,
-    arithmetic.whole_part,
-    arithmetic.fraction,
-    arithmetic.nearest_whole,
-    arithmetic.next_whole,
-    arithmetic.opposite,
-    arithmetic.add,
-    arithmetic.subtract,
-    arithmetic.multiply,
-    arithmetic.divide,
-    arithmetic.less,
-    arithmetic.greater,
-    arithmetic.at_most,
-    arithmetic.at_least,
-    arithmetic.equal,
-    arithmetic.unequal,
-    arithmetic.both,
-    arithmetic.either,
-    arithmetic.one_alone,
-    arithmetic.bits_of_both,
-    arithmetic.bits_of_either,
-    arithmetic.bits_of_one_alone,
-    arithmetic.direction_in_degrees,
-    arithmetic.smaller,
-    arithmetic.larger,
-    arithmetic.limited,
-    arithmetic.chosen,
-):
-    register_jitable(_shared)
 
 UNARY_FUNCTIONS: Mapping[Callable[..., float], int] = {
     arithmetic.inverted_bits: 0,
@@ -110,7 +70,7 @@ TERNARY_FUNCTIONS: Mapping[Callable[..., float], int] = {
 """Functions of three values."""
 
 
-@arithmetic_kernel
+@compilable_arithmetic
 def unary(function: int, a: float) -> float:
     """The function of ``UNARY_FUNCTIONS`` with this number."""
     if function == 0:
@@ -164,7 +124,7 @@ def unary(function: int, a: float) -> float:
     return math.log10(a)
 
 
-@arithmetic_kernel
+@compilable_arithmetic
 def binary(function: int, a: float, b: float) -> float:
     """The function of ``BINARY_FUNCTIONS`` with this number."""
     if function == 0:
@@ -210,7 +170,7 @@ def binary(function: int, a: float, b: float) -> float:
     return math.pow(a, b)
 
 
-@arithmetic_kernel
+@compilable_arithmetic
 def ternary(function: int, a: float, b: float, c: float) -> float:
     """The function of ``TERNARY_FUNCTIONS`` with this number."""
     if function == 0:
