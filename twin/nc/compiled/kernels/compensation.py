@@ -4,8 +4,6 @@ Each step is the one of ``Compensation`` between two moves of a contour, with th
 ``curves``. Warnings and refusals are left to it.
 """
 
-import numpy as np
-
 from twin.compilation.compilable import compilable
 from twin.nc.bytecode.registers import BAILOUT, Rows
 from twin.nc.canonical import Shape
@@ -23,10 +21,10 @@ from twin.nc.compiled.kernels.lookahead import (
 )
 from twin.nc.compiled.kernels.plane import along_axis
 from twin.nc.geometry import curves
-from twin.nc.geometry.arcs import SAME_POINT, Point, distance
+from twin.nc.geometry.arcs import SAME_POINT, distance
+from twin.nc.geometry.corners import corner_of
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
-from twin.nc.path.compensation import LARGEST_SQUARE, STRAIGHT_ON
 from twin.nc.path.compensation_state import Stage
 from twin.nc.path.contour_registers import (
     CONTOUR,
@@ -144,8 +142,8 @@ def _go_on(
     held, before = curve_of(contour.curves[CONTOUR]), curve_of(contour.curves[ELEMENT])
     begin = (contour.start[0], contour.start[1])
     turn = curves.turn_from(held, curve)
-    clear, rolls, at, follows = _corner(
-        held, before, begin, curve, element, turn, signed_offset, counts[SQUARE] != 0
+    clear, rolls, at, follows = corner_of(
+        (held, before, begin), (curve, element), turn, signed_offset, counts[SQUARE] != 0
     )
     if not clear:
         return BAILOUT
@@ -177,40 +175,3 @@ def _go_on(
     set_curve(contour.curves[ELEMENT], element)
     hold_events(contour, rows, early, behind)
     return after
-
-
-@compilable
-def _corner(
-    held: Curve,
-    before: Curve,
-    begin: Point,
-    curve: Curve,
-    element: Curve,
-    turn: float,
-    signed_offset: float,
-    square: bool,
-) -> tuple[bool, bool, Point, Point]:
-    """Whether the corner is clear, is rolled around, where the held move ends, and the next begins."""
-    if abs(turn) < STRAIGHT_ON:
-        return (True, False, element[1], element[1])
-    straight = not held[0] and not curve[0]
-    if square and straight and turn * signed_offset < 0.0 and abs(turn) <= LARGEST_SQUARE:
-        count, meeting, _ = curves.meetings(before, element)
-        return (count == 1, False, meeting, meeting)
-    if turn * signed_offset < 0.0 or abs(turn) > 180.0 - STRAIGHT_ON:
-        return (True, True, before[2], element[1])
-    count, first, second = curves.meetings(before, element)
-    found, at, least = False, begin, np.inf
-    from_start = curves.along(before, begin)
-    for number in range(count):
-        point = first if number == 0 else second
-        share = curves.along(before, point)
-        if (
-            curves.within(before, share)
-            and share >= from_start
-            and curves.within(element, curves.along(element, point))
-        ):
-            far = distance(point, held[2])
-            if not found or far < least:
-                found, at, least = True, point, far
-    return (found, False, at, at)
