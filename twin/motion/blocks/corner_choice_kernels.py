@@ -22,9 +22,13 @@ from twin.toolpath.geometry_kernels import Curves
 CURVE_SHARE = 0.5
 """Of the limits of an axis that a rounding may use at constant velocity."""
 
-CERTAINTY = 0.02
+CERTAINTY = 0.15
 """Share of the time through a rounding by which it must be faster than the stop: the limits along
 its parts are a little stricter than those of the whole."""
+
+
+CERTAINTY_OF_ARCS = 1.0
+"""Share where one of the blocks is an arc, whose limits change along it."""
 
 
 class BlockMotion(NamedTuple):
@@ -113,7 +117,9 @@ def choose_stops(
         if width > 0.0:
             rounding = travel_time(length - width, 0.0, through, before)
             rounding += travel_time(next_length - width, through, 0.0, after)
-            rounding += 2.0 * (1.0 + CERTAINTY) * width / through
+            bent = blocks.curves.angle[i - 1] != 0.0 or blocks.curves.angle[i] != 0.0
+            certainty = CERTAINTY_OF_ARCS if bent else CERTAINTY
+            rounding += 2.0 * (1.0 + certainty) * width / through
         if stopping < rounding:
             stops[i], overlap[i] = True, away
     return stops, overlap

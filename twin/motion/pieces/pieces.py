@@ -17,17 +17,25 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from twin.columns import Columns, Picked
-from twin.motion.blocks.blocks import BoolArray, Surroundings, blocks_of_chunks, with_neighbours
-from twin.motion.blocks.corners import CONTEXT, find_borders
+from twin.motion.blocks.blocks import (
+    Blocks,
+    BoolArray,
+    Surroundings,
+    blocks_of_chunks,
+    with_neighbours,
+)
+from twin.motion.blocks.corners import CONTEXT, Borders, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.motion.pieces.cut_kernels import cut_blocks, place_pieces
-from twin.motion.pieces.limit_kernels import BlockLimits, piece_limits
+from twin.motion.pieces.limit_kernels import CURVE_JERK_SHARE, BlockLimits, piece_limits
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 from twin.toolpath.geometry import Geometry
 
 BATCH = 4000
 """Blocks that are cut into pieces at a time: many more than their neighbours that are cut with them."""
+CURVE_JERK_SHARES = ((1.0, 3.0, 10.0), (CURVE_JERK_SHARE, 0.8, 0.9))
+"""By turns that the path goes round without a step: what of an axis's jerk a curve may use."""
 MAX_ANGLE = 1024.0 * math.pi
 """What their arcs turn together, but for the last [rad]: of helices with many turns each, a few."""
 
@@ -111,7 +119,7 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
         ),
         owner, length, _ceilings(surroundings, entry),
         bound_derivatives(shapes.curves(), owner, begin, scale, length, rounding),
-        limits.arrays(),
+        limits.arrays(), _curve_shares(blocks, borders)[owner],
     )  # fmt: skip
     first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
     due = slice(first, last)
@@ -134,6 +142,20 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
         rounding=rounding[due],
         geometry=Picked(owner, shapes),
     )
+
+
+def _curve_shares(blocks: Blocks, borders: Borders) -> FloatArray:
+    """Share of an axis's jerk that each block may use at constant velocity, shape (n,).
+
+    The rest changes the velocity: the longer the path goes round, the less often that is.
+    """
+    steps = np.any(borders.tangent_step, axis=1) | np.any(borders.curvature_step, axis=1)
+    alone = steps | (borders.entry < np.inf)
+    run = np.cumsum(alone) - int(alone[0])
+    angle = np.abs(blocks.geometry.angle)
+    turns = np.bincount(run, weights=angle) / (2.0 * math.pi)
+    shares = np.interp(turns, *CURVE_JERK_SHARES)[run]
+    return np.where(angle > 0.0, shares, CURVE_JERK_SHARES[1][0])
 
 
 def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:
