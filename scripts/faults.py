@@ -212,7 +212,11 @@ def cgroup(bench: Bench) -> Iterator[str]:
             size = int(5e7 * 10 ** bench.chance.random())
             limit.write_text(str(size))
             folder = bench.place / f"group{number}"
-            code, said = run(folder, lambda: members.write_text(str(os.getpid())) and None)
+
+            def join() -> None:
+                members.write_text(str(os.getpid()))
+
+            code, said = run(folder, join)
             killed = code == -signal.SIGKILL
             found = complaints(folder) if killed else faults(folder, code, said)
             yield from (f"group of {size} bytes: {each}" for each in found)
@@ -240,11 +244,19 @@ def broken_recording(bench: Bench) -> Iterator[str]:
             yield f"damage {number} at {at}: exit code {done.returncode}, {done.stderr[-300:]!r}"
 
 
+def training_room(bench: Bench) -> Iterator[str]:
+    """Strangers, floods, pages that do not read, a folder that vanishes, in one training room."""
+    del bench
+    import room_attacks
+
+    return room_attacks.complaints()
+
+
 DAYS: Mapping[str, Callable[[Bench], Iterator[str]]] = {
     day.__name__.replace("_", "-"): day
     for day in (
         kill, interrupt, terminate, large_file, full_disk, read_only, memory, cgroup, two_runs,
-        broken_recording,
+        broken_recording, training_room,
     )
 }  # fmt: skip
 

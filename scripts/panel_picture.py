@@ -13,8 +13,8 @@ LINE = 7
 """Which the program has reached in the picture."""
 SIZE = (1366, 768)
 PATIENCE_S = 600.0
-SETTLED_S = 4.0
-"""That a slow page is given to show the newest state [s]."""
+SETTLED_S = 20.0
+"""That a page which a processor draws is given to show the newest state [s]."""
 
 
 def take_panel(
@@ -50,9 +50,9 @@ def take_panel(
             room.driver.ask({"do": "override", "dial": "feed", "percent": 0}, "operator", 0)
             _until(lambda: not machine.moving)
         page.click('[data-key="view part"]')
-        before = _pictures(page)
-        _until(lambda: _pictures(page) > before + 1, look_s=0.5)
         time.sleep(SETTLED_S)
+        before = _pictures(page)
+        _until(lambda: _pictures(page) > before + 2, look_s=0.5)
         page.screenshot(path=out)
 
 

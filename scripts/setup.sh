@@ -33,6 +33,12 @@ _find_python() {
     return 1
 }
 
+compile_kernels() {
+    # Pictures may be impossible here, which doctor would end with.
+    echo "compiling kernels for this computer, which takes two to three minutes"
+    .venv/bin/twin doctor --compile >/dev/null || true
+}
+
 # setup_environment [dev]: with the extra "dev", or with what a run needs alone.
 setup_environment() {
     local python stamp wanted="${1:-run}"
@@ -50,8 +56,7 @@ setup_environment() {
         # By the environment, so that the isolated build keeps to the same versions.
         PIP_CONSTRAINT="$PWD/constraints.txt" MILL_TWIN_KERNELS=0 .venv/bin/python -m pip install \
             --quiet --disable-pip-version-check --editable ".${extra[$wanted]}"
-        echo "compiling kernels for this computer, which takes about two minutes"
-        .venv/bin/twin doctor --compile || true # pictures may be impossible here
+        [ "$wanted" = dev ] || compile_kernels
         echo "$stamp" >".venv/stamp-$wanted"
     fi
     PATH="$PWD/.venv/bin:$PATH"
@@ -64,6 +69,7 @@ setup_vulkan() {
 }
 
 setup_browser() {
-    # For the test of the report's page, which is left out without one.
+    # For the tests of pages, which are left out without one; axe-core holds them to accessibility.
     command -v chromium >/dev/null || _need_packages chromium || true
+    .venv/bin/python scripts/fetch_three.py --axe || true
 }

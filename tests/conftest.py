@@ -1,11 +1,16 @@
 """Run the command line inside the test's own process, as a shell would see it."""
 
+import os
 import sys
 
 import pytest
 from command_line import Finished, Twin
 
 from twin import cli
+from twin.compilation.speed import VARIABLE
+
+# What is compiled beside a run, and when it is ready, would differ from one run of the tests to the next.
+os.environ.setdefault(VARIABLE, "wait")
 
 
 @pytest.fixture

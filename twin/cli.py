@@ -12,7 +12,7 @@ from twin.command_line.machines import machine_app
 from twin.command_line.monitoring import serve
 from twin.command_line.pictures import render
 from twin.command_line.programs import init, interpret, plan, run
-from twin.command_line.training import train
+from twin.command_line.training import train, view
 from twin.command_line.verdicts import check, compare, export, sweep
 from twin.errors import ExitCode, TwinError
 from twin.version import __version__
@@ -55,6 +55,7 @@ for command in (
     calibrate,
     export,
     train,
+    view,
     serve,
     dialects,
     explain,

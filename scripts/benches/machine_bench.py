@@ -1,5 +1,6 @@
 """The machine room beside the raw ``mujoco.rollout`` of the same model and the same controls."""
 
+import dataclasses
 import statistics
 import time
 from collections.abc import Callable, Iterator
@@ -11,14 +12,18 @@ from mujoco.rollout import Rollout
 
 from twin.columns import join
 from twin.files.shipped import machine_file, machine_names
+from twin.job.fixture import FixtureTable
 from twin.machine.circle_path import CirclePath
+from twin.machine.clearance import Clearance
 from twin.machine.config import read_machine
 from twin.machine.drives import feedforward_name
 from twin.machine.live import LiveMachine
-from twin.machine.model import build_spec, physics_model
+from twin.machine.model import build_spec, clearance_model, physics_model, spindle_over_table_mm
 from twin.machine.sampling import held_commands, polyline_nodes
 from twin.machine.simulate import simulate
+from twin.machine.tool_shape import DefaultTool
 from twin.motion.setpoints.setpoints import Setpoints
+from twin.recording.reader import Samples
 
 CHUNK = 16384
 """Setpoints per chunk, as the planner gives them."""
@@ -30,6 +35,7 @@ def rows() -> Iterator[Row]:
     """The simulation of each shipped machine, and a machine that is operated in slices."""
     for name in machine_names():
         yield _beside_rollout(name)
+    yield from _watching()
     points = _circle("mill4")[: 2000 * SLICE]
 
     def operate() -> None:
@@ -56,6 +62,40 @@ def _beside_rollout(name: str) -> Row:
     )
     count, peer = len(points), f"mujoco.rollout {mujoco.__version__}"
     return Row("machine", f"{name}, circle", count / ours, "steps/s", peer, count / raw)
+
+
+def _watching() -> Iterator[Row]:
+    """What watching for collisions adds to the simulation, close to a vise and with C turning."""
+    jaws = tuple(
+        FixtureTable(name=f"jaw {side}", size=(120.0, 40.0, 60.0), position=(0.0, side * 76.0, 0.0))
+        for side in (-1, 1)
+    )
+    machine = read_machine(machine_file("mill4")).with_fixtures(jaws)
+    spec = build_spec(machine)
+    model = physics_model(machine, spec)
+    clearance = Clearance(machine, clearance_model(machine, spec))
+    table = -spindle_over_table_mm(machine) + DefaultTool().length
+    for task, turns, z in (("between jaws", 0.0, 30.0), ("over jaws, C turning", 90.0, 61.0)):
+        points = _circle("mill4")
+        place = points.position.copy()
+        place[:, 2] = table + z
+        place[:, 3] = turns * (points.time - points.time[0])
+        speed = points.velocity.copy()
+        speed[:, 3] = turns
+        points = dataclasses.replace(points, position=place, velocity=speed)
+        chunks = [points[i : i + CHUNK] for i in range(0, len(points), CHUNK)]
+        samples = list(simulate(machine, model, chunks))
+
+        def watch(samples: list[Samples] = samples) -> None:
+            clearance.begin()
+            assert not any(clearance.look(chunk) for chunk in samples)
+
+        watched, bare = _paired(
+            watch,
+            lambda chunks=chunks: [len(samples) for samples in simulate(machine, model, chunks)],
+        )
+        share = 100.0 * watched / bare
+        yield Row("machine", f"watching for collisions {task}", share, "% of the simulation")
 
 
 def _circle(name: str) -> Setpoints:
@@ -94,7 +134,7 @@ def _paired(
     times: tuple[list[float], list[float]] = ([], [])
     for _ in range(repeats + 1):
         for task, kept in zip((ours, theirs), times, strict=True):
-            start = time.perf_counter()
+            start = time.process_time()
             task()
-            kept.append(time.perf_counter() - start)
+            kept.append(time.process_time() - start)
     return statistics.median(times[0][1:]), statistics.median(times[1][1:])

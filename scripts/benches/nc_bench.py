@@ -22,7 +22,7 @@ from benches.row import REPEATS, Row, median_cpu_seconds
 from twin.nc.canonical import Axes
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
-from twin.nc.interpreter import Interpretation
+from twin.nc.interpreter import COMPILED_FROM, Interpretation
 from twin.nc.text.source import read_source
 
 PEERS = Path(__file__).resolve().parents[2] / ".peers"
@@ -41,6 +41,10 @@ def rows() -> Iterator[Row]:
             rate = BLOCKS / median_cpu_seconds(lambda p=path: _interpret(p, "gost"))
             for measure in (_nc_gcode_interpreter, _rs274):
                 yield _row(task, rate, BLOCKS, *measure(path))
+            cold = median_cpu_seconds(
+                lambda p=path: _interpret(p, "gost", compiled_from=BLOCKS * 2)
+            )
+            yield Row("nc", f"{task}, nothing compiled", BLOCKS / cold, "blocks/s")
         for each in programs():
             ours, theirs = Path(folder, "ours.nc"), Path(folder, "theirs.ngc")
             ours.write_text(each.ours)
@@ -91,8 +95,10 @@ def _arcs() -> Iterator[str]:
         yield f"G{2 if clockwise else 3} X{x}.000 Y{y}.000{height} I{i}.000 J{j}.000"
 
 
-def _interpret(path: Path, dialect: str) -> int:
-    interpretation = Interpretation(read_source(path), dialect_named(dialect), _SETTINGS)
+def _interpret(path: Path, dialect: str, compiled_from: int = COMPILED_FROM) -> int:
+    interpretation = Interpretation(
+        read_source(path), dialect_named(dialect), _SETTINGS, compiled_from=compiled_from
+    )
     return sum(len(chunk.moves) for chunk in interpretation.chunks())
 
 

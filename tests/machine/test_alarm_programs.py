@@ -16,9 +16,14 @@ EXPECTED = {
     "hard_limit": ("hard-limit", 4, "X ran onto its limit switch at 402.0"),
     "following_error": ("following-error", 5, "X trails its setpoint by 3.0"),
     "drive_saturation": ("drive-saturation", 5, "the drive of Y has been at its limit of 3500 N"),
-    "collision_faceplate": ("collision", 5, "the tool's shank meets the faceplate"),
+    "collision_faceplate": ("collision", 5, "the cutter meets the faceplate"),
     "collision_vise": ("collision", 6, "the holder's nut meets the fixed jaw"),
     "collision_second_tool": ("collision", 9, "the holder's nut meets the "),
+    "collision_drill": ("collision", 4, "the cutter meets the faceplate"),
+    "collision_flank": ("collision", 5, "the cutter meets the jaw"),
+    "collision_holder": ("collision", 11, "the holder of tool 1 meets the part (8.00 mm deep)"),
+    "collision_shank": ("collision", 8, "the shank of tool 1 meets the part (6.00 mm deep)"),
+    "collision_turning_clamp": ("collision", 5, "the cutter meets the clamp"),
     "rapid_into_stock": (
         "rapid-into-stock",
         6,
@@ -80,6 +85,10 @@ def test_the_alarm_is_raised_at_its_line_and_the_recording_up_to_it_is_kept(
     assert result["verdict"] == "alarm"
     (alarm,) = result["alarms"]
     assert (alarm["code"], alarm["line"]) == (code, line)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    drawn = f"<figcaption>Line {line}, " in page and (tmp_path / "collision.png").is_file()
+    untold = "no picture of the collision: " not in done.stderr
+    assert drawn == (code == "collision" and untold)
     if code == "soft-limit":
         assert alarm["time_s"] == 0.0
         assert not (tmp_path / "recording.h5").exists()

@@ -237,7 +237,7 @@ def test_another_tool_has_other_collisions():
     live.mount(DefaultTool(length=150.0, flute=20.0))
     live.follow(down)
     assert live.alarm is not None
-    assert "tool's shank meets the faceplate" in live.alarm.message
+    assert "the cutter meets the faceplate" in live.alarm.message
 
 
 def test_nothing_to_follow_is_nothing_done():

@@ -50,7 +50,7 @@ IMPERFECT = {
         "reset_time_s": 0.02,
     },
     "all": {
-        "dry_friction": 200.0, "viscous_friction": 1.0, "backlash": 0.02, "stiffness": 30000.0,
+        "dry_friction": 200.0, "viscous_friction": 1.0, "backlash": 0.02, "stiffness": 9000.0,
         "counterbalance": 0.5, "reset_time_s": 0.05, "velocity_feedforward": 0.5,
     },
 }  # fmt: skip

@@ -97,16 +97,26 @@ def test_with_backlash_the_axis_trails_the_motor_whichever_way_it_goes():
 
 def test_a_springy_screw_gives_by_friction_over_stiffness():
     stiffness, force = 30_000.0, 500.0
-    machine = shipped_machine(stiffness=stiffness, dry_friction=force, **PERFECT)
+    machine = shipped_machine(dry_friction=force, **PERFECT).changed("X", stiffness=stiffness)
     rigid = shipped_machine(dry_friction=force, **PERFECT)
     soft, hard = (run(m, line(0, 20.0, 1.5)) for m in (machine, rigid))
     give = (hard.joint_position - soft.joint_position)[-1, 0]
     assert give == pytest.approx(force / stiffness, rel=0.01)
 
 
-def test_a_springy_screw_rings_at_its_natural_frequency():
+def test_a_screw_that_the_step_cannot_follow_is_refused():
+    """From one radian a step on: motor and axis against each other on the spring."""
+    moved, motor = 485.0 + 38.0 + 518.2, 518.2
+    stiffest = motor * (moved - motor) / moved / PERIOD**2 * 1e-3
+    build_spec(shipped_machine().changed("X", stiffness=0.99 * stiffest))
+    with pytest.raises(ConfigError, match=r"axes\.X\.stiffness = .* up to 2.6e\+05 works"):
+        build_spec(shipped_machine().changed("X", stiffness=1.01 * stiffest))
+
+
+@pytest.mark.parametrize("stiffness", [30_000.0, 250_000.0])
+def test_a_springy_screw_rings_at_its_natural_frequency(stiffness):
     """Motor held: the axis swings on the screw as mass on spring."""
-    machine = shipped_machine(stiffness=30_000.0)
+    machine = shipped_machine().changed("X", stiffness=stiffness)
     model = physics_model(machine, build_spec(machine))
     data = mujoco.MjData(model)
     data.joint("X give").qpos[0] = 1e-4
@@ -119,7 +129,7 @@ def test_a_springy_screw_rings_at_its_natural_frequency():
         swing.append(data.qpos[dof])
     crossings = np.flatnonzero(np.diff(np.sign(swing)) != 0)
     period = 2 * (crossings[-1] - crossings[0]) / (len(crossings) - 1) * PERIOD
-    assert period == pytest.approx(2 * np.pi * np.sqrt(523.0 / 3e7), rel=0.02)
+    assert period == pytest.approx(2 * np.pi * np.sqrt(523.0 / (1e3 * stiffness)), rel=0.02)
 
 
 def test_bristles_bend_before_they_slip():

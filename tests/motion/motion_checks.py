@@ -118,9 +118,15 @@ def assert_feed_and_path_limits(setpoints: Setpoints, moves: Moves, limits: Moti
 def assert_phases_join(phases: Phases) -> None:
     """Each phase begins where the one before it ended, as fast as that did."""
     place = np.append(0.0, np.cumsum(phases.pieces.length))
-    _, t, x, v, a, j = phases.rows.T
+    begin, t, x, v, a, j = phases.rows.T
     x = x + place[phases.rows_pieces[:, 0]]
     end_x = x + ((j / 6.0 * t + 0.5 * a) * t + v) * t
     end_v = v + (0.5 * j * t + a) * t
     assert np.abs(x[1:] - end_x[:-1]).max(initial=0.0) <= 1e-10 * (1.0 + place[-1])
+    gaps = begin[1:] - (begin + t)[:-1]
+    overlapping = np.append(False, gaps < -1e-9)
+    assert np.all(gaps <= 1e-9)
+    # Moves overlap at stops, by no more than one phase of each.
+    assert np.all(v[overlapping] == 0.0)
+    assert np.all((begin + t)[1:] >= (begin + t)[:-1] - 1e-9)
     assert np.abs(v[1:] - end_v[:-1]).max(initial=0.0) <= 1e-9 * (1.0 + v.max(initial=0.0))

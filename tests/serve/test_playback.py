@@ -1,5 +1,6 @@
 """A run that is told part after part, and the command that serves it."""
 
+import asyncio
 import os
 import signal
 import subprocess
@@ -17,8 +18,11 @@ from twin.recording.reader import open_recording
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress
 from twin.run.run import Run
+from twin.serve.agent import Agent
 from twin.serve.buffer import Condition
-from twin.serve.playback import BEFORE_START_S, TICK_S, Production, Tick, ticks
+from twin.serve.clock import Clock
+from twin.serve.device import device_of
+from twin.serve.playback import BEFORE_START_S, TICK_S, Production, Tick, feed, ticks
 
 PROGRAM = """N1 X0 Y0 Z0 C0 G00
 N2 G01 F1500
@@ -87,6 +91,34 @@ def test_an_alarm_is_a_fault_until_somebody_resets_it(production: Production):
     assert told[:3] == [("READY", Condition("Normal")), ("ACTIVE", None), ("STOPPED", fault)]
     assert told[3:6] == told[:3]
     assert at[2] == pytest.approx(BEFORE_START_S + 0.25)
+
+
+class HandWoundClock(Clock):
+    """A clock that goes on when it is told to."""
+
+    wound_s = 0.0
+
+    def elapsed_s(self) -> float:
+        return self.wound_s
+
+
+def test_busy_clients_do_not_hold_the_machine_up(
+    production: Production, monkeypatch: pytest.MonkeyPatch
+):
+    """Every round of answers takes half a second, in which fifty ticks become due."""
+    monkeypatch.setattr("twin.serve.playback._WAKE_S", 0.0)
+    clock = HandWoundClock()
+    agent = Agent(device_of("mill", production.machine.axes), clock, "made up")
+
+    async def observe() -> None:
+        feeding = asyncio.create_task(feed(agent, ticks(production)))
+        for _ in range(40):
+            clock.wound_s += 0.5
+            await asyncio.sleep(0)
+        feeding.cancel()
+
+    asyncio.run(observe())
+    assert clock.wound_s - agent.observed_s < 2.0
 
 
 def test_the_command_prints_its_address_and_ends_on_request(tmp_path: Path):

@@ -16,6 +16,7 @@ from typer.testing import CliRunner
 from twin.cli import app
 from twin.errors import TwinError
 from twin.training.scene.scene_file import scene_names
+from twin.web.files import THREE
 
 PATIENCE_S = 120.0
 
@@ -53,6 +54,7 @@ def test_what_cannot_be_opened_is_refused(arguments: list[str], message: str) ->
         assert not message
 
 
+@pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
 @pytest.mark.parametrize(
     ("number", "visited"), [(signal.SIGINT, True), (signal.SIGINT, False), (signal.SIGTERM, False)]
 )

@@ -105,7 +105,7 @@ def resolution(values: FloatArray) -> float:
         return 0.0
     least = float(np.min(steps))
     parts = steps / least
-    even = np.abs(parts - np.round(parts)) < 0.02 * np.maximum(1.0, parts * 0.0 + 1.0)
+    even = np.abs(parts - np.round(parts)) < 0.02
     return least if float(np.mean(even)) > 0.95 else 0.0
 
 
@@ -113,15 +113,15 @@ def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
     """What one axis's columns cannot tell."""
     findings = []
     lag = axis.command - axis.actual
-    unit, small = ("mm", "µm") if axis.kind == "linear" else ("deg", "mdeg")
+    small = "µm" if axis.kind == "linear" else "mdeg"
     step = max(resolution(axis.command), resolution(axis.actual))
     peak = float(np.abs(lag - np.median(lag)).max())
     if step > 0.05 * peak > 0:
         findings.append(
             Finding(
                 "coarse",
-                f"{name}: positions come in steps of {step * 1e3:.3g} {small}, its lag is at most "
-                f"{peak * 1e3:.3g} {small}: small effects drown in the steps",
+                f"{name}: positions come in steps of {step * 1e3:.4g} {small}, its lag is at most "
+                f"{peak * 1e3:.4g} {small}: small effects drown in the steps",
             )
         )
     moving = np.abs(np.diff(axis.command)) > 0
@@ -137,5 +137,4 @@ def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
                     "faster than the interpolator; steps are taken as they are",
                 )
             )
-    del unit
     return findings

@@ -7,7 +7,9 @@ import typer
 
 
 def calibrate(
-    logs: Annotated[list[Path], typer.Argument(help="Logs to fit.", show_default=False)],
+    logs: Annotated[
+        list[Path] | None, typer.Argument(help="Logs to fit.", show_default=False)
+    ] = None,
     base: Annotated[
         str, typer.Option("--base", help="Machine that keeps what the logs do not tell.")
     ] = "mill4",
@@ -20,16 +22,21 @@ def calibrate(
     axes: Annotated[str | None, typer.Option("--axes", help="Only these: X,Y.")] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Write the machine file there.")] = None,
     json_file: Annotated[Path | None, typer.Option("--json", help="Write JSON there.")] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="Write the page there.")] = None,
     require: Annotated[
         float | None,
         typer.Option("--require", help="Exit 1 if more of a held-out lag than this share is left."),
+    ] = None,
+    programs: Annotated[
+        Path | None,
+        typer.Option("--programs", help="Write test programs for the real machine there."),
     ] = None,
 ) -> None:
     """Fit a machine's drives to logs of a real one, and say what the logs do not tell."""
     from twin.commands.calibrate import calibrate_and_print
 
     code = calibrate_and_print(
-        logs, base=base, columns=columns, hold_out=hold_out or [], axes=axes, out=out,
-        json_file=json_file, require=require,
+        logs or [], base=base, columns=columns, hold_out=hold_out or [], axes=axes, out=out,
+        json_file=json_file, report=report, require=require, programs=programs,
     )  # fmt: skip
     raise typer.Exit(code)

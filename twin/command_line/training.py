@@ -1,4 +1,4 @@
-"""The command line of ``twin train``."""
+"""The command lines of pages: ``twin train`` and ``twin view``."""
 
 from pathlib import Path
 from typing import Annotated
@@ -41,3 +41,22 @@ def train(
         scene, language=language, host=host, port=port, certificate=certificate, key=key, out=out
     )
     raise typer.Exit(code)
+
+
+def view(
+    recording: Annotated[
+        Path,
+        typer.Argument(
+            metavar="RECORDING|JOB",
+            help="recording.h5; or a job file or NC program, which is run first.",
+            show_default=False,
+        ),
+    ],
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="0: the first free from 8080.")
+    ] = 0,
+) -> None:
+    """Look at a run in a browser: play, scrub, by line, with its contour error and its part."""
+    from twin.commands.view import view as show
+
+    raise typer.Exit(show(recording, port))

@@ -30,7 +30,9 @@ def calibrate_and_print(
     axes: str | None = None,
     out: Path | None = None,
     json_file: Path | None = None,
+    report: Path | None = None,
     require: float | None = None,
+    programs: Path | None = None,
 ) -> ExitCode:
     """Fit the base machine's drives to logs; write what was asked for and print the figures.
 
@@ -42,7 +44,9 @@ def calibrate_and_print(
         axes: Names, separated by commas; all that the logs have by default.
         out: Where the machine file goes.
         json_file: Where the figures go.
+        report: Where the page goes.
         require: Largest share of the following error that may be left on held-out logs.
+        programs: Folder for test programs to run on the real machine.
 
     Returns:
         ``FAILED`` when ``require`` does not hold, else ``OK``.
@@ -52,10 +56,18 @@ def calibrate_and_print(
         ConfigError: The base is wrong.
     """
     machine = read_machine(machine_file(base))
+    if not logs and programs is None:
+        raise UsageError("nothing to do: give logs to fit, or --programs DIR")
+    if not logs and any((hold_out, out, json_file, report, require)):
+        raise UsageError("--hold-out, --out, --json, --report and --require need logs to fit")
     if require is not None and not hold_out:
         raise UsageError("--require judges held-out logs: give --hold-out LOG")
     if require is not None and not 0 < require < float("inf"):
         raise UsageError(f"--require must be a positive share, not {require:g}")
+    if programs is not None:
+        _write_programs(machine_file(base), programs)
+    if not logs:
+        return ExitCode.OK
     _need_scipy()
     from twin.calibrate.calibrate import calibrate
     from twin.calibrate.machine_text import machine_text
@@ -71,10 +83,21 @@ def calibrate_and_print(
         write_text(out, machine_text(result, base=_base_for(base, out), name=out.stem))
     if json_file is not None:
         write_text(json_file, json.dumps(result.as_contract(), indent=2, ensure_ascii=False) + "\n")
+    if report is not None:
+        from twin.calibrate.report.page import calibration_page
+
+        write_text(report, calibration_page(result))
     _print(result)
     judged = [figures for figures in result.logs if figures.role == "hold-out"]
     failed = require is not None and any(figures.share > require for figures in judged)
     return ExitCode.FAILED if failed else ExitCode.OK
+
+
+def _write_programs(base: Path, folder: Path) -> None:
+    from twin.calibrate.programs import write_programs
+
+    for path in write_programs(read_machine(base), folder):
+        typer.echo(f"wrote {path}")
 
 
 def _need_scipy() -> None:

@@ -76,12 +76,15 @@ def compile_kernels() -> None:
 
 def _interpret(programs: Path) -> None:
     """Every shipped program through the compiled interpreter, which short ones do without."""
+    from twin.compilation.speed import Speed
     from twin.nc.interpreter import Interpretation
     from twin.run.preparation import prepare
 
     for job in sorted(programs.glob("*/*.toml")):
         made = prepare(job)
-        interpretation = Interpretation(made.source, made.dialect, made.settings, compiled_from=0)
+        interpretation = Interpretation(
+            made.source, made.dialect, made.settings, compiled_from=0, speed=Speed.HOT
+        )
         for _ in interpretation.chunks():
             pass
 

@@ -1,14 +1,16 @@
-"""The film and the still of a run."""
+"""The film and the stills of a run."""
 
 from pathlib import Path
 
 from twin.recording.reader import open_recording
 from twin.run.dry_run import DryRun
 from twin.run.progress import Progress
-from twin.run.results import STILL_NAME
+from twin.run.results import ALARM_STILL_NAME, STILL_NAME
 from twin.run.run import Run
 
 FILM_STEM = "video"
+ALARM_CAMERAS = ("tool", "overview")
+"""What the moment of a collision is seen from: the first of these that the machine has."""
 
 
 def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> None:
@@ -44,3 +46,24 @@ def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> Non
             quality=video.quality,
             renderer=video.renderer,
         )
+
+
+def draw_collision(run: Run, dry_run: DryRun, folder: Path) -> None:
+    """Draw the moment of a collision, which is the last of its recording.
+
+    Args:
+        run: The run.
+        dry_run: What the first pass over its program found.
+        folder: Where ``recording.h5`` lies and the picture goes.
+
+    Raises:
+        RenderError: Pictures cannot be made here.
+    """
+    from twin.render.still import Shot, stills
+    from twin.run.replay import scene_of
+
+    with open_recording(folder / "recording.h5") as recording:
+        scene = scene_of(recording, run.preparation, dry_run.summary)
+        cameras = [name for name in ALARM_CAMERAS if name in scene.camera_names()][:1]
+        shot = Shot(folder / ALARM_STILL_NAME, len(recording))
+        stills(scene, [shot], cameras=cameras, size=(960, 540), quality="draft")

@@ -14,7 +14,7 @@ import hashlib
 import os
 import pickle
 import secrets
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -53,6 +53,12 @@ def keep_by_content(compilable: Compilable, function: Callable[..., Any]) -> Com
         holder: Any = compilable
         holder._cache = KernelCache(function, file)  # noqa: SLF001 - Numba has no public place for it
     return compilable
+
+
+def is_compiled(kernel: Any, arguments: Iterable[object]) -> bool:
+    """Whether a call of a kernel with these arguments would have to wait for no compiler."""
+    types = tuple(map(kernel.typeof_pyval, arguments))
+    return types in kernel.overloads or kernel._cache.holds(types, kernel.targetctx)  # noqa: SLF001 - Numba has no public place for it
 
 
 class KernelCache(_Cache):
@@ -95,6 +101,11 @@ class KernelCache(_Cache):
                     self._write(name, dumps(data._reduce()))  # noqa: SLF001
         finally:
             self._end(name)
+
+    def holds(self, sig: Any, target_context: Any) -> bool:
+        """Whether the kernel for these types is kept; the arguments are those of ``load_overload``."""
+        target_context.refresh()
+        return self._read(sig, target_context) is not None
 
     def enable(self) -> None:
         """Numba asks for it; this cache is always on."""

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from twin.compilation.content import PACKAGE, content_key
 from twin.compilation.folders import SHIPPED, lasts, trusted_folders, writable_folder
 
-_HAS_KERNELS = re.compile(r"^@\w*kernel$", re.MULTILINE)
+_HAS_KERNELS = re.compile(r"^@\w*kernel$|\bkernel\(program\.", re.MULTILINE)
 
 
 class Inventory(NamedTuple):

@@ -7,20 +7,14 @@ compiled without the counting (``_nrt``, Numba's run time of references).
 """
 
 from collections.abc import Callable
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 import numba
-import numpy as np
+from numba.extending import overload
 
 from twin.compilation.cache import keep_by_content
-
-NONE_YET, ONCE, NO = (
-    cast("int", np.int64(0)),
-    cast("int", np.int64(1)),
-    cast("bool", np.bool_(False)),
-)
-"""For what is given to other kernels: to Numba a plain 0, 1 or False is a type of its own, for which
-it compiles a kernel once more."""
+from twin.compilation.compilable import take_declared
+from twin.compilation.part import PartCompiler
 
 _SUMS = {"reassoc", "nsz", "nnan"}
 """Freedoms that let a sum or a maximum over neighbours be taken several at a time: its terms may be
@@ -52,20 +46,23 @@ def kernel(function: Kernel) -> Kernel:
     return _compiled(function, _nrt=False)
 
 
-def inlined_kernel(function: Kernel) -> Kernel:
-    """Compile a function that makes no array, as a part of each function that calls it.
-
-    A call hands over hundreds of values, one for each size and step of a column, which may take
-    longer than the block that is run.
-    """
-    return _compiled(function, _nrt=False, forceinline=True)
-
-
 def arithmetic_kernel(function: Kernel) -> Kernel:
     """Compile a function that makes no array, where a division by zero gives infinity or NaN."""
     return _compiled(function, _nrt=False, error_model="numpy")
 
 
 def _compiled(function: Kernel, **options: Any) -> Kernel:
+    for called, compiled, of_part in take_declared():
+        options_of_part: Any = {**of_part, "pipeline_class": PartCompiler}
+        overload(called, jit_options=options_of_part, strict=False)(_always(compiled))
     jit: Any = numba.njit  # its declared options lack ``_nrt``
     return keep_by_content(jit(**options)(function), function)
+
+
+def _always(function: Callable[..., object]) -> Callable[..., Callable[..., object]]:
+    """What Numba asks for the form of a function that fits types: one form fits all."""
+
+    def form(*_types: object) -> Callable[..., object]:
+        return function
+
+    return form

@@ -7,11 +7,12 @@ from typing import Any, Literal
 import numpy as np
 
 from twin.cutting.cut_log import BlockCut, CutLog
-from twin.cutting.events import SCRAPE_MM, CutEvent, EventLog, StockWatch, Stretches, meets_material
+from twin.cutting.events import CutEvent, EventLog, StockWatch, Stretches
 from twin.cutting.force import cutting_load, cutting_width, kienzle
 from twin.cutting.force_direction import tool_force
 from twin.cutting.height_map import BoolArray, blank
-from twin.cutting.sweep_kernels import Removal, overlap, sweep
+from twin.cutting.stock_contact import EDGE, Head, Points, StockContact
+from twin.cutting.sweep_kernels import Removal, sweep
 from twin.cutting.thin_kernels import thin
 from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
 from twin.job.job_file import StockTable, ToolTable
@@ -46,7 +47,8 @@ class CutResult:
     air_share: float
     """Share of the cutting feed's path that met no material."""
     gouges: tuple[CutEvent, ...]
-    """Flutes too short, shank or holder in the material; one each per line, of many the deepest."""
+    """Flutes too short, shank, holder or head in the material; one each per line, of many the
+    deepest."""
     rapid_into_stock: tuple[CutEvent, ...]
     """Rapids that met material, one per move."""
     spindle_off: tuple[CutEvent, ...]
@@ -84,7 +86,7 @@ class Cutter:
             frame, shape (n, 3) [N]; 0 in the air and where it is not known.
         marks: Way of the tool at which each cell was last cut, shape (ny, nx) [mm]: its lines are
             the marks that a cutter leaves. Of no size unless asked for.
-        halted: The rapid or the feed with the spindle off at which cutting ended, if it shall.
+        halted: What met material that must not, at which cutting ended, if it shall.
     """
 
     def __init__(
@@ -97,6 +99,7 @@ class Cutter:
         along: Literal["joints", "setpoints"] = "joints",
         keep_marks: bool = False,
         halts: bool = False,
+        head: Head | None = None,
     ) -> None:
         """Lay the uncut stock on the table.
 
@@ -107,8 +110,10 @@ class Cutter:
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             along: Whether the simulated motion cuts or the commanded one.
             keep_marks: Whether to note the cutter's marks, for pictures.
-            halts: Whether to cut no further once a rapid, or a feed with the spindle off, has met
-                material. The part is then as it was at that moment.
+            halts: Whether to cut no further once something has met material that must not: a
+                rapid, a feed with the spindle off, shank, holder or head. The part is then as it
+                was at that moment.
+            head: What is above a tool's holder; None: nothing.
 
         Raises:
             ConfigError: The stock is too large for its grid, its file cannot be read, or its
@@ -125,7 +130,7 @@ class Cutter:
         self._material = kienzle(stock)
         self._along = along
         self._part_frame = part_frame
-        self._last: tuple[FloatArray, float] | None = None
+        self._last: tuple[FloatArray, FloatArray, float] | None = None
         self._removed = 0.0
         self._feed_path = 0.0
         self._air_path = 0.0
@@ -134,7 +139,7 @@ class Cutter:
         self._gouges = EventLog()
         self._rapids = StockWatch("rapid")
         self._standing = StockWatch("standing")
-        self._halts = halts
+        self._halts, self._head = halts, head
         self.halted: CutEvent | None = None
         self._cut_log = CutLog()
 
@@ -160,9 +165,9 @@ class Cutter:
         if self._along == "joints":
             points = self._part_frame.position(samples.joint_position)
         off = np.zeros(len(samples), np.bool_) if standing is None else standing
-        way = _Way(
-            points, np.abs(meant - points).sum(axis=1), setpoint.time, setpoint.line, rapid, off
-        )
+        lag = np.abs(meant - points).sum(axis=1)
+        turn = self._part_frame.direction(samples.joint_position)
+        way = _Way(points, turn, lag, setpoint.time, setpoint.line, rapid, off)
         for run, tool in self._plan.runs(setpoint.move):
             if self.halted is not None:
                 break
@@ -201,9 +206,12 @@ class Cutter:
         Returns:
             Force on the tool during each sample that was cut along, shape (m, 3) [N].
         """
-        before, since = (way.points[:1], way.time[0]) if self._last is None else self._last
-        self._last = way.points[-1:].copy(), float(way.time[-1])
+        before, turn, since = (
+            (way.points[:1], way.turn[:1], way.time[0]) if self._last is None else self._last
+        )
+        self._last = way.points[-1:].copy(), way.turn[-1:].copy(), float(way.time[-1])
         points = np.concatenate([before, way.points])
+        turns = np.concatenate([turn, way.turn])
         edge = profile(self.tool)
         group = way.group
         chosen = thin(
@@ -213,74 +221,93 @@ class Cutter:
             LONGEST_SHARE * edge.radius,
             MOST_JOINED,
         )
-        points, sample = points[chosen], chosen[1:] - 1
+        points, sample = Points(points[chosen], turns[chosen]), chosen[1:] - 1
         rapid, off, lag = way.rapid[sample], way.standing[sample], way.lag[sample]
-        rapids = self._rapids.suspects(points, rapid, lag)
-        standing = self._standing.suspects(points, ~rapid & off, lag)
-        suspect = (rapids > 0) | (standing > 0)
-        overlaps = self._overlaps(points)
-        uncut = None
-        if self._halts and suspect.any():
-            uncut = self.map.heights.copy(), self.marks.copy()
-        removed, depth, aside = self._sweep(points, edge)
-        hits = suspect & meets_material(removed, depth, edge.radius, self.map.cell)
-        if uncut is not None and hits.any():
-            end = int(np.argmax(hits)) + 1
-            self.map.heights[:], self.marks[:] = uncut
-            points, sample = points[: end + 1], sample[:end]
-            rapid, rapids, standing, hits = rapid[:end], rapids[:end], standing[:end], hits[:end]
-            overlaps = {what: excess[:end] for what, excess in overlaps.items()}
-            removed, depth, aside = self._sweep(points, edge)
-        self._travelled += float(_lengths(points).sum())
-        self._removed += float(removed.sum())
+        rapids = self._rapids.suspects(points.tip, rapid, lag)
+        standing = self._standing.suspects(points.tip, ~rapid & off, lag)
+        found, met = self._take_off(points, edge, (rapids > 0) | (standing > 0))
+        count = len(found.volume)
+        points, sample = points[: count + 1], sample[:count]
+        rapids, standing = rapids[:count], standing[:count]
+        self._travelled += float(_lengths(points.tip).sum())
+        self._removed += float(found.volume.sum())
         time, line = way.time[sample], way.line[sample]
-        stretches = Stretches(points, time, line, rapid, removed, depth, aside)
-        overlaps["flute"] = depth - self.tool.flute
-        for what, excess in overlaps.items():
-            for i in np.flatnonzero(excess > SCRAPE_MM):
-                key = (what, int(stretches.line[i]))
-                self._gouges.note(key, what, stretches, int(i), float(excess[i]))
+        stretches = Stretches(points.tip, time, line, rapid[:count], *found)
+        latest = self._note_contacts(stretches, met)
+        hits = met.pop(EDGE, np.zeros(count)) > 0.0
         self._rapids.add(stretches, rapids, hits)
         self._standing.add(stretches, standing, hits)
-        if self._halts and hits.any():
-            (self.halted,) = (*self._rapids.events(), *self._standing.events())
+        if self._halts and (latest is not None or hits.any()):
+            (self.halted,) = (*self._rapids.events(), *self._standing.events()) or (latest,)
         force = self._note(stretches, np.diff(stretches.time, prepend=since))
         return np.repeat(force, np.diff(sample, prepend=-1), axis=0)
 
-    def _sweep(self, points: FloatArray, edge: Profile) -> FloatArray:
-        """Take off what lies in the way; volume [mm³], depth and place aside [mm] by stretch."""
-        found = np.zeros((3, len(points) - 1))
+    def _take_off(
+        self, points: Points, edge: Profile, suspect: BoolArray
+    ) -> tuple[Removal, dict[str, FloatArray]]:
+        """Take off what lies in the way, up to where something meets that must not, if that halts.
+
+        Args:
+            points: Ends of n stretches.
+            edge: The cutting edge.
+            suspect: In which of them the edge must not cut, shape (n,).
+
+        Returns:
+            What each stretch took off, and by name how deep something was in the material that
+            must not be, shape (n,) [mm]; fewer than n stretches where cutting halted.
+        """
+        contact = StockContact(self.tool, edge, self._head)
+        doubtful = contact.measure(self.map, points, suspect)
+        count, done = len(suspect), 0
+        removal = Removal(*np.zeros((3, count)))
+        met = {name: np.zeros(count) for name in doubtful}
+        mark = self._travelled + np.cumsum(_lengths(points.tip))
+        flagged = np.flatnonzero(np.any([o.depth for o in doubtful.values()], axis=0) & (count > 0))
+        # Against the material as the stretches before have left it.
+        for k in flagged.tolist():
+            self._sweep(points.tip, edge, removal, mark, slice(done, k))
+            done = k
+            here = slice(k, k + 1)
+            for name, overlap in contact.measure(
+                self.map, points[k : k + 2], suspect[here]
+            ).items():
+                met[name][here] = overlap.depth
+            if self._halts and any(depth[k] for depth in met.values()):
+                count = k + 1
+                break
+        self._sweep(points.tip, edge, removal, mark, slice(done, count))
+        removal = Removal(*(column[:count] for column in removal))
+        return removal, {name: depth[:count] for name, depth in met.items()}
+
+    def _sweep(
+        self, tip: FloatArray, edge: Profile, removal: Removal, mark: FloatArray, part: slice
+    ) -> None:
+        """Take off what lies in the way of some of the stretches."""
+        if part.start >= part.stop:
+            return
         changed = sweep(
             self.map.heights,
             self.map.grid,
-            points,
+            tip[part.start : part.stop + 1],
             dataclasses.astuple(edge),
-            Removal(*found),
+            Removal(*(column[part] for column in removal)),
             self.marks,
-            self._travelled + np.cumsum(_lengths(points)),
+            mark[part],
         )
         self.changed = union(self.changed, changed)
-        return found
 
-    def _overlaps(self, points: FloatArray) -> dict[str, FloatArray]:
-        """How deep shank and holder go into the material along each stretch [mm]."""
-        tool = self.tool
-        found = {}
-        cylinders = {"holder": (tool.holder, tool.below_holder)}
-        if tool.shank is not None and tool.shank > tool.diameter:
-            cylinders["shank"] = (tool.shank, tool.flute)
-        for what, (diameter, above) in cylinders.items():
-            found[what] = np.zeros(len(points) - 1)
-            overlap(
-                self.map.heights,
-                self.map.grid,
-                self.map.top,
-                points,
-                0.5 * diameter,
-                above,
-                found[what],
-            )
-        return found
+    def _note_contacts(
+        self, stretches: Stretches, met: Mapping[str, FloatArray]
+    ) -> CutEvent | None:
+        """Note what of the tool's side was in the material; the event of the last stretch, if any."""
+        latest = None
+        for what, depth in met.items():
+            for i in np.flatnonzero(depth) if what != EDGE else ():
+                key = (what, int(stretches.line[i]))
+                self._gouges.note(key, what, stretches, int(i), float(depth[i]))
+                if i == len(depth) - 1:
+                    latest = self._gouges.event(key)
+        return latest
 
     def _note(self, stretches: Stretches, duration: FloatArray) -> FloatArray:
         """Enter air and removal, and the force where it can be reckoned.
@@ -308,6 +335,7 @@ class _Way:
     """Where the tool went: n samples."""
 
     points: FloatArray
+    turn: FloatArray
     lag: FloatArray
     time: FloatArray
     line: IntArray

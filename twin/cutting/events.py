@@ -16,12 +16,6 @@ as the lag at its beginning, and so much more. The same holds for a feed after t
 SCRAPE_MM = 0.01
 """Depth below which a removal is the grid's doing [mm]."""
 
-BRUSH_SHARE = 0.01
-BRUSH_CELLS = 4.0
-"""Ground that a stretch may take off at its full depth and still be said to brush a wall, as a
-share of the tool's cross-section and in cells, the greater of the two: on a second way down a bore
-or along a slot the axes are off their first by some micrometres, and a few cells of the wall go."""
-
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class CutEvent:
@@ -33,7 +27,8 @@ class CutEvent:
         depth_mm: Its greatest depth below the material that was first met [mm].
         position: Tool tip in the part's frame at its beginning [mm].
         what: ``rapid``; ``standing``, a feed with the spindle off; or which part of the tool
-            gouges: ``flute`` (the cut is deeper than the flutes are long), ``shank``, ``holder``.
+            gouges: ``flute`` (the cut is deeper than the flutes are long), ``shank``, ``holder``, or
+            by its name what is above it.
     """
 
     line: int
@@ -100,6 +95,10 @@ class EventLog:
                 self._forget(key)
         elif depth > known.depth_mm:
             self._events[key] = dataclasses.replace(known, depth_mm=depth)
+
+    def event(self, key: Hashable) -> CutEvent:
+        """One occurrence."""
+        return self._events[key]
 
     def _forget(self, latest: Hashable) -> None:
         """Let go of all but the deepest, and the latest, which may go deeper yet."""
@@ -173,18 +172,3 @@ class StockWatch:
     def events(self) -> tuple[CutEvent, ...]:
         """All moves that met material."""
         return self._log.events()
-
-
-def meets_material(
-    removed: FloatArray, depth: FloatArray, tool_radius: float, cell: float
-) -> BoolArray:
-    """Which stretches take material rather than brush along a wall or a floor that was cut before.
-
-    Args:
-        removed: Material taken off, shape (n,) [mm³].
-        depth: Greatest depth of it, shape (n,) [mm].
-        tool_radius: Of the cutting edge [mm].
-        cell: Side of a cell of the height map [mm].
-    """
-    brushed = max(BRUSH_SHARE * np.pi * tool_radius**2, BRUSH_CELLS * cell**2)
-    return (depth > SCRAPE_MM) & (removed > brushed * depth)

@@ -6,7 +6,6 @@ import numpy as np
 
 from twin.cutting.events import Stretches
 from twin.cutting.force import Kienzle, cutting_width
-from twin.cutting.tools import DRILL_POINT
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 
@@ -57,7 +56,7 @@ def tool_force(
     forwards = -sine - RADIAL_SHARE * cosine
     sideways = cosine - RADIAL_SHARE * sine
     plunging = np.clip(-way[:, 2] / length, 0.0, 1.0)
-    point = tool.angle or (DRILL_POINT if tool.kind == "drill" else 180.0)
+    point = tool.point_angle or 180.0
     upwards = plunging * math.sin(math.radians(0.5 * point))
     pushed = forwards[:, None] * ahead + sideways[:, None] * left
     return np.column_stack([(1.0 - plunging)[:, None] * pushed, upwards]) * tangential[:, None]

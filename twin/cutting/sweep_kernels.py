@@ -79,7 +79,7 @@ def sweep(
         stands = i > 0 and points[i + 1, 2] >= points[i, 2]
         for row in range(low, high + 1):
             y = grid.origin[1] + row * cell
-            left, right = _chord(ax, ay, bx, by, radius, y)
+            left, right = chord(ax, ay, bx, by, radius, y)
             first = max(0, math.ceil((left - grid.origin[0]) / cell))
             end = min(heights.shape[1] - 1, math.floor((right - grid.origin[0]) / cell)) + 1
             done, done_end = end, end
@@ -123,49 +123,7 @@ def _mark_lowered(marks: FloatArray, heights: FloatArray, before: FloatArray, ma
 
 
 @array_kernel
-def overlap(
-    heights: FloatArray,
-    grid: Grid,
-    top: float,
-    points: FloatArray,
-    radius: float,
-    above: float,
-    depth: FloatArray,
-) -> None:
-    """How deep a cylinder that must not cut, such as the holder, goes into the material.
-
-    Args:
-        heights: The height map, shape (ny, nx) [mm].
-        grid: Where its cells lie.
-        top: Z above which there is no material [mm].
-        points: Tool tip positions, shape (n, 3) [mm].
-        radius: Of the cylinder [mm].
-        above: Height of its lower end above the tip [mm].
-        depth: Set to the greatest overlap along each line, shape (n - 1,) [mm].
-    """
-    rows, columns = heights.shape
-    cylinder = (radius, radius, 0.0, 0.0)
-    for i in range(len(points) - 1):
-        depth[i] = 0.0
-        ax, ay = points[i, 0], points[i, 1]
-        bx, by = points[i + 1, 0], points[i + 1, 1]
-        if min(points[i, 2], points[i + 1, 2]) + above >= top:
-            continue
-        low = max(0, math.ceil((min(ay, by) - radius - grid.origin[1]) / grid.cell))
-        high = min(rows - 1, math.floor((max(ay, by) + radius - grid.origin[1]) / grid.cell))
-        for row in range(low, high + 1):
-            y = grid.origin[1] + row * grid.cell
-            left, right = _chord(ax, ay, bx, by, radius, y)
-            first = max(0, math.ceil((left - grid.origin[0]) / grid.cell))
-            end = min(columns - 1, math.floor((right - grid.origin[0]) / grid.cell)) + 1
-            for column in range(first, end):
-                x = grid.origin[0] + column * grid.cell
-                lower = lowest_height(x, y, points[i], points[i + 1], cylinder) + above
-                depth[i] = max(depth[i], heights[row, column] - lower)
-
-
-@array_kernel
-def _chord(
+def chord(
     ax: float, ay: float, bx: float, by: float, radius: float, y: float
 ) -> tuple[float, float]:
     """Where the row at ``y`` crosses the outline of a disc swept from a to b [mm]."""

@@ -89,20 +89,28 @@ def _turning_point(
     profile: tuple[float, float, float, float],
 ) -> float:
     """Where the height over a cell stops falling, by halving the stretch [share of the line]."""
-    _, flat, corner, slope = profile
+    flat = profile[1]
     for _ in range(_BISECTIONS):
         t = 0.5 * (first + last)
         along = t - nearest
         distance = math.sqrt(offset + squared * along * along)
         rise = dz
         if distance > flat:
-            beyond = distance - flat
-            steepness = slope
-            if corner > 0.0:
-                steepness = beyond / math.sqrt(max(corner * corner - beyond * beyond, 1e-18))
-            rise += steepness * squared * along / distance
+            rise += steepness(distance, profile) * squared * along / distance
         if rise > 0.0:
             last = t
         else:
             first = t
     return 0.5 * (first + last)
+
+
+@array_kernel
+def steepness(distance: float, profile: tuple[float, float, float, float]) -> float:
+    """Slope of a cutter's lower end at a distance from its axis."""
+    _, flat, corner, slope = profile
+    if distance <= flat:
+        return 0.0
+    if corner > 0.0:
+        beyond = min(distance - flat, corner)
+        return beyond / math.sqrt(max(corner * corner - beyond * beyond, 1e-18))
+    return slope

@@ -46,12 +46,6 @@ class Profile:
         return np.where(np.asarray(radius) <= self.radius, rise, np.inf)
 
 
-DRILL_POINT = 118.0
-"""Included angle of a twist drill's point where the job names none [deg] (DIN 1412, form A)."""
-CHAMFER_POINT = 90.0
-"""Included angle of a chamfer cutter where the job names none [deg]."""
-
-
 def profile(tool: ToolTable) -> Profile:
     """The profile of a tool of the job."""
     radius = 0.5 * tool.diameter
@@ -60,10 +54,8 @@ def profile(tool: ToolTable) -> Profile:
     if tool.kind == "bull":
         assert tool.corner is not None
         return Profile(radius, flat=radius - tool.corner, corner=tool.corner)
-    if tool.kind == "drill":
-        return Profile(radius, flat=0.0, slope=_cone_slope(tool.angle or DRILL_POINT))
-    if tool.kind == "chamfer":
-        return Profile(radius, flat=0.5 * tool.tip, slope=_cone_slope(tool.angle or CHAMFER_POINT))
+    if tool.point_angle is not None:
+        return Profile(radius, flat=0.5 * tool.tip, slope=_cone_slope(tool.point_angle))
     return Profile(radius, flat=radius)
 
 

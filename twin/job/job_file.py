@@ -79,6 +79,10 @@ _SHAPES = {
 }
 
 
+_POINT_ANGLES = {"drill": 118.0, "chamfer": 90.0}
+"""Included angles of points where the job names none [deg]; a drill's after DIN 1412, form A."""
+
+
 class ToolTable(Table):
     """One tool of the job."""
 
@@ -120,6 +124,11 @@ class ToolTable(Table):
         if self.free_length is not None and self.free_length > self.length:
             raise ValueError("free_length is at most the length")
         return self
+
+    @property
+    def point_angle(self) -> float | None:
+        """Included angle of a conical end [deg]; None: the end is flat or round."""
+        return self.angle or _POINT_ANGLES.get(self.kind)
 
     @property
     def below_holder(self) -> float:

@@ -1,36 +1,130 @@
-"""How close the tool's side comes to the part's: collisions and near misses along a run.
+"""How close the tool's side comes to the other side: collisions and near misses along a run.
 
-Distances are taken between convex geoms (``mj_geomDistance``), and only where they could matter. If
-the clearance is d now, nothing can touch before the axes have moved by d altogether: linear axes
-count their way, rotary ones the way of the farthest point that they turn. So the next look is due
-after that way (less the clearance that is worth reporting), however long it takes, and a ten-hour
-run over a far-away table needs few looks. A step is never below ``RESOLUTION``: what a collision may
-be seen late by.
+Whoever stands on the tool's side (cutter, shank, holder, spindle nose, housing, head) is held
+against every solid on the other side (table, rotary table, fixtures, column), each as its exact
+convex shape. Where two of them are d apart, a plane with the normal n lies between them, and it
+keeps lying there while the one is displaced by s as long as
+
+    d + n s - r |turn| > 0,
+
+r being the farthest that a point of it is displaced by turning. That sum is linear in the displacement
+and costs a few operations for a sample, so all samples are judged by it, and between them the straight way from
+sample to sample. Only where it no longer tells is the distance measured anew (``mj_geomDistance``), which gives
+the next plane; where neither the plane before nor the plane behind tells of the way between two samples,
+the way is halved until they do, or until it is shorter than ``SHORTEST_WAY``.
+
+So an overlap of more than ``TOUCH`` is found wherever two samples see it, and a thinner way through a corner
+between two samples where it is longer than ``SHORTEST_WAY``, whatever the speed.
 """
 
 import itertools
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
 
 from twin.machine.alarms import Alarm, NearMiss
 from twin.machine.config import Machine
-from twin.machine.tool_shape import COLLISION_GROUP
-from twin.nc.canonical import FloatArray
+from twin.machine.relative_motion import RelativeMotion
+from twin.machine.tool_shape import COLLISION_GROUP, CUTTER, CUTTING_PARTS, TOOL_SIDE
+from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.units import MM
 
-RESOLUTION = 0.1
-"""Shortest way between two looks [mm]."""
+TOUCH = 0.01
+"""Overlap that is no collision yet [mm]: what the axes tremble by where two faces lie on each other."""
+SHORTEST_WAY = 0.02
+"""A way between two samples that is shorter is not halved any more [mm]."""
+WORSE = 0.1
+"""What has met, and was acknowledged, may overlap by so much more before it is an alarm again [mm]."""
+NEAR_STEP = 0.01
+"""A near miss is told of to this [mm]."""
 _FAR = 10.0
 """Distances beyond this are not measured [m]."""
+_BLOCK = 256
+"""Samples that are judged at once by the box around them."""
+_NO_PLANE = 1e-6
+"""Distance below which two witness points give no direction [mm]."""
+
+
+class _Plane(NamedTuple):
+    """The plane that was found between the two geoms of a pair.
+
+    Attributes:
+        clearance: When it was measured [mm]; minus infinity: never.
+        normal: Towards the geom that is followed, in the frame of the other, shape (3,).
+        place: Where that geom's track was when it was measured, shape (w,).
+        reach: Farthest that a point of the geom is displaced by turning [mm/rad].
+        slack: 1 where there is no plane, and any displacement may bring the two together; else 0.
+    """
+
+    clearance: float
+    normal: FloatArray
+    place: FloatArray
+    reach: float
+    slack: float
+
+    def bound(self, track: FloatArray) -> FloatArray:
+        """Clearance that the plane leaves along a track of shape (w, n), shape (n,) [mm]."""
+        moved = track - self.place[:, None]
+        left = self.clearance + self.normal @ moved[:3]
+        if self.reach:
+            left = left - self.reach * np.abs(moved[3:]).sum(axis=0)
+        if self.slack:
+            left = left - np.linalg.norm(moved[:3], axis=0)
+        return left
+
+
+class _Planes:
+    """The planes of all p pairs as columns."""
+
+    def __init__(self, reach: FloatArray, track: IntArray, width: int) -> None:
+        self.clearance = np.full(len(reach), -np.inf)
+        self.normal = np.zeros((len(reach), 3))
+        self.place = np.zeros((len(reach), width))
+        self.slack = np.zeros(len(reach))
+        self.reach = reach
+        self.track = track
+
+    def __getitem__(self, pair: int) -> _Plane:
+        return _Plane(
+            float(self.clearance[pair]),
+            self.normal[pair].copy(),
+            self.place[pair].copy(),
+            float(self.reach[pair]),
+            float(self.slack[pair]),
+        )
+
+    def __setitem__(self, pair: int, plane: _Plane) -> None:
+        self.clearance[pair], self.normal[pair] = plane.clearance, plane.normal
+        self.place[pair], self.slack[pair] = plane.place, plane.slack
+
+    def bound_of_boxes(self, pairs: IntArray, low: FloatArray, high: FloatArray) -> FloatArray:
+        """Clearance that their planes leave wherever the tracks go within boxes.
+
+        Args:
+            pairs: Numbers of m pairs.
+            low: Lowest values of each of t tracks, shape (t, w).
+            high: Highest values, shape (t, w).
+
+        Returns:
+            Shape (m,) [mm].
+        """
+        track, place, normal = self.track[pairs], self.place[pairs], self.normal[pairs]
+        below, above = low[track] - place, high[track] - place
+        farthest = np.maximum(-below, above)
+        left = np.minimum(normal * below[:, :3], normal * above[:, :3]).sum(axis=1)
+        left += self.clearance[pairs]
+        left -= self.reach[pairs] * farthest[:, 3:].sum(axis=1)
+        return left - self.slack[pairs] * farthest[:, :3].sum(axis=1)
 
 
 class Clearance:
     """Watches a run for the first sample at which two things meet.
 
     Attributes:
-        near_miss: The closest approach below the machine file's limit so far, or None.
+        near_miss: The closest approach below the machine file's limit so far, or None. The cutting
+            part has none: it may come as close to a jaw as the part asks for.
     """
 
     def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
@@ -39,17 +133,43 @@ class Clearance:
         self._data = mujoco.MjData(model)
         self._worth_reporting = machine.file.collision.near_miss
         axes = [machine.axis(name) for name in machine.axes.names]
+        joints = [int(model.joint(axis.joint).id) for axis in axes]
         self._scale = machine.joint_scale
-        self._qpos = np.array([int(model.joint(axis.joint).qposadr[0]) for axis in axes])
+        self._qpos = model.jnt_qposadr[joints]
+        self._motion = RelativeMotion(model, joints, self._scale)
         self._pairs = _pairs(model)
-        self._reach = self._reaches(machine)
-        self._due = 0.0
+        followed = [self._follow(one, two) for one, two in self._pairs]
+        self._moving = [moving for moving, _, _ in followed]
+        self._fixed = [
+            sum(pair) - moving for pair, moving in zip(self._pairs, self._moving, strict=True)
+        ]
+        self._planes = _Planes(
+            np.array([reach for _, _, reach in followed]),
+            np.array([track for _, track, _ in followed], np.int64),
+            3 + machine.axes.kinds.count("rotary"),
+        )
+        self._threshold = np.full(len(self._pairs), -TOUCH)
+        cuts = [model.geom(one).name in CUTTING_PARTS for one, _ in self._pairs]
+        self._near = np.where(cuts, -np.inf, self._worth_reporting)
         self._last: FloatArray | None = None
-        self._bearable = 0.0
+        self._witness = np.zeros(6)
+
+    def _follow(self, one: int, two: int) -> tuple[int, int, float]:
+        """Follow whichever of the two needs fewer looks: it turns in itself, or reaches less far.
+
+        Returns:
+            The geom, its track and its reach.
+        """
+        bodies = self._model.geom_bodyid
+        first = self._motion.view(one, int(bodies[two]))
+        second = self._motion.view(two, int(bodies[one]))
+        moving, seen = (two, second) if second.reach <= first.reach else (one, first)
+        return moving, self._motion.follow(seen), seen.reach
 
     def begin(self) -> None:
         """Look anew at the next sample: the axes have moved since the last one."""
-        self._last, self._due = None, 0.0
+        self._last = None
+        self._planes.clearance[:] = -np.inf
 
     def acknowledge(self, position: FloatArray) -> None:
         """Raise again only what gets worse than it is: what has met may be driven apart.
@@ -58,84 +178,187 @@ class Clearance:
             position: Where the axes stand, shape (k,) [mm or deg].
         """
         self.begin()
-        if self._pairs:
-            self._bearable = min(0.0, self._measure(position)[0] - RESOLUTION)
-
-    def _reaches(self, machine: Machine) -> FloatArray:
-        """Way of the farthest point that an axis moves, per unit of the axis [mm], shape (k,)."""
-        mujoco.mj_kinematics(self._model, self._data)
-        model, data = self._model, self._data
-        reaches = []
-        for name, kind in zip(machine.axes.names, machine.axes.kinds, strict=True):
-            if kind == "linear":
-                reaches.append(1.0)
-                continue
-            joint = model.joint(machine.axis(name).joint)
-            body = int(joint.bodyid[0])
-            turned = [g for g in range(model.ngeom) if _descends(model, model.geom_bodyid[g], body)]
-            radii = [
-                np.linalg.norm(data.geom_xpos[g] - data.xanchor[joint.id]) + model.geom_rbound[g]
-                for g in turned
-            ]
-            reaches.append(np.deg2rad(max(radii, default=0.0)) / MM)
-        return np.array(reaches)
+        for pair in range(len(self._pairs)):
+            clearance, _ = self._measure(pair, position)
+            self._threshold[pair] = clearance - WORSE if clearance < 0.0 else -TOUCH
 
     def look(self, samples: Samples) -> Alarm | None:
         """Return the alarm of the first sample of the chunk at which two things meet."""
-        if not self._pairs:
+        if not self._pairs or not len(samples):
             return None
-        position = samples.joint_position
-        before = position[:1] if self._last is None else self._last
-        way = np.cumsum(np.abs(np.diff(position, axis=0, prepend=before)) @ self._reach)
-        first = 0 if self._last is None else int(np.searchsorted(way, self._due))
-        self._last = position[-1:]
-        while first < len(way):
-            clearance, pair = self._measure(position[first])
-            if clearance <= self._bearable:
-                return self._alarm(samples, first, clearance, pair)
-            if clearance > 0:
-                self._bearable = 0.0
-            if 0 < clearance < self._worth_reporting:
-                self._remember(samples, first, clearance, pair)
-            self._due = way[first] + max(clearance - self._worth_reporting, RESOLUTION)
-            first = max(first + 1, int(np.searchsorted(way, self._due)))
-        self._due -= way[-1]
+        position, known = samples.joint_position, 0
+        if self._last is not None:
+            position, known = np.concatenate([self._last, position]), 1
+        self._last = position[-1:].copy()
+        tracks = self._motion.tracks(position)
+        way = _Way(samples, position, tracks, known)
+        suspects = self._suspects(np.arange(len(self._pairs)), tracks, slice(known, None))
+        if not len(suspects):
+            return None
+        for start in range(known, len(position), _BLOCK):
+            block = slice(start, min(start + _BLOCK, len(position)))
+            near = self._suspects(suspects, tracks, block).tolist()
+            met = [(found, pair) for pair in near if (found := self._along(pair, way, block))]
+            if met:
+                (row, depth), pair = min(met)
+                return self._alarm(way, row, depth, pair)
         return None
 
-    def _measure(self, position: FloatArray) -> tuple[float, tuple[str, str]]:
-        """Smallest clearance [mm] at a position of the axes, and between what."""
-        self._data.qpos[self._qpos] = position * self._scale
-        mujoco.mj_kinematics(self._model, self._data)
-        distance = [
-            mujoco.mj_geomDistance(self._model, self._data, one, two, _FAR, None)
-            for one, two in self._pairs
-        ]
-        nearest = int(np.argmin(distance))
-        one, two = (self._model.geom(index).name for index in self._pairs[nearest])
-        return distance[nearest] / MM, (one, two)
+    def _suspects(self, pairs: IntArray, tracks: FloatArray, rows: slice) -> IntArray:
+        """Of some pairs those that their planes do not clear of the box around some samples."""
+        low, high = tracks[:, :, rows].min(axis=2), tracks[:, :, rows].max(axis=2)
+        return pairs[self._planes.bound_of_boxes(pairs, low, high) < self._limits()[pairs]]
 
-    def _remember(
-        self, samples: Samples, row: int, clearance: float, pair: tuple[str, str]
-    ) -> None:
-        if self.near_miss is None or clearance < self.near_miss.clearance_mm:
-            line, time = int(samples.setpoint.line[row]), float(samples.setpoint.time[row])
-            self.near_miss = NearMiss(clearance, line, time, pair)
+    def _limits(self) -> FloatArray:
+        """Clearance below which each pair is measured [mm]; what was acknowledged always is."""
+        limits = np.maximum(self._near, self._threshold)
+        limits[self._threshold < -TOUCH] = np.inf
+        return limits
 
-    def _alarm(self, samples: Samples, row: int, clearance: float, pair: tuple[str, str]) -> Alarm:
-        one, two = pair
-        return Alarm(
-            "collision",
-            int(samples.setpoint.line[row]),
-            float(samples.setpoint.time[row]),
-            "",
-            f"the {one} meets the {two} ({-clearance:.2f} mm deep)",
+    def _along(self, pair: int, way: "_Way", block: slice) -> tuple[int, float] | None:
+        """Follow a pair along a block of samples.
+
+        Returns:
+            The first row at which the two meet, and how deep [mm]; None where they do not.
+        """
+        track, row = way.tracks[self._planes.track[pair]], block.start
+        while row < block.stop:
+            limit = self._limits()[pair]
+            close = self._planes[pair].bound(track[:, row : block.stop]) < limit
+            ahead = int(np.argmax(close))
+            if not close[ahead]:
+                return None
+            row += ahead
+            clearance = self._pass(pair, way.position, track, row)
+            if clearance < self._threshold[pair]:
+                return row, -clearance
+            if clearance < self._near[pair]:
+                self._near[pair] = clearance - NEAR_STEP
+                self._remember(way, row, max(clearance, 0.0), pair)
+            if clearance > 0.0:
+                self._threshold[pair] = -TOUCH
+            row += 1
+        return None
+
+    def _pass(self, pair: int, position: FloatArray, track: FloatArray, row: int) -> float:
+        """Least clearance found of a pair at a row and on the way to it from the row before [mm]."""
+        before = self._planes[pair]
+        clearance, plane = self._measure(pair, position[row], track[:, row])
+        self._planes[pair] = plane
+        if clearance < self._threshold[pair] or row == 0 or before.clearance == -np.inf:
+            return clearance
+        ends = track[:, row - 1 : row + 1], position[row - 1 : row + 1]
+        return min(clearance, self._between(pair, before, plane, *ends))
+
+    def _between(
+        self, pair: int, before: _Plane, behind: _Plane, track: FloatArray, position: FloatArray
+    ) -> float:
+        """Least clearance that is measured between two samples [mm]; infinite where planes tell.
+
+        Args:
+            pair: Number of the pair.
+            before: The plane that tells of the first sample.
+            behind: The plane that tells of the second.
+            track: Where the geom is at both, shape (w, 2).
+            position: Where the axes stand at both, shape (2, k).
+        """
+        way = np.abs(track[:, 1] - track[:, 0])
+        length = float(np.linalg.norm(way[:3])) + before.reach * float(way[3:].sum())
+        if length < SHORTEST_WAY or _told(before, behind, track, self._threshold[pair]):
+            return np.inf
+        stand, there = position.mean(axis=0), track.mean(axis=1)
+        clearance, middle = self._measure(pair, stand, there)
+        if clearance < self._threshold[pair]:
+            return clearance
+        early = np.stack([track[:, 0], there], axis=1), np.array([position[0], stand])
+        late = np.stack([there, track[:, 1]], axis=1), np.array([stand, position[1]])
+        return min(
+            self._between(pair, before, middle, *early), self._between(pair, middle, behind, *late)
         )
+
+    def _measure(
+        self, pair: int, position: FloatArray, place: FloatArray | None = None
+    ) -> tuple[float, _Plane]:
+        """Measure a pair.
+
+        Args:
+            pair: Its number.
+            position: Where the axes stand, shape (k,) [mm or deg].
+            place: Where its track is then, shape (w,).
+
+        Returns:
+            The clearance [mm], negative where the two overlap, and the plane between them.
+        """
+        model, data, fixed = self._model, self._data, self._fixed[pair]
+        data.qpos[self._qpos] = position * self._scale
+        mujoco.mj_kinematics(model, data)
+        distance = mujoco.mj_geomDistance(
+            model, data, self._moving[pair], fixed, _FAR, self._witness
+        )
+        clearance = distance / MM
+        normal, slack = np.zeros(3), 1.0
+        apart = self._witness[:3] - self._witness[3:]
+        if abs(clearance) > _NO_PLANE and np.any(apart):
+            frame = data.xmat[model.geom_bodyid[fixed]].reshape(3, 3)
+            normal = frame.T @ apart / np.copysign(np.linalg.norm(apart), distance)
+            slack = 0.0
+        place = np.zeros(self._planes.place.shape[1]) if place is None else place
+        return clearance, _Plane(clearance, normal, place, float(self._planes.reach[pair]), slack)
+
+    def _names(self, pair: int) -> tuple[str, str]:
+        one, two = (self._model.geom(geom).name for geom in self._pairs[pair])
+        return CUTTER if one in CUTTING_PARTS else one, two
+
+    def _remember(self, way: "_Way", row: int, clearance: float, pair: int) -> None:
+        if self.near_miss is None or clearance < self.near_miss.clearance_mm:
+            self.near_miss = NearMiss(clearance, *way.moment(row), self._names(pair))
+
+    def _alarm(self, way: "_Way", row: int, depth: float, pair: int) -> Alarm:
+        one, two = self._names(pair)
+        message = f"the {one} meets the {two} ({depth:.2f} mm deep)"
+        return Alarm("collision", *way.moment(row), "", message)
+
+
+class _Way(NamedTuple):
+    """A chunk of samples with the one before it.
+
+    Attributes:
+        samples: The chunk, n samples.
+        position: Of the axes, shape (m, k) [mm or deg]; m is n, or n + 1 with the one before.
+        tracks: Where what is followed goes, shape (t, w, m).
+        known: Rows before the chunk's first: 0 or 1.
+    """
+
+    samples: Samples
+    position: FloatArray
+    tracks: FloatArray
+    known: int
+
+    def moment(self, row: int) -> tuple[int, float]:
+        """Source line and time [s] of a row."""
+        setpoint = self.samples.setpoint
+        return int(setpoint.line[row - self.known]), float(setpoint.time[row - self.known])
+
+
+def _told(before: _Plane, behind: _Plane, track: FloatArray, threshold: float) -> bool:
+    """Whether two planes keep a pair apart on the whole straight way between two samples."""
+    leaves = _share_above(before.bound(track) - threshold)
+    comes = 1.0 - _share_above(behind.bound(track)[::-1] - threshold)
+    return leaves >= comes
+
+
+def _share_above(ends: FloatArray) -> float:
+    """Share of a straight way from its beginning on along which a linear value is not negative."""
+    begin, end = float(ends[0]), float(ends[1])
+    if begin < 0.0:
+        return 0.0
+    return 1.0 if end >= 0.0 else begin / (begin - end)
 
 
 def _pairs(model: mujoco.MjModel) -> list[tuple[int, int]]:
     """Geoms of different bodies that may not meet, by their bits; the tool's side first."""
     geoms = [index for index in range(model.ngeom) if model.geom_group[index] == COLLISION_GROUP]
-    geoms.sort(key=lambda index: int(model.geom_contype[index]))
+    geoms.sort(key=lambda index: model.geom_contype[index] & TOOL_SIDE == 0)
     return [
         (one, two)
         for one, two in itertools.combinations(geoms, 2)
@@ -145,9 +368,3 @@ def _pairs(model: mujoco.MjModel) -> list[tuple[int, int]]:
             or model.geom_contype[two] & model.geom_conaffinity[one]
         )
     ]
-
-
-def _descends(model: mujoco.MjModel, body: int, ancestor: int) -> bool:
-    while body > 0 and body != ancestor:
-        body = int(model.body_parentid[body])
-    return body == ancestor

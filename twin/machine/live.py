@@ -8,6 +8,7 @@ from twin.errors import ConfigError
 from twin.machine.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.machine.clearance import Clearance
 from twin.machine.config import Machine
+from twin.machine.head_shape import HeadShape
 from twin.machine.model import build_spec, clearance_model, physics_model
 from twin.machine.servo import Servo
 from twin.machine.tool_shape import ToolShape
@@ -47,6 +48,7 @@ class LiveMachine:
     Attributes:
         machine: The machine with the faults that it has by now.
         alarm: What stopped it, until it is cleared.
+        head: What is above the tool's holder.
     """
 
     def __init__(
@@ -67,7 +69,9 @@ class LiveMachine:
         self.alarm: Alarm | None = None
         self._sound = machine
         spec = build_spec(machine, tool)
-        self._clearance = Clearance(machine, clearance_model(machine, spec))
+        solids = clearance_model(machine, spec)
+        self._clearance = Clearance(machine, solids)
+        self.head = HeadShape(machine, solids)
         self._servo = Servo(machine, physics_model(machine, spec))
         self._watch = Watch(machine)
         stand = np.zeros(len(machine.axes)) if position is None else np.asarray(position, float)

@@ -20,6 +20,7 @@ from twin.machine.tool_shape import (
 )
 from twin.machine.transmission import (
     FASTEST,
+    FASTEST_SPRING,
     add_friction_and_give,
     add_inertia,
     has_give,
@@ -159,11 +160,12 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
     springs = []
     if axis.stiffness:
         swings = swinging(axis, drive.moved)
-        springs.append(("stiffness", axis.stiffness, swings, "0 is rigid"))
+        springs.append(("stiffness", axis.stiffness, swings, FASTEST_SPRING, "0 is rigid"))
     if axis.lugre is not None:
-        springs.append(("lugre.stiffness", axis.lugre.stiffness, drive.moved, "none is Coulomb"))
-    for key, stiffness, swings, otherwise in springs:
-        most = swings * (FASTEST / period) ** 2 * to_si(axis.kind)
+        bristles = axis.lugre.stiffness
+        springs.append(("lugre.stiffness", bristles, drive.moved, FASTEST, "none is Coulomb"))
+    for key, stiffness, swings, fastest, otherwise in springs:
+        most = swings * (fastest / period) ** 2 * to_si(axis.kind)
         if stiffness > most:
             raise ConfigError(
                 f"{machine.path}: axes.{name}.{key} = {stiffness:g} swings faster than the servo "
@@ -259,7 +261,16 @@ def clearance_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:
     Raises:
         ConfigError: The specification does not compile.
     """
-    return compiled(_without(spec, VISUAL_GROUP), machine)
+    lean = _without(spec, VISUAL_GROUP)
+    lean.compiler.fusestatic = True
+    lean.option.ccd_tolerance = _DISTANCE_TOLERANCE
+    lean.option.ccd_iterations = _DISTANCE_ITERATIONS
+    return compiled(lean, machine)
+
+
+_DISTANCE_TOLERANCE = 1e-9
+"""What distances are measured to [m]: the planes that clear a run between two looks rely on it."""
+_DISTANCE_ITERATIONS = 200
 
 
 def _without(spec: mujoco.MjSpec, *groups: int) -> mujoco.MjSpec:
@@ -267,7 +278,9 @@ def _without(spec: mujoco.MjSpec, *groups: int) -> mujoco.MjSpec:
     for geom in list(lean.geoms):
         if geom.group in groups:
             lean.delete(geom)
-    for unseen in [*lean.meshes, *lean.cameras, *lean.lights]:
+    used = {geom.meshname for geom in lean.geoms}
+    unused = [mesh for mesh in lean.meshes if mesh.name not in used]
+    for unseen in [*unused, *lean.cameras, *lean.lights]:
         lean.delete(unseen)
     lean.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     return lean

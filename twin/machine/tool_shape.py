@@ -1,12 +1,14 @@
 """The tool in the spindle, as bodies of revolution in the model."""
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from typing import Protocol
 
 import mujoco
+import numpy as np
 
-from twin.nc.canonical import IntArray
+from twin.nc.canonical import FloatArray, IntArray
 from twin.units import MM
 
 VISUAL_GROUP = 2
@@ -55,6 +57,21 @@ class ToolShape(Protocol):
         ...
 
     @property
+    def corner(self) -> float | None:
+        """Radius of the rounding between end and flank [mm]; None: sharp."""
+        ...
+
+    @property
+    def point_angle(self) -> float | None:
+        """Included angle of a conical end [deg]; None: the end is flat or round."""
+        ...
+
+    @property
+    def tip(self) -> float:
+        """Diameter of the flat at the end of a cone [mm]."""
+        ...
+
+    @property
     def holder(self) -> float:
         """Diameter of the holder's nut [mm]."""
         ...
@@ -82,6 +99,9 @@ class DefaultTool:
     length: float = 60.0
     flute: float = 25.0
     shank: float | None = None
+    corner: float | None = None
+    point_angle: float | None = None
+    tip: float = 0.0
     holder: float = 32.0
 
     @property
@@ -116,11 +136,21 @@ MATERIALS = {
 """Colours of holder, cutter and fixtures where the machine's model has no materials so called."""
 
 _HOLDER = ("tool_flange", "tool_nut")
+CUTTER = "cutter"
 _COLLISION_NAMES = {
     "tool_flange": "holder's flange",
     "tool_nut": "holder's nut",
     "tool_shank": "tool's shank",
+    "tool_cutter": CUTTER,
 }
+_END = "cutter's end"
+CUTTING_PARTS = (CUTTER, _END)
+"""Geoms that may go into the stock, and into nothing else."""
+TOOL_NAMES = (*_COLLISION_NAMES.values(), _END)
+"""Geoms that come and go with the tool."""
+_AROUND, _ACROSS = 180, 24
+"""Corners of a round or conical end around its axis and along its rounding: a collision sees it
+smaller by 0.02 % of its radius."""
 _FLANGE_SHARE = 0.3
 """Of the length above the flutes: what the holder's flange takes."""
 
@@ -157,8 +187,7 @@ def add_tool(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) -> No
     """Put the tool into the spindle: geoms on the body that carries the site ``spindle_nose``.
 
     Args:
-        spec: The machine; gains geoms and the site ``tool_tip``. All but the cutting part may
-            collide.
+        spec: The machine; gains geoms, to look at and to collide, and the site ``tool_tip``.
         tool: The tool.
         flange_diameter: Of the holder [mm].
     """
@@ -187,6 +216,73 @@ def add_tool(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) -> No
         }
         material = "tool_steel" if piece.name in _HOLDER else "carbide"
         body.add_geom(name=piece.name, material=material, **form, **_VISUAL)
-        if piece.name != "tool_cutter":
-            body.add_geom(name=_COLLISION_NAMES[piece.name], **form, **_COLLISION)
+    _add_solids(spec, tool, flange_diameter)
     body.add_site(name="tool_tip", pos=[x, y, z - tool.length * MM], size=[0.001] * 3, group=4)
+
+
+def _add_solids(spec: mujoco.MjSpec, tool: ToolShape, flange_diameter: float) -> None:
+    """Add what may not meet anything: the exact shapes of holder, shank and cutting part."""
+    nose = spec.site("spindle_nose")
+    x, y, z = (float(value) for value in nose.pos)
+    tip = z - tool.length * MM
+    outline = _end_outline(tool)
+    for piece in tool_cylinders(tool, flange_diameter):
+        bottom, radius = piece.bottom, piece.radius
+        if piece.name == "tool_cutter":
+            bottom += outline[-1][1]
+        if piece.name == "tool_shank" and tool.shank is None:
+            radius = tool.diameter / 2.0
+        if piece.top > bottom:
+            nose.parent.add_geom(
+                name=_COLLISION_NAMES[piece.name],
+                type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+                size=[radius * MM, (piece.top - bottom) / 2 * MM, 0.0],
+                pos=[x, y, z + (piece.top + bottom) / 2 * MM],
+                **_COLLISION,
+            )
+    if tool.kind == "ball":
+        radius = tool.diameter / 2.0 * MM
+        nose.parent.add_geom(
+            name=_END,
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=[radius, 0.0, 0.0],
+            pos=[x, y, tip + radius],
+            **_COLLISION,
+        )
+    elif len(outline) > 1:
+        spec.add_mesh(name=_END, uservert=(_revolved(outline).ravel() * MM).tolist())
+        nose.parent.add_geom(
+            name=_END,
+            type=mujoco.mjtGeom.mjGEOM_MESH,
+            meshname=_END,
+            pos=[x, y, tip],
+            **_COLLISION,
+        )
+
+
+def _end_outline(tool: ToolShape) -> list[tuple[float, float]]:
+    """Radius and height above the tip of a cutter's lower end, from its flat to its flank [mm]."""
+    radius = tool.diameter / 2.0
+    if tool.kind == "ball":
+        return [(0.0, 0.0), (radius, radius)]
+    if tool.corner is not None:
+        turns = (math.pi / 2 * step / _ACROSS for step in range(_ACROSS + 1))
+        flat, corner = radius - tool.corner, tool.corner
+        return [(flat + corner * math.sin(t), corner * (1.0 - math.cos(t))) for t in turns]
+    if tool.point_angle is not None:
+        flat = tool.tip / 2.0
+        rise = (radius - flat) / math.tan(math.radians(tool.point_angle / 2.0))
+        return [(flat, 0.0), (radius, rise)]
+    return [(radius, 0.0)]
+
+
+def _revolved(outline: list[tuple[float, float]]) -> FloatArray:
+    """Points of an outline turned about the z axis, shape (n, 3)."""
+    turns = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
+    rings = [
+        np.stack([r * np.cos(turns), r * np.sin(turns), np.full(len(turns), z)], axis=1)
+        if r > 0.0
+        else np.array([[0.0, 0.0, z]])
+        for r, z in outline
+    ]
+    return np.concatenate(rings)

@@ -12,11 +12,28 @@ period. A machine's README derives its own from its own gains by these rules.
 
 import dataclasses
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from twin.errors import ConfigError
 from twin.nc.canonical import FloatArray
+
+
+class MachineLimits(NamedTuple):
+    """``MotionLimits``, for compiled code.
+
+    Attributes:
+        velocity: Of each axis, shape (k,).
+        acceleration: Of each axis, shape (k,).
+        jerk: Of each axis, shape (k,).
+        path: Acceleration and jerk of the path, and of one of rotary axes alone.
+    """
+
+    velocity: FloatArray
+    acceleration: FloatArray
+    jerk: FloatArray
+    path: tuple[float, float, float, float]
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,6 +95,14 @@ class MotionLimits:
         for name in ("velocity", "acceleration", "jerk"):
             if not np.all(np.isfinite(getattr(self, name))):
                 raise ConfigError(f"motion limit '{name}' must be finite")
+
+    def arrays(self) -> MachineLimits:
+        """Limits of the axes and the path, for compiled code."""
+        return MachineLimits(
+            self.velocity, self.acceleration, self.jerk,
+            (self.path_acceleration, self.path_jerk,
+             self.rotary_path_acceleration, self.rotary_path_jerk),
+        )  # fmt: skip
 
     def __len__(self) -> int:
         return len(self.velocity)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from twin.compilation.speed import Speed, usual_speed
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
@@ -18,11 +19,16 @@ if TYPE_CHECKING:
     from twin.nc.compiled.virtual_machine import VirtualMachine
 
 COMPILED_FROM = 500
-"""Blocks and moves after which a program of more lines takes the compiled tier, which costs time to load."""
+"""Blocks and moves after which the compiled tier is taken, where the compiler is loaded or the program is long."""
+LONG_PROGRAM = 10_000
+"""Lines of a program for which it pays to load the compiler: about a second."""
 SHORT_PROGRAM = 100
-"""A program of fewer lines, which can only loop, takes it after so many times as many blocks where
-it is not loaded yet."""
-_COMPILED_TIER = "twin.nc.compiled.virtual_machine"
+"""A shorter one, which can only loop, takes the compiled tier after so many times as many blocks."""
+_LOOK_AGAIN = 2_000
+"""Blocks and moves after which a run looks again whether the kernels are there."""
+_PAYS = 2_000_000
+"""Blocks and moves after which it waits for them: to go on without would take longer by then."""
+_COMPILER = "twin.compilation.kernel"
 
 
 class Interpretation:
@@ -42,6 +48,7 @@ class Interpretation:
         settings: ControlSettings,
         *,
         compiled_from: int = COMPILED_FROM,
+        speed: Speed | None = None,
     ) -> None:
         """Take a program.
 
@@ -49,14 +56,15 @@ class Interpretation:
             source: The program.
             dialect: The language it is read in.
             settings: What the control is told of the machine and the job.
-            compiled_from: Blocks and moves after which the compiled tier is taken where there are as many
-                lines, or where it is loaded.
+            compiled_from: Blocks and moves after which the compiled tier is taken, where that pays.
+            speed: What it does while that is not compiled; None: as is usual.
         """
         self.source = source
         self.dialect = dialect
         self.settings = settings
         self.before_compiled_tier: Callable[[], None] = lambda: None
         self._compiled_from = compiled_from
+        self._speed = usual_speed() if speed is None else speed
         self._control = Executor(dialect, settings, source)
 
     @property
@@ -83,20 +91,20 @@ class Interpretation:
         control = self._control
         try:
             control.prepare()
-            done, compiled_after = 0, self._compiled_after()
-            plain = self._virtual_machine() if compiled_after == 0 else None
+            done, due = 0, self._compiled_after()
+            machine = self._virtual_machine(done) if due == 0 else None
             while not control.ended:
-                if plain is None or not plain.run():
+                if machine is None or not machine.run():
                     block = control.program_counter.next()
                     if block is None:
                         break
                     before = len(control.path)
                     control.run(block)
-                    if plain is None:
+                    if machine is None:
                         done += 1 + len(control.path) - before
-                        if done >= compiled_after:
-                            plain = self._virtual_machine()
-                if len(control.path) >= CHUNK or (plain is not None and plain.full):
+                        if done >= due:
+                            machine, due = self._virtual_machine(done), done + _LOOK_AGAIN
+                if len(control.path) >= CHUNK or (machine is not None and machine.full):
                     yield control.path.take()
             control.finish()
         except ProgramError:
@@ -104,13 +112,21 @@ class Interpretation:
             raise
         yield control.path.take()
 
-    def _virtual_machine(self) -> "VirtualMachine":
+    def _virtual_machine(self, done: int) -> "VirtualMachine | None":
+        """What runs compiled blocks; None while its kernels are being compiled beside this run."""
         self.before_compiled_tier()
-        from twin.nc.compiled.virtual_machine import VirtualMachine
+        from twin.nc.compiled.entries import COLD, hot
+        from twin.nc.compiled.virtual_machine import VirtualMachine, compiles_beside
 
-        return VirtualMachine(self._control)
+        cold = VirtualMachine(self._control, COLD)
+        if self._speed is Speed.COLD:
+            return cold
+        waits = self._speed is Speed.HOT or done >= _PAYS
+        if waits or not compiles_beside(cold):
+            return VirtualMachine(self._control, hot())
+        return None
 
     def _compiled_after(self) -> int:
         """Blocks and moves after which the compiled tier begins."""
-        long = len(self.source.lines) >= self._compiled_from
-        return self._compiled_from * (1 if long or _COMPILED_TIER in sys.modules else SHORT_PROGRAM)
+        pays = _COMPILER in sys.modules or len(self.source.lines) >= LONG_PROGRAM
+        return self._compiled_from * (1 if pays else SHORT_PROGRAM)

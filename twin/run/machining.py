@@ -1,4 +1,4 @@
-"""What the tool does to the stock and to the fixtures along a run, and the alarms of both."""
+"""What the tool does to the stock along a run, and the alarms of what must not meet it."""
 
 from pathlib import Path
 
@@ -6,21 +6,20 @@ import numpy as np
 
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.events import CutEvent
-from twin.cutting.fixtures import FixtureGuard
 from twin.cutting.part import write_stl
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.spindle import Spindle
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.alarms import Alarm
 from twin.machine.config import Machine
-from twin.machine.model import spindle_over_table_mm
+from twin.machine.head_shape import head_shape
 from twin.nc.canonical import Chunk, FloatArray
 from twin.recording.form import Samples
 from twin.toolpath.part_frame import PartFrame
 
 
 class Machining:
-    """Cuts the stock of a run chunk by chunk and keeps the cutter off the fixtures."""
+    """Cuts the stock of a run chunk by chunk."""
 
     def __init__(
         self,
@@ -35,7 +34,7 @@ class Machining:
         """Lay the blank on the table.
 
         Args:
-            machine: Its fixtures are those of the job.
+            machine: What is above the tool is its.
             stock: The blank; None where nothing is cut.
             summary: What is in the spindle when, and which moves are rapids.
             part_frame: How the part turns under the tool.
@@ -46,12 +45,10 @@ class Machining:
         self._spindle = Spindle(held_to_program=speaks_of_spindle)
         self._cutter: Cutter | None = None
         if stock is not None:
-            self._cutter = Cutter(stock, summary.tools, part_frame, part_zero, halts=True)
-        self._guard: FixtureGuard | None = None
-        # Without a rotary table the model has no part frame in which a fixture could stand.
-        if machine.file.fixtures and machine.part_frame.rotary is not None:
-            height = summary.tools.tools[0].length - spindle_over_table_mm(machine)
-            self._guard = FixtureGuard(machine.file.fixtures, summary.tools, part_frame, height)
+            head = head_shape(machine).above_tip
+            self._cutter = Cutter(
+                stock, summary.tools, part_frame, part_zero, halts=True, head=head
+            )
 
     def expect(self, chunk: Chunk) -> None:
         """Take note of a chunk of the program, before its samples come."""
@@ -63,13 +60,16 @@ class Machining:
         Returns:
             The samples up to the first alarm, and that alarm.
         """
-        touched = None
-        found = None if self._guard is None else self._guard.look(samples)
-        if found is not None:
-            row, event, name = found
-            samples, touched = samples[: row + 1], fixture_alarm(event, name)
-        samples, alarm = self._cut(samples)
-        return samples, alarm or touched
+        cutter = self._cutter
+        if cutter is None:
+            return samples, None
+        rapid = self._summary.is_rapid(samples.setpoint.move)
+        cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
+        if cutter.halted is None:
+            return samples, None
+        alarm = stock_alarm(cutter.halted, cutter.tool)
+        end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
+        return samples[:end], alarm
 
     def finish(self, out: Path | None) -> CutResult | None:
         """What the cut came to; the part is written as ``part.stl`` into a folder, if one is given.
@@ -86,40 +86,25 @@ class Machining:
             write_stl(self._cutter.map, out / "part.stl")
         return self._cutter.result()
 
-    def _cut(self, samples: Samples) -> tuple[Samples, Alarm | None]:
-        cutter = self._cutter
-        if cutter is None:
-            return samples, None
-        rapid = self._summary.is_rapid(samples.setpoint.move)
-        cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
-        if cutter.halted is None:
-            return samples, None
-        alarm = stock_alarm(cutter.halted, cutter.tool)
-        end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
-        return samples[:end], alarm
-
 
 def stock_alarm(event: CutEvent, tool: ToolTable) -> Alarm:
-    """The alarm of a rapid, or of a feed with the spindle off, that met the stock.
+    """The alarm of what met the stock: a rapid, a feed with the spindle off, shank, holder, head.
 
     Args:
         event: What the cutter noted.
         tool: What was in the spindle.
     """
-    depth = f"{event.depth_mm:.2f} mm deep into the stock"
+    depth = f"{event.depth_mm:.2f} mm deep"
     if event.what == "rapid":
-        message = f"a rapid drives tool {tool.number} {depth}"
+        message = f"a rapid drives tool {tool.number} {depth} into the stock"
         return Alarm("rapid-into-stock", event.line, event.time_s, "", message)
-    message = f"tool {tool.number} feeds {depth} with the spindle off"
-    return Alarm("spindle-off", event.line, event.time_s, "", message)
-
-
-def fixture_alarm(event: CutEvent, name: str) -> Alarm:
-    """The alarm of a cutter that met what holds the part.
-
-    Args:
-        event: Where and how deep.
-        name: Of the fixture.
-    """
-    message = f"the cutter meets the {name} ({event.depth_mm:.2f} mm deep)"
+    if event.what == "standing":
+        message = f"tool {tool.number} feeds {depth} into the stock with the spindle off"
+        return Alarm("spindle-off", event.line, event.time_s, "", message)
+    if event.what == "flute":
+        message = f"the shank of tool {tool.number} meets the part above its flutes ({depth})"
+    elif event.what in ("shank", "holder"):
+        message = f"the {event.what} of tool {tool.number} meets the part ({depth})"
+    else:
+        message = f"the {event.what} meets the part ({depth})"
     return Alarm("collision", event.line, event.time_s, "", message)

@@ -1,7 +1,7 @@
 """``result.json`` and ``report.html`` of a run."""
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,17 @@ from twin.run.run import Run
 
 STILL_NAME = "still.png"
 """Picture of a run's end."""
-RESULT_FILES = ("result.json", "report.html", "recording.h5", "part.stl", "video.mp4", STILL_NAME)
+ALARM_STILL_NAME = "collision.png"
+"""Picture of the moment at which two things met."""
+RESULT_FILES = (
+    "result.json",
+    "report.html",
+    "recording.h5",
+    "part.stl",
+    "video.mp4",
+    STILL_NAME,
+    ALARM_STILL_NAME,
+)
 """What a run may leave; an earlier run's files of these names are removed when one begins.
 
 The result, written last, is removed first: where it stands, everything that it speaks of is whole.
@@ -25,10 +35,16 @@ def write_results(run: Run, outcome: Outcome, folder: Path) -> None:
     Args:
         run: The run.
         outcome: What it came to.
-        folder: Where the files go; a still that was drawn there is put on the page.
+        folder: Where the files go; stills that were drawn there are put on the page.
     """
     content = result_of(run, outcome)
-    write_report(folder / "report.html", report_of(run, outcome, content, folder / STILL_NAME))
+    moments = [
+        (f"Line {alarm.line}, {alarm.time_s:.3f} s: {alarm.message}", folder / ALARM_STILL_NAME)
+        for alarm in outcome.alarms[:1]
+    ]
+    drawn = [*moments, ("The end of the run", folder / STILL_NAME)]
+    stills = [(title, path) for title, path in drawn if path.is_file()]
+    write_report(folder / "report.html", report_of(run, outcome, content, stills))
     write_result(folder / "result.json", content)
 
 
@@ -41,7 +57,10 @@ def result_of(run: Run, outcome: Outcome) -> dict[str, Any]:
 
 
 def report_of(
-    run: Run, outcome: Outcome, content: Mapping[str, Any], still: Path | None = None
+    run: Run,
+    outcome: Outcome,
+    content: Mapping[str, Any],
+    stills: Sequence[tuple[str, Path]] = (),
 ) -> Report:
     """What the page about a run is made of.
 
@@ -49,7 +68,7 @@ def report_of(
         run: The run.
         outcome: What it came to.
         content: The content of ``result.json``.
-        still: A picture of its end, put on the page where it exists.
+        stills: Pictures for the page, with what each shows.
     """
     return Report(
         header=run.header(),
@@ -59,7 +78,7 @@ def report_of(
         tolerance=run.preparation.job.file.tolerance,
         trace=run.trace,
         result=content,
-        stills=[("The end of the run", still)] if still is not None and still.is_file() else [],
+        stills=stills,
     )
 
 

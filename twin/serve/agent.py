@@ -72,6 +72,7 @@ class Agent:
         device: What is observed.
         clock: The twin's.
         buffer: What was observed.
+        observed_s: Up to when, by the twin's clock since its start [s].
     """
 
     def __init__(
@@ -87,6 +88,7 @@ class Agent:
         """
         self.device = device
         self.clock = clock
+        self.observed_s = 0.0
         items = [item.id for component in device.walk() for item in component.items]
         self.buffer = ObservationBuffer(items, clock.at(0.0), size)
         self._uuid = str(uuid.uuid5(uuid.NAMESPACE_DNS, f"{device.name}.mill-twin"))
@@ -100,6 +102,7 @@ class Agent:
             elapsed_s: When, by the twin's clock since its start [s].
             values: By identifier of the data item.
         """
+        self.observed_s = elapsed_s
         moment = self.clock.at(elapsed_s)
         for item, value in values.items():
             self.buffer.add(item, moment, value)

@@ -45,3 +45,17 @@ class PartFrame:
         turned[:, 0] = cosine * relative[:, 0] - sine * relative[:, 1]
         turned[:, 1] = sine * relative[:, 0] + cosine * relative[:, 1]
         return turned
+
+    def direction(self, joints: FloatArray) -> FloatArray:
+        """Which way machine X points, seen from the part.
+
+        Args:
+            joints: Machine coordinates of all axes, shape (n, k) [mm or deg].
+
+        Returns:
+            Unit vectors, shape (n, 2).
+        """
+        if self.rotary is None:
+            return np.tile([1.0, 0.0], (len(joints), 1))
+        angle = np.deg2rad(joints[:, self.rotary] - self.turn_zero)
+        return np.stack([np.cos(angle), np.sin(angle)], axis=1)

@@ -12,16 +12,12 @@ from motion_programs import SETTINGS
 
 from twin.motion.live.transition_kernels import find_transition
 from twin.motion.profile.backward_pass_kernels import backward_pass, find_brake
-from twin.motion.profile.brake_kernels import (
-    brake_distance,
-    brake_distance_from,
-    brake_time,
-    time_to,
-)
+from twin.motion.profile.brake_kernels import brake_distance_from, time_to
 from twin.motion.profile.brake_margin_kernels import brake_margin
 from twin.motion.profile.phase_kernels import PhaseRows, write_brake
 from twin.motion.profile.segment_kernels import find_segments, merge_limits, place_phases
 from twin.motion.profile.state import Brake, Course, State
+from twin.motion.ramp_kernels import brake_distance, brake_time
 from twin.nc.canonical import FloatArray
 
 FEWER = hypothesis.settings(SETTINGS, max_examples=40)

@@ -8,7 +8,10 @@ import pytest
 
 from tests.nc.fuzz import REAL, mutated
 from tests.nc.running import ROOT, SETTINGS, WITH_TABLES
+from twin.compilation.speed import Speed
+from twin.nc import interpreter
 from twin.nc.canonical import Chunk, Event, Moves, concatenate
+from twin.nc.compiled import virtual_machine
 from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects import DIALECTS, dialect_named
@@ -62,9 +65,15 @@ class Seen:
     place: bytes
 
 
-def seen(source: Source, dialect: str, settings: ControlSettings, compiled_from: int) -> Seen:
+def seen(
+    source: Source,
+    dialect: str,
+    settings: ControlSettings,
+    compiled_from: int,
+    speed: Speed = Speed.HOT,
+) -> Seen:
     interpretation = Interpretation(
-        source, dialect_named(dialect), settings, compiled_from=compiled_from
+        source, dialect_named(dialect), settings, compiled_from=compiled_from, speed=speed
     )
     chunks: list[Chunk] = []
     error = None
@@ -83,9 +92,14 @@ def seen(source: Source, dialect: str, settings: ControlSettings, compiled_from:
     return Seen(moves, events, interpretation.diagnostics, error, place)
 
 
-def assert_same(source: Source, dialect: str, settings: ControlSettings = WITH_TABLES) -> Seen:
+def assert_same(
+    source: Source,
+    dialect: str,
+    settings: ControlSettings = WITH_TABLES,
+    speed: Speed = Speed.HOT,
+) -> Seen:
     general = seen(source, dialect, settings, NEVER)
-    fast = seen(source, dialect, settings, ALWAYS)
+    fast = seen(source, dialect, settings, ALWAYS, speed)
     assert fast.error == general.error
     assert fast.warnings == general.warnings
     assert fast.events == general.events
@@ -115,10 +129,11 @@ def general_blocks(
     return len(lines)
 
 
+@pytest.mark.parametrize("speed", [Speed.COLD, Speed.HOT], ids=lambda speed: speed.value)
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: f"{path.parts[-2]}/{path.stem}")
-def test_both_ways_agree_on_every_program(path: Path) -> None:
+def test_both_tiers_agree_on_every_program_at_both_speeds(path: Path, speed: Speed) -> None:
     dialect = next(part for part in path.parts if part in DIALECTS)
-    assert_same(read_source(path, dialect_named(dialect)), dialect)
+    assert_same(read_source(path, dialect_named(dialect)), dialect, speed=speed)
 
 
 def number(random_: random.Random) -> str:
@@ -230,13 +245,30 @@ def test_long_runs_cross_the_border_of_chunks(dialect: str) -> None:
     assert len(result.moves) > 8000
 
 
-def test_the_fast_way_is_taken() -> None:
+def test_the_compiled_tier_is_taken() -> None:
     """Otherwise the tests above compare the interpreter tier with itself."""
+    from twin.nc.compiled.entries import COLD
     from twin.nc.compiled.virtual_machine import VirtualMachine
 
     text = "G90 G1 X0 F100\n" + "G1 X1 Y2 (a)\n\nG2 X11 Y2 I5 J0\n" * 50
     for dialect in ("gost", "codesys", "fagor8070"):
         interpretation = Interpretation(source_from_text(text), dialect_named(dialect), SETTINGS)
         interpretation._control.prepare()
-        assert VirtualMachine(interpretation._control).run()
+        assert VirtualMachine(interpretation._control, COLD).run()
         assert interpretation._control.program_counter.location.line == 151, dialect
+
+
+@pytest.mark.parametrize("dialect", sorted(DIALECTS))
+def test_a_run_changes_over_when_its_kernels_are_ready(
+    dialect: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks = iter([True, True, False])
+    monkeypatch.setattr(interpreter, "_LOOK_AGAIN", 10)
+    monkeypatch.setattr(virtual_machine, "compiles_beside", lambda _machine: next(looks))
+    lines = ["G90 G1 X0 F100", *(f"G1 X{number} Y2" for number in range(100))]
+    source = source_from_text("\n".join(lines))
+    cold = seen(source, dialect, SETTINGS, NEVER)
+    ready = seen(source, dialect, SETTINGS, ALWAYS, Speed.WHEN_READY)
+    assert next(looks, None) is None
+    assert ready.moves.end.tobytes() == cold.moves.end.tobytes()
+    assert ready.place == cold.place

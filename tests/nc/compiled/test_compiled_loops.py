@@ -264,7 +264,7 @@ def test_nothing_of_a_block_that_fails_remains() -> None:
 
 
 def test_memory_of_compiled_lines_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("twin.nc.bytecode.opcodes.MOST_INSTRUCTIONS", 50)
+    monkeypatch.setattr("twin.nc.bytecode.bytecode.MOST_INSTRUCTIONS", 50)
     lines = ["P1=0", "G1 F100", "$WHILE P1<3", "P1=P1+1"]
     lines += [f"X[P1+{number}] Y[P1*{number}]" for number in range(60)]
     text = "\n".join([*lines, "$ENDWHILE", "M30"])

@@ -1,13 +1,16 @@
 """What pages are sent."""
 
+import dataclasses
 import struct
 import zlib
 
 import numpy as np
 
+from twin.cutting.patches import LEVELS
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.driver import Driver
-from twin.training.server.frames import LEVELS, Changes, StockFeed, panel_words, state_message
+from twin.training.server.frames import Changes, StockFeed, panel_words, state_message
+from twin.training.server.launch import CELLS_ACROSS
 from twin.training.server.seats import MESSAGES, MOST_PAGES, Seats
 from twin.training.session.session import Session
 
@@ -21,7 +24,10 @@ def heights(message: bytes) -> tuple[slice, slice, np.ndarray]:
 
 
 def test_a_page_that_follows_has_the_stock_as_it_is_cut():
-    session = Session(read_scene(scene_path("fagor_first_steps")))
+    scene = dataclasses.replace(
+        read_scene(scene_path("fagor_first_steps")), cells_across=CELLS_ACROSS
+    )
+    session = Session(scene)
     room, feed = session.room, StockFeed()
     assert room.work is not None
     shown = np.zeros(room.work.map.heights.shape)

@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import time
+from pathlib import Path
 
 import pytest
 from chromium import CHROMIUM
@@ -197,4 +198,27 @@ def test_the_view_is_drawn(chromium, room):
     page.wait_for_selector("body[data-pictures]:not([data-pictures='0'])")
     page.click('[data-key="view top"]')
     assert not wrong
+    context.close()
+
+
+AXE = Path(__file__).resolve().parents[3] / ".axe" / "axe.min.js"
+SERIOUS = """async () => (await axe.run()).violations
+  .filter((one) => ["serious", "critical"].includes(one.impact))
+  .map((one) => `${one.id}: ${one.nodes.map((node) => node.html).join(" ")}`)"""
+
+
+@pytest.mark.skipif(
+    not AXE.is_file(), reason="axe-core is missing: run scripts/fetch_three.py --axe"
+)
+def test_every_sheet_can_be_read_by_everybody(chromium, room):
+    room.driver.ask({"do": "mode", "mode": "mdi"}, "trainer", 0)
+    # The page's policy would refuse the test's own script.
+    context = chromium.new_context(bypass_csp=True, viewport={"width": 1280, "height": 720})
+    without_view(context)
+    for role in ("trainer", "watcher"):
+        page = open_page(room, context, role)
+        page.add_script_tag(path=AXE)
+        for tab in page.locator("#tabs button").all():
+            tab.click()
+            assert page.evaluate(SERIOUS) == [], (role, tab.inner_text())
     context.close()

@@ -104,7 +104,7 @@ def _likeliest(axis: AxisLog, row: int, rate: float, cycle_s: float) -> tuple[fl
     window = round(cycle_s / _STEP_S)
     speed = max(abs(asked[row]), 1e-3 * rate)
     best_cost, best_place, best = np.inf, 0, np.zeros(len(time))
-    courses = _courses(time, float(asked[row - 1]), float(asked[row + 1]), rate)
+    courses = _courses(time, asked[row - 1 : row + 2], rate)
     for order, course in enumerate(courses):
         mean = _averaged(course, window)
         change = np.gradient(mean, _STEP_S) if window == 0 else _difference(mean, window) / cycle_s
@@ -123,8 +123,9 @@ def _likeliest(axis: AxisLog, row: int, rate: float, cycle_s: float) -> tuple[fl
     return best_cost, Ramp(row, command, best_place, window, lag)
 
 
-def _courses(time: FloatArray, before: float, after: float, rate: float) -> list[FloatArray]:
+def _courses(time: FloatArray, speeds: FloatArray, rate: float) -> list[FloatArray]:
     """How the speed may have gone between the samples before and after, plainest first."""
+    before, now, after = map(float, speeds)
 
     def ramp(start: float, end: float, begin: float = 0.0) -> FloatArray:
         lasts = max(abs(end - start) / rate, 1e-9)
@@ -138,6 +139,8 @@ def _courses(time: FloatArray, before: float, after: float, rate: float) -> list
         ramp(before, 0.0) + ramp(0.0, after, abs(before) / rate),
         ramp(-after, after),
         ramp(before, -before),
+        ramp(0.0, now),
+        ramp(0.0, before),
         ramp(far, 0.0),
         ramp(-far, 0.0),
         ramp(0.0, far),

@@ -11,7 +11,7 @@ import dataclasses
 import math
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.linalg import expm
 
 from twin.calibrate.fit.axis_kernels import read_cubics, step_axis
@@ -94,6 +94,21 @@ def command_of(
     return Command(
         kind, period_s / every, every, position, pushed, _start(period_s, actual, position[0])
     )
+
+
+def drawn_otherwise(command: Command, asked: FloatArray) -> Command:
+    """The same command, drawn between its samples by another rule (monotone cubics).
+
+    Args:
+        command: As drawn by a spline.
+        asked: Its samples, shape (n,) [mm or deg].
+    """
+    curve = PchipInterpolator(np.arange(len(asked), dtype=np.float64), asked)
+    fine = np.arange(len(command.position)) / command.every
+    period = command.step_s * command.every
+    slope, bend = (np.asarray(curve.derivative(order)(fine)) for order in (1, 2))
+    position = np.column_stack([np.asarray(curve(fine)), slope / period, bend / period**2])
+    return dataclasses.replace(command, position=position)
 
 
 def _start(period_s: float, actual: FloatArray, first: FloatArray) -> tuple[float, float]:

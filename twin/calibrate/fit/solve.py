@@ -33,6 +33,11 @@ class Interval:
     low: float
     high: float
 
+    def widened(self, by: float) -> "Interval":
+        """This value, with bounds moved apart to either side."""
+        low = self.low - by
+        return Interval(self.value, low if self.low < 0.0 else max(low, 0.0), self.high + by)
+
     def spanning(self, *others: "Interval") -> "Interval":
         """This value, with bounds that hold those of others too."""
         return Interval(

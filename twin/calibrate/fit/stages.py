@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from twin.calibrate.fit.parameters import Parameters, coordinates
+from twin.calibrate.fit.simulation import drawn_otherwise
 from twin.calibrate.fit.solve import (
     BATCHES,
     Interval,
@@ -28,7 +29,7 @@ _WIDE = 0.5
 """A parameter whose interval reaches further than this share to a side is not determined."""
 _VISCOUS_SHARE = 0.05
 """Viscous friction is taken to be at most this share of the velocity loop's gain: where positions
-alone are logged, that is how much higher than fitted the loop gain may be."""
+alone are logged, the loop gain may be so much higher than fitted, and its damping so much lower."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -82,7 +83,26 @@ def fit_axis(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters) -> 
             name: interval.spanning(other.intervals[name]) for name, interval in fitted.items()
         }
         fitted["delay"] = Interval(0.0, 0.0, 0.0).spanning(other.intervals["delay"])
+    if any(stretch.command.every > 1 for stretch in stretches):
+        fitted = _allowing_for_drawing(kind, stretches, best, fitted)
     return _told(stretches, best, fitted, undetermined)
+
+
+def _allowing_for_drawing(
+    kind: AxisKind, stretches: Sequence[Stretch], best: Solution, fitted: dict[str, Interval]
+) -> dict[str, Interval]:
+    """Widen intervals by what it does to draw the command between its samples by another rule."""
+    others = [
+        dataclasses.replace(stretch, command=drawn_otherwise(stretch.command, stretch.asked))
+        for stretch in stretches
+    ]
+    other = solve(_weighted(kind, others, best.parameters), best.parameters, best.free)
+    return {
+        name: interval.widened(abs(getattr(other.parameters, name) - interval.value))
+        if name in other.free
+        else interval
+        for name, interval in fitted.items()
+    }
 
 
 def _core(stretches: Sequence[Stretch]) -> list[str]:
@@ -271,4 +291,8 @@ def _told(
             if gain is not None:
                 high = gain.high * (1.0 + _VISCOUS_SHARE)
                 fitted["kv"] = Interval(gain.value, gain.low, high)
+            damping = fitted.get("damping_ratio")
+            if damping is not None:
+                low = damping.low / (1.0 + _VISCOUS_SHARE)
+                fitted["damping_ratio"] = Interval(damping.value, low, damping.high)
     return AxisFit(best.parameters, fitted, conditional, told, best.free, best.correlations)

@@ -37,6 +37,10 @@ TANGENT_PEAK = 3.0 / 16.0
 CURVATURE_PEAK = 0.01074
 """Largest value of ``smooth_square(t) - max(t, 0)²/2`` (0.010736)."""
 
+BESIDE_STOP = 0.5
+"""Share of the distance to a stop that a rounding may reach: the rest is left for speeding up, which
+a rounding leaves little room for."""
+
 OVERLAP_POINTS = 16
 """At which roundings from both ends of a block are added up."""
 
@@ -143,7 +147,7 @@ def _reached(
 @array_kernel
 def _even_width(
     place: FloatArray, per_width: FloatArray, per_square: FloatArray,
-    i: int, walls: tuple[int, int], guess: float, near: tuple[int, int],
+    i: int, walls: tuple[int, int], high: float, guess: float, near: tuple[int, int],
 ) -> tuple[float, tuple[int, int]]:  # fmt: skip
     """The width that uses the tolerance at a border if its neighbours took the same.
 
@@ -153,13 +157,13 @@ def _even_width(
         per_square: As in ``find_widths``.
         i: The border.
         walls: Border before the first that counts, and after the last.
+        high: The largest width.
         guess: Where to begin the search.
         near: The borders reached by that width, or about these.
 
     Returns:
         The width; the borders reached by it, or about these.
     """
-    high = min(place[i] - place[walls[0]], place[walls[1]] - place[i])
     width, below, above = min(guess, high), 0.0, math.inf
     for _ in range(MAX_STEPS):
         near = _reached(place, i, walls, width, near)
@@ -258,7 +262,12 @@ def find_widths(
         if not rounded[i] or (per_width[i] == 0.0 and per_square[i] == 0.0):
             continue
         walls = before[i], after[i]
-        guess, near = _even_width(place, per_width, per_square, i, walls, guess, near)
+        high = min(
+            (place[i] - place[walls[0]]) * (1.0 if rounded[walls[0]] else BESIDE_STOP),
+            (place[walls[1]] - place[i])
+            * (1.0 if walls[1] < count and rounded[walls[1]] else BESIDE_STOP),
+        )
+        guess, near = _even_width(place, per_width, per_square, i, walls, high, guess, near)
         if guess > 0.0:
             width[i] = guess
             near = _reached(place, i, walls, guess, near)

@@ -13,13 +13,20 @@ import numpy as np
 
 from twin.motion.blocks.blocks import Blocks, BoolArray
 from twin.motion.blocks.border_kernels import border_steps, border_velocities, tolerance_shares
+from twin.motion.blocks.corner_choice_kernels import (
+    BlockMotion,
+    Corners,
+    choose_stops,
+    clip_widths,
+)
 from twin.motion.blocks.corner_kernels import MAX_NEIGHBOURS, find_widths
 from twin.motion.limits import MotionLimits
 from twin.nc.canonical import Corner, FloatArray
 
-CONTEXT = 5 * MAX_NEIGHBOURS
-"""Blocks on either side that the path along a block can depend on: roundings reach that far, their
-widths depend on others' widths thrice as far, and those on the tolerances as far again."""
+CONTEXT = 6 * MAX_NEIGHBOURS
+"""Blocks on either side that the path along a block can depend on: roundings reach that far, stops
+narrow them from as far again, their widths depend on others' widths thrice as far, and those on the
+tolerances as far again."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -31,37 +38,58 @@ class Borders:
         curvature_step: Step of d²q/dx² of each axis, shape (n, k).
         width: How far a rounding reaches to either side, shape (n,) [mm or deg]; 0: none.
         entry: Highest velocity, shape (n,) [mm/s or deg/s].
+        overlap: How far from a stop the moves on both sides may overlap, shape (n,) [mm or deg]; 0:
+            not at all.
     """
 
     tangent_step: FloatArray
     curvature_step: FloatArray
     width: FloatArray
     entry: FloatArray
+    overlap: FloatArray
 
 
-def find_borders(blocks: Blocks, limits: MotionLimits) -> Borders:
-    """Decide how each border is passed; the first block's border counts as a stop."""
+def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float = 1.0) -> Borders:
+    """Decide how each border is passed; the first block's border counts as a stop.
+
+    Args:
+        blocks: Consecutive blocks.
+        limits: Of the axes and the path.
+        largest_override: Of the feed.
+    """
     shapes, axes = blocks.geometry, len(limits)
     tangent_step, curvature_step = border_steps(shapes.curves(), blocks.length)
     corner = blocks.corner.copy()
     corner[0] = Corner.EXACT_STOP
     rounded = corner == Corner.CONTINUOUS
-    width = np.zeros(len(blocks))
+    width, overlap = np.zeros(len(blocks)), np.zeros(len(blocks))
     if np.any(rounded):
-        per_width, per_square = tolerance_shares(
-            tangent_step,
-            curvature_step,
-            _tolerances(blocks, rounded, limits),
-            limits.further_corner_tolerance,
-        )
+        tolerance = _tolerances(blocks, rounded, limits)
+        further = limits.further_corner_tolerance
+        shares = tolerance_shares(tangent_step, curvature_step, tolerance, further)
         place = np.append(0.0, np.cumsum(blocks.length))
-        width = find_widths(place, rounded, per_width, per_square)
+        width = find_widths(place, rounded, *shares)
+        wanted = blocks.feed * blocks.parameter_scale
+        stops, overlap = choose_stops(
+            BlockMotion(
+                shapes.curves(), blocks.length,
+                wanted * np.where(blocks.rapid, 1.0, largest_override),
+                blocks.acceleration, blocks.deceleration, blocks.parameter_scale,
+                blocks.rotary_alone,
+            ),
+            Corners(tangent_step, curvature_step, rounded, width, tolerance, further),
+            limits.arrays(),
+        )  # fmt: skip
+        if np.any(stops):
+            corner[stops] = Corner.EXACT_STOP
+            rounded &= ~stops
+            clip_widths(place, stops, width)
     entry = border_velocities(
         tangent_step, curvature_step, corner == Corner.EXACT_STOP, rounded, width,
         np.broadcast_to(limits.junction_velocity_step, axes),
         np.broadcast_to(limits.junction_acceleration_step, axes),
     )  # fmt: skip
-    return Borders(tangent_step, curvature_step, width, entry)
+    return Borders(tangent_step, curvature_step, width, entry, overlap)
 
 
 def _tolerances(blocks: Blocks, rounded: BoolArray, limits: MotionLimits) -> FloatArray:

@@ -10,12 +10,12 @@ from twin.motion.blocks.blocks import BoolArray
 from twin.motion.live.transition_kernels import find_transition
 from twin.motion.pieces.pieces import Pieces
 from twin.motion.profile.backward_pass_kernels import ROUNDING, SLOWEST, backward_pass, find_brake
-from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, forward_pass
+from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forward_pass
 from twin.motion.profile.phase_kernels import PhaseRows, write_brake
 from twin.motion.profile.phases import Phases, brakes_from, no_phases, phases_of
 from twin.motion.profile.state import Course, State
 from twin.motion.profile.windows import Window, windows
-from twin.motion.setpoints.sampling_kernels import state_at
+from twin.motion.setpoints.sampling_kernels import OVERLAPPING, state_at
 from twin.nc.canonical import FloatArray
 
 
@@ -112,8 +112,8 @@ class OverriddenPlan:
                 self._stand_until(time)
             else:
                 rows, segments = forward_pass(
-                    drive.limits, drive.entry, drive.brakes, window.pause, min(stop, window.due),
-                    time, self._state,
+                    drive.limits, drive.entry, drive.brakes, Stands(window.overlap, window.pause),
+                    min(stop, window.due), time, self._state,
                 )  # fmt: skip
                 self._append(phases_of(window, rows, segments))
 
@@ -157,10 +157,13 @@ class OverriddenPlan:
     def _state_at(self, time: float) -> tuple[int, float, float, float, float] | None:
         """Segment, x, v, a at a time, and how long the segment still pauses [s].
 
-        None between two windows: the next begins with the next sample.
+        None between two windows, as the next begins with the next sample, and where two moves
+        overlap.
         """
         phases, window = self.phases[-1], self._window
         i, x, v, a, row = state_at(phases.rows, phases.rows_pieces, window.pieces.length, time)
+        if row == OVERLAPPING:
+            return None
         if row < 0 or self.standing_since <= time:
             segment, (x, v, a) = int(self._state[0]), self._state[1:4].tolist()
             if segment >= len(window.pause):
@@ -183,6 +186,7 @@ class OverriddenPlan:
             last = self._window
             if len(last.pause) == self._segments:
                 self._state[[0, 5]] -= last.due
+                self._state[7:] = 0.0
                 known = brakes_from(self._drive.brakes, last.due)
             else:
                 # The window has been parted since: segments have other numbers.

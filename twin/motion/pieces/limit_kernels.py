@@ -7,6 +7,7 @@ import numpy as np
 
 from twin.compilation.kernel import array_arithmetic_kernel
 from twin.motion.blocks.blocks import BoolArray
+from twin.motion.limits import MachineLimits
 from twin.motion.pieces.bound_kernels import DerivativeBounds
 from twin.motion.pieces.reachable_velocity_kernels import Along, lower_to_reachable
 from twin.nc.canonical import FloatArray, IntArray
@@ -15,7 +16,8 @@ CENTRIPETAL_SHARE = 0.95
 """Of an axis's acceleration that following a curve may use; the rest is left to change speed."""
 
 CURVE_JERK_SHARE = 0.5
-"""Of an axis's jerk that a curve may use at constant speed, and again at constant acceleration."""
+"""Of an axis's jerk that a curve may use at constant speed, and of what is then left again at constant
+acceleration."""
 
 
 class BlockLimits(NamedTuple):
@@ -36,26 +38,10 @@ class BlockLimits(NamedTuple):
     rotary_alone: BoolArray
 
 
-class MachineLimits(NamedTuple):
-    """``MotionLimits``, for compiled code.
-
-    Attributes:
-        velocity: Of each axis, shape (k,).
-        acceleration: Of each axis, shape (k,).
-        jerk: Of each axis, shape (k,).
-        path: Acceleration and jerk of the path, and of one of rotary axes alone.
-    """
-
-    velocity: FloatArray
-    acceleration: FloatArray
-    jerk: FloatArray
-    path: tuple[float, float, float, float]
-
-
 @array_arithmetic_kernel
 def piece_limits(
     block: BlockLimits, owner: IntArray, length: FloatArray, ceilings: FloatArray,
-    bounds: DerivativeBounds, machine: MachineLimits,
+    bounds: DerivativeBounds, machine: MachineLimits, share: FloatArray,
 ) -> FloatArray:  # fmt: skip
     """What any instant of a piece may use.
 
@@ -66,6 +52,7 @@ def piece_limits(
         ceilings: Highest v at the borders of the pieces, shape (n + 1,).
         bounds: Of the pieces.
         machine: Limits of the axes and the path.
+        share: Of an axis's jerk that a curve may use at constant velocity, shape (n,).
 
     Returns:
         Rows velocity, acceleration, deceleration, jerk, shape (4, n).
@@ -81,7 +68,13 @@ def piece_limits(
         path_a = scale[row] * (path[2] if rotary_alone[row] else path[0])
         path_j = scale[row] * (path[3] if rotary_alone[row] else path[1])
         v, a, j = _straight_limits(
-            bounds.axes[i], scale[row] * bounds.curvature[i], wanted[row], path_a, path_j, machine
+            bounds.axes[i],
+            scale[row] * bounds.curvature[i],
+            wanted[row],
+            path_a,
+            path_j,
+            machine,
+            share[i],
         )
         out[0, i], out[3, i] = v, j
         out[1, i] = min(a, scale[row] * highest_a[row])
@@ -103,7 +96,7 @@ def piece_limits(
 @array_arithmetic_kernel
 def _straight_limits(
     bounds: FloatArray, curvature: float, wanted: float,
-    path_acceleration: float, path_jerk: float, machine: MachineLimits,
+    path_acceleration: float, path_jerk: float, machine: MachineLimits, share: float,
 ) -> tuple[float, float, float]:  # fmt: skip
     """What velocity, acceleration and jerk bound each by itself along a piece.
 
@@ -114,6 +107,7 @@ def _straight_limits(
         path_acceleration: Of the path parameter.
         path_jerk: Of the path parameter.
         machine: Limits of the axes.
+        share: Of an axis's jerk that a curve may use at constant velocity.
 
     Returns:
         Highest v, as if a were 0; highest a and j, as if v were 0.
@@ -138,8 +132,8 @@ def _straight_limits(
             jerk = axis_jerk[axis] / first
         if square * second > CENTRIPETAL_SHARE * axis_acceleration[axis]:
             square = CENTRIPETAL_SHARE * axis_acceleration[axis] / second
-        if cube * third > CURVE_JERK_SHARE * axis_jerk[axis]:
-            cube = CURVE_JERK_SHARE * axis_jerk[axis] / third
+        if cube * third > share * axis_jerk[axis]:
+            cube = share * axis_jerk[axis] / third
     if velocity * velocity > square:
         velocity = math.sqrt(square)
     if velocity * velocity * velocity > cube:

@@ -17,17 +17,25 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from twin.columns import Columns, Picked
-from twin.motion.blocks.blocks import BoolArray, Surroundings, blocks_of_chunks, with_neighbours
-from twin.motion.blocks.corners import CONTEXT, find_borders
+from twin.motion.blocks.blocks import (
+    Blocks,
+    BoolArray,
+    Surroundings,
+    blocks_of_chunks,
+    with_neighbours,
+)
+from twin.motion.blocks.corners import CONTEXT, Borders, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.motion.pieces.cut_kernels import cut_blocks, place_pieces
-from twin.motion.pieces.limit_kernels import BlockLimits, MachineLimits, piece_limits
+from twin.motion.pieces.limit_kernels import CURVE_JERK_SHARE, BlockLimits, piece_limits
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 from twin.toolpath.geometry import Geometry
 
-BATCH = 2000
-"""Blocks that are cut into pieces at a time: as many as are planned at a time."""
+BATCH = 4000
+"""Blocks that are cut into pieces at a time: many more than their neighbours that are cut with them."""
+CURVE_JERK_SHARES = ((1.0, 3.0, 10.0), (CURVE_JERK_SHARE, 0.8, 0.9))
+"""By turns that the path goes round without a step: what of an axis's jerk a curve may use."""
 MAX_ANGLE = 1024.0 * math.pi
 """What their arcs turn together, but for the last [rad]: of helices with many turns each, a few."""
 
@@ -49,6 +57,8 @@ class Pieces(Columns):
         deceleration: Highest -a, shape (n,) [mm/s² or deg/s²].
         jerk: Highest abs(j), shape (n,) [mm/s³ or deg/s³].
         entry: Highest v at the begin, shape (n,) [mm/s or deg/s].
+        overlap: How far from a stop at the begin the moves on both sides may overlap, shape (n,)
+            [mm or deg]; 0: not at all.
         pause: How long a dwell waits, shape (n,) [s].
         rounding: What is added to each axis, coefficients by powers of x from the piece's begin,
             shape (n, k, 6) [mm or deg].
@@ -67,6 +77,7 @@ class Pieces(Columns):
     deceleration: FloatArray
     jerk: FloatArray
     entry: FloatArray
+    overlap: FloatArray
     pause: FloatArray
     rounding: FloatArray
     geometry: Picked[Geometry]
@@ -93,7 +104,7 @@ def pieces_of_chunks(
 
 def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: float) -> Pieces:
     blocks, shapes = surroundings.blocks, surroundings.blocks.geometry
-    borders = find_borders(blocks, limits)
+    borders = find_borders(blocks, limits, largest_override)
     # The neighbours are cut as well: they tell how fast a piece can be reached and left.
     owner, offset, length, rounding = cut_blocks(
         blocks.length, shapes.angle, borders.width, borders.tangent_step, borders.curvature_step
@@ -108,7 +119,7 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
         ),
         owner, length, _ceilings(surroundings, entry),
         bound_derivatives(shapes.curves(), owner, begin, scale, length, rounding),
-        _machine_limits(limits),
+        limits.arrays(), _curve_shares(blocks, borders)[owner],
     )  # fmt: skip
     first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
     due = slice(first, last)
@@ -126,19 +137,25 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
         deceleration=deceleration[due],
         jerk=jerk[due],
         entry=entry[due],
+        overlap=np.where(offset[due] == 0.0, borders.overlap.take(owner), 0.0),
         pause=blocks.pause.take(owner),
         rounding=rounding[due],
         geometry=Picked(owner, shapes),
     )
 
 
-def _machine_limits(limits: MotionLimits) -> MachineLimits:
-    """Limits of the axes and the path, for compiled code."""
-    return MachineLimits(
-        limits.velocity, limits.acceleration, limits.jerk,
-        (limits.path_acceleration, limits.path_jerk,
-         limits.rotary_path_acceleration, limits.rotary_path_jerk),
-    )  # fmt: skip
+def _curve_shares(blocks: Blocks, borders: Borders) -> FloatArray:
+    """Share of an axis's jerk that each block may use at constant velocity, shape (n,).
+
+    The rest changes the velocity: the longer the path goes round, the less often that is.
+    """
+    steps = np.any(borders.tangent_step, axis=1) | np.any(borders.curvature_step, axis=1)
+    alone = steps | (borders.entry < np.inf)
+    run = np.cumsum(alone) - int(alone[0])
+    angle = np.abs(blocks.geometry.angle)
+    turns = np.bincount(run, weights=angle) / (2.0 * math.pi)
+    shares = np.interp(turns, *CURVE_JERK_SHARES)[run]
+    return np.where(angle > 0.0, shares, CURVE_JERK_SHARES[1][0])
 
 
 def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:

@@ -59,12 +59,23 @@ def lower_to_reachable(
         before = velocity[i]
     highest = min(ceilings[count], before)
     border[count] = 0.5 * highest * highest
+    ramped = np.full(count, math.inf)
     for direction in range(2):
         along = speeding if direction == 0 else braking
+        # From the last border with a ceiling, where a = 0, the jerk alone bounds what is gained.
+        slow, gone = math.inf, 0.0
         for step in range(count):
             i = step if direction == 0 else count - 1 - step
             known, wanted = (i, i + 1) if direction == 0 else (i + 1, i)
             start = border[known]
+            if ceilings[known] < math.inf:
+                slow, gone = ceilings[known], 0.0
+            gone += length[i]
+            ramp = math.inf
+            if slow < math.inf and curved[i]:
+                ramp = slow + 0.5 * np.cbrt(36.0 * limits[3, i] * gone * gone)
+                ramp *= 0.5 * ramp
+                ramped[i] = min(ramped[i], ramp)
             if start >= border[wanted]:
                 continue
             distance = length[i] * readiness[i]
@@ -77,7 +88,7 @@ def lower_to_reachable(
                     share = 1.0 / (slope + 2.0 * distance * curve)
                     top = (slope * start + distance * axis_acceleration[axis]) * share
                     highest = min(highest, top)
-            border[wanted] = min(border[wanted], max(highest, start))
+            border[wanted] = min(border[wanted], max(min(highest, ramp), start))
     for i in range(count):
         # Along a straight piece velocity and acceleration do not compete.
         if curved[i]:
@@ -85,5 +96,5 @@ def lower_to_reachable(
             gain = length[i] * min(limits[1, i], limits[2, i])
             if top < 0.5 * gain:
                 # So slow at both ends that the piece's own peak counts.
-                top = 0.5 * (border[i] + border[i + 1] + gain)
+                top = min(0.5 * (border[i] + border[i + 1] + gain), ramped[i])
             velocity[i] = min(velocity[i], math.sqrt(2.0 * top))

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from twin.compilation.kernel import array_kernel, kernel
-from twin.motion.profile.brake_kernels import brake_distance, brake_distance_from
+from twin.motion.profile.brake_kernels import brake_distance_from
 from twin.motion.profile.brake_margin_kernels import (
     MAX_CHORDS,
     MAX_STEPS,
@@ -20,6 +20,7 @@ from twin.motion.profile.brake_margin_kernels import (
     narrowed,
 )
 from twin.motion.profile.state import Brake, Course, State
+from twin.motion.ramp_kernels import brake_distance
 from twin.nc.canonical import FloatArray
 
 BISECTIONS = 52

@@ -5,10 +5,9 @@ back to zero by the full jerk. A state with a < 0 is one on a brake that began e
 velocity: the same formulas hold, as long as the new end leaves time to bring a back to zero.
 """
 
-import math
-
 from twin.compilation.kernel import kernel
 from twin.motion.profile.state import State
+from twin.motion.ramp_kernels import brake_distance
 from twin.nc.canonical import FloatArray
 
 
@@ -55,26 +54,6 @@ def time_to(distance: float, v: float, a: float, j: float, latest: float) -> flo
             return min(new, latest)
         t = new if low < new < high else 0.5 * (low + high)
     return t
-
-
-@kernel
-def brake_distance(v: float, w: float, deceleration: float, jerk: float) -> float:
-    """Shortest distance from v to w <= v, a = 0 at both ends [mm or deg]."""
-    drop = v - w
-    if drop * jerk <= deceleration * deceleration:
-        duration = 2.0 * math.sqrt(drop / jerk)
-    else:
-        duration = drop / deceleration + deceleration / jerk
-    return 0.5 * (v + w) * duration
-
-
-@kernel
-def brake_time(v: float, w: float, deceleration: float, jerk: float) -> float:
-    """Time of ``brake_distance`` [s]."""
-    drop = v - w
-    if drop * jerk <= deceleration * deceleration:
-        return 2.0 * math.sqrt(drop / jerk)
-    return drop / deceleration + deceleration / jerk
 
 
 @kernel

@@ -8,7 +8,6 @@ from twin.motion.profile.brake_kernels import (
     after_jerk,
     brake_distance_from,
     brake_limits,
-    brake_time,
     time_to,
 )
 from twin.motion.profile.brake_margin_kernels import (
@@ -19,6 +18,7 @@ from twin.motion.profile.brake_margin_kernels import (
     narrowed,
 )
 from twin.motion.profile.state import Brake, Course, State
+from twin.motion.ramp_kernels import brake_time
 from twin.nc.canonical import FloatArray
 
 SHORTEST_PHASE = 1e-10

@@ -9,7 +9,7 @@ from twin.columns import join
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.pieces import Pieces, pieces_of_chunks
 from twin.motion.profile.backward_pass_kernels import backward_pass
-from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, forward_pass
+from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forward_pass
 from twin.motion.profile.segment_kernels import place_phases
 from twin.motion.profile.windows import Window, windows
 from twin.nc.canonical import Chunk, FloatArray, IntArray
@@ -21,7 +21,8 @@ class Phases:
 
     Attributes:
         parts: The window, in one or two parts.
-        rows: Begin [s], duration [s], x within the piece, v, a, j; shape (m, 6).
+        rows: Begin [s], duration [s], x within the piece, v, a, j; shape (m, 6). The one that leads
+            away from a stop may begin before the one that leads to it has ended.
         rows_pieces: Rows of ``pieces`` in which each phase begins and ends, shape (m, 2).
     """
 
@@ -45,6 +46,8 @@ class Phases:
             yield Phases(self.parts[:1], self.rows, self.rows_pieces)
             return
         row = int(np.argmax(beyond))
+        if row > 0 and self.rows[row, 0] < self.rows[row - 1, :2].sum():
+            row -= 1
         piece = int(self.rows_pieces[row, 0])
         if row > 0:
             yield Phases(self.parts[:1], self.rows[:row], self.rows_pieces[:row])
@@ -72,12 +75,19 @@ def plan_phases(
     for window in windows(pieces_of_chunks(chunks, limits, start)):
         brakes = backward_pass(window.limits, window.entry, known)
         rows, segments = forward_pass(
-            window.limits, window.entry, brakes, window.pause, window.due, np.inf, state
+            window.limits,
+            window.entry,
+            brakes,
+            Stands(window.overlap, window.pause),
+            window.due,
+            np.inf,
+            state,
         )
         if len(rows) > 0:
             yield phases_of(window, rows, segments)
         known = brakes_from(brakes, window.due)
         state[[0, 5]] -= window.due
+        state[7:] = 0.0
 
 
 def phases_of(window: Window, rows: FloatArray, segments: IntArray) -> Phases:

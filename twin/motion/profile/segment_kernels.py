@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.compilation.kernel import array_kernel
 from twin.motion.profile.backward_pass_kernels import SLOWEST
-from twin.motion.profile.brake_kernels import brake_distance
+from twin.motion.ramp_kernels import brake_distance
 from twin.nc.canonical import FloatArray, IntArray
 
 ALIKE = 0.995

@@ -30,6 +30,8 @@ class Window:
         begins: First piece of each segment and, last, n; shape (m + 1,).
         limits: Rows length, velocity, acceleration, deceleration, jerk, shape (5, m).
         entry: Highest velocity at each border, the last 0, shape (m + 1,).
+        overlap: How far from a stop at each border the moves on both sides may overlap, 0: not at
+            all, shape (m,) [mm or deg].
         pause: How long each segment waits, shape (m,) [s].
         due: Segments to drive now; the rest is looked ahead to.
     """
@@ -38,6 +40,7 @@ class Window:
     begins: IntArray
     limits: FloatArray
     entry: FloatArray
+    overlap: FloatArray
     pause: FloatArray
     due: int
 
@@ -90,6 +93,7 @@ class Window:
             begins=np.insert(self.begins, segment + 1, piece),
             limits=limits,
             entry=np.insert(self.entry, segment + 1, np.inf),
+            overlap=np.insert(self.overlap, segment + 1, 0.0),
             pause=np.insert(self.pause, segment + 1, 0.0),
             due=self.due + int(segment < self.due),
         )
@@ -134,6 +138,7 @@ def _window(batches: list[_Batch], due: int) -> Window:
         begins=np.append(np.concatenate(begins), behind),
         limits=np.concatenate([batch.limits for batch in batches], axis=1),
         entry=np.append(np.concatenate(entries), 0.0),
+        overlap=np.concatenate([batch.pieces.overlap[batch.begins[:-1]] for batch in batches]),
         pause=np.concatenate([batch.pieces.pause[batch.begins[:-1]] for batch in batches]),
         due=due,
     )

@@ -59,6 +59,9 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
         along_rotary, limits.rotary_path_acceleration, limits.path_acceleration
     )
     path_jerk = np.where(along_rotary, limits.rotary_path_jerk, limits.path_jerk)
+    # Curves that go round long use more.
+    used = third * pieces.velocity[:, None] ** 3 / limits.jerk
+    share_of_jerk = np.maximum(CURVE_JERK_SHARE, used.max(axis=1))
     with np.errstate(divide="ignore", over="ignore"):
         fastest = {
             FEED: pieces.feed,
@@ -70,8 +73,8 @@ def reasons(pieces: Pieces, limits: MotionLimits, names: tuple[str, ...]) -> Rea
             fastest[f"velocity of {name}"] = limits.velocity[axis] / first[:, axis]
             share = CENTRIPETAL_SHARE * limits.acceleration[axis]
             fastest[f"acceleration of {name} in a curve"] = np.sqrt(share / second[:, axis])
-            share = CURVE_JERK_SHARE * limits.jerk[axis]
-            fastest[f"jerk of {name} in a curve"] = np.cbrt(share / third[:, axis])
+            jerk = share_of_jerk * limits.jerk[axis]
+            fastest[f"jerk of {name} in a curve"] = np.cbrt(jerk / third[:, axis])
             hardest[f"acceleration of {name}"] = limits.acceleration[axis] / first[:, axis]
             smoothest[f"jerk of {name}"] = limits.jerk[axis] / first[:, axis]
     names_of_bounds, bound = _least(fastest)

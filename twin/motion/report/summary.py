@@ -124,9 +124,12 @@ def _add(
     """Add the time of phases to the rows of their blocks; a phase may cross several."""
     pieces = phases.pieces
     slow_places = _slow_places(phases, why)
-    for (_, duration, x, v, a, j), (first, last), slow_place in zip(
-        phases.rows, phases.rows_pieces, slow_places, strict=True
+    ends = np.append(phases.rows[1:, 0], np.inf)
+    for (begin, whole, x, v, a, j), (first, last), slow_place, end in zip(
+        phases.rows, phases.rows_pieces, slow_places, ends, strict=True
     ):
+        # Where two moves overlap, the time is that of the second.
+        duration = min(whole, end - begin)
         spent, gone, ahead = 0.0, 0.0, -x
         for piece in range(first, last + 1):
             ahead += pieces.length[piece]

@@ -7,6 +7,7 @@ import numpy as np
 from twin.motion.profile.phases import Phases
 from twin.motion.setpoints.sampling_kernels import (
     AxisSamples,
+    PathSamples,
     PieceCurves,
     sample_axes,
     sample_path,
@@ -42,14 +43,20 @@ def _sample_part(
     pieces = phases.parts[0]
     cursor = np.zeros(1, np.int64)
     while True:
-        piece = np.zeros(most, np.int64)
-        path = np.zeros((most, 3))
+        room = PathSamples(
+            np.zeros(most, np.int64), np.zeros((most, 3)),
+            np.zeros(most, np.int64), np.zeros((most, 3)), np.zeros(most, np.bool_),
+        )  # fmt: skip
         count = sample_path(
-            phases.rows, phases.rows_pieces, pieces.length, tick, period_s, cursor, piece, path
+            phases.rows, phases.rows_pieces, pieces.length, tick, period_s, cursor, room
         )
         if count == 0:
             return
-        piece, path = piece[:count], path[:count]
+        where = PathSamples(
+            room.piece[:count], room.path[:count],
+            room.other_piece[:count], room.other_path[:count], room.other_begins[:count],
+        )  # fmt: skip
+        piece = where.piece
         samples = AxisSamples(
             np.zeros(count), *(np.zeros((count, len(part_zero))) for _ in range(3))
         )
@@ -57,7 +64,7 @@ def _sample_part(
         curves = PieceCurves(
             geometry.row, pieces.begin, pieces.fraction_per_length, pieces.rounding
         )
-        sample_axes(geometry.table.curves(), curves, part_zero, piece, path, samples)
+        sample_axes(geometry.table.curves(), curves, part_zero, where, samples)
         yield Setpoints(
             time=np.arange(tick, tick + count, dtype=np.float64) * period_s,
             line=pieces.line[piece],

@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterable, Mapping
 
-from twin.nc.bytecode.opcodes import MOST_ROWS, MOST_STORES, Bytecode, Opcode, number_of_location
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import MOST_ROWS, MOST_STORES, Bytecode, number_of_location
 from twin.nc.bytecode.registers import MOST_WORDS
 from twin.nc.bytecode.variables import Variables
 from twin.nc.canonical import NO_BLOCK_NUMBER
@@ -74,28 +75,28 @@ class Assembler:
         self._has_snapshot = False
         self._column, self.columns = -1, []
         self._begin = self._bytecode.rows
-        self._add(Opcode.BLOCK)
+        self._add(opcodes.BLOCK)
         if block.number != NO_BLOCK_NUMBER:
-            self._add(Opcode.WORD_CONSTANT, self._number_kind, float(block.number))
+            self._add(opcodes.WORD_CONSTANT, self._number_kind, float(block.number))
 
     def end(self) -> None:
         """The block ends."""
-        self._append(Opcode.NEXT)
+        self._append(opcodes.NEXT)
 
-    def _add(self, opcode: Opcode, operand: int = 0, immediate: float = 0.0) -> None:
+    def _add(self, opcode: int, operand: int = 0, immediate: float = 0.0) -> None:
         if self._bytecode.rows - self._begin > MOST_ROWS:
             raise UnsupportedError
         self._append(opcode, operand, immediate)
 
-    def _append(self, opcode: Opcode, operand: int = 0, immediate: float = 0.0) -> None:
+    def _append(self, opcode: int, operand: int = 0, immediate: float = 0.0) -> None:
         self._bytecode.add(opcode, operand, immediate)
         self.columns.append(self._column)
 
-    def emit(self, opcode: Opcode, operand: int = 0) -> None:
+    def emit(self, opcode: int, operand: int = 0) -> None:
         """Append one of the instructions that do more than compute, move and jump."""
         if not self._has_snapshot:
             self._has_snapshot = True
-            self._add(Opcode.SNAPSHOT)
+            self._add(opcodes.SNAPSHOT)
         self._add(opcode, operand)
 
     # --- words
@@ -108,14 +109,14 @@ class Assembler:
         """
         self._put(words)
         if often is None:
-            self._add(Opcode.RUN)
+            self._add(opcodes.RUN)
         else:
-            self._add(Opcode.RUN_REPEATEDLY, 0, float(often))
+            self._add(opcodes.RUN_REPEATEDLY, 0, float(often))
 
     def codes(self, words: Iterable[Word]) -> None:
         """Run plain words that do not move, before others of the block."""
         self._put(words)
-        self.emit(Opcode.RUN_CODES)
+        self.emit(opcodes.RUN_CODES)
 
     def polar(self, radius: Word | None, angle: Word | None, words: Iterable[Word]) -> None:
         """Move to where R and Q lead, and other axes by plain words."""
@@ -123,7 +124,7 @@ class Assembler:
         for word in (radius, angle):
             if word is not None:
                 self.word_value(word)
-        self.emit(Opcode.RUN_POLAR, (radius is not None) + 2 * (angle is not None))
+        self.emit(opcodes.RUN_POLAR, (radius is not None) + 2 * (angle is not None))
 
     def _put(self, words: Iterable[Word]) -> None:
         words = list(words)
@@ -136,9 +137,9 @@ class Assembler:
             self._column = word.column
             if isinstance(word.value, Expression):
                 self.value(word.value)
-                self._add(Opcode.WORD, token_kind)
+                self._add(opcodes.WORD, token_kind)
             else:
-                self._add(Opcode.WORD_CONSTANT, token_kind, word.value)
+                self._add(opcodes.WORD_CONSTANT, token_kind, word.value)
 
     # --- values
 
@@ -164,19 +165,19 @@ class Assembler:
             case Number(value):
                 self.constant(value)
             case Variable(name):
-                self._add(Opcode.LOAD, self._slot(name))
+                self._add(opcodes.LOAD, self._slot(name))
             case NumberedVariable(name, index):
                 self._number_variables(name)
                 self.value(index)
-                self._add(Opcode.LOAD_NUMBERED)
+                self._add(opcodes.LOAD_NUMBERED)
             case Negative(operand):
                 self.value(operand)
-                self._add(Opcode.NEGATE)
+                self._add(opcodes.NEGATE)
             case Prefixed(compute, operand):
                 self.value(operand)
                 self._compute(compute, 1)
             case Exists(Variable(name)):
-                self._add(Opcode.DEFINED, self._slot(name))
+                self._add(opcodes.DEFINED, self._slot(name))
             case Exists():
                 raise UnsupportedError
             case Computed(_, compute, operands):
@@ -186,13 +187,13 @@ class Assembler:
 
     def constant(self, value: float) -> None:
         """Put a number on the stack."""
-        self._add(Opcode.CONSTANT, 0, value)
+        self._add(opcodes.CONSTANT, 0, value)
 
     def _compute(self, compute: Callable[..., float], values: int) -> None:
         number = self._functions[values - 1].get(compute)
         if number is None:
             raise UnsupportedError
-        self._add((Opcode.UNARY, Opcode.BINARY, Opcode.TERNARY)[values - 1], number)
+        self._add((opcodes.UNARY, opcodes.BINARY, opcodes.TERNARY)[values - 1], number)
 
     def _slot(self, name: str) -> int:
         if name in self._live:
@@ -211,9 +212,9 @@ class Assembler:
 
     def assign(self, name: str, *, declared: bool = False) -> None:
         """The topmost value goes to a variable; ``declared``: one that has a value already."""
-        self._store(Opcode.STORE_DECLARED if declared else Opcode.STORE, self._slot(name))
+        self._store(opcodes.STORE_DECLARED if declared else opcodes.STORE, self._slot(name))
 
-    def _store(self, opcode: Opcode, slot: int = 0) -> None:
+    def _store(self, opcode: int, slot: int = 0) -> None:
         self._stores += 1
         if self._stores > MOST_STORES:
             raise UnsupportedError
@@ -222,28 +223,28 @@ class Assembler:
     def change(self, name: str, compute: Callable[..., float]) -> None:
         """The topmost value changes a variable: an operator's result for the old and this value."""
         slot = self._slot(name)
-        self._add(Opcode.LOAD_BELOW, slot)
+        self._add(opcodes.LOAD_BELOW, slot)
         self._compute(compute, 2)
-        self._store(Opcode.STORE, slot)
+        self._store(opcodes.STORE, slot)
 
     def assign_numbered(self, name: str, compute: Callable[..., float] | None = None) -> None:
         """As ``assign`` or ``change``, of the variable whose number lies below the value."""
         self._number_variables(name)
         if compute is not None:
-            self._add(Opcode.LOAD_NUMBERED_BELOW)
+            self._add(opcodes.LOAD_NUMBERED_BELOW)
             self._compute(compute, 2)
-        self._store(Opcode.STORE_NUMBERED)
+        self._store(opcodes.STORE_NUMBERED)
 
     def begin_for(self, name: str, behind: Location) -> None:
         """First, last and step are on the stack: a counted loop begins, or ends at once."""
-        self._add(Opcode.BEGIN_FOR)
+        self._add(opcodes.BEGIN_FOR)
         self.assign(name)
         self.jump_if(behind)
 
     def step_for(self, name: str, again: Location) -> None:
         """First, last and step are on the stack: a counted loop goes on."""
-        self._add(Opcode.LOAD, self._slot(name))
-        self._add(Opcode.STEP_FOR)
+        self._add(opcodes.LOAD, self._slot(name))
+        self._add(opcodes.STEP_FOR)
         self.assign(name)
         self.jump_if(again)
 
@@ -251,23 +252,23 @@ class Assembler:
 
     def jump(self, location: Location) -> None:
         """Go on at a location."""
-        self._add(Opcode.JUMP, number_of_location(location))
+        self._add(opcodes.JUMP, number_of_location(location))
 
     def jump_if(self, location: Location) -> None:
         """The same where the topmost value is true."""
-        self._add(Opcode.JUMP_IF, number_of_location(location))
+        self._add(opcodes.JUMP_IF, number_of_location(location))
 
     def jump_unless(self, location: Location) -> None:
         """The same where it is not."""
-        self._add(Opcode.JUMP_UNLESS, number_of_location(location))
+        self._add(opcodes.JUMP_UNLESS, number_of_location(location))
 
     def jump_case(self, location: Location) -> None:
         """The same where it equals the value below, which stays."""
-        self._add(Opcode.JUMP_CASE, number_of_location(location))
+        self._add(opcodes.JUMP_CASE, number_of_location(location))
 
     def jump_counted(self, location: Location, counter: str, times: float) -> None:
         """Go on at a location so many times; then on, and the counter begins anew."""
-        self._add(Opcode.COUNT_DOWN, self._slot(counter), times)
+        self._add(opcodes.COUNT_DOWN, self._slot(counter), times)
         self.jump_if(location)
 
     def call(
@@ -286,30 +287,30 @@ class Assembler:
             own: Its own variables, which get the topmost values; None: it has the caller's.
             restores: Its end puts back into force what is in force now.
         """
-        self._add(Opcode.CHECK_CALL, deepest)
+        self._add(opcodes.CHECK_CALL, deepest)
         if own is not None:
-            self._add(Opcode.OWN_VARIABLES)
+            self._add(opcodes.OWN_VARIABLES)
             done: set[str] = set()
             for name in reversed(list(own)):
                 if name in done:
-                    self._add(Opcode.DROP)
+                    self._add(opcodes.DROP)
                 else:
-                    self._store(Opcode.STORE, self._slot(name))
+                    self._store(opcodes.STORE, self._slot(name))
                 done.add(name)
         if restores:
-            self._add(Opcode.RESTORE_CODES)
-        self._add(Opcode.CALL, number_of_location(location))
+            self._add(opcodes.RESTORE_CODES)
+        self._add(opcodes.CALL, number_of_location(location))
 
     def repeat(self, first: Location, last: Location, deepest: int) -> None:
         """Run a range as often as the topmost value says."""
-        self._add(Opcode.CHECK_CALL, deepest)
-        self._add(Opcode.RANGE, number_of_location(last))
-        self._add(Opcode.REPEAT, number_of_location(first))
+        self._add(opcodes.CHECK_CALL, deepest)
+        self._add(opcodes.RANGE, number_of_location(last))
+        self._add(opcodes.REPEAT, number_of_location(first))
 
     def check_return(self) -> None:
         """What ``go_back`` needs, to be written before anything that cannot be undone."""
-        self._add(Opcode.CHECK_RETURN)
+        self._add(opcodes.CHECK_RETURN)
 
     def end_call(self) -> None:
         """Go on behind the call."""
-        self._add(Opcode.RETURN)
+        self._add(opcodes.RETURN)

@@ -1,359 +1,147 @@
-"""The bytecode: what blocks that compute, jump or call do, one instruction a row.
+"""What an instruction does, by its opcode; ``operand`` and ``immediate`` are its other columns.
 
 Values wait on a stack. A block begins with ``BLOCK`` and ends with ``NEXT``; before its first instruction
 that cannot be undone it has met all that could stop it.
 """
 
-import enum
-from typing import NamedTuple
-
-import numpy as np
-import numpy.typing as npt
-
-from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.text.blocks import Location
-
-MOST_INSTRUCTIONS = 1 << 19
-"""Rows that are kept; a program that needs more is compiled anew from there on."""
-MOST_STORES = 64
-"""Variables that a block may set."""
-MOST_ROWS = 200
-"""Rows of a block."""
-MOST_VALUES = MOST_ROWS
-"""Values that wait on the stack: no row adds more than one."""
-PART_BITS = 20
-"""A location as one number: the line, and in these bits the part."""
-LARGEST_PART = (1 << PART_BITS) - 1
-NOT_COMPILED, INTERPRETED = 0, -1
-"""Instead of a line's first row: not compiled yet; always run by the interpreter tier."""
-
-
-class Opcode(enum.IntEnum):
-    """What a row does; ``operand`` and ``immediate`` are its columns."""
-
-    BLOCK = 0
-    """A block begins; ``operand``: row of the line's next block, 0 for none."""
-    NEXT = 1
-    """It ends."""
-    TRAP = 2
-    """the interpreter tier must run this block."""
-    CONSTANT = 3
-    """Put ``immediate`` on the stack."""
-    LOAD = 4
-    """Put the variable with the slot ``operand`` on the stack."""
-    LOAD_NUMBERED = 5
-    """Put the variable with the number on the stack in its place."""
-    LOAD_BELOW = 6
-    """As ``LOAD``, below the topmost value."""
-    LOAD_NUMBERED_BELOW = 7
-    """As ``LOAD_BELOW``, of the variable whose number lies below the topmost value."""
-    DEFINED = 8
-    """Put on the stack whether the variable with the slot ``operand`` has a value."""
-    NEGATE = 9
-    """Change the sign."""
-    UNARY = 10
-    """Replace the topmost value by the function ``operand`` of it."""
-    BINARY = 11
-    """Replace the two topmost values by the operator ``operand`` between them."""
-    TERNARY = 12
-    """Replace the three topmost values by the function ``operand`` of them."""
-    DROP = 13
-    """Forget the topmost value."""
-    STORE = 14
-    """Give the variable with the slot ``operand`` the topmost value."""
-    STORE_DECLARED = 15
-    """The same where it has a value of its own already."""
-    STORE_NUMBERED = 16
-    """The same for the variable whose number lies below."""
-    WORD = 17
-    """The topmost value is that of a word with the token_kind ``operand``."""
-    WORD_CONSTANT = 18
-    """``immediate`` is."""
-    RUN = 19
-    """Run the words."""
-    RUN_REPEATEDLY = 20
-    """Run them as often as the topmost value says, at most ``immediate`` times."""
-    JUMP = 21
-    """Go on at the location ``operand``."""
-    JUMP_IF = 22
-    """The same where the topmost value is not 0."""
-    JUMP_UNLESS = 23
-    """The same where it is 0."""
-    JUMP_CASE = 24
-    """The same where it equals the value below, which stays."""
-    BEGIN_FOR = 25
-    """First, last and step become whether first lies beyond last, and first."""
-    STEP_FOR = 26
-    """First, last, step and value become whether the next value is in reach, and that value."""
-    COUNT_DOWN = 27
-    """Put on the stack whether the counter with the slot ``operand``, which begins at ``immediate``,
-    is not 0 yet, and take 1 from it; at 0 it is forgotten."""
-    CHECK_CALL = 28
-    """At most ``operand`` parts may call each other."""
-    OWN_VARIABLES = 29
-    """The part that is called next has local variables of its own."""
-    RESTORE_CODES = 30
-    """Its end puts back into force what is in force now."""
-    CALL = 31
-    """Run the part that begins at the location ``operand``."""
-    RANGE = 32
-    """The range that is repeated next ends at the location ``operand``."""
-    REPEAT = 33
-    """Run the range that begins at the location ``operand`` as often as the topmost value says."""
-    CHECK_RETURN = 34
-    """There must be a part that can be returned from."""
-    RETURN = 35
-    """Go back behind the call."""
-    SNAPSHOT = 36
-    """What follows changes more than variables; keep how all was."""
-    RUN_CODES = 37
-    """Run the words so far, and forget them but for N."""
-    RUN_POLAR = 38
-    """Run the words, on a straight way to where R (``operand`` 1), Q (2) or both (3) lead, whose
-    values are the topmost."""
-    ACTIVATE = 39
-    """The G code ``operand`` is in force."""
-    PLANE = 40
-    """The plane ``operand`` is in force: 0 to 2."""
-    FUNCTION = 41
-    """Report the M function ``operand``."""
-    SPINDLE_FUNCTION = 42
-    """The same with the spindle's speed."""
-    SPEED = 43
-    """The spindle's speed is the topmost value; ``operand`` 1: report it."""
-    TOOL = 44
-    """The tool with the topmost number comes next; ``operand`` 1: it must be one of the job's."""
-    AUXILIARY = 45
-    """Report H with the topmost value."""
-    DWELL = 46
-    """Wait as many seconds as the topmost value."""
-    CHANGE_TOOL = 47
-    """The tool that comes next is used from now on."""
-    OFFSET_ON = 48
-    """Tools have their offset, or with ``operand`` 0 not."""
-    TOOL_LENGTH = 49
-    """The tool in use moves Z by its length, where it has its offset."""
-    SHIFT = 50
-    """The topmost values, one for each axis, are the shift ``operand``."""
-    REFRAME = 51
-    """The shifts have changed."""
-    BEGIN_TARGET = 52
-    """The place where the machine stands gets new coordinates: at first those that it has."""
-    TARGET = 53
-    """The topmost value is that of the axis ``operand``."""
-    SET_POSITION = 54
-    """They hold from now on, by the shift ``operand``."""
-    POLAR_ORIGIN = 55
-    """The two topmost values (``operand`` 2) are the polar origin; 0: it is where the tool stands."""
-    TO_MILLIMETRES = 56
-    """The topmost value is in the unit in force, of the axis ``operand``."""
-    NO_PECKS = 57
-    """No drilling cycle with pecks may be in force."""
-    FORGET_POLAR = 58
-    """The last R and Q hold no longer."""
-    TOOL_RADIUS = 59
-    """Put the radius of the tool in use on the stack; ``operand`` 1: 0 where it has no offset."""
-    COMPENSATE = 60
-    """Radius compensation begins, of the topmost value, left (``operand`` 1) or right (-1)."""
-    END_COMPENSATION = 61
-    """It ends."""
-    CYCLE_WORD = 62
-    """The topmost value is that of the drilling cycle's word for ``operand``."""
-    PROGRAMMED_RADIUS = 63
-    """The topmost value is the radius that the program gives the tool; ``operand`` 0: put on the
-    stack what it gave last."""
-    MIRROR = 64
-    """The topmost value, -1 or 1, is the sign of the axis ``operand``."""
-    SCALE = 65
-    """It is the scale."""
-    ROTATE = 66
-    """The topmost values are angle, abscissa and ordinate of the rotation, which must be the only one."""
-    END_ROTATION = 67
-    """It ends."""
-    TRANSFORM = 68
-    """Mirror, scale and rotation have changed."""
-
-
-class BytecodeTable(NamedTuple):
-    """The rows, as the kernel reads them.
-
-    Attributes:
-        first: First row of each line, ``NOT_COMPILED`` or ``INTERPRETED``, shape (lines + 1,).
-        opcode: Shape (n,).
-        operand: Shape (n,).
-        immediate: Shape (n,).
-        numbered: Slots of the variables that have a number, shape (m,).
-    """
-
-    first: npt.NDArray[np.int32]
-    opcode: IntArray
-    operand: IntArray
-    immediate: FloatArray
-    numbered: IntArray
-
-
-class Bytecode:
-    """A table that grows."""
-
-    def __init__(self, lines: int) -> None:
-        self._first = np.zeros(lines + 1, np.int32)
-        self._compiled: list[int] = []
-        self._opcode = np.zeros(256, np.int64)
-        self._operand = np.zeros(256, np.int64)
-        self._immediate = np.zeros(256)
-        self._opcode[0] = Opcode.NEXT
-        self._rows = 1
-        self.numbered = np.zeros(0, np.int64)
-
-    @property
-    def rows(self) -> int:
-        """Where the next row goes."""
-        return self._rows
-
-    @property
-    def table(self) -> BytecodeTable:
-        """The rows as columns."""
-        return BytecodeTable(
-            self._first, self._opcode, self._operand, self._immediate, self.numbered
-        )
-
-    def add(self, opcode: Opcode, operand: int = 0, immediate: float = 0.0) -> None:
-        """Append a row."""
-        row = self._rows
-        self._grow(1)
-        self._opcode[row], self._operand[row], self._immediate[row] = opcode, operand, immediate
-        self._rows = row + 1
-
-    def add_rows(
-        self,
-        opcodes: IntArray,
-        operands: IntArray,
-        immediates: FloatArray,
-        own: FloatArray,
-        at: IntArray,
-    ) -> int:
-        """Append rows, with other numbers at some of them; the first of them."""
-        first, count = self._rows, len(opcodes)
-        self._grow(count)
-        rows = slice(first, first + count)
-        self._opcode[rows], self._operand[rows], self._immediate[rows] = (
-            opcodes,
-            operands,
-            immediates,
-        )
-        self._immediate[at + first] = own
-        self._rows = first + count
-        return first
-
-    def _grow(self, rows: int) -> None:
-        while self._rows + rows > len(self._opcode):
-            self._opcode = np.concatenate([self._opcode, np.zeros_like(self._opcode)])
-            self._operand = np.concatenate([self._operand, np.zeros_like(self._operand)])
-            self._immediate = np.concatenate([self._immediate, np.zeros_like(self._immediate)])
-
-    def lead_here(self, row: int) -> None:
-        """The next row is the operand of an earlier one."""
-        self._operand[row] = self._rows
-
-    def take_back(self, row: int) -> None:
-        """Forget this row and those behind it."""
-        self._rows = row
-
-    def number_variables(self, slots: list[int]) -> None:
-        """From now on these are the slots of the variables 0, 1, 2, ..."""
-        self.numbered = np.array(slots, np.int64)
-
-    def begins(self, line: int, row: int) -> None:
-        """The rows of a line, counted from 0, begin here; or ``INTERPRETED``."""
-        self._first[line] = row
-        self._compiled.append(line)
-
-    def make_room(self) -> None:
-        """Forget everything where the table has become too long."""
-        if self._rows > MOST_INSTRUCTIONS or len(self._compiled) > MOST_INSTRUCTIONS:
-            self._first[self._compiled] = NOT_COMPILED
-            self._compiled = []
-            self._rows = 1
-
-
-def number_of_location(location: Location) -> int:
-    """A location as one number, in the order of the program."""
-    return location.line << PART_BITS | location.part
-
-
-def location_of_number(number: int) -> Location:
-    """The inverse of ``number_of_location``."""
-    return Location(number >> PART_BITS, number & LARGEST_PART)
-
-
-(
-    BLOCK,
-    NEXT,
-    TRAP,
-    CONSTANT,
-    LOAD,
-    LOAD_NUMBERED,
-    LOAD_BELOW,
-    LOAD_NUMBERED_BELOW,
-    DEFINED,
-    NEGATE,
-    UNARY,
-    BINARY,
-    TERNARY,
-    DROP,
-    STORE,
-    STORE_DECLARED,
-    STORE_NUMBERED,
-    WORD,
-    WORD_CONSTANT,
-    RUN,
-    RUN_REPEATEDLY,
-    JUMP,
-    JUMP_IF,
-    JUMP_UNLESS,
-    JUMP_CASE,
-    BEGIN_FOR,
-    STEP_FOR,
-    COUNT_DOWN,
-    CHECK_CALL,
-    OWN_VARIABLES,
-    RESTORE_CODES,
-    CALL,
-    RANGE,
-    REPEAT,
-    CHECK_RETURN,
-    RETURN,
-    SNAPSHOT,
-    RUN_CODES,
-    RUN_POLAR,
-    ACTIVATE,
-    PLANE,
-    FUNCTION,
-    SPINDLE_FUNCTION,
-    SPEED,
-    TOOL,
-    AUXILIARY,
-    DWELL,
-    CHANGE_TOOL,
-    OFFSET_ON,
-    TOOL_LENGTH,
-    SHIFT,
-    REFRAME,
-    BEGIN_TARGET,
-    TARGET,
-    SET_POSITION,
-    POLAR_ORIGIN,
-    TO_MILLIMETRES,
-    NO_PECKS,
-    FORGET_POLAR,
-    TOOL_RADIUS,
-    COMPENSATE,
-    END_COMPENSATION,
-    CYCLE_WORD,
-    PROGRAMMED_RADIUS,
-    MIRROR,
-    SCALE,
-    ROTATE,
-    END_ROTATION,
-    TRANSFORM,
-) = range(len(Opcode))
+BLOCK = 0
+"""A block begins; ``operand``: row of the line's next block, 0 for none."""
+NEXT = 1
+"""It ends."""
+TRAP = 2
+"""the interpreter tier must run this block."""
+CONSTANT = 3
+"""Put ``immediate`` on the stack."""
+LOAD = 4
+"""Put the variable with the slot ``operand`` on the stack."""
+LOAD_NUMBERED = 5
+"""Put the variable with the number on the stack in its place."""
+LOAD_BELOW = 6
+"""As ``LOAD``, below the topmost value."""
+LOAD_NUMBERED_BELOW = 7
+"""As ``LOAD_BELOW``, of the variable whose number lies below the topmost value."""
+DEFINED = 8
+"""Put on the stack whether the variable with the slot ``operand`` has a value."""
+NEGATE = 9
+"""Change the sign."""
+UNARY = 10
+"""Replace the topmost value by the function ``operand`` of it."""
+BINARY = 11
+"""Replace the two topmost values by the operator ``operand`` between them."""
+TERNARY = 12
+"""Replace the three topmost values by the function ``operand`` of them."""
+DROP = 13
+"""Forget the topmost value."""
+STORE = 14
+"""Give the variable with the slot ``operand`` the topmost value."""
+STORE_DECLARED = 15
+"""The same where it has a value of its own already."""
+STORE_NUMBERED = 16
+"""The same for the variable whose number lies below."""
+WORD = 17
+"""The topmost value is that of a word with the token_kind ``operand``."""
+WORD_CONSTANT = 18
+"""``immediate`` is."""
+RUN = 19
+"""Run the words."""
+RUN_REPEATEDLY = 20
+"""Run them as often as the topmost value says, at most ``immediate`` times."""
+JUMP = 21
+"""Go on at the location ``operand``."""
+JUMP_IF = 22
+"""The same where the topmost value is not 0."""
+JUMP_UNLESS = 23
+"""The same where it is 0."""
+JUMP_CASE = 24
+"""The same where it equals the value below, which stays."""
+BEGIN_FOR = 25
+"""First, last and step become whether first lies beyond last, and first."""
+STEP_FOR = 26
+"""First, last, step and value become whether the next value is in reach, and that value."""
+COUNT_DOWN = 27
+"""Put on the stack whether the counter with the slot ``operand``, which begins at ``immediate``,
+is not 0 yet, and take 1 from it; at 0 it is forgotten."""
+CHECK_CALL = 28
+"""At most ``operand`` parts may call each other."""
+OWN_VARIABLES = 29
+"""The part that is called next has local variables of its own."""
+RESTORE_CODES = 30
+"""Its end puts back into force what is in force now."""
+CALL = 31
+"""Run the part that begins at the location ``operand``."""
+RANGE = 32
+"""The range that is repeated next ends at the location ``operand``."""
+REPEAT = 33
+"""Run the range that begins at the location ``operand`` as often as the topmost value says."""
+CHECK_RETURN = 34
+"""There must be a part that can be returned from."""
+RETURN = 35
+"""Go back behind the call."""
+SNAPSHOT = 36
+"""What follows changes more than variables; keep how all was."""
+RUN_CODES = 37
+"""Run the words so far, and forget them but for N."""
+RUN_POLAR = 38
+"""Run the words, on a straight way to where R (``operand`` 1), Q (2) or both (3) lead, whose
+values are the topmost."""
+ACTIVATE = 39
+"""The G code ``operand`` is in force."""
+PLANE = 40
+"""The plane ``operand`` is in force: 0 to 2."""
+FUNCTION = 41
+"""Report the M function ``operand``."""
+SPINDLE_FUNCTION = 42
+"""The same with the spindle's speed."""
+SPEED = 43
+"""The spindle's speed is the topmost value; ``operand`` 1: report it."""
+TOOL = 44
+"""The tool with the topmost number comes next; ``operand`` 1: it must be one of the job's."""
+AUXILIARY = 45
+"""Report H with the topmost value."""
+DWELL = 46
+"""Wait as many seconds as the topmost value."""
+CHANGE_TOOL = 47
+"""The tool that comes next is used from now on."""
+OFFSET_ON = 48
+"""Tools have their offset, or with ``operand`` 0 not."""
+TOOL_LENGTH = 49
+"""The tool in use moves Z by its length, where it has its offset."""
+SHIFT = 50
+"""The topmost values, one for each axis, are the shift ``operand``."""
+REFRAME = 51
+"""The shifts have changed."""
+BEGIN_TARGET = 52
+"""The place where the machine stands gets new coordinates: at first those that it has."""
+TARGET = 53
+"""The topmost value is that of the axis ``operand``."""
+SET_POSITION = 54
+"""They hold from now on, by the shift ``operand``."""
+POLAR_ORIGIN = 55
+"""The two topmost values (``operand`` 2) are the polar origin; 0: it is where the tool stands."""
+TO_MILLIMETRES = 56
+"""The topmost value is in the unit in force, of the axis ``operand``."""
+NO_PECKS = 57
+"""No drilling cycle with pecks may be in force."""
+FORGET_POLAR = 58
+"""The last R and Q hold no longer."""
+TOOL_RADIUS = 59
+"""Put the radius of the tool in use on the stack; ``operand`` 1: 0 where it has no offset."""
+COMPENSATE = 60
+"""Radius compensation begins, of the topmost value, left (``operand`` 1) or right (-1)."""
+END_COMPENSATION = 61
+"""It ends."""
+CYCLE_WORD = 62
+"""The topmost value is that of the drilling cycle's word for ``operand``."""
+PROGRAMMED_RADIUS = 63
+"""The topmost value is the radius that the program gives the tool; ``operand`` 0: put on the
+stack what it gave last."""
+MIRROR = 64
+"""The topmost value, -1 or 1, is the sign of the axis ``operand``."""
+SCALE = 65
+"""It is the scale."""
+ROTATE = 66
+"""The topmost values are angle, abscissa and ordinate of the rotation, which must be the only one."""
+END_ROTATION = 67
+"""It ends."""
+TRANSFORM = 68
+"""Mirror, scale and rotation have changed."""

@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import INTERPRETED, LARGEST_PART, Bytecode, Opcode
+from twin.nc.bytecode.bytecode import INTERPRETED, LARGEST_PART, Bytecode
 from twin.nc.compiled.decode_tables import DecodeTables
+from twin.nc.compiled.entries import Kernels
 from twin.nc.compiled.kernels.expression import BINARY_FUNCTIONS, TERNARY_FUNCTIONS, UNARY_FUNCTIONS
-from twin.nc.compiled.kernels.program import unread_lines
 from twin.nc.compiled.kernels.tokenizer import CODE, FUNCTION, NUMBER
 from twin.nc.compiled.line_templates import LineTemplates
 from twin.nc.control.block_compiler import BlockCompiler
@@ -27,8 +28,9 @@ class LineCompiler:
         bytecode: What was compiled.
     """
 
-    def __init__(self, control: Executor, tables: DecodeTables) -> None:
+    def __init__(self, control: Executor, tables: DecodeTables, kernels: Kernels) -> None:
         self._control = control
+        self._kernels = kernels
         self._lines = tables.lines
         self.bytecode = Bytecode(len(control.program_counter.lines))
         letters = [
@@ -55,7 +57,7 @@ class LineCompiler:
         key, numbers = self._templates.split(lines[line])
         if self._copy(line, key, numbers):
             page = lines.page_of(line)
-            ahead = unread_lines(
+            ahead = self._kernels.unread_lines(
                 page.data,
                 page.starts,
                 page.lines.start,
@@ -104,11 +106,11 @@ class LineCompiler:
             known = self._compile_block(block)
             if not known:
                 bytecode.take_back(before)
-                bytecode.add(Opcode.BLOCK)
-                bytecode.add(Opcode.TRAP)
+                bytecode.add(opcodes.BLOCK)
+                bytecode.add(opcodes.TRAP)
             any_known = any_known or known
         if not blocks:
-            bytecode.add(Opcode.NEXT)
+            bytecode.add(opcodes.NEXT)
         if not any_known:
             bytecode.take_back(first)
         bytecode.begins(line, first if any_known else INTERPRETED)

@@ -10,13 +10,14 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from twin.nc.bytecode.opcodes import BytecodeTable, Opcode
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import BytecodeTable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.tokenizer import CODE, FUNCTION
 from twin.nc.text.expressions import LARGEST_NUMBER, NUMBER
 
 _LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)
-_SHARED = (Opcode.SNAPSHOT, Opcode.CYCLE_WORD)
+_SHARED = (opcodes.SNAPSHOT, opcodes.CYCLE_WORD)
 """Opcodes of lines that may share a template, besides those that compute and move."""
 _MOST_TEMPLATES = 1000
 """Templates that are kept: a program that has more gains nothing by them."""
@@ -93,18 +94,18 @@ class LineTemplates:
             rows: Those of the line.
             columns: Where the word stands that each of the rows of a line of one block belongs to.
         """
-        opcodes, operands = table.opcode[rows].copy(), table.operand[rows].copy()
+        codes, operands = table.opcode[rows].copy(), table.operand[rows].copy()
         own = np.flatnonzero(
-            (opcodes == Opcode.CONSTANT)
-            | ((opcodes == Opcode.WORD_CONSTANT) & ~np.isin(operands, (CODE, FUNCTION)))
+            (codes == opcodes.CONSTANT)
+            | ((codes == opcodes.WORD_CONSTANT) & ~np.isin(operands, (CODE, FUNCTION)))
         )
-        shared = len(columns) == len(opcodes) and (
-            ((opcodes <= Opcode.RUN) | np.isin(opcodes, _SHARED)).all()
-            and (opcodes[1:] != Opcode.BLOCK).all()
+        shared = len(columns) == len(codes) and (
+            ((codes <= opcodes.RUN) | np.isin(codes, _SHARED)).all()
+            and (codes[1:] != opcodes.BLOCK).all()
             and len(self._templates) < _MOST_TEMPLATES
         )
         if not shared:
             return
         own = own[np.argsort(np.array(columns)[own], kind="stable")]
         if table.immediate[rows][own].tolist() == numbers:
-            self._templates[key] = Template(opcodes, operands, table.immediate[rows].copy(), own)
+            self._templates[key] = Template(codes, operands, table.immediate[rows].copy(), own)

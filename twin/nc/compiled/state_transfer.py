@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twin.nc.bytecode.bytecode import location_of_number, number_of_location
 from twin.nc.bytecode.frames import (
     AGAIN,
     BACK,
@@ -27,7 +28,6 @@ from twin.nc.bytecode.frames import (
     Saved,
     VariableStore,
 )
-from twin.nc.bytecode.opcodes import location_of_number, number_of_location
 from twin.nc.bytecode.registers import State
 from twin.nc.canonical import IntArray
 from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
@@ -69,7 +69,7 @@ class StateTransfer:
             self._calls[row] = _numbers(call)
 
     @property
-    def routine(self) -> ExecutionState:
+    def execution(self) -> ExecutionState:
         """For the kernel; the columns of variables may have grown since it was asked for last."""
         variables = self._control.variables
         memory = VariableStore(

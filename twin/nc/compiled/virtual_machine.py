@@ -31,9 +31,9 @@ from twin.nc.bytecode.registers import (
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.contour_columns import fill, new_contour, result_of
 from twin.nc.compiled.decode_tables import DecodeTables
+from twin.nc.compiled.entries import Kernels, hot
 from twin.nc.compiled.kernels.block import new_scratch
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
-from twin.nc.compiled.kernels.program import run_program
 from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
 from twin.nc.compiled.line_compiler import LineCompiler
 from twin.nc.compiled.state_transfer import StateTransfer, put_into_force
@@ -62,13 +62,15 @@ class VirtualMachine:
         full: The path has no room for the next block's moves.
     """
 
-    def __init__(self, control: Executor) -> None:
+    def __init__(self, control: Executor, kernels: Kernels) -> None:
+        """Run for a control, at the speed of these kernels."""
         axes = len(control.settings.axes)
         self._control = control
+        self._kernels = kernels
         self._lines = control.program_counter.lines
         self._page = Page(0, b"")
         self._tables = DecodeTables(control.dialect, control.settings)
-        self._line_compiler = LineCompiler(control, self._tables)
+        self._line_compiler = LineCompiler(control, self._tables, kernels)
         self._rows = Rows(
             np.zeros((CHUNK, 5), np.int64),
             np.zeros((CHUNK, 11)),
@@ -82,7 +84,7 @@ class VirtualMachine:
         self._radii = np.array([tool.radius for tool in table.values()])
         self._hole = np.zeros((4, most_acts(MOST_STOPS)))
         self._contour = new_contour(axes)
-        self._bench = new_scratch(self._state())
+        self._scratch = new_scratch(self._state())
         self._pause = 1
         self._wait = 0
         self.full = False
@@ -115,22 +117,8 @@ class VirtualMachine:
     def _run(self, state: State, rows: Rows, transfer: StateTransfer) -> int:
         """Run; why the run ended."""
         line_compiler, constants = self._line_compiler, self._constants()
-        bytecode = line_compiler.bytecode
         while True:
-            why = run_program(
-                self._page.data,
-                self._page.starts,
-                self._page.lines.start,
-                self._tables.lines,
-                self._tables.blocks,
-                constants,
-                state,
-                rows,
-                bytecode.table,
-                transfer.routine,
-                self._bench,
-                _MOST,
-            )
+            why = self._kernels.run_program(*self._arguments(state, rows, constants, transfer))
             if why == OFF_PAGE:
                 self._page = self._lines.page_of(transfer.line)
             elif why == UNCOMPILED_LINE:
@@ -138,6 +126,34 @@ class VirtualMachine:
                     return TRAPPED
             elif why != PAUSED:
                 return why
+
+    def is_compiled(self) -> bool:
+        """Whether the hot kernels could run now, without waiting for the compiler."""
+        from twin.compilation.cache import is_compiled
+
+        state = self._state()
+        transfer = StateTransfer(self._control, state, self._contour)
+        arguments = self._arguments(state, self._rows, self._constants(), transfer)
+        return is_compiled(hot().run_program, arguments)
+
+    def _arguments(
+        self, state: State, rows: Rows, constants: Constants, transfer: StateTransfer
+    ) -> tuple[object, ...]:
+        """What ``run_program`` is given."""
+        return (
+            self._page.data,
+            self._page.starts,
+            self._page.lines.start,
+            self._tables.lines,
+            self._tables.blocks,
+            constants,
+            state,
+            rows,
+            self._line_compiler.bytecode.table,
+            transfer.execution,
+            self._scratch,
+            _MOST,
+        )
 
     def _may_run(self) -> bool:
         control = self._control
@@ -243,3 +259,18 @@ class VirtualMachine:
         result, placed = result_of(self._contour, moves, events)
         control.path.add_rows(moves, placed, result)
         control.resume_at(state.programmed.tolist(), state.part.tolist(), result.latest)
+
+
+def compiles_beside(machine: VirtualMachine) -> bool:
+    """Whether the hot kernels are missing; then they are compiled beside, where that lasts."""
+    from twin.compilation.beside import beside
+    from twin.compilation.folders import lasts
+
+    compilation = beside("twin.nc.compile_all")
+    if compilation.is_running():
+        return True
+    if machine.is_compiled():
+        return False
+    if lasts():
+        compilation.start()
+    return True

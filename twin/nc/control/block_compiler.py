@@ -8,8 +8,8 @@ nothing is compiled: the interpreter tier alone says what is wrong.
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode, MCode, Vocabulary
 from twin.nc.control.control import Control
@@ -129,7 +129,7 @@ class BlockCompiler:
             raise UnsupportedError
         for word, code in acting:
             if code.group and not code.begins_cycle:
-                self.assembler.emit(Opcode.ACTIVATE, _number(word))
+                self.assembler.emit(opcodes.ACTIVATE, _number(word))
             if code.perform is None:
                 self._compile(code, block)
         reserved = performing[0].takes if performing else ""
@@ -197,7 +197,7 @@ class BlockCompiler:
             if code.compiler is not None:
                 code.compiler(block, self.assembler)
             starts = f"M{number}" in SPINDLE_STARTS
-            self.assembler.emit(Opcode.SPINDLE_FUNCTION if starts else Opcode.FUNCTION, number)
+            self.assembler.emit(opcodes.SPINDLE_FUNCTION if starts else opcodes.FUNCTION, number)
 
 
 def _number(word: Word) -> int:

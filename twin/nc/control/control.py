@@ -159,6 +159,8 @@ class Control(ControlWords):
         if mode is FeedMode.SECONDS_PER_BLOCK:
             return length / self.feed * 60.0
         feed = self.feed if turning else self.feed * self.modal.unit
+        if mode is FeedMode.PER_MINUTE:
+            return feed
         if mode in FEED_FACTORS:
             return feed * FEED_FACTORS[mode]
         if not self.spindle:

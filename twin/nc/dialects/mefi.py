@@ -5,8 +5,8 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 
 import dataclasses
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
@@ -116,7 +116,7 @@ def compile_block(compiler: BlockCompiler, block: Block) -> None:
     if counts:  # a cycle with pecks would take Q as its own
         if any(code.begins_cycle for code in compiler.known_codes(block.words)):
             raise UnsupportedError
-        assembler.emit(Opcode.NO_PECKS)
+        assembler.emit(opcodes.NO_PECKS)
     compiler.words(word for word in block.words if word not in taken)
     if jumps:
         times = control.number(counts[0]) if counts else 1.0

@@ -6,6 +6,8 @@ must give the same bits either way, which ``math.hypot`` does not.
 
 import math
 
+from twin.compilation.compilable import compilable
+
 Point = tuple[float, float]
 
 SAME_POINT = 1e-6
@@ -17,12 +19,14 @@ ROUNDING = 0.002
 TURN = 360.0
 
 
+@compilable
 def distance(left: Point, right: Point) -> float:
     """Between two points [mm]."""
     x, y = right[0] - left[0], right[1] - left[1]
     return math.sqrt(x * x + y * y)
 
 
+@compilable
 def direction(angle: float) -> Point:
     """Unit vector at an angle [deg]; exact at every quarter turn."""
     rest = abs(angle) % TURN
@@ -37,6 +41,7 @@ def direction(angle: float) -> Point:
 _QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
+@compilable
 def turned(point: Point, center: Point, angle: float) -> Point:
     """A point turned about a centre [deg]; exact at every quarter turn."""
     cosine, sine = direction(angle)
@@ -44,12 +49,14 @@ def turned(point: Point, center: Point, angle: float) -> Point:
     return (center[0] + cosine * x - sine * y, center[1] + sine * x + cosine * y)
 
 
+@compilable
 def angle_of(point: Point, center: Point) -> float:
     """Direction from a centre to a point, 0 to below 360 [deg]."""
     angle = math.degrees(math.atan2(point[1] - center[1], point[0] - center[0]))
     return angle if angle >= 0.0 else angle + TURN
 
 
+@compilable
 def sweep_between(start: Point, end: Point, center: Point, clockwise: bool) -> float:
     """Signed angle from start to end about the centre [deg]; a whole turn where they meet."""
     turn = -TURN if clockwise else TURN
@@ -83,12 +90,14 @@ def center_by_radius(
     return center_at_radius(start, end, radius, clockwise, larger)
 
 
+@compilable
 def reaches(start: Point, end: Point, radius: float) -> bool:
     """Whether an arc of a radius goes from one point to another [mm]."""
     chord = distance(start, end)
     return not (radius < chord / 2.0 - ROUNDING or chord < SAME_POINT)
 
 
+@compilable
 def center_at_radius(
     start: Point, end: Point, radius: float, clockwise: bool, larger: bool
 ) -> Point:
@@ -103,6 +112,7 @@ def center_at_radius(
     )
 
 
+@compilable
 def equidistant(start: Point, end: Point, center: Point) -> Point:
     """The point of the perpendicular bisector of start and end that is nearest to ``center``."""
     chord = distance(start, end)

@@ -6,6 +6,7 @@ nothing whose bits could differ between the two, such as ``sum``.
 
 import math
 
+from twin.compilation.compilable import compilable
 from twin.nc.geometry.arcs import Point, direction
 from twin.nc.geometry.planes import Vector
 
@@ -16,6 +17,7 @@ SMALLEST_SCALE, LARGEST_SCALE = 1e-3, 1e3
 """A scale beyond these is a slip of the pen."""
 
 
+@compilable
 def applied(matrix: Matrix, vector: Vector) -> Vector:
     """The vector that a matrix makes of another."""
     x, y, z = vector
@@ -27,6 +29,7 @@ def applied(matrix: Matrix, vector: Vector) -> Vector:
     )
 
 
+@compilable
 def determinant(matrix: Matrix) -> float:
     """Of a matrix; below 0 where it mirrors."""
     a, b, c = matrix
@@ -37,6 +40,7 @@ def determinant(matrix: Matrix) -> float:
     )
 
 
+@compilable
 def inverse(matrix: Matrix) -> Matrix:
     """The matrix that undoes another."""
     a, b, c = matrix
@@ -60,17 +64,20 @@ def inverse(matrix: Matrix) -> Matrix:
     )
 
 
+@compilable
 def transposed(matrix: Matrix) -> Matrix:
     """Rows as columns."""
     a, b, c = matrix
     return ((a[0], b[0], c[0]), (a[1], b[1], c[1]), (a[2], b[2], c[2]))
 
 
+@compilable
 def dot(left: Vector, right: Vector) -> float:
     """The scalar product; its zero has no sign."""
     return 0.0 + left[0] * right[0] + left[1] * right[1] + left[2] * right[2]
 
 
+@compilable
 def product(left: Matrix, right: Matrix) -> Matrix:
     """The matrix product."""
     (a, b, c), (x, y, z) = left, transposed(right)
@@ -81,6 +88,7 @@ def product(left: Matrix, right: Matrix) -> Matrix:
     )
 
 
+@compilable
 def turned_unit(matrix: Matrix, vector: Vector) -> Vector:
     """The direction that a matrix makes of another, of unit length."""
     x, y, z = applied(matrix, vector)
@@ -88,11 +96,13 @@ def turned_unit(matrix: Matrix, vector: Vector) -> Vector:
     return (x / length, y / length, z / length)
 
 
+@compilable
 def handedness(matrix: Matrix) -> float:
     """-1 where a matrix mirrors, else 1."""
     return math.copysign(1.0, determinant(matrix))
 
 
+@compilable
 def stretched(signs: Vector, factor: float) -> Matrix:
     """Scales by a factor, and mirrors the axes whose sign is -1."""
     return (
@@ -102,6 +112,7 @@ def stretched(signs: Vector, factor: float) -> Matrix:
     )
 
 
+@compilable
 def rotated(matrix: Matrix, axes: Matrix, angle: float, center: Point) -> tuple[Matrix, Vector]:
     """A matrix, and after it a rotation in a plane.
 

@@ -4,6 +4,8 @@ import dataclasses
 import math
 from typing import NamedTuple
 
+from twin.compilation.compilable import compilable
+
 Vector = tuple[float, float, float]
 
 
@@ -95,6 +97,7 @@ def plane_with_normal(normal: Vector) -> Plane:
     return Plane("G16", abscissa, cross(unit, abscissa), unit)
 
 
+@compilable
 def cross(left: Vector, right: Vector) -> Vector:
     """The vector product."""
     return (

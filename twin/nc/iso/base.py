@@ -2,8 +2,8 @@
 
 import re
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Compiler, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
@@ -72,13 +72,13 @@ def set_spindle(control: Control, word: Word) -> None:
 def compile_spindle(block: BlockWords, assembler: Assembler) -> None:
     """S, for the compiled tier."""
     assembler.word_value(block.words.pop("S"))
-    assembler.emit(Opcode.SPEED, 0 if block.starts_spindle() else 1)
+    assembler.emit(opcodes.SPEED, 0 if block.starts_spindle() else 1)
 
 
 def compile_tool(block: BlockWords, assembler: Assembler) -> None:
     """T, for the compiled tier."""
     assembler.word_value(block.words.pop("T"))
-    assembler.emit(Opcode.TOOL)
+    assembler.emit(opcodes.TOOL)
 
 
 def select_tool(control: Control, word: Word) -> None:
@@ -97,7 +97,7 @@ def change_tool(control: Control) -> None:
 
 def compile_tool_change(_block: BlockWords, assembler: Assembler) -> None:
     """M6, for the compiled tier."""
-    assembler.emit(Opcode.CHANGE_TOOL)
+    assembler.emit(opcodes.CHANGE_TOOL)
 
 
 def compile_dwell(letters: str) -> Compiler:
@@ -108,14 +108,14 @@ def compile_dwell(letters: str) -> Compiler:
         if len(words) != 1:
             raise UnsupportedError
         assembler.word_value(words[0])
-        assembler.emit(Opcode.DWELL)
+        assembler.emit(opcodes.DWELL)
 
     return write
 
 
 def compile_plane(plane: Plane) -> Compiler:
     """G17, G18, G19, for the compiled tier."""
-    return lambda _block, assembler: assembler.emit(Opcode.PLANE, PLANE_ORDER.index(plane))
+    return lambda _block, assembler: assembler.emit(opcodes.PLANE, PLANE_ORDER.index(plane))
 
 
 def dwell_seconds(control: Control) -> None:

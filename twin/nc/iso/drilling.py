@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import NoReturn
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Compiler, GCode, Ground, Interpolation
 from twin.nc.control.control import Control
@@ -96,7 +96,7 @@ def _compile_words(words: Mapping[str, int]) -> Compiler:
             if word.incremental:
                 raise UnsupportedError
             assembler.word_value(word)
-            assembler.emit(Opcode.CYCLE_WORD, value)
+            assembler.emit(opcodes.CYCLE_WORD, value)
         others = block.words.keys() & block.acting_letters
         if others - set(_BESIDE) or block.functions_act:
             raise UnsupportedError

@@ -7,8 +7,8 @@ machine zero until the next work offset.
 
 from collections.abc import Iterable, Mapping
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Compiler, GCode
 from twin.nc.control.control import Control
@@ -61,7 +61,7 @@ def compile_shift(name: str, values: Iterable[float], assembler: Assembler) -> N
     """A shift with fixed values, for the compiled tier."""
     for value in values:
         assembler.constant(value)
-    assembler.emit(Opcode.SHIFT, SHIFTS.index(name))
+    assembler.emit(opcodes.SHIFT, SHIFTS.index(name))
 
 
 def compile_programmed_shift(name: str, block: BlockWords, assembler: Assembler) -> None:
@@ -70,10 +70,10 @@ def compile_programmed_shift(name: str, block: BlockWords, assembler: Assembler)
     for index in range(len(block.control.settings.axes)):
         if index in words:
             assembler.word_value(words[index])
-            assembler.emit(Opcode.TO_MILLIMETRES, index)
+            assembler.emit(opcodes.TO_MILLIMETRES, index)
         else:
             assembler.constant(0.0)
-    assembler.emit(Opcode.SHIFT, SHIFTS.index(name))
+    assembler.emit(opcodes.SHIFT, SHIFTS.index(name))
 
 
 def compile_offset(name: str) -> Compiler:
@@ -87,7 +87,7 @@ def compile_offset(name: str) -> Compiler:
         names = settings.axes.names
         compile_shift("offset", [(values or {}).get(axis, 0.0) for axis in names], assembler)
         compile_shift("preset", [0.0] * len(names), assembler)
-        assembler.emit(Opcode.REFRAME)
+        assembler.emit(opcodes.REFRAME)
 
     return write
 
@@ -99,12 +99,12 @@ def compile_set_position(shift: str) -> Compiler:
         words = block.take_axes()
         if not words or any(word.incremental for _, word in words):
             raise UnsupportedError
-        assembler.emit(Opcode.BEGIN_TARGET)
+        assembler.emit(opcodes.BEGIN_TARGET)
         for index, word in words:
             assembler.word_value(word)
-            assembler.emit(Opcode.TO_MILLIMETRES, index)
-            assembler.emit(Opcode.TARGET, index)
-        assembler.emit(Opcode.SET_POSITION, SHIFTS.index(shift))
+            assembler.emit(opcodes.TO_MILLIMETRES, index)
+            assembler.emit(opcodes.TARGET, index)
+        assembler.emit(opcodes.SET_POSITION, SHIFTS.index(shift))
 
     return write
 

@@ -1,7 +1,7 @@
 """Tool radius and tool length: codes that most dialects share, and what compiles them."""
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Compiler, GCode
 from twin.nc.control.control import Control
@@ -124,12 +124,12 @@ def compile_compensation(side: float) -> Compiler:
     def write(block: BlockWords, assembler: Assembler) -> None:
         word, table = block.take("D"), block.control.tools.table
         if word is None:
-            assembler.emit(Opcode.TOOL_RADIUS)
+            assembler.emit(opcodes.TOOL_RADIUS)
         elif isinstance(word.value, Expression) or word.value not in table:
             raise UnsupportedError
         else:
             assembler.constant(table[int(word.value)].radius)
-        assembler.emit(Opcode.COMPENSATE, int(side))
+        assembler.emit(opcodes.COMPENSATE, int(side))
 
     return write
 
@@ -139,8 +139,8 @@ def compile_compensation_by_tool(side: float) -> Compiler:
 
     def write(block: BlockWords, assembler: Assembler) -> None:
         del block
-        assembler.emit(Opcode.TOOL_RADIUS, 1)
-        assembler.emit(Opcode.COMPENSATE, int(side))
+        assembler.emit(opcodes.TOOL_RADIUS, 1)
+        assembler.emit(opcodes.COMPENSATE, int(side))
 
     return write
 
@@ -152,8 +152,8 @@ def compile_compensation_by_radius(side: float) -> Compiler:
         word = block.take("D")
         if word is not None:
             assembler.word_value(word)
-        assembler.emit(Opcode.PROGRAMMED_RADIUS, int(word is not None))
-        assembler.emit(Opcode.COMPENSATE, int(side))
+        assembler.emit(opcodes.PROGRAMMED_RADIUS, int(word is not None))
+        assembler.emit(opcodes.COMPENSATE, int(side))
 
     return write
 
@@ -161,7 +161,7 @@ def compile_compensation_by_radius(side: float) -> Compiler:
 def compile_end_of_compensation(block: BlockWords, assembler: Assembler) -> None:
     """The next line leads out."""
     del block
-    assembler.emit(Opcode.END_COMPENSATION)
+    assembler.emit(opcodes.END_COMPENSATION)
 
 
 def _compile_length(sign: float) -> Compiler:
@@ -174,14 +174,14 @@ def _compile_length(sign: float) -> Compiler:
         longer = sign * tools.longer(tools.table[int(word.value)])
         axes = len(block.control.settings.axes)
         compile_shift("length", [longer if axis == 2 else 0.0 for axis in range(axes)], assembler)
-        assembler.emit(Opcode.REFRAME)
+        assembler.emit(opcodes.REFRAME)
 
     return write
 
 
 def _compile_no_length(block: BlockWords, assembler: Assembler) -> None:
     compile_shift("length", [0.0] * len(block.control.settings.axes), assembler)
-    assembler.emit(Opcode.REFRAME)
+    assembler.emit(opcodes.REFRAME)
 
 
 COMPENSATION = {

@@ -16,7 +16,8 @@ from typing import NoReturn
 
 from twin.nc.canonical import Corner
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
-from twin.nc.geometry.elements import Element, crossing, crossings, turn_between
+from twin.nc.geometry.corners import corner_of
+from twin.nc.geometry.elements import Element, crossing, turn_between
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.compensation_state import NECK, CompensationState, PassedElement, Stage
 from twin.nc.path.leads import LeadOut, around, lead_depth
@@ -28,12 +29,6 @@ Refuse = Callable[[Segment, str, str], NoReturn]
 """Told the segment, the code and the message; raises."""
 Warn = Callable[[Segment, str, str], None]
 """Told of the segment, the code and the message of a warning."""
-
-LARGEST_SQUARE = 90.0 + 1e-9
-"""Square corners are extended up to this turn, beyond it rolled around [deg]."""
-
-STRAIGHT_ON = 1e-4
-"""Corners that turn by less pass as straight on [deg]."""
 
 
 @dataclasses.dataclass(slots=True)
@@ -198,47 +193,24 @@ class Compensation:
             self._lead_in(held, contour, element)
             return element.start
         turn = turn_between(held.contour, contour)
-        if abs(turn) < STRAIGHT_ON:
-            self._end(held, element.start)
-            return element.start
-        straight = held.contour.center is None and contour.center is None
-        if (
-            self._square
-            and straight
-            and turn * self._signed_offset < 0.0
-            and abs(turn) <= LARGEST_SQUARE
-        ):
-            (corner,) = crossings(held.element, element)
-            self._end(held, corner)
-            return corner
-        if turn * self._signed_offset < 0.0 or abs(turn) > 180.0 - STRAIGHT_ON:
-            self._end(held, held.element.end)
-            self._roll(held, contour.start, element.start, turn)
-            return element.start
-        return self._inside(held, element, move)
-
-    def _inside(self, held: _WaitingMove, element: Element, move: Segment) -> Point:
-        before = held.element
-        assert before is not None
-        from_start = before.along(held.start)
-        corner = held.contour.end
-        fitting = [
-            point
-            for point in crossings(before, element)
-            if before.within(before.along(point))
-            and before.along(point) >= from_start
-            and element.within(element.along(point))
-        ]
-        if not fitting:
+        fits, rolls, at, begin = corner_of(
+            (held.contour.curve, held.element.curve, held.start),
+            (contour.curve, element.curve),
+            turn,
+            self._signed_offset,
+            self._square,
+        )
+        if not fits:
             self._refuse(
                 move,
                 "compensation-gouge",
                 f"the tool's radius {abs(self._signed_offset):g} does not fit into the inside corner: "
                 "it would cut into the contour before or after",
             )
-        at = min(fitting, key=lambda point: distance(point, corner))
         self._end(held, at)
-        return at
+        if rolls:
+            self._roll(held, contour.start, element.start, turn)
+        return begin
 
     def _lead_in(self, held: _WaitingMove, contour: Element, element: Element) -> None:
         arc = None

@@ -8,6 +8,7 @@ import enum
 import math
 from typing import NamedTuple
 
+from twin.compilation.compilable import compilable
 from twin.nc.canonical import FloatArray
 
 Values = list[float] | FloatArray
@@ -168,6 +169,7 @@ def no_values() -> list[float]:
     return [math.nan] * VALUES
 
 
+@compilable
 def begin(values: Values, axis: int, height: float, lasting: bool) -> None:
     """A cycle begins at a height [mm] of the axis across its plane."""
     if lasting and values[START] == values[START]:
@@ -177,6 +179,7 @@ def begin(values: Values, axis: int, height: float, lasting: bool) -> None:
     values[START], values[AXIS] = height, float(axis)
 
 
+@compilable
 def remember(
     values: Values,
     given: Values,
@@ -206,6 +209,7 @@ def remember(
             values[value] = given[value]
 
 
+@compilable
 def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole:
     """What a cycle does at a hole.
 
@@ -262,11 +266,13 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
     )
 
 
+@compilable
 def either(value: float, default: float) -> float:
     """A value, or where there is none another one."""
     return value if value == value else default
 
 
+@compilable
 def count_stops(surface: float, bottom: float, peck: float, factor: float, least: float) -> int:
     """How often deep drilling stops above the bottom; more than ``MOST_PECKS`` are not counted."""
     depth, stops = surface, 0
@@ -277,11 +283,13 @@ def count_stops(surface: float, bottom: float, peck: float, factor: float, least
     return stops
 
 
+@compilable
 def most_acts(stops: int) -> int:
     """Room that ``write_acts`` needs."""
     return 3 * stops + 7
 
 
+@compilable
 def write_acts(hole: Hole, acts: Values, amounts: Values) -> int:
     """Write what happens when the tool stands over the hole; how many acts there are.
 

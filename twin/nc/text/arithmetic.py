@@ -7,178 +7,215 @@ computes the same bits. Where a value is undefined Python raises ``ArithmeticErr
 
 import math
 
+from twin.compilation.compilable import compilable
 
+
+@compilable
 def add(a: float, b: float) -> float:
     """The sum."""
     return a + b
 
 
+@compilable
 def subtract(a: float, b: float) -> float:
     """The difference."""
     return a - b
 
 
+@compilable
 def multiply(a: float, b: float) -> float:
     """The product."""
     return a * b
 
 
+@compilable
 def divide(a: float, b: float) -> float:
     """The quotient."""
     return a / b
 
 
+@compilable
 def less(a: float, b: float) -> float:
     """Whether ``a`` is below ``b``."""
     return 1.0 if a < b else 0.0
 
 
+@compilable
 def greater(a: float, b: float) -> float:
     """Whether ``a`` is above ``b``."""
     return 1.0 if a > b else 0.0
 
 
+@compilable
 def at_most(a: float, b: float) -> float:
     """Whether ``a`` is not above ``b``."""
     return 1.0 if a <= b else 0.0
 
 
+@compilable
 def at_least(a: float, b: float) -> float:
     """Whether ``a`` is not below ``b``."""
     return 1.0 if a >= b else 0.0
 
 
+@compilable
 def equal(a: float, b: float) -> float:
     """Whether they are the same number."""
     return 1.0 if a == b else 0.0
 
 
+@compilable
 def unequal(a: float, b: float) -> float:
     """Whether they are different numbers."""
     return 1.0 if a != b else 0.0
 
 
+@compilable
 def both(a: float, b: float) -> float:
     """Whether both are true."""
     return 1.0 if a != 0.0 and b != 0.0 else 0.0
 
 
+@compilable
 def either(a: float, b: float) -> float:
     """Whether one of them is true."""
     return 1.0 if a != 0.0 or b != 0.0 else 0.0
 
 
+@compilable
 def one_alone(a: float, b: float) -> float:
     """Whether exactly one of them is true."""
     return 1.0 if (a != 0.0) != (b != 0.0) else 0.0
 
 
+@compilable
 def opposite(a: float) -> float:
     """Whether it is false."""
     return 1.0 if a == 0.0 else 0.0
 
 
+@compilable
 def bits_of_both(a: float, b: float) -> float:
     """The bits that both whole numbers have."""
     return float(int(a) & int(b))
 
 
+@compilable
 def bits_of_either(a: float, b: float) -> float:
     """The bits that one of the whole numbers has."""
     return float(int(a) | int(b))
 
 
+@compilable
 def bits_of_one_alone(a: float, b: float) -> float:
     """The bits that exactly one of the whole numbers has."""
     return float(int(a) ^ int(b))
 
 
+@compilable
 def inverted_bits(a: float) -> float:
     """A whole number with its bits inverted."""
     return float(~int(a))
 
 
+@compilable
 def sine_of_degrees(a: float) -> float:
     """Sine of an angle [deg]."""
     return math.sin(math.radians(a))
 
 
+@compilable
 def cosine_of_degrees(a: float) -> float:
     """Cosine of an angle [deg]."""
     return math.cos(math.radians(a))
 
 
+@compilable
 def tangent_of_degrees(a: float) -> float:
     """Tangent of an angle [deg]."""
     return math.tan(math.radians(a))
 
 
+@compilable
 def arc_sine_in_degrees(a: float) -> float:
     """The angle whose sine it is [deg]."""
     return math.degrees(math.asin(a))
 
 
+@compilable
 def arc_cosine_in_degrees(a: float) -> float:
     """The angle whose cosine it is [deg]."""
     return math.degrees(math.acos(a))
 
 
+@compilable
 def arc_tangent_in_degrees(a: float) -> float:
     """The angle whose tangent it is [deg]."""
     return math.degrees(math.atan(a))
 
 
+@compilable
 def direction_in_degrees(x: float, y: float) -> float:
     """The direction of a vector, from its components [deg]."""
     return math.degrees(math.atan2(y, x))
 
 
+@compilable
 def square(a: float) -> float:
     """The number times itself."""
     return a * a
 
 
+@compilable
 def power_of_ten(a: float) -> float:
     """Ten to this power."""
     return math.pow(10.0, a)
 
 
+@compilable
 def whole_part(a: float) -> float:
     """What stands before the point."""
     return float(math.trunc(a))
 
 
+@compilable
 def fraction(a: float) -> float:
     """What stands behind the point."""
     return a - math.trunc(a)
 
 
+@compilable
 def nearest_whole(a: float) -> float:
     """The nearest whole number; halves go up."""
     return float(math.floor(a + 0.5))
 
 
+@compilable
 def next_whole(a: float) -> float:
     """The least whole number that is not below it."""
     return float(math.ceil(a))
 
 
+@compilable
 def smaller(a: float, b: float) -> float:
     """The smaller of both."""
     return min(a, b)
 
 
+@compilable
 def larger(a: float, b: float) -> float:
     """The larger of both."""
     return max(a, b)
 
 
+@compilable
 def limited(low: float, a: float, high: float) -> float:
     """The number, or the bound that it passes."""
     above = max(low, a)
     return min(above, high)
 
 
+@compilable
 def chosen(choice: float, no: float, yes: float) -> float:
     """The last value where the choice is true, else the one before."""
     return yes if choice != 0.0 else no

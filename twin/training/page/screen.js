@@ -76,7 +76,7 @@ export class Screen {
     const { now, words } = this;
     this.axes = now.axes.join() + words.language;
     const heads = ["", "position", "to_go", "machine", "following_error", "load"];
-    this.at("axes").tHead.replaceChildren(make("tr", {}, ...heads.map((name) => make("th", { scope: "col", title: name && words.label(name) }, name ? words.label(name) : make("span", { "aria-label": words.label("axis") })))));
+    this.at("axes").tHead.replaceChildren(make("tr", {}, ...heads.map((name) => make("th", { scope: "col", title: words.label(name || "axis"), class: name ? null : "narrow" }, words.label(name || "axis")))));
     this.rows = now.axes.map((axis) => {
       const bar = () => make("span", { class: "bar" }, make("i"), make("span"));
       const cells = [make("td", { class: "position" }), make("td"), make("td", { class: "machine" }), make("td", {}, bar()), make("td", {}, bar())];

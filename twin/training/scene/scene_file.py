@@ -118,11 +118,13 @@ class Scene:
         name: Its file's stem.
         file: Its checked content.
         preparation: Its job made concrete.
+        cells_across: Cells of the live stock along its shorter side, at least; 0: as the job says.
     """
 
     name: str
     file: SceneFile
     preparation: Preparation
+    cells_across: int = 0
 
     @property
     def points(self) -> int:

@@ -15,6 +15,7 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from twin.cutting.patches import grid_of
 from twin.nc.iso.base import jog_block
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.scene.fault_table import FAULT_DEFAULTS
@@ -123,15 +124,7 @@ class RoomApp:
         described = drawn[0].description()
         work = self._driver.session.room.work
         if work is not None:
-            stock = work.map
-            described["stock"] = {
-                "origin": stock.origin,
-                "cell": stock.cell,
-                "rows": stock.heights.shape[0],
-                "columns": stock.heights.shape[1],
-                "bottom": stock.bottom,
-                "top": stock.top,
-            }
+            described["stock"] = grid_of(work.map)
         return JSONResponse(described)
 
     async def _glb(self, request: Request) -> Response:

@@ -4,24 +4,20 @@ import dataclasses
 import json
 import struct
 import threading
-import zlib
 from collections import deque
 from typing import Any
 
-import numpy as np
-
 from twin.cutting.cut import Rectangle, union
 from twin.cutting.height_map import HeightMap
+from twin.cutting.patches import patch_message
 from twin.training.server.driver import Look
 from twin.training.session.room import Room
 from twin.training.session.snapshot import Snapshot
 
-STATE, PATCH = 1, 2
-"""First byte of a binary message."""
+STATE = 1
+"""First byte of the state; patches have their own."""
 PATCHES_KEPT = 512
 """Changes of the stock that are remembered; a page that is further behind gets the whole stock."""
-LEVELS = 65535
-"""Heights travel as so many steps between the blank's underside and its top."""
 
 _STATE_ALONE = (
     "time_s",
@@ -146,13 +142,3 @@ class StockFeed:
                     if number > version:
                         rectangle = union(rectangle, changed)
             return patch_message(stock, rectangle, self.epoch), self.epoch, self.version
-
-
-def patch_message(stock: HeightMap, rectangle: Rectangle, epoch: int) -> bytes:
-    """Heights of a rectangle of cells: kind, epoch, row, column, rows, columns, deflated levels."""
-    row, row_end, column, column_end = rectangle
-    heights = stock.heights[row:row_end, column:column_end]
-    share = (heights - stock.bottom) / (stock.top - stock.bottom)
-    levels = np.rint(LEVELS * np.clip(share, 0.0, 1.0)).astype("<u2")
-    head = struct.pack("<BxxxIHHHH", PATCH, epoch, row, column, *levels.shape)
-    return head + zlib.compress(levels.tobytes(), 1)

@@ -1,6 +1,7 @@
 """From a scene to its pages, and the files that are left of it."""
 
 import contextlib
+import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,6 +16,9 @@ from twin.web.doorkeeper import Doorkeeper
 from twin.web.files import require_three
 from twin.web.guard import Guard
 from twin.web.server import LOOPBACK, WebServer
+
+CELLS_ACROSS = 400
+"""Cells of the live stock along its shorter side, at least: a step of 0.2 mm can be seen."""
 
 
 class OpenRoom:
@@ -74,6 +78,7 @@ def open_room(
     require_three()
     server = WebServer(host, port, certificate, key)
     spoken = language or scene.file.language
+    scene = dataclasses.replace(scene, cells_across=CELLS_ACROSS)
     warm_up(scene)
     session = Session(scene)
     writer = SheetWriter(session, Words(spoken, scene.preparation.dialect.name), out)

@@ -11,7 +11,7 @@ import numpy as np
 
 from twin.cutting.tools import default_cell
 from twin.errors import TwinError, UsageError
-from twin.job.job_file import StockTable, ToolTable
+from twin.job.job_file import StockTable
 from twin.machine.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.machine.live import LiveMachine
 from twin.machine.model import spindle_over_table_mm
@@ -37,9 +37,6 @@ SLICE = 10
 a session that is lived again has its commands, its cuts and its ends at the same borders."""
 STANDSTILL = 0.05
 """Speed below which an axis counts as standing for the panel [mm/s or deg/s]."""
-
-CELLS_ACROSS = 400
-"""Cells of the live stock along its shorter side, at least."""
 
 
 class Room:
@@ -93,7 +90,9 @@ class Room:
         self.part_frame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
         self.work = None
         if job.stock is not None:
-            self.work = Workpiece(_fine(job.stock, job.tools), job.tools[0], self.part_frame, zero)
+            head = self.machine.head.above_tip
+            stock = _fine(job.stock, scene)
+            self.work = Workpiece(stock, job.tools[0], self.part_frame, zero, head)
         self.mode: Mode = file.start.mode
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
@@ -370,7 +369,9 @@ class Room:
         self.alarm = Notice(code, message, "", 0, 0.0)
 
 
-def _fine(stock: StockTable, tools: tuple[ToolTable, ...]) -> StockTable:
-    """The stock with a grid that is fine enough to be looked at closely."""
-    cell = min(stock.cell or default_cell(tools, stock), min(stock.extent[:2]) / CELLS_ACROSS)
+def _fine(stock: StockTable, scene: Scene) -> StockTable:
+    """The stock with a grid that is as fine as the scene is looked at closely."""
+    cell = stock.cell or default_cell(scene.preparation.job.file.tools, stock)
+    if scene.cells_across:
+        cell = min(cell, min(stock.extent[:2]) / scene.cells_across)
     return stock.model_copy(update={"cell": cell})

@@ -6,6 +6,7 @@ import numpy as np
 
 from twin.cutting.cut import Cutter, Rectangle, union
 from twin.cutting.height_map import BoolArray, HeightMap
+from twin.cutting.stock_contact import Head
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.alarms import Alarm
 from twin.nc.canonical import FloatArray
@@ -25,9 +26,21 @@ class Workpiece:
     """
 
     def __init__(
-        self, stock: StockTable, tool: ToolTable, part_frame: PartFrame, zero: FloatArray
+        self,
+        stock: StockTable,
+        tool: ToolTable,
+        part_frame: PartFrame,
+        zero: FloatArray,
+        head: Head | None = None,
     ) -> None:
         """Clamp the blank.
+
+        Args:
+            stock: The blank.
+            tool: What is in the spindle.
+            part_frame: How the part turns under the tool.
+            zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+            head: What is above a tool's holder; None: nothing.
 
         Raises:
             ConfigError: The stock is wrong.
@@ -35,7 +48,8 @@ class Workpiece:
         self._stock = stock
         self._frame = part_frame
         self._zero = zero
-        self._cutter = Cutter(stock, tool, part_frame, zero, halts=True)
+        self._head = head
+        self._cutter = Cutter(stock, tool, part_frame, zero, halts=True, head=head)
         self.removed = 0.0
         self._changed: Rectangle = (0, 0, 0, 0)
 
@@ -47,7 +61,9 @@ class Workpiece:
     def mount(self, tool: ToolTable) -> None:
         """Go on with another tool."""
         before = self._cutter.map
-        self._cutter = Cutter(self._stock, tool, self._frame, self._zero, halts=True)
+        self._cutter = Cutter(
+            self._stock, tool, self._frame, self._zero, halts=True, head=self._head
+        )
         self._cutter.map = before
 
     def cut(self, tips: Samples, rapid: BoolArray, standing: BoolArray) -> Alarm | None:
@@ -65,10 +81,6 @@ class Workpiece:
         self.removed += removed
         if removed > 0.0:
             self._changed = union(self._changed, self._cutter.changed)
-        for event in self._cutter.events():
-            if event.what in ("holder", "shank"):
-                message = f"the {event.what} meets the stock, {event.depth_mm:.2f} mm deep"
-                return Alarm("collision", event.line, event.time_s, "", message)
         halted = self._cutter.halted
         return None if halted is None else stock_alarm(halted, self._cutter.tool)
 

@@ -98,15 +98,20 @@ export class Stock {
     this.mesh.position.set(grid.origin[0], grid.origin[1], bottom);
   }
 
-  /** Take over the heights of some cells. */
+  /** Take over the heights of some cells; returns what they were. */
   put(patch) {
     const { columns } = this.grid;
+    const before = new Uint16Array(patch.levels.length);
     for (let row = 0; row < patch.rows; row++) {
       const to = (patch.row + row) * columns + patch.column;
       const from = row * patch.columns;
-      for (let i = 0; i < patch.columns; i++) this.shares[to + i] = patch.levels[from + i] / 65535;
+      for (let i = 0; i < patch.columns; i++) {
+        before[from + i] = Math.round(65535 * this.shares[to + i]);
+        this.shares[to + i] = patch.levels[from + i] / 65535;
+      }
     }
     this.texture.needsUpdate = true;
+    return before;
   }
 }
 

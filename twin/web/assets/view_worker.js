@@ -11,20 +11,23 @@ import { readPatch, readState } from "./wire.js";
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 const FASTEST_MS = 33;
 const SLOW_MS = 120;
+const ABOVE_MM = 0.15; // What a path lies above the floor that it was cut into.
 
-let renderer, scene, camera, base, fine, size = [1, 1], dirty = true, busy = false, last = 0, pictures = 0, drawing = 0, dots = 1, slow = 0;
+let renderer, scene, camera, base, fine, by_processor, size = [1, 1], dirty = true, busy = false, last = 0, pictures = 0, drawing = 0, dots = 1, slow = 0;
 let machine = null, patches = Promise.resolve(), wanted = 0;
 const orbit = { azimuth: -0.9, elevation: 0.42, distance: 2.4, target: new THREE.Vector3(0, 0, 1), follows: "part" };
 const shown = { trail: true, stock: true, collision: false };
 const trail = new Trail();
+trail.line.position.z = ABOVE_MM;
 let path = null;
 
 function open({ canvas, width, height, ratio, address, quality }) {
-  fine = quality === "fine" || (quality !== "plain" && !drawn_by_processor());
+  by_processor = drawn_by_processor();
+  fine = quality === "fine" || (quality !== "plain" && !by_processor);
   renderer = new THREE.WebGLRenderer({ canvas, antialias: fine, powerPreference: "high-performance" });
   base = address;
   renderer.toneMapping = THREE.ACESFilmicToneMapping;
-  renderer.toneMappingExposure = 1.0;
+  renderer.toneMappingExposure = 0.9;
   dots = fine ? ratio : Math.min(ratio, 1);
   renderer.setPixelRatio(dots);
   scene = new THREE.Scene();
@@ -46,7 +49,7 @@ function light() {
   if (fine) {
     const maker = new THREE.PMREMGenerator(renderer);
     scene.environment = maker.fromScene(new RoomEnvironment(), 0.04).texture;
-    scene.environmentIntensity = 0.55;
+    scene.environmentIntensity = 0.38;
     scene.environmentRotation = new THREE.Euler(Math.PI / 2, 0, 0);
     renderer.shadowMap.enabled = true;
   } else {
@@ -87,6 +90,10 @@ async function load(tool) {
   machine = assemble(described, drawn.scene);
   scene.add(machine.root);
   dirty = true;
+  if (state) {
+    move(state.machine);
+    cut_until(state.time);
+  }
   if (first) {
     look("start");
     postMessage({ ready: true, fine });
@@ -117,7 +124,7 @@ function assemble(described, root) {
   const tip = frame(described.tip, named);
   const found = { root, joints, part, tip, bodies, cutter: named(described.cutter), radius: described.tool.diameter / 2, stock: null };
   if (described.stock) {
-    found.stock = machine?.stock ?? new Stock(described.stock, fine ? 1 : 3);
+    found.stock = machine?.stock ?? new Stock(described.stock, by_processor ? 3 : 1);
     part.add(found.stock.mesh);
   }
   part.add(trail.line);
@@ -156,12 +163,12 @@ function move(machineCoordinates) {
 }
 
 let state = null;
-function take(buffer) {
+function take(seen, follows = true) {
   const before = state;
-  state = readState(buffer);
+  state = seen;
   if (!machine) return;
   if (before && state.time < before.time) trail.clear();
-  trail.add(state.tip);
+  if (follows) trail.add(state.tip);
   const still = before && before.machine.every((value, i) => Math.abs(value - state.machine[i]) < 1e-5);
   if (!still || state.turns || state.coolant) dirty = true;
   move(state.machine);
@@ -186,7 +193,7 @@ function look(name) {
   const part = grid ? 0.001 * grid.cell * Math.hypot(grid.rows, grid.columns) : 0.2;
   const views = {
     start: ["part", -1.12, 0.5, 5.5 * part], front: ["part", -Math.PI / 2, 0.12, 5.5 * part], top: ["part", -Math.PI / 2, 1.5533, 2.6 * part],
-    tool: ["tool", -1.0, 0.35, 0.42], part: ["part", -1.0, 0.75, 2.4 * part], fit: ["fit", -1.05, 0.32, 6.2],
+    tool: ["tool", -1.0, 0.35, 0.42], part: ["part", -1.05, 0.62, 3.0 * part], fit: ["fit", -1.05, 0.32, 6.2],
   };
   const [about, azimuth, elevation, distance] = views[name] ?? views.start;
   Object.assign(orbit, { azimuth, elevation, distance: distance * Math.max(1, 1.1 / camera.aspect), follows: about });
@@ -213,7 +220,8 @@ function aim() {
     orbit.target.x + level * Math.cos(orbit.azimuth), orbit.target.y + level * Math.sin(orbit.azimuth),
     Math.max(0.05, orbit.target.z + orbit.distance * Math.sin(orbit.elevation)),
   );
-  camera.near = Math.max(0.005, 0.05 * orbit.distance);
+  // From above, what hangs over the part is left out.
+  camera.near = orbit.elevation > 1.2 ? Math.max(0.05 * orbit.distance, orbit.distance - 0.12) : Math.max(0.005, 0.05 * orbit.distance);
   camera.updateProjectionMatrix();
   camera.lookAt(orbit.target);
 }
@@ -235,7 +243,7 @@ function draw() {
   aim();
   const began = performance.now();
   renderer.render(scene, camera);
-  if (!fine) wait_for_picture();
+  if (by_processor) wait_for_picture();
   drawing = performance.now() - began;
   pictures += 1;
 }
@@ -247,10 +255,26 @@ function wait_for_picture() {
   const context = renderer.getContext();
   context.readPixels(0, 0, 1, 1, context.RGBA, context.UNSIGNED_BYTE, new Uint8Array(4));
   slow = drawing > SLOW_MS ? slow + 1 : 0;
-  if (slow > 2 && dots > 0.6) {
+  if (!fine && slow > 2 && dots > 0.6) {
     slow = 0;
     renderer.setPixelRatio(dots *= 0.8);
     renderer.setSize(size[0], size[1], false);
+  }
+}
+
+/** The cuts of a run, in order of time; those that were done can be taken back. */
+let cuts = [], done = 0;
+function cut_until(time) {
+  if (!machine?.stock) return;
+  while (done < cuts.length && cuts[done].time <= time) {
+    cuts[done].before = machine.stock.put(cuts[done].patch);
+    done += 1;
+    dirty = true;
+  }
+  while (done > 0 && cuts[done - 1].time > time) {
+    done -= 1;
+    machine.stock.put({ ...cuts[done].patch, levels: cuts[done].before });
+    dirty = true;
   }
 }
 
@@ -261,6 +285,7 @@ function drawPath({ places, colours }) {
   geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
   path = new THREE.Line(geometry, new THREE.LineBasicMaterial({ vertexColors: true }));
   path.frustumCulled = false;
+  path.position.z = ABOVE_MM;
   machine?.part.add(path);
   dirty = true;
 }
@@ -268,15 +293,17 @@ function drawPath({ places, colours }) {
 const heard = {
   open(given) { open(given); draw(); },
   load,
-  state: take,
+  state: (buffer) => take(readState(buffer)),
+  moment(seen) { take(seen, false); cut_until(seen.time); },
+  cuts: (given) => { cuts = given.map((one) => ({ ...one, before: null })); },
   patch(buffer) {
+    // Inflated beside each other, put in their order.
+    const read = readPatch(buffer);
     patches = patches.then(async () => {
-      const patch = await readPatch(buffer);
-      machine?.stock?.put(patch);
+      machine?.stock?.put(await read);
       dirty = true;
-    });
+    }).catch((error) => postMessage({ failed: String(error) }));
   },
-  levels(patch) { machine?.stock?.put(patch); dirty = true; },
   path: drawPath,
   size: resize,
   look,

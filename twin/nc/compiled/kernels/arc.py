@@ -3,9 +3,7 @@
 The geometry is that of ``arcs``, compiled as it stands there.
 """
 
-from numba.extending import register_jitable
-
-from twin.compilation.kernel import inlined_kernel, kernel
+from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.registers import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
@@ -23,18 +21,10 @@ from twin.nc.compiled.kernels.frame import turn_arc
 from twin.nc.compiled.kernels.plane import SHORTEST
 from twin.nc.compiled.kernels.tokenizer import AXIS, CENTER, RADIUS
 from twin.nc.geometry import arcs
-
-for _shared in (
-    arcs.distance,
-    arcs.sweep_between,
-    arcs.reaches,
-    arcs.center_at_radius,
-    arcs.equidistant,
-):
-    register_jitable(_shared)
+from twin.nc.geometry.arcs import Point
 
 
-@kernel
+@compilable
 def value_of(token_kind: int, token_kinds: IntArray, values: FloatArray) -> float:
     """Value of the word with a token_kind; 0 where there is none."""
     for word in range(len(token_kinds)):
@@ -43,7 +33,7 @@ def value_of(token_kind: int, token_kinds: IntArray, values: FloatArray) -> floa
     return 0.0
 
 
-@inlined_kernel
+@inlined
 def emit_arc(
     token_kinds: IntArray,
     values: FloatArray,
@@ -107,17 +97,8 @@ def emit_arc(
         else:
             center = (start[0] + first, start[1] + second)
     if fits:
-        given = center
-        near, far = arcs.distance(start, given), arcs.distance(end, given)
-        gap, longer = abs(near - far), max(near, far)
-        if not (
-            min(near, far) >= arcs.SAME_POINT
-            and gap <= tables.mismatch[interpolation]
-            and gap <= tables.mismatch_share[interpolation] * longer
-        ):
-            return False
-        center = arcs.equidistant(start, end, given)
-        if not arcs.distance(given, center) <= tables.shift[interpolation]:
+        fitted, center = _fitted(center, start, end, interpolation, tables)
+        if not fitted:
             return False
     sweep = arcs.sweep_between(start, end, center, clockwise)
     length = arcs.distance(start, center) * abs(sweep) * state.registers[SCALE]
@@ -135,3 +116,20 @@ def emit_arc(
         for axis in range(3):
             value[axis] += state.total[axis]
     return True
+
+
+@inlined
+def _fitted(
+    given: Point, start: Point, end: Point, interpolation: int, tables: BlockTables
+) -> tuple[bool, Point]:
+    """Whether a given centre is within the bounds of its interpolation, and the one that fits both ends."""
+    near, far = arcs.distance(start, given), arcs.distance(end, given)
+    gap, longer = abs(near - far), max(near, far)
+    if not (
+        min(near, far) >= arcs.SAME_POINT
+        and gap <= tables.mismatch[interpolation]
+        and gap <= tables.mismatch_share[interpolation] * longer
+    ):
+        return False, given
+    center = arcs.equidistant(start, end, given)
+    return arcs.distance(given, center) <= tables.shift[interpolation], center

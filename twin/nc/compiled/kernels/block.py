@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.kernel import inlined_kernel, kernel
-from twin.nc.bytecode.opcodes import MOST_STORES, MOST_VALUES
+from twin.compilation.compilable import compilable, inlined
+from twin.nc.bytecode.bytecode import MOST_STORES, MOST_VALUES
 from twin.nc.bytecode.registers import MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.columns import copy, copy_rows
@@ -50,7 +50,7 @@ def new_scratch(state: State) -> Scratch:
     )
 
 
-@kernel
+@compilable
 def copy_active_codes(
     modal: FloatArray, active_codes: IntArray, to_modal: FloatArray, to_force: IntArray
 ) -> None:
@@ -59,7 +59,7 @@ def copy_active_codes(
     copy(active_codes, to_force)
 
 
-@kernel
+@compilable
 def copy_state(source: State, target: State) -> None:
     """Copy every column of a state."""
     copy_active_codes(source.modal, source.active_codes, target.modal, target.active_codes)
@@ -71,7 +71,7 @@ def copy_state(source: State, target: State) -> None:
     target.event_count[0] = source.event_count[0]
 
 
-@inlined_kernel
+@inlined
 def execute_repeatedly(
     times: int,
     line: int,

@@ -4,10 +4,7 @@ Each step is the one of ``Compensation`` between two moves of a contour, with th
 ``curves``. Warnings and refusals are left to it.
 """
 
-import numpy as np
-from numba.extending import register_jitable
-
-from twin.compilation.kernel import kernel
+from twin.compilation.compilable import compilable
 from twin.nc.bytecode.registers import BAILOUT, Rows
 from twin.nc.canonical import Shape
 from twin.nc.compiled.kernels.columns import copy, copy_rows
@@ -24,10 +21,10 @@ from twin.nc.compiled.kernels.lookahead import (
 )
 from twin.nc.compiled.kernels.plane import along_axis
 from twin.nc.geometry import curves
-from twin.nc.geometry.arcs import SAME_POINT, Point, distance
+from twin.nc.geometry.arcs import SAME_POINT, distance
+from twin.nc.geometry.corners import corner_of
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
-from twin.nc.path.compensation import LARGEST_SQUARE, STRAIGHT_ON
 from twin.nc.path.compensation_state import Stage
 from twin.nc.path.contour_registers import (
     CONTOUR,
@@ -44,31 +41,6 @@ from twin.nc.path.contour_registers import (
 )
 from twin.nc.path.segments import IN_PLANE
 
-for _shared in (
-    curves.radius_of,
-    curves.length_of,
-    curves.unit,
-    curves.tangent_of,
-    curves.scale_of,
-    curves.leaves_room,
-    curves.moved,
-    curves.towards,
-    curves.parallel_of,
-    curves.along,
-    curves.within,
-    curves.cut,
-    curves.box_of,
-    curves.turn_from,
-    curves.half_chord,
-    curves.line_line,
-    curves.line_circle,
-    curves.circle_circle,
-    curves.meetings,
-    curves.inside,
-    curves.crossing_of,
-):
-    register_jitable(_shared)
-
 _STARTED, _LEADING_IN, _LEADING_OUT = (
     int(Stage.STARTED),
     int(Stage.LEADING_IN),
@@ -77,7 +49,7 @@ _STARTED, _LEADING_IN, _LEADING_OUT = (
 _ARC = int(Shape.ARC)
 
 
-@kernel
+@compilable
 def follow(row: int, made: int, first_event: int, behind: int, contour: Contour, rows: Rows) -> int:
     """Compensate what a block has made.
 
@@ -129,7 +101,7 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
     return _go_on(curve, element, row, first_event, early, behind, contour, rows)
 
 
-@kernel
+@compilable
 def _along_normal(
     row: int, first_event: int, early: int, behind: int, contour: Contour, rows: Rows
 ) -> int:
@@ -154,7 +126,7 @@ def _along_normal(
     return row
 
 
-@kernel
+@compilable
 def _go_on(
     curve: Curve,
     element: Curve,
@@ -170,8 +142,8 @@ def _go_on(
     held, before = curve_of(contour.curves[CONTOUR]), curve_of(contour.curves[ELEMENT])
     begin = (contour.start[0], contour.start[1])
     turn = curves.turn_from(held, curve)
-    clear, rolls, at, follows = _corner(
-        held, before, begin, curve, element, turn, signed_offset, counts[SQUARE] != 0
+    clear, rolls, at, follows = corner_of(
+        (held, before, begin), (curve, element), turn, signed_offset, counts[SQUARE] != 0
     )
     if not clear:
         return BAILOUT
@@ -203,40 +175,3 @@ def _go_on(
     set_curve(contour.curves[ELEMENT], element)
     hold_events(contour, rows, early, behind)
     return after
-
-
-@kernel
-def _corner(
-    held: Curve,
-    before: Curve,
-    begin: Point,
-    curve: Curve,
-    element: Curve,
-    turn: float,
-    signed_offset: float,
-    square: bool,
-) -> tuple[bool, bool, Point, Point]:
-    """Whether the corner is clear, is rolled around, where the held move ends, and the next begins."""
-    if abs(turn) < STRAIGHT_ON:
-        return (True, False, element[1], element[1])
-    straight = not held[0] and not curve[0]
-    if square and straight and turn * signed_offset < 0.0 and abs(turn) <= LARGEST_SQUARE:
-        count, meeting, _ = curves.meetings(before, element)
-        return (count == 1, False, meeting, meeting)
-    if turn * signed_offset < 0.0 or abs(turn) > 180.0 - STRAIGHT_ON:
-        return (True, True, before[2], element[1])
-    count, first, second = curves.meetings(before, element)
-    found, at, least = False, begin, np.inf
-    from_start = curves.along(before, begin)
-    for number in range(count):
-        point = first if number == 0 else second
-        share = curves.along(before, point)
-        if (
-            curves.within(before, share)
-            and share >= from_start
-            and curves.within(element, curves.along(element, point))
-        ):
-            far = distance(point, held[2])
-            if not found or far < least:
-                found, at, least = True, point, far
-    return (found, False, at, at)

@@ -1,9 +1,8 @@
 """Drilling cycles, compiled: what ``drilling`` does for a block of plain words, with the same ``holes``."""
 
 import numpy as np
-from numba.extending import register_jitable
 
-from twin.compilation.kernel import kernel
+from twin.compilation.compilable import compilable
 from twin.nc.bytecode.registers import (
     CORNER,
     CYCLE,
@@ -32,17 +31,6 @@ from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
 from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
 
-for _shared in (
-    drilling_cycle.begin,
-    drilling_cycle.remember,
-    drilling_cycle.either,
-    drilling_cycle.count_stops,
-    drilling_cycle.hole_of,
-    drilling_cycle.most_acts,
-    drilling_cycle.write_acts,
-):
-    register_jitable(_shared)
-
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
@@ -54,7 +42,7 @@ _LINE = int(Shape.LINE)
 _STOP = int(Corner.EXACT_STOP)
 
 
-@kernel
+@compilable
 def drill(
     line: int,
     number: int,
@@ -117,7 +105,7 @@ def drill(
     return after
 
 
-@kernel
+@compilable
 def _read_cycle(
     token_kinds: IntArray,
     values: FloatArray,
@@ -168,7 +156,7 @@ def _read_cycle(
     return taken, drilling_cycle.hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
 
 
-@kernel
+@compilable
 def _emit_hole(
     line: int,
     number: int,
@@ -221,7 +209,7 @@ def _emit_hole(
     return after
 
 
-@kernel
+@compilable
 def _go(
     goal: FloatArray,
     rapid: bool,

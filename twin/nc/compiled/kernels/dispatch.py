@@ -1,12 +1,13 @@
 """One compiled block: its instructions on a stack, all of them or none.
 
-Each does what ``opcodes.Opcode`` says of it.
+Each does what ``opcodes`` says of it.
 """
 
 import numpy as np
 
-from twin.compilation.kernel import NONE_YET, inlined_kernel
+from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import PART_BITS, BytecodeTable
 from twin.nc.bytecode.frames import (
     AGAIN,
     BACK,
@@ -30,7 +31,6 @@ from twin.nc.bytecode.frames import (
     TRAPPED,
     ExecutionState,
 )
-from twin.nc.bytecode.opcodes import PART_BITS, BytecodeTable
 from twin.nc.bytecode.registers import BAILOUT, CYCLE, BlockTables, Constants, Rows, State
 from twin.nc.compiled.kernels.block import (
     Scratch,
@@ -40,20 +40,18 @@ from twin.nc.compiled.kernels.block import (
 )
 from twin.nc.compiled.kernels.cycle import NO_ROOM
 from twin.nc.compiled.kernels.effects import polar_target, run_effect
-from twin.nc.compiled.kernels.expression import binary, ternary, unary
+from twin.nc.compiled.kernels.expression import evaluate
 from twin.nc.compiled.kernels.leads import begin_compensation, end_compensation
 from twin.nc.compiled.kernels.lookahead import hold_events
 from twin.nc.compiled.kernels.tokenizer import NUMBER
 from twin.nc.compiled.kernels.variables import (
     NO_SLOT,
     innermost,
-    load,
     own_value,
     slot_of_number,
     store,
 )
 from twin.nc.path.contour_registers import OFF, STAGE
-from twin.nc.text.expressions import LARGEST_NUMBER
 
 DONE = -1
 """The block was run."""
@@ -61,9 +59,10 @@ DONE = -1
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@inlined_kernel
+@inlined
 def dispatch_loop(
     row: int,
+    words: int,
     table: BytecodeTable,
     tables: BlockTables,
     constants: Constants,
@@ -76,6 +75,7 @@ def dispatch_loop(
 
     Args:
         row: Row of its ``BLOCK``.
+        words: How many words have been read already.
         table: The instructions.
         tables: What words mean.
         constants: What stays.
@@ -91,7 +91,7 @@ def dispatch_loop(
     budget = progress[INSTRUCTION_BUDGET] - (place <= progress[FURTHEST])
     behind = (line + 1) << PART_BITS if table.operand[row] == 0 else place + 1
     going, range_end, restores = behind, NO_LOCATION, NOTHING_RESTORED
-    top, words, stores, own, why = NONE_YET, NONE_YET, 0, 0, TRAPPED
+    top, stores, own, why = 0, 0, 0, TRAPPED
     contour, first_event = routine.contour, state.event_count[0]
     has_snapshot = compensates = contour.counts[STAGE] != OFF
     if compensates:
@@ -99,55 +99,10 @@ def dispatch_loop(
     while budget >= 0:
         row += 1
         opcode, operand = table.opcode[row], table.operand[row]
-        if opcode == opcodes.CONSTANT:
-            stack[top] = table.immediate[row]
-            top += 1
-        elif opcode == opcodes.LOAD:
-            value = load(memory, depth, operand)
-            if np.isnan(value):
+        if opcodes.CONSTANT <= opcode <= opcodes.DROP:
+            top = evaluate(opcode, operand, row, stack, top, depth, table, memory)
+            if top < 0:
                 break
-            stack[top] = value
-            top += 1
-        elif opcode == opcodes.BINARY:
-            top -= 1
-            value = binary(operand, stack[top - 1], stack[top])
-            if not abs(value) <= LARGEST_NUMBER:
-                break
-            stack[top - 1] = value
-        elif opcode == opcodes.UNARY:
-            value = unary(operand, stack[top - 1])
-            if not abs(value) <= LARGEST_NUMBER:
-                break
-            stack[top - 1] = value
-        elif opcode == opcodes.TERNARY:
-            top -= 2
-            value = ternary(operand, stack[top - 1], stack[top], stack[top + 1])
-            if not abs(value) <= LARGEST_NUMBER:
-                break
-            stack[top - 1] = value
-        elif opcode == opcodes.NEGATE:
-            stack[top - 1] = -stack[top - 1]
-        elif opcode == opcodes.LOAD_NUMBERED:
-            slot = slot_of_number(table.numbered, stack[top - 1])
-            value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
-            if np.isnan(value):
-                break
-            stack[top - 1] = value
-        elif opcode in (opcodes.LOAD_BELOW, opcodes.LOAD_NUMBERED_BELOW):
-            slot = operand
-            if opcode == opcodes.LOAD_NUMBERED_BELOW:
-                slot = slot_of_number(table.numbered, stack[top - 2])
-            value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
-            if np.isnan(value):
-                break
-            stack[top] = stack[top - 1]
-            stack[top - 1] = value
-            top += 1
-        elif opcode == opcodes.DEFINED:
-            stack[top] = 0.0 if np.isnan(load(memory, depth, operand)) else 1.0
-            top += 1
-        elif opcode == opcodes.DROP:
-            top -= 1
         elif opcode in (opcodes.STORE, opcodes.STORE_DECLARED, opcodes.STORE_NUMBERED):
             top -= 1
             slot = operand

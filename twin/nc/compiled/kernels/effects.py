@@ -1,12 +1,11 @@
 """What blocks do besides moving and computing, compiled: events, tools, shifts of coordinates, polar moves.
 
-Each does what ``opcodes.Opcode`` says of it; the state is kept before the first of a block.
+Each does what ``opcodes`` says of it; the state is kept before the first of a block.
 """
 
 import numpy as np
-from numba.extending import register_jitable
 
-from twin.compilation.kernel import kernel
+from twin.compilation.compilable import compilable
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.registers import (
     BAILOUT,
@@ -50,8 +49,6 @@ from twin.nc.path.event_columns import (
     TOOL,
 )
 
-register_jitable(arcs.angle_of)
-
 _NO_EVENT = -1
 _PECKING = Cycle._fields.index("pecking")
 _LENGTH = SHIFTS.index("length")
@@ -59,7 +56,7 @@ _LARGEST_NUMBER = 1e6
 """Numbers of tools and of auxiliary functions above this are left to the interpreter tier."""
 
 
-@kernel
+@compilable
 def run_effect(
     opcode: int,
     operand: int,
@@ -222,7 +219,7 @@ def run_effect(
     return top
 
 
-@kernel
+@compilable
 def _tool(constants: Constants, number: float) -> int:
     """Row of a tool that the job lists, or ``BAILOUT``."""
     for tool in range(len(constants.tools)):
@@ -231,7 +228,7 @@ def _tool(constants: Constants, number: float) -> int:
     return BAILOUT
 
 
-@kernel
+@compilable
 def _set_polar_origin(
     stack: FloatArray, top: int, given: int, constants: Constants, state: State
 ) -> None:
@@ -245,7 +242,7 @@ def _set_polar_origin(
     registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
 
 
-@kernel
+@compilable
 def _along(position: FloatArray, axis: int) -> float:
     """A coordinate as ``Plane.local`` computes it, the sign of zero included."""
     x, y, z = position[0], position[1], position[2]
@@ -256,7 +253,7 @@ def _along(position: FloatArray, axis: int) -> float:
     return 0.0 * x + 0.0 * y + 1.0 * z
 
 
-@kernel
+@compilable
 def polar_target(
     seen: int, radius_word: float, angle_word: float, constants: Constants, state: State
 ) -> bool:
@@ -302,7 +299,7 @@ def polar_target(
     return True
 
 
-@kernel
+@compilable
 def report(
     rows: Rows, state: State, before: int, line: int, kind: int, number: int, amount: float
 ) -> None:

@@ -7,49 +7,16 @@ import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numba.extending import register_jitable
 
-from twin.compilation.kernel import arithmetic_kernel
+from twin.compilation.compilable import compilable_arithmetic, inlined
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import BytecodeTable
+from twin.nc.bytecode.frames import VariableStore
+from twin.nc.bytecode.registers import BAILOUT
+from twin.nc.canonical import FloatArray
+from twin.nc.compiled.kernels.variables import NO_SLOT, load, slot_of_number
 from twin.nc.text import arithmetic
-
-for _shared in (
-    arithmetic.inverted_bits,
-    arithmetic.sine_of_degrees,
-    arithmetic.cosine_of_degrees,
-    arithmetic.tangent_of_degrees,
-    arithmetic.arc_sine_in_degrees,
-    arithmetic.arc_cosine_in_degrees,
-    arithmetic.arc_tangent_in_degrees,
-    arithmetic.square,
-    arithmetic.power_of_ten,
-    arithmetic.whole_part,
-    arithmetic.fraction,
-    arithmetic.nearest_whole,
-    arithmetic.next_whole,
-    arithmetic.opposite,
-    arithmetic.add,
-    arithmetic.subtract,
-    arithmetic.multiply,
-    arithmetic.divide,
-    arithmetic.less,
-    arithmetic.greater,
-    arithmetic.at_most,
-    arithmetic.at_least,
-    arithmetic.equal,
-    arithmetic.unequal,
-    arithmetic.both,
-    arithmetic.either,
-    arithmetic.one_alone,
-    arithmetic.bits_of_both,
-    arithmetic.bits_of_either,
-    arithmetic.bits_of_one_alone,
-    arithmetic.direction_in_degrees,
-    arithmetic.smaller,
-    arithmetic.larger,
-    arithmetic.limited,
-    arithmetic.chosen,
-):
-    register_jitable(_shared)
+from twin.nc.text.expressions import LARGEST_NUMBER
 
 UNARY_FUNCTIONS: Mapping[Callable[..., float], int] = {
     arithmetic.inverted_bits: 0,
@@ -110,7 +77,7 @@ TERNARY_FUNCTIONS: Mapping[Callable[..., float], int] = {
 """Functions of three values."""
 
 
-@arithmetic_kernel
+@compilable_arithmetic
 def unary(function: int, a: float) -> float:
     """The function of ``UNARY_FUNCTIONS`` with this number."""
     if function == 0:
@@ -164,7 +131,7 @@ def unary(function: int, a: float) -> float:
     return math.log10(a)
 
 
-@arithmetic_kernel
+@compilable_arithmetic
 def binary(function: int, a: float, b: float) -> float:
     """The function of ``BINARY_FUNCTIONS`` with this number."""
     if function == 0:
@@ -210,9 +177,87 @@ def binary(function: int, a: float, b: float) -> float:
     return math.pow(a, b)
 
 
-@arithmetic_kernel
+@compilable_arithmetic
 def ternary(function: int, a: float, b: float, c: float) -> float:
     """The function of ``TERNARY_FUNCTIONS`` with this number."""
     if function == 0:
         return arithmetic.limited(a, b, c)
     return arithmetic.chosen(a, b, c)
+
+
+@inlined
+def evaluate(
+    opcode: int,
+    operand: int,
+    row: int,
+    stack: FloatArray,
+    top: int,
+    depth: int,
+    table: BytecodeTable,
+    memory: VariableStore,
+) -> int:
+    """Run an instruction that does nothing but compute.
+
+    Args:
+        opcode: One from ``CONSTANT`` to ``DROP``.
+        operand: Its operand.
+        row: Its row.
+        stack: Values.
+        top: How many there are.
+        depth: Row of the local variables.
+        table: The instructions.
+        memory: The variables.
+
+    Returns:
+        How many values there are then, or ``BAILOUT`` where one is undefined.
+    """
+    if opcode == opcodes.CONSTANT:
+        stack[top] = table.immediate[row]
+        top += 1
+    elif opcode == opcodes.LOAD:
+        value = load(memory, depth, operand)
+        if np.isnan(value):
+            return BAILOUT
+        stack[top] = value
+        top += 1
+    elif opcode == opcodes.BINARY:
+        top -= 1
+        value = binary(operand, stack[top - 1], stack[top])
+        if not abs(value) <= LARGEST_NUMBER:
+            return BAILOUT
+        stack[top - 1] = value
+    elif opcode == opcodes.UNARY:
+        value = unary(operand, stack[top - 1])
+        if not abs(value) <= LARGEST_NUMBER:
+            return BAILOUT
+        stack[top - 1] = value
+    elif opcode == opcodes.TERNARY:
+        top -= 2
+        value = ternary(operand, stack[top - 1], stack[top], stack[top + 1])
+        if not abs(value) <= LARGEST_NUMBER:
+            return BAILOUT
+        stack[top - 1] = value
+    elif opcode == opcodes.NEGATE:
+        stack[top - 1] = -stack[top - 1]
+    elif opcode == opcodes.LOAD_NUMBERED:
+        slot = slot_of_number(table.numbered, stack[top - 1])
+        value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
+        if np.isnan(value):
+            return BAILOUT
+        stack[top - 1] = value
+    elif opcode in (opcodes.LOAD_BELOW, opcodes.LOAD_NUMBERED_BELOW):
+        slot = operand
+        if opcode == opcodes.LOAD_NUMBERED_BELOW:
+            slot = slot_of_number(table.numbered, stack[top - 2])
+        value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
+        if np.isnan(value):
+            return BAILOUT
+        stack[top] = stack[top - 1]
+        stack[top - 1] = value
+        top += 1
+    elif opcode == opcodes.DEFINED:
+        stack[top] = 0.0 if np.isnan(load(memory, depth, operand)) else 1.0
+        top += 1
+    elif opcode == opcodes.DROP:
+        top -= 1
+    return top

@@ -4,9 +4,8 @@ The geometry is that of ``matrices``, compiled as it stands there.
 """
 
 import numpy as np
-from numba.extending import register_jitable
 
-from twin.compilation.kernel import inlined_kernel, kernel
+from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.registers import (
     MATRIX,
     PLANE,
@@ -21,31 +20,15 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.plane import one
-from twin.nc.geometry import arcs, matrices, planes
+from twin.nc.geometry import matrices, planes
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector
 
-for _shared in (
-    arcs.direction,
-    planes.cross,
-    matrices.applied,
-    matrices.determinant,
-    matrices.inverse,
-    matrices.transposed,
-    matrices.dot,
-    matrices.product,
-    matrices.turned_unit,
-    matrices.handedness,
-    matrices.stretched,
-    matrices.rotated,
-):
-    register_jitable(_shared)
-
 _ROTATION_SHIFT = SHIFTS.index("rotation")
 
 
-@inlined_kernel
+@inlined
 def matrix_of(state: State) -> Matrix:
     """Mirror, rotation and scale."""
     r = state.registers
@@ -56,7 +39,7 @@ def matrix_of(state: State) -> Matrix:
     )
 
 
-@inlined_kernel
+@inlined
 def to_part(programmed: FloatArray, state: State, part: FloatArray) -> None:
     """Fill in the part coordinates of a programmed position, shape (k,)."""
     for axis in range(len(part)):
@@ -64,7 +47,7 @@ def to_part(programmed: FloatArray, state: State, part: FloatArray) -> None:
     turn_place(programmed, state, part)
 
 
-@inlined_kernel
+@inlined
 def turn_place(programmed: FloatArray, state: State, part: FloatArray) -> None:
     """Let a sum of programmed position and shifts, shape (k,), heed the matrix.
 
@@ -75,14 +58,14 @@ def turn_place(programmed: FloatArray, state: State, part: FloatArray) -> None:
         _turn(programmed, state, part)
 
 
-@kernel
+@compilable
 def _turn(programmed: FloatArray, state: State, part: FloatArray) -> None:
     place = (programmed[0], programmed[1], programmed[2])
     x, y, z = matrices.applied(matrix_of(state), place)
     part[0], part[1], part[2] = x + state.total[0], y + state.total[1], z + state.total[2]
 
 
-@kernel
+@compilable
 def turn_arc(value: FloatArray, state: State) -> None:
     """Centre, normal and sweep of an arc, as ``Rows.values`` has them, become the part's."""
     matrix = matrix_of(state)
@@ -92,7 +75,7 @@ def turn_arc(value: FloatArray, state: State) -> None:
     value[6] *= matrices.handedness(matrix)
 
 
-@kernel
+@compilable
 def add_up(state: State) -> None:
     """The shifts have changed: their sum."""
     for axis in range(len(state.total)):
@@ -102,7 +85,7 @@ def add_up(state: State) -> None:
         state.total[axis] = total
 
 
-@kernel
+@compilable
 def reframe(state: State) -> None:
     """The shifts or the matrix have changed: see where the control stands now."""
     add_up(state)
@@ -115,7 +98,7 @@ def reframe(state: State) -> None:
         programmed[0], programmed[1], programmed[2] = x, y, z
 
 
-@kernel
+@compilable
 def transform(constants: Constants, state: State) -> None:
     """Mirror, scale and rotation have changed: the matrix, and where the control stands now."""
     registers = state.registers
@@ -134,7 +117,7 @@ def transform(constants: Constants, state: State) -> None:
     reframe(state)
 
 
-@kernel
+@compilable
 def transfer(state: State) -> float:
     """-1 where the matrix mirrors, else 1."""
     if state.registers[TURNED] == 0.0:
@@ -142,7 +125,7 @@ def transfer(state: State) -> float:
     return matrices.handedness(matrix_of(state))
 
 
-@kernel
+@compilable
 def put_part_plane(plane: IntArray, state: State, target: FloatArray) -> None:
     """Directions of the working plane as the part sees it: ``ControlMotion.part_plane``."""
     abscissa, ordinate, normal = directions(plane)
@@ -155,18 +138,18 @@ def put_part_plane(plane: IntArray, state: State, target: FloatArray) -> None:
     put(normal, target[2])
 
 
-@inlined_kernel
+@inlined
 def put(vector: Vector, target: FloatArray) -> None:
     """Keep a vector in the first places of a column."""
     target[0], target[1], target[2] = vector
 
 
-@inlined_kernel
+@inlined
 def directions(plane: IntArray) -> Matrix:
     """Abscissa, ordinate and normal of a plane along the axes: ``Plane.directions``."""
     return (_along(plane[0]), _along(plane[1]), _along(plane[2]))
 
 
-@inlined_kernel
+@inlined
 def _along(axis: int) -> tuple[float, float, float]:
     return (one(axis, 0), one(axis, 1), one(axis, 2))

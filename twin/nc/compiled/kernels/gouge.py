@@ -1,13 +1,13 @@
 """Elements of a compensated contour that were passed, compiled: a new one must not cross them."""
 
-from twin.compilation.kernel import kernel
+from twin.compilation.compilable import compilable
 from twin.nc.compiled.kernels.lookahead import curve_of, set_curve
 from twin.nc.geometry import curves
 from twin.nc.geometry.curves import Box, Curve
 from twin.nc.path.contour_registers import BOX, CURVE, HAS_CONTOUR, LINE, OLDEST, PASSED, Contour
 
 
-@kernel
+@compilable
 def gouges(contour: Contour, element: Curve, box: Box, own: Curve) -> bool:
     """Whether an element crosses one that was passed, and the contour does not cross itself there.
 
@@ -23,7 +23,7 @@ def gouges(contour: Contour, element: Curve, box: Box, own: Curve) -> bool:
     return False
 
 
-@kernel
+@compilable
 def crosses_passed(contour: Contour, element: Curve, box: Box, first: int) -> bool:
     """Whether an element crosses one that was passed, from the ``first`` on."""
     for number in range(first, contour.counts[PASSED]):
@@ -32,13 +32,13 @@ def crosses_passed(contour: Contour, element: Curve, box: Box, first: int) -> bo
     return False
 
 
-@kernel
+@compilable
 def _place(contour: Contour, number: int) -> int:
     """The row of an element that was passed, counted from the oldest."""
     return (contour.counts[OLDEST] + number) % len(contour.gouge_history)
 
 
-@kernel
+@compilable
 def _crosses(contour: Contour, number: int, element: Curve, box: Box) -> bool:
     older = contour.gouge_history[_place(contour, number)]
     if older[BOX] > box[2] or older[BOX + 2] < box[0]:
@@ -48,7 +48,7 @@ def _crosses(contour: Contour, number: int, element: Curve, box: Box) -> bool:
     return curves.crossing_of(curve_of(older[:CURVE]), element)[0]
 
 
-@kernel
+@compilable
 def _excused(contour: Contour, number: int, own: Curve) -> bool:
     """The contour crosses itself near an element that was passed."""
     count = contour.counts[PASSED]
@@ -67,7 +67,7 @@ def _excused(contour: Contour, number: int, own: Curve) -> bool:
     return False
 
 
-@kernel
+@compilable
 def pass_by(contour: Contour, element: Curve, box: Box, held: Curve, has_contour: bool) -> None:
     """Remember an element that was passed."""
     counts, passed = contour.counts, contour.gouge_history

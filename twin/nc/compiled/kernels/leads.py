@@ -3,9 +3,7 @@
 Warnings and refusals are left to them.
 """
 
-from numba.extending import register_jitable
-
-from twin.compilation.kernel import kernel
+from twin.compilation.compilable import compilable
 from twin.nc.bytecode.registers import BAILOUT, PLANE, Constants, Rows, State
 from twin.nc.canonical import Shape
 from twin.nc.compiled.kernels.columns import copy, copy_rows
@@ -23,7 +21,7 @@ from twin.nc.compiled.kernels.lookahead import (
     take_move,
 )
 from twin.nc.compiled.kernels.plane import along_axis, place
-from twin.nc.geometry import arcs, curves, lead_curves
+from twin.nc.geometry import curves, lead_curves
 from twin.nc.geometry.arcs import SAME_POINT, Point, distance
 from twin.nc.geometry.curves import Curve
 from twin.nc.path.compensation_state import Stage
@@ -42,22 +40,12 @@ from twin.nc.path.contour_registers import (
     Contour,
 )
 
-for _shared in (
-    arcs.turned,
-    lead_curves.depth_of,
-    lead_curves.clearance,
-    lead_curves.distance_to,
-    lead_curves.point_of,
-    lead_curves.way_around,
-):
-    register_jitable(_shared)
-
 _OFF, _STARTED, _LEADING_IN = int(Stage.OFF), int(Stage.STARTED), int(Stage.LEADING_IN)
 _FOLLOWING, _LEADING_OUT = int(Stage.FOLLOWING), int(Stage.LEADING_OUT)
 _ARC = int(Shape.ARC)
 
 
-@kernel
+@compilable
 def begin_compensation(
     side: int, radius: float, constants: Constants, state: State, contour: Contour
 ) -> bool:
@@ -84,7 +72,7 @@ def begin_compensation(
     return True
 
 
-@kernel
+@compilable
 def end_compensation(row: int, events: int, contour: Contour, rows: Rows) -> int:
     """Let go of what is held, square to itself, and wait for the line that leads out.
 
@@ -117,7 +105,7 @@ def end_compensation(row: int, events: int, contour: Contour, rows: Rows) -> int
     return after
 
 
-@kernel
+@compilable
 def take_lead(
     start: Point, end: Point, row: int, early: int, behind: int, contour: Contour, rows: Rows
 ) -> int:
@@ -131,7 +119,7 @@ def take_lead(
     return row
 
 
-@kernel
+@compilable
 def lead_in(
     curve: Curve,
     element: Curve,
@@ -178,7 +166,7 @@ def lead_in(
     return after
 
 
-@kernel
+@compilable
 def lead_out(row: int, early: int, behind: int, contour: Contour, rows: Rows) -> int:
     """``lead_out.lead_out``, which waits for the first line in the plane.
 

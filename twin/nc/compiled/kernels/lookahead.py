@@ -3,7 +3,7 @@
 Each step is the one of ``Compensation``.
 """
 
-from twin.compilation.kernel import kernel
+from twin.compilation.compilable import compilable
 from twin.nc.bytecode.registers import Rows
 from twin.nc.canonical import Corner, FloatArray, Shape
 from twin.nc.compiled.kernels.columns import copy, copy_rows
@@ -28,7 +28,7 @@ _ARC = int(Shape.ARC)
 _EXACT_PATH = int(Corner.EXACT_PATH)
 
 
-@kernel
+@compilable
 def hold_events(contour: Contour, rows: Rows, first: int, behind: int) -> None:
     """Events of the block, from ``first`` on, wait for the end of the held move, if there is one."""
     if contour.counts[STAGE] not in (_LEADING_IN, _FOLLOWING):
@@ -37,7 +37,7 @@ def hold_events(contour: Contour, rows: Rows, first: int, behind: int) -> None:
         rows.events[event, 0] = -1 - contour.counts[WAITING]
 
 
-@kernel
+@compilable
 def take_move(contour: Contour, rows: Rows, row: int, events: int) -> None:
     """A row is the last move that compensation was given; so many events came before."""
     copy(rows.codes[row], contour.latest.codes)
@@ -46,7 +46,7 @@ def take_move(contour: Contour, rows: Rows, row: int, events: int) -> None:
     contour.counts[MOVED], contour.counts[MOVED_EVENTS] = 1, events
 
 
-@kernel
+@compilable
 def hold_move(contour: Contour, curve: Curve, start: Point) -> None:
     """Hold the last move until its successor is known; its compensated path begins at a point."""
     copy(contour.latest.codes, contour.lookahead.codes)
@@ -57,7 +57,7 @@ def hold_move(contour: Contour, curve: Curve, start: Point) -> None:
     contour.counts[WAITING] = 0
 
 
-@kernel
+@compilable
 def curve_of(column: FloatArray) -> Curve:
     """A curve that is kept as a column."""
     return (
@@ -69,7 +69,7 @@ def curve_of(column: FloatArray) -> Curve:
     )
 
 
-@kernel
+@compilable
 def set_curve(column: FloatArray, curve: Curve) -> None:
     """Keep a curve."""
     column[0] = 1.0 if curve[0] else 0.0
@@ -79,7 +79,7 @@ def set_curve(column: FloatArray, curve: Curve) -> None:
     column[7] = curve[4]
 
 
-@kernel
+@compilable
 def flush_lookahead(
     contour: Contour, before: Curve, part: Curve, at: Point, rows: Rows, row: int, events: int
 ) -> int:
@@ -116,7 +116,7 @@ def flush_lookahead(
     return after
 
 
-@kernel
+@compilable
 def stands(position: FloatArray) -> bool:
     """Whether a straight move with these positions goes nowhere."""
     still = True
@@ -125,7 +125,7 @@ def stands(position: FloatArray) -> bool:
     return still
 
 
-@kernel
+@compilable
 def level_arc(
     move: Row, plane: FloatArray, arc: Curve, start: FloatArray, rows: Rows, row: int
 ) -> None:
@@ -147,7 +147,7 @@ def level_arc(
         position[2, axis] = position[1, axis] + shown - end
 
 
-@kernel
+@compilable
 def go_around(contour: Contour, corner: Curve, rows: Rows, row: int) -> int:
     """Go around a corner where the path has come to; the row after it."""
     level_arc(contour.lookahead, contour.plane, corner, contour.here, rows, row)

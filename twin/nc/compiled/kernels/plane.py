@@ -1,25 +1,25 @@
 """Points in a plane, compiled: the bits of ``Plane.local`` and ``Plane.world``."""
 
-from twin.compilation.kernel import inlined_kernel, kernel
+from twin.compilation.compilable import compilable, inlined
 from twin.nc.canonical import FloatArray
 from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Vector
 
 
-@kernel
+@compilable
 def one(axis: int, other: int) -> float:
     """Component of the unit vector along an axis."""
     return 1.0 if axis == other else 0.0
 
 
-@kernel
+@compilable
 def along_axis(position: FloatArray, direction: Vector | FloatArray) -> float:
     """A coordinate of a point, the sign of zero included."""
     x, y, z = position[0], position[1], position[2]
     return direction[0] * x + direction[1] * y + direction[2] * z
 
 
-@kernel
+@compilable
 def place(
     plane: Matrix | FloatArray, point: tuple[float, float], height: float, target: FloatArray
 ) -> None:
@@ -37,7 +37,7 @@ _RESTING = 1e-10
 UNCERTAIN = -1.0
 
 
-@inlined_kernel
+@inlined
 def move_length(position: FloatArray) -> float:
     """How far the axis goes that goes farthest: one of X, Y, Z, or where these rest another.
 

@@ -7,13 +7,19 @@ was before that block.
 import numpy as np
 import numpy.typing as npt
 
-from twin.compilation.kernel import NO, ONCE, array_kernel, kernel
+from twin.compilation.compilable import compilable
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import (
+    INTERPRETED,
+    NOT_COMPILED,
+    NOTHING,
+    PART_BITS,
+    WORDS_ALONE,
+    BytecodeTable,
+)
 from twin.nc.bytecode.frames import (
-    BLOCKS,
     ENDED,
     FULL,
-    FURTHEST,
-    INSTRUCTION_BUDGET,
     LINE,
     MADE,
     OFF_PAGE,
@@ -23,11 +29,9 @@ from twin.nc.bytecode.frames import (
     UNCOMPILED_LINE,
     ExecutionState,
 )
-from twin.nc.bytecode.opcodes import INTERPRETED, NOT_COMPILED, PART_BITS, BytecodeTable, Opcode
 from twin.nc.bytecode.registers import MOST_EVENTS, MOST_WORDS, BlockTables, Constants, Rows, State
 from twin.nc.canonical import IntArray
-from twin.nc.compiled.kernels.block import Scratch, copy_state, execute_repeatedly
-from twin.nc.compiled.kernels.cycle import NO_ROOM
+from twin.nc.compiled.kernels.block import Scratch
 from twin.nc.compiled.kernels.dispatch import DONE, dispatch_loop
 from twin.nc.compiled.kernels.tokenizer import (
     UNSUPPORTED,
@@ -40,11 +44,10 @@ from twin.nc.compiled.kernels.variables import end_parts
 from twin.nc.path.contour_registers import OFF, ROOM, STAGE
 from twin.nc.text.lexer import LONGEST_LINE
 
-_BLOCK = int(Opcode.BLOCK)
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@kernel
+@compilable
 def run_program(
     data: ByteArray,
     starts: IntArray,
@@ -86,16 +89,16 @@ def run_program(
         line = int(progress[LINE])
         if line >= lines:
             return ENDED
-        compensates = contour.counts[STAGE] != OFF
-        room = ROOM if compensates else 1
+        room = ROOM if contour.counts[STAGE] != OFF else 1
         if progress[MADE] + room > len(rows.codes) or state.event_count[0] + MOST_EVENTS > len(
             rows.events
         ):
             return FULL
-        row = int(np.int64(table.first[line]))
+        row, words = int(np.int64(table.first[line])), 0
         if row == INTERPRETED:
             return TRAPPED
-        if row == NOT_COMPILED:
+        is_text = row == NOT_COMPILED
+        if is_text:
             at = line - first_line
             if at < 0 or at >= len(starts) - 1:
                 return OFF_PAGE
@@ -106,52 +109,21 @@ def run_program(
             words = read_words(data, begin, end, line_tables, scratch.token_kinds, scratch.values)
             if words == UNSUPPORTED:
                 return UNCOMPILED_LINE
-            if words == 0:
-                progress[LINE] = line + 1
-                continue
-            place = line << PART_BITS
-            budget = progress[INSTRUCTION_BUDGET] - (place <= progress[FURTHEST])
-            if budget < 0:
-                return TRAPPED
-            if compensates:
-                copy_state(state, scratch.snapshot)
-            made = execute_repeatedly(
-                ONCE,
-                line + 1,
-                words,
-                NO,
-                progress[MADE],
-                state.event_count[0],
-                tables,
-                constants,
-                state,
-                rows,
-                contour,
-                scratch,
-            )
-            if made < 0:
-                if compensates:
-                    copy_state(scratch.snapshot, state)
-                return (
-                    FULL if made == NO_ROOM else UNCOMPILED_LINE if made == UNSUPPORTED else TRAPPED
-                )
-            progress[FURTHEST] = max(progress[FURTHEST], place)
-            progress[INSTRUCTION_BUDGET], progress[MADE] = budget, made
-            progress[BLOCKS] += 1
-            progress[LINE] = line + 1
-            continue
+            row = WORDS_ALONE if words > 0 else NOTHING
         for _part in range(progress[PART]):
-            row = int(np.int64(table.operand[row])) if table.opcode[row] == _BLOCK else 0
-        if table.opcode[row] != _BLOCK:
+            row = (
+                int(np.int64(table.operand[row])) if table.opcode[row] == opcodes.BLOCK else NOTHING
+            )
+        if table.opcode[row] != opcodes.BLOCK:
             progress[LINE], progress[PART] = line + 1, 0
             continue
-        result = dispatch_loop(row, table, tables, constants, state, rows, routine, scratch)
+        result = dispatch_loop(row, words, table, tables, constants, state, rows, routine, scratch)
         if result != DONE:
-            return result
+            return UNCOMPILED_LINE if is_text and result == TRAPPED else result
     return PAUSED
 
 
-@array_kernel
+@compilable
 def unread_lines(
     data: ByteArray,
     starts: IntArray,

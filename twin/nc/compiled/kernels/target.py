@@ -1,6 +1,6 @@
 """Where a plain block goes: the goals of its axes, as ``ControlMotion.target`` and the polar forms have them."""
 
-from twin.compilation.kernel import inlined_kernel, kernel
+from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.registers import INCREMENTAL, UNIT, BlockTables, State
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.arc import value_of
@@ -9,7 +9,7 @@ from twin.nc.compiled.kernels.plane import place
 from twin.nc.compiled.kernels.tokenizer import AXIS
 
 
-@inlined_kernel
+@inlined
 def axis_target(
     axis: int,
     token_kinds: IntArray,
@@ -30,7 +30,7 @@ def axis_target(
     return value + state.programmed[axis] if modal[INCREMENTAL] != 0.0 else value
 
 
-@kernel
+@compilable
 def aim(
     plane: IntArray,
     token_kinds: IntArray,

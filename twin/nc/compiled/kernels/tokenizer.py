@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from twin.compilation.kernel import kernel
+from twin.compilation.compilable import compilable
 from twin.nc.bytecode.registers import MOST_WORDS
 from twin.nc.canonical import FloatArray, IntArray
 
@@ -49,7 +49,7 @@ class LineTables(NamedTuple):
     whole_line: npt.NDArray[np.bool_]
 
 
-@kernel
+@compilable
 def line_end(data: ByteArray, begin: int, following: int) -> int:
     """End of a line without its CR, LF or CR LF, given where it and the next one begin."""
     end = following
@@ -62,7 +62,7 @@ def line_end(data: ByteArray, begin: int, following: int) -> int:
     return end
 
 
-@kernel
+@compilable
 def read_words(
     data: ByteArray,
     begin: int,
@@ -89,7 +89,7 @@ def read_words(
         at = skip_blanks(data, at, end)
         if at == end:
             return count
-        letter = data[at] & _TO_UPPER
+        letter = int(data[at]) & _TO_UPPER
         if not _LETTER_A <= letter <= _LETTER_Z:
             at = _skip_comment(data, begin, at, end, tables)
             if at == UNSUPPORTED:
@@ -105,7 +105,7 @@ def read_words(
         count += 1
 
 
-@kernel
+@compilable
 def skip_blanks(data: ByteArray, at: int, end: int) -> int:
     """The first place from ``at`` on that holds no blank, or ``end``."""
     while at < end and (data[at] == _BLANK or data[at] == _TAB):
@@ -113,7 +113,7 @@ def skip_blanks(data: ByteArray, at: int, end: int) -> int:
     return at
 
 
-@kernel
+@compilable
 def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
     """A number and the place behind it; ``UNSUPPORTED`` where there is none or it is very long."""
     negative = at < end and data[at] == _MINUS
@@ -121,7 +121,7 @@ def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
         at += 1
     mantissa, digits, decimals, fraction = 0, 0, 0, False
     while at < end:
-        byte = data[at]
+        byte = int(data[at])
         if byte == _POINT:
             if fraction:
                 return 0.0, UNSUPPORTED
@@ -141,7 +141,7 @@ def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
     return (-value if negative else value), at
 
 
-@kernel
+@compilable
 def _skip_comment(data: ByteArray, begin: int, at: int, end: int, tables: LineTables) -> int:
     """The place behind the comment that begins here; ``UNSUPPORTED`` where none does."""
     for kind in range(len(tables.openings)):
@@ -162,7 +162,7 @@ def _skip_comment(data: ByteArray, begin: int, at: int, end: int, tables: LineTa
     return UNSUPPORTED
 
 
-@kernel
+@compilable
 def _behind(data: ByteArray, at: int, end: int, mark: ByteArray) -> int:
     """The place behind a mark of one or two bytes; ``UNSUPPORTED`` where it does not stand here."""
     if at >= end or data[at] != mark[0]:

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from twin.compilation.kernel import kernel
+from twin.compilation.compilable import compilable
+from twin.nc.bytecode.bytecode import PART_BITS
 from twin.nc.bytecode.frames import (
     AGAIN,
     BACK,
@@ -18,14 +19,13 @@ from twin.nc.bytecode.frames import (
     PART,
     VariableStore,
 )
-from twin.nc.bytecode.opcodes import PART_BITS
 from twin.nc.canonical import IntArray
 
 NO_SLOT = np.iinfo(np.int64).min
 """No variable."""
 
 
-@kernel
+@compilable
 def slot_of_number(numbered: IntArray, index: float) -> int:
     """Slot of the variable with a number; ``NO_SLOT`` where it has none."""
     if not 0.0 <= index < len(numbered) or index != np.floor(index):
@@ -35,13 +35,13 @@ def slot_of_number(numbered: IntArray, index: float) -> int:
     return numbered[int(index)]
 
 
-@kernel
+@compilable
 def own_value(memory: VariableStore, depth: int, slot: int) -> float:
     """What the program has given a variable; NaN: nothing."""
     return memory.common[slot] if slot >= 0 else memory.local[depth, ~slot]
 
 
-@kernel
+@compilable
 def load(memory: VariableStore, depth: int, slot: int) -> float:
     """Value of a variable, the job's where it has none of its own; NaN: none at all."""
     value = own_value(memory, depth, slot)
@@ -50,7 +50,7 @@ def load(memory: VariableStore, depth: int, slot: int) -> float:
     return value
 
 
-@kernel
+@compilable
 def store(memory: VariableStore, depth: int, slot: int, value: float) -> None:
     """Give a variable a value; NaN takes it away."""
     if slot >= 0:
@@ -62,7 +62,7 @@ def store(memory: VariableStore, depth: int, slot: int, value: float) -> None:
 _PART_MASK = (1 << PART_BITS) - 1
 
 
-@kernel
+@compilable
 def end_parts(progress: IntArray, calls: IntArray) -> None:
     """Parts that end by place and have been passed run again, or go back to their caller."""
     while progress[CALLS] > 0:
@@ -80,7 +80,7 @@ def end_parts(progress: IntArray, calls: IntArray) -> None:
         progress[LINE], progress[PART] = to >> PART_BITS, to & _PART_MASK
 
 
-@kernel
+@compilable
 def innermost(calls: IntArray, called: int) -> int:
     """How many parts are being run up to the innermost that a word ends; 0: there is none."""
     while called > 0 and calls[called - 1, LAST] != NO_LOCATION:

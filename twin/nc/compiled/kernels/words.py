@@ -7,7 +7,7 @@ left untouched; the control runs it and makes its diagnostics.
 
 import numpy as np
 
-from twin.compilation.kernel import inlined_kernel
+from twin.compilation.compilable import inlined
 from twin.nc.bytecode.registers import (
     ARC,
     CODES,
@@ -54,7 +54,7 @@ _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
 _STOP = int(Corner.EXACT_STOP)
 
 
-@inlined_kernel
+@inlined
 def execute_block(
     line: int,
     token_kinds: IntArray,
@@ -192,7 +192,7 @@ def execute_block(
     return after
 
 
-@inlined_kernel
+@inlined
 def _move(
     line: int,
     number: int,

@@ -2,8 +2,8 @@
 
 import math
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
@@ -42,7 +42,7 @@ def dwell(control: Control) -> None:
 def compile_shift(block: BlockWords, assembler: Assembler) -> None:
     """G54; G53, which has no axes."""
     compile_programmed_shift("offset", block, assembler)
-    assembler.emit(Opcode.REFRAME)
+    assembler.emit(opcodes.REFRAME)
 
 
 def free_plane(control: Control) -> None:

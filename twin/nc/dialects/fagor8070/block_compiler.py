@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070 import flow, polar, subroutines
@@ -187,7 +187,7 @@ def _return(_control: Control, _statement: Statement, assembler: Assembler) -> N
 
 def _dwell(control: Control, statement: Statement, assembler: Assembler) -> None:
     assembler.value(control.expression(statement.text, statement.text_column))
-    assembler.emit(Opcode.DWELL)
+    assembler.emit(opcodes.DWELL)
 
 
 _STATEMENTS: dict[str, Callable[[Control, Statement, Assembler], None]] = {

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Unpack
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.canonical import Corner
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Action, Compiler, GCode, Interpolation
@@ -37,7 +37,7 @@ def compile_plain_dwell(block: BlockWords, assembler: Assembler) -> None:
     if block.words or block.codes or block.functions:
         raise UnsupportedError
     assembler.word_value(word)
-    assembler.emit(Opcode.DWELL)
+    assembler.emit(opcodes.DWELL)
 
 
 def plain_dwell(control: Control, word: Word) -> None:
@@ -55,7 +55,7 @@ def auxiliary(control: Control, word: Word) -> None:
 def compile_auxiliary(block: BlockWords, assembler: Assembler) -> None:
     """H, for the compiled tier."""
     assembler.word_value(block.words.pop("H"))
-    assembler.emit(Opcode.AUXILIARY)
+    assembler.emit(opcodes.AUXILIARY)
 
 
 def _compensate(side: float) -> Action:
@@ -91,7 +91,7 @@ def _and_forget_polar(compiler: Compiler | None) -> Compiler:
 
     def both(block: BlockWords, assembler: Assembler) -> None:
         compiler(block, assembler)
-        assembler.emit(Opcode.FORGET_POLAR)
+        assembler.emit(opcodes.FORGET_POLAR)
 
     return both
 

@@ -1,7 +1,7 @@
 """Planes, offsets and tools of the Fagor CNC 8070."""
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
@@ -95,28 +95,28 @@ def compile_tool_offset(block: BlockWords, assembler: Assembler) -> None:
     value = block.words.pop("D").value
     if value not in (0.0, 1.0):
         raise UnsupportedError
-    assembler.emit(Opcode.OFFSET_ON, int(value == 1.0))
-    assembler.emit(Opcode.TOOL_LENGTH)
+    assembler.emit(opcodes.OFFSET_ON, int(value == 1.0))
+    assembler.emit(opcodes.TOOL_LENGTH)
 
 
 def compile_tool(block: BlockWords, assembler: Assembler) -> None:
     """T, for the compiled tier."""
     assembler.word_value(block.words.pop("T"))
-    assembler.emit(Opcode.TOOL, 1)
+    assembler.emit(opcodes.TOOL, 1)
 
 
 def compile_tool_change(_block: BlockWords, assembler: Assembler) -> None:
     """M06, for the compiled tier."""
-    assembler.emit(Opcode.CHANGE_TOOL)
-    assembler.emit(Opcode.OFFSET_ON, 1)
-    assembler.emit(Opcode.TOOL_LENGTH)
+    assembler.emit(opcodes.CHANGE_TOOL)
+    assembler.emit(opcodes.OFFSET_ON, 1)
+    assembler.emit(opcodes.TOOL_LENGTH)
 
 
 def compile_increment(block: BlockWords, assembler: Assembler) -> None:
     """G158, for the compiled tier."""
     compile_programmed_shift("increment", block, assembler)
-    assembler.emit(Opcode.REFRAME)
-    assembler.emit(Opcode.FORGET_POLAR)
+    assembler.emit(opcodes.REFRAME)
+    assembler.emit(opcodes.FORGET_POLAR)
 
 
 def change_tool(control: Control) -> None:

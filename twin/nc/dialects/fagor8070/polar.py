@@ -3,8 +3,8 @@
 import dataclasses
 from collections.abc import Iterable
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode
@@ -79,7 +79,7 @@ def compile_polar_origin(block: BlockWords, assembler: Assembler) -> None:
         raise UnsupportedError
     for word in given:
         assembler.word_value(word)
-    assembler.emit(Opcode.POLAR_ORIGIN, len(given))
+    assembler.emit(opcodes.POLAR_ORIGIN, len(given))
 
 
 def is_polar(compiler: BlockCompiler, words: Iterable[Word]) -> bool:

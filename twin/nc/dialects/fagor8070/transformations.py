@@ -1,7 +1,7 @@
 """Mirror, scale and rotation of the Fagor CNC 8070, and the same for the compiled tier."""
 
+from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.bytecode.opcodes import Opcode
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Compiler
 from twin.nc.control.control import Control
@@ -100,7 +100,7 @@ def compile_mirror_off(_block: BlockWords, assembler: Assembler) -> None:
     """G10."""
     for index in range(3):
         assembler.constant(1.0)
-        assembler.emit(Opcode.MIRROR, index)
+        assembler.emit(opcodes.MIRROR, index)
     _compile_update(assembler)
 
 
@@ -109,7 +109,7 @@ def compile_mirror(index: int) -> Compiler:
 
     def write(_block: BlockWords, assembler: Assembler) -> None:
         assembler.constant(-1.0)
-        assembler.emit(Opcode.MIRROR, index)
+        assembler.emit(opcodes.MIRROR, index)
         _compile_update(assembler)
 
     return write
@@ -126,14 +126,14 @@ def compile_mirror_axes(block: BlockWords, assembler: Assembler) -> None:
         raise UnsupportedError
     for index, word in words:
         assembler.word_value(word)
-        assembler.emit(Opcode.MIRROR, index)
+        assembler.emit(opcodes.MIRROR, index)
     _compile_update(assembler)
 
 
 def compile_scale(block: BlockWords, assembler: Assembler) -> None:
     """G72."""
     assembler.word_value(block.take("S"), 1.0)
-    assembler.emit(Opcode.SCALE)
+    assembler.emit(opcodes.SCALE)
     _compile_update(assembler)
 
 
@@ -147,14 +147,14 @@ def compile_rotation(block: BlockWords, assembler: Assembler) -> None:
     if angle is None:
         if center != [None, None]:
             raise UnsupportedError
-        assembler.emit(Opcode.END_ROTATION)
+        assembler.emit(opcodes.END_ROTATION)
     else:
         for word in (angle, *center):
             assembler.word_value(word)
-        assembler.emit(Opcode.ROTATE)
+        assembler.emit(opcodes.ROTATE)
     _compile_update(assembler)
 
 
 def _compile_update(assembler: Assembler) -> None:
-    assembler.emit(Opcode.TRANSFORM)
-    assembler.emit(Opcode.FORGET_POLAR)
+    assembler.emit(opcodes.TRANSFORM)
+    assembler.emit(opcodes.FORGET_POLAR)

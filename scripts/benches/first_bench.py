@@ -1,0 +1,59 @@
+"""The first minute: what commands cost where no kernel is compiled yet, and where all are.
+
+Processor time of the command and of its workers. The first figure is taken with an empty folder for
+kernels, the other one with the same folder again. An installation from a wheel has its kernels from
+the beginning, and costs what the other figure says.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from benches.row import Row, processor_seconds
+
+from twin.files.shipped import resource_root
+
+LINES = 1000
+TEN = ("codesys", "fagor8070/omitted_words.toml", "fagor8070/full_circles.toml",
+       "fagor8070/three_planes.toml", "mefi")  # fmt: skip
+"""Ten small programs."""
+
+
+def rows() -> Iterator[Row]:
+    """Each command on a fresh folder for kernels, then again."""
+    programs = resource_root("programs")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        long = folder / "long.nc"
+        long.write_text(
+            "".join(f"N{n} G1 X{n % 97} Y{n % 13} F1000\n" for n in range(1, LINES + 1))
+        )
+        ten = [str(programs / each) for each in TEN]
+        tasks = {
+            f"interpret, {LINES} lines": ["interpret", str(long), "--dialect", "gost"],
+            "run of a helix": [
+                "run",
+                str(programs / "mefi/helix.toml"),
+                "--out",
+                str(folder / "o"),
+            ],
+            "check of two programs, two workers": ["check", *ten[1:3], "--jobs", "2"],
+            "check of ten programs, two workers": ["check", *ten, "--jobs", "2"],
+            "rehearsal of a training scene": ["train", "mefi_lead", "--rehearse"],
+        }
+        for number, (task, command) in enumerate(tasks.items()):
+            kernels = folder / f"kernels{number}"
+            cold = _seconds(command, kernels)
+            yield Row("first", task, cold, "s", "with kernels", _seconds(command, kernels))
+
+
+def _seconds(command: list[str], kernels: Path) -> float:
+    began = processor_seconds()
+    subprocess.run(  # noqa: S603 (this project's own command)
+        [sys.executable, "-m", "twin", *command],
+        env=os.environ | {"NUMBA_CACHE_DIR": str(kernels)}, check=True, capture_output=True,
+    )  # fmt: skip
+    return processor_seconds() - began

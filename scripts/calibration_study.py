@@ -1,0 +1,159 @@
+"""Synthetic machines whose truth is known: do the intervals of ``twin calibrate`` cover it?
+
+``python scripts/calibration_study.py [MACHINES] [SEED]`` draws machines (200 by default) with random
+drives, noise, quantisation, delay and rates from 50 Hz to 4 kHz, with force, with a current or with
+positions alone; prints by parameter how many intervals cover the truth, and ends with 1 where less
+than 90 % or more than 99 % of all do, or where something that cannot be told is not named.
+"""
+
+import collections
+import dataclasses
+import sys
+
+import numpy as np
+
+from twin.calibrate.fit.parameters import Parameters, of_base
+from twin.calibrate.fit.simulation import command_of, seen_at, simulate_axis
+from twin.calibrate.fit.stages import AxisFit, fit_axis
+from twin.calibrate.fit.stretch import stretches_of
+from twin.files.shipped import machine_file
+from twin.logs.column_map import AxisColumns, ColumnTable
+from twin.logs.machine_log import AxisLog
+from twin.machine.config import read_machine
+from twin.nc.canonical import FloatArray
+
+RATES = (50, 100, 250, 500, 1000, 4000)
+BASE_MASS = 1041.154
+SECONDS = 6.0
+_FINE_S = 0.00025
+_AVERAGED = 1000
+"""Rate above which ``twin calibrate`` averages neighbouring samples."""
+_ANY = ColumnTable(column="a", unit="mm")
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Drawn:
+    """A machine and its log."""
+
+    truth: Parameters
+    log: AxisLog
+    rate: int
+    kind: str
+
+
+def draw(random: np.random.Generator) -> Drawn:
+    """Draw a machine, run it and log it."""
+    mass = float(random.uniform(200.0, 1500.0))
+    base = of_base(read_machine(machine_file("mill4")).axis("X"), mass)
+    truth = dataclasses.replace(
+        base,
+        kv=float(random.uniform(2.0, 10.0)),
+        damping_ratio=float(random.uniform(0.4, 1.5)),
+        viscous_friction=float(random.uniform(0.0, 0.005)) * mass,
+        dry_friction=float(random.uniform(0.05, 0.6)) * mass,
+        constant_force=float(random.uniform(-0.2, 0.2)) * mass,
+        velocity_feedforward=0.0,
+        current_scale=float(random.uniform(30.0, 300.0)),
+        current_at_rest=float(random.uniform(-0.3, 0.3)),
+        delay=float(random.choice([0.0, random.uniform(0.0, 0.005)])),
+    )
+    rate, kind = int(random.choice(RATES)), str(random.choice(["positions", "current", "force"]))
+    asked = _course(random)
+    command = command_of("linear", _FINE_S, asked, asked)
+    motion = simulate_axis(truth, command)
+    every = round(1.0 / rate / _FINE_S)
+    seen = seen_at(motion.position, motion.velocity, command, truth.delay)[::every]
+    noise, step = random.uniform(0.1e-3, 2e-3), random.choice([0.0, 0.1e-3, 1e-3])
+    actual = seen + noise * random.standard_normal(len(seen))
+    actual = np.round(actual / step) * step if step else actual
+    force = motion.force[::every] + 0.02 * mass * random.standard_normal(len(seen))
+    more: dict[str, FloatArray] = {}
+    if kind == "force":
+        more["force"] = force
+    elif kind == "current":
+        more["current"] = force / truth.current_scale + truth.current_at_rest
+    columns = AxisColumns(command=_ANY, actual=_ANY)
+    return Drawn(truth, AxisLog("linear", asked[::every], actual, more, columns), rate, kind)
+
+
+def _course(random: np.random.Generator) -> FloatArray:
+    """Strokes with smooth starts, slow reversals and rests, shape (n,) [mm]."""
+    time = np.arange(0.0, SECONDS, _FINE_S)
+    change = np.zeros(len(time))
+    begin = 0.1
+    while begin < SECONDS - 1.0:
+        speed, rise = float(random.choice([3, 20, 80, 200, 350])), float(random.uniform(0.06, 0.2))
+        hold = float(random.uniform(0.1, 0.4))
+        for sense in (1, -1):
+            for start, sign in ((begin, sense), (begin + rise + hold, -sense)):
+                part = (time - start) / rise
+                inside = (part > 0) & (part < 1)
+                change[inside] += sign * speed / rise * (1 - np.cos(2 * np.pi * part[inside]))
+            begin += 2 * rise + hold + 0.03
+    velocity = np.cumsum(change) * _FINE_S
+    return np.cumsum(velocity) * _FINE_S
+
+
+def fit(drawn: Drawn) -> AxisFit:
+    """Fit a drawn machine on mill4 as ``twin calibrate`` does."""
+    axis, rate = drawn.log, drawn.rate
+    if rate > _AVERAGED:
+        times = rate // _AVERAGED
+        axis = dataclasses.replace(
+            axis, command=_mean(axis.command, times), actual=_mean(axis.actual, times),
+            more={role: _mean(values, times) for role, values in axis.more.items()},
+        )  # fmt: skip
+        rate = _AVERAGED
+    time = np.arange(len(axis.command)) / rate
+    base = of_base(read_machine(machine_file("mill4")).axis("X"), BASE_MASS)
+    return fit_axis("linear", stretches_of(axis, time, 1.0 / rate, ((0, len(time)),)), base)
+
+
+def _mean(values: FloatArray, times: int) -> FloatArray:
+    return values[: len(values) // times * times].reshape(-1, times).mean(axis=1)
+
+
+def covered(drawn: Drawn, found: AxisFit) -> dict[str, bool]:
+    """Which intervals hold the truth; what stands on the base's mass is held to that."""
+    ratio = 1.0 if drawn.kind == "force" else BASE_MASS / drawn.truth.mass
+    told = dict(found.fitted)
+    told |= {name: interval for name, (interval, _) in found.conditional.items()}
+    scaled = ("dry_friction", "constant_force", "viscous_friction", "current_scale")
+    return {
+        name: interval.low
+        <= getattr(drawn.truth, name) * (ratio if name in scaled else 1.0)
+        <= interval.high
+        for name, interval in told.items()
+    }
+
+
+def unnamed(drawn: Drawn, found: AxisFit) -> list[str]:
+    """What this log cannot tell and the fit does not name."""
+    hidden = {"positions": ["mass", "viscous_friction"], "current": ["mass"], "force": []}
+    return [name for name in hidden[drawn.kind] if name not in found.undetermined]
+
+
+def main(arguments: list[str]) -> int:
+    """Run the study and print its table."""
+    count, seed = (int(text) for text in [*arguments, *["200", "1"][len(arguments) :]])
+    random = np.random.default_rng(seed)
+    hits: dict[str, list[bool]] = collections.defaultdict(list)
+    lost = 0
+    for number in range(count):
+        drawn = draw(random)
+        found = fit(drawn)
+        marks = covered(drawn, found)
+        for name, hit in marks.items():
+            hits[name].append(hit)
+        lost += bool(unnamed(drawn, found))
+        missed = " ".join(name for name, hit in marks.items() if not hit)
+        print(f"{number:4} {drawn.rate:5} Hz {drawn.kind:10} {missed}", flush=True)
+    every = [hit for found in hits.values() for hit in found]
+    for name, found in sorted(hits.items()):
+        print(f"{name:24} {np.mean(found):6.1%} of {len(found)}")
+    print(f"{'all':24} {np.mean(every):6.1%} of {len(every)}; not named: {lost} of {count}")
+    return 0 if 0.90 <= np.mean(every) <= 0.99 and not lost else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

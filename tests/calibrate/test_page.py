@@ -1,0 +1,33 @@
+"""The page says the answer, shows every log, and needs no other file."""
+
+import re
+
+import pytest
+from machine_logs import logged, mill, strokes, without_force
+
+from twin.calibrate.calibrate import calibrate
+from twin.calibrate.report.page import calibration_page
+from twin.calibrate.result import verdict_sentence
+
+
+@pytest.fixture(scope="module")
+def page() -> str:
+    log = without_force(logged(mill(), strokes(3.0)))
+    result = calibrate(mill(), [log], [log])
+    text = calibration_page(result)
+    sentence = verdict_sentence("X", result.axes["X"], result.logs)
+    assert sentence.startswith("X: predicts the lag of a log that it has not seen to ")
+    assert sentence in text
+    return text
+
+
+def test_it_shows_overlays_what_is_left_spectrum_and_correlations(page: str) -> None:
+    # Two logs with lag, rest and spectrum each, and the correlations.
+    assert page.count("<svg") == 2 * 3 + 1
+    for word in ("hold-out", "damping_ratio", "mass", "What they do not tell"):
+        assert word in page
+
+
+def test_it_needs_no_other_file(page: str) -> None:
+    assert not re.search(r"<(script|link|img|iframe)\b", page)
+    assert not re.search(r"url\((?!#)", page)

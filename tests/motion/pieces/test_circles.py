@@ -1,0 +1,41 @@
+"""How fast circles are, against the velocity at which their jerk alone reaches the limit."""
+
+import math
+
+import pytest
+from motion_checks import assert_within_limits
+from motion_programs import PERIOD, Program, duration, mill, run
+
+from twin.nc.canonical import Corner
+
+
+def circles(radius: float, turns: int, blocks: int = 1) -> Program:
+    program = Program()
+    program.corner = Corner.EXACT_PATH
+    for _ in range(blocks):
+        program.arc((radius, 0.0, 0.0), (0.0, 0.0, 1.0), 360.0 * turns / blocks, feed=1e6)
+    return program
+
+
+def share_of_jerk_velocity(radius: float, turns: int) -> float:
+    """Mean velocity, ramps included, over (J R²)^(1/3)."""
+    machine = mill()
+    seconds = duration(circles(radius, turns), machine)
+    return math.tau * radius * turns / seconds / (machine.jerk[1] * radius**2) ** (1.0 / 3.0)
+
+
+@pytest.mark.parametrize("radius", [0.5, 5.0])
+def test_the_longer_a_path_goes_round_the_more_of_the_jerk_it_uses(radius: float) -> None:
+    shares = [share_of_jerk_velocity(radius, turns) for turns in (1, 3, 10)]
+    assert shares == sorted(shares)
+    assert shares[-1] > 0.85
+
+
+@pytest.mark.parametrize("turns", [1, 3, 12])
+def test_circles_keep_the_limits(turns: int) -> None:
+    assert_within_limits(run(circles(2.0, turns), mill()), mill(), PERIOD)
+
+
+def test_it_does_not_matter_how_many_blocks_make_a_circle() -> None:
+    whole, cut = (duration(circles(3.0, 4, blocks), mill()) for blocks in (1, 4))
+    assert cut == pytest.approx(whole, rel=1e-6)

@@ -1,0 +1,126 @@
+"""A recorded run on a page: what it is sent, and that it can be played and scrubbed."""
+
+import importlib.util
+import struct
+import zlib
+
+import numpy as np
+import pytest
+from chromium import CHROMIUM
+from panel_player import browser
+
+from twin.commands.run import run_and_print
+from twin.commands.view import view
+from twin.cutting.patches import LEVELS
+from twin.cutting.recut import recut
+from twin.errors import UsageError
+from twin.run.replay import open_scene
+from twin.view.app import open_view
+from twin.view.recorded_run import RecordedRun
+from twin.web.files import THREE
+
+PROGRAM = "%SQUARE\nN10 G90 G17 T1 S3000 M03\nN20 G00 X0 Y0 Z5\nN30 G01 Z-2 F600\nN40 X20 F2000\nN50 Y10\nN60 M30\n"
+JOB = """
+program = "square.nc"
+dialect = "fagor8070"
+[stock]
+shape = "box"
+size = [60.0, 40.0, 20.0]
+cell = 0.5
+[[tools]]
+number = 1
+diameter = 8.0
+"""
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("view")
+    (folder / "square.nc").write_text(PROGRAM, encoding="utf-8")
+    (folder / "square.toml").write_text(JOB, encoding="utf-8")
+    out = folder / "out"
+    run_and_print(
+        folder / "square.toml", out, dialect=None, machine=None, video=False, strict=False
+    )
+    with open_scene(out / "recording.h5") as (scene, preparation):
+        yield RecordedRun(scene, preparation.machine), scene
+
+
+def columns(content: bytes) -> np.ndarray:
+    count, axes = struct.unpack("<II", content[:8])
+    return np.frombuffer(content[8:], "<f4").reshape(7 + axes, count)
+
+
+def test_the_samples_are_those_of_the_recording(recorded):
+    run, scene = recorded
+    found = columns(run.samples())
+    recording = scene.recording
+    assert found.shape[1] == len(recording)
+    assert np.allclose(found[0], recording.column("time"), atol=1e-4)
+    assert np.array_equal(found[1], recording.column("line"))
+    assert np.allclose(found[7:].T, recording.column("joint/position"), atol=1e-3)
+    errors = recording.contour_um(0, len(recording))
+    assert found[3].max() == pytest.approx(errors.max(), rel=1e-5)
+
+
+def test_of_many_samples_a_part_is_sent_that_keeps_the_greatest_error(recorded, monkeypatch):
+    run, scene = recorded
+    monkeypatch.setattr("twin.view.recorded_run.MOST_SAMPLES", 500)
+    thinned = RecordedRun(scene, run._machine)
+    found = columns(thinned.samples())
+    errors = scene.recording.contour_um(0, len(scene.recording))
+    whole = len(errors) // thinned._every * thinned._every
+    assert found.shape[1] <= 500
+    assert found[3].max() == pytest.approx(errors[:whole].max(), rel=1e-5)
+
+
+def test_the_cuts_end_with_the_part_as_it_was_cut(recorded):
+    run, scene = recorded
+    grid = run.stock_grid()
+    shown = np.zeros((grid["rows"], grid["columns"]))
+    times = []
+    for cut in run.cuts():
+        length, time_s = struct.unpack("<If", cut[:8])
+        assert length == len(cut) - 8
+        row, column, rows, width = struct.unpack("<HHHH", cut[16:24])
+        levels = np.frombuffer(zlib.decompress(cut[24:]), "<u2").reshape(rows, width)
+        shown[row : row + rows, column : column + width] = levels
+        times.append(time_s)
+    part = recut(scene.recording, scene.summary, scene.stock).map
+    heights = part.bottom + (part.top - part.bottom) * shown / LEVELS
+    assert times == sorted(times)
+    assert len(times) > 20
+    # A cut is reckoned a little otherwise where a chunk of samples ends.
+    assert np.abs(heights - part.heights).max() < 1e-3
+
+
+def test_what_cannot_be_viewed_is_refused(tmp_path):
+    with pytest.raises(UsageError, match="no such file"):
+        view(tmp_path / "nothing.h5", 0)
+
+
+@pytest.mark.skipif(
+    CHROMIUM is None, reason="no Chromium here; Debian has it in the package chromium"
+)
+@pytest.mark.skipif(importlib.util.find_spec("playwright") is None, reason="no playwright")
+@pytest.mark.skipif(not THREE.is_dir(), reason="three.js is missing: run scripts/fetch_three.py")
+def test_a_run_is_played_and_scrubbed_on_its_page(recorded):
+    run, _ = recorded
+    wrong: list[str] = []
+    with open_view(run) as address, browser() as opened:
+        page = opened.new_page(viewport={"width": 800, "height": 500})
+        page.on("console", lambda message: wrong.append(message.text))
+        page.goto(address)
+        assert "#" not in page.url
+        page.wait_for_selector("body[data-ready=yes]")
+        page.wait_for_selector("body[data-view=ready]")
+        assert "Z" in page.inner_text("#axes")
+        page.click("#line5")
+        page.wait_for_selector("body[data-line='5']")
+        page.locator("#time").fill("0")
+        page.click("#play")
+        page.wait_for_selector("body[data-line='4']")
+        page.click("#play")
+        assert page.inner_text("#play") == "Play"
+        page.click("text=Worst")
+    assert not wrong

@@ -1,0 +1,67 @@
+"""Functions of two speeds: CPython runs them as they stand, kernels compile them into themselves.
+
+To declare one costs nothing: Numba is loaded by the first kernel, and with it what was declared
+becomes known to the compiler. Such a function has one source for both speeds, and no compiled form
+of its own: it is compiled once, as a part of the kernels that call it.
+"""
+
+import functools
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple, TypeVar, cast
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class Declared(NamedTuple):
+    """A function that kernels may call.
+
+    Attributes:
+        called: What stands in their text.
+        compiled: What is compiled for it.
+        options: Of the compiler.
+    """
+
+    called: Callable[..., Any]
+    compiled: Callable[..., Any]
+    options: Mapping[str, Any]
+
+
+_declared: list[Declared] = []
+
+
+def compilable(function: Function) -> Function:
+    """Let kernels compile a function that makes no array."""
+    _declared.append(Declared(function, function, {"_nrt": False}))
+    return function
+
+
+def inlined(function: Function) -> Function:
+    """The same, as a part of each function that calls it.
+
+    A call hands over hundreds of values, one for each size and step of a column, which may take
+    longer than the block that is run.
+    """
+    _declared.append(Declared(function, function, {"_nrt": False, "forceinline": True}))
+    return function
+
+
+def compilable_arithmetic(function: Function) -> Function:
+    """The same, where an undefined value comes out as infinity or NaN and nothing is raised."""
+
+    @functools.wraps(function)
+    def run(*values: Any) -> Any:
+        try:
+            return function(*values)
+        except (ArithmeticError, ValueError):
+            return math.nan
+
+    _declared.append(Declared(run, function, {"_nrt": False, "error_model": "numpy"}))
+    return cast("Function", run)
+
+
+def take_declared() -> list[Declared]:
+    """What was declared since this was asked last."""
+    taken = _declared.copy()
+    _declared.clear()
+    return taken

@@ -1,0 +1,36 @@
+"""Heights of some cells as bytes, for pages that draw the stock."""
+
+import struct
+import zlib
+
+import numpy as np
+
+from twin.cutting.cut import Rectangle
+from twin.cutting.height_map import HeightMap
+
+PATCH = 2
+"""First byte of a patch."""
+LEVELS = 65535
+"""Heights travel as so many steps between the blank's underside and its top."""
+
+
+def patch_message(stock: HeightMap, rectangle: Rectangle, epoch: int = 0) -> bytes:
+    """Kind, epoch, row, column, rows, columns, then the cells' levels, deflated."""
+    row, row_end, column, column_end = rectangle
+    heights = stock.heights[row:row_end, column:column_end]
+    share = (heights - stock.bottom) / (stock.top - stock.bottom)
+    levels = np.rint(LEVELS * np.clip(share, 0.0, 1.0)).astype("<u2")
+    head = struct.pack("<BxxxIHHHH", PATCH, epoch, row, column, *levels.shape)
+    return head + zlib.compress(levels.tobytes(), 1)
+
+
+def grid_of(stock: HeightMap) -> dict[str, object]:
+    """What a page must know of a height map to draw it: lengths in mm."""
+    return {
+        "origin": stock.origin,
+        "cell": stock.cell,
+        "rows": stock.heights.shape[0],
+        "columns": stock.heights.shape[1],
+        "bottom": stock.bottom,
+        "top": stock.top,
+    }

@@ -1,0 +1,113 @@
+"""What goes up and down with the tool above its holder, as upright solids: nose, housing, head."""
+
+import dataclasses
+
+import mujoco
+import numpy as np
+
+from twin.machine.config import Machine
+from twin.machine.model import build_spec, clearance_model
+from twin.machine.tool_shape import (
+    COLLISION_GROUP,
+    TOOL_NAMES,
+    TOOL_SIDE,
+    ToolShape,
+    tool_cylinders,
+)
+from twin.nc.canonical import FloatArray
+from twin.units import MM
+
+_UPRIGHT = 1.0 - 1e-9
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class HeadSolid:
+    """An upright cylinder or box that is fixed to the spindle's housing.
+
+    Attributes:
+        name: Of the geom.
+        round: A cylinder; else a box.
+        half: Half of its size along machine X and Y [mm].
+        offset: Its middle off the spindle's axis along machine X and Y [mm].
+        above: Height of its lower end above the spindle nose, or, of what ``above_tip`` gives,
+            above the tip [mm].
+    """
+
+    name: str
+    round: bool
+    half: tuple[float, float]
+    offset: tuple[float, float]
+    above: float
+
+
+class HeadShape:
+    """The solids around the spindle, as the model's collision geoms say.
+
+    A geom that is neither an upright cylinder nor an upright box counts as the box around it.
+    """
+
+    def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
+        """Measure the model with all axes at zero.
+
+        Args:
+            machine: The machine file.
+            model: As ``clearance_model`` makes it; a tool in its spindle is passed over.
+        """
+        self._flange = machine.file.spindle.flange_diameter
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        nose = data.site("spindle_nose")
+        body = int(model.site("spindle_nose").bodyid[0])
+        self._solids = tuple(
+            _solid(model, data, geom, nose.xpos)
+            for geom in range(model.ngeom)
+            if model.geom_group[geom] == COLLISION_GROUP
+            and model.geom_contype[geom] & TOOL_SIDE
+            and model.body_weldid[model.geom_bodyid[geom]] == model.body_weldid[body]
+            and model.geom(geom).name not in TOOL_NAMES
+        )
+
+    def above_tip(self, tool: ToolShape) -> tuple[HeadSolid, ...]:
+        """The holder's flange and what is above it, with a tool in the spindle."""
+        pieces = tool_cylinders(tool, self._flange)
+        flange = tuple(
+            HeadSolid(
+                "holder's flange",
+                True,
+                (piece.radius, piece.radius),
+                (0.0, 0.0),
+                tool.length + piece.bottom,
+            )
+            for piece in pieces
+            if piece.name == "tool_flange"
+        )
+        raised = (
+            dataclasses.replace(solid, above=solid.above + tool.length) for solid in self._solids
+        )
+        return (*flange, *raised)
+
+
+def head_shape(machine: Machine) -> HeadShape:
+    """The solids around a machine's spindle.
+
+    Raises:
+        ConfigError: The model is wrong.
+    """
+    return HeadShape(machine, clearance_model(machine, build_spec(machine)))
+
+
+def _solid(model: mujoco.MjModel, data: mujoco.MjData, geom: int, nose: FloatArray) -> HeadSolid:
+    turn = data.geom_xmat[geom].reshape(3, 3)
+    upright = abs(turn[2, 2]) > _UPRIGHT
+    form = mujoco.mjtGeom(model.geom_type[geom])
+    aabb = model.geom_aabb[geom]
+    middle = data.geom_xpos[geom] + turn @ aabb[:3] - nose
+    half = np.abs(turn) @ aabb[3:]
+    x, y, lower = (float(value) / MM for value in (middle[0], middle[1], middle[2] - half[2]))
+    return HeadSolid(
+        model.geom(geom).name,
+        upright and form == mujoco.mjtGeom.mjGEOM_CYLINDER,
+        (float(half[0]) / MM, float(half[1]) / MM),
+        (x, y),
+        lower,
+    )

@@ -1,0 +1,42 @@
+"""The kernels of the language at both speeds: as CPython runs them, and as Numba compiles them.
+
+Only these two have a compiled form of their own; all other functions of the language are parts of
+them. To name them loads no compiler.
+"""
+
+import functools
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from twin.nc.compiled.kernels import program
+
+
+class Kernels(NamedTuple):
+    """The entries of one speed.
+
+    Attributes:
+        run_program: As ``program`` has it.
+        unread_lines: As ``program`` has it.
+    """
+
+    run_program: Callable[..., int]
+    unread_lines: Callable[..., program.IntArray]
+
+
+def _run_program(*arguments: Any) -> int:
+    """An undefined value is infinity or NaN, as the compiled form has it, and stops its block."""
+    with np.errstate(all="ignore"):
+        return program.run_program(*arguments)
+
+
+COLD = Kernels(_run_program, program.unread_lines)
+
+
+@functools.cache
+def hot() -> Kernels:
+    """The compiled ones; the first call loads Numba."""
+    from twin.compilation.kernel import array_kernel, kernel
+
+    return Kernels(kernel(program.run_program), array_kernel(program.unread_lines))

@@ -1,0 +1,182 @@
+// Plays a recorded run: what stands at a moment is looked up in its samples, the view draws it.
+
+import { View } from "../view/view.js";
+import { readPatch } from "../view/wire.js";
+
+const VIEWS = { front: "Front", top: "Top", tool: "Tool", part: "Part", fit: "Fit" };
+const SHOWN = { trail: "Path", stock: "Part as cut", collision: "Collision bodies" };
+const COLOURS = [[0.15, 0.34, 0.84], [0.16, 0.71, 0.66], [0.56, 0.82, 0.29], [0.95, 0.76, 0.19], [0.88, 0.23, 0.14]];
+
+const at = (id) => document.getElementById(id);
+const button = (text, act, pressed = null) => {
+  const made = document.createElement("button");
+  made.type = "button";
+  made.textContent = text;
+  if (pressed !== null) made.setAttribute("aria-pressed", pressed);
+  made.addEventListener("click", () => act(made));
+  return made;
+};
+const banner = (text) => { at("banner").textContent = text; at("banner").hidden = !text; };
+
+const run = await (await fetch("run.json")).json();
+const base = new URL("./", location.href).pathname;
+const view = new View(at("canvas"), base, (what, detail) => {
+  document.body.dataset.view = what;
+  if (what === "failed") banner(`The view cannot be drawn by this browser: ${detail}`);
+});
+
+banner("Reading the recording …");
+const buffer = await (await fetch("samples.bin")).arrayBuffer();
+const [count, axes] = new Uint32Array(buffer, 0, 2);
+const column = (number) => new Float32Array(buffer, 8 + 4 * count * number, count);
+const [times, lines, tools, errors] = [0, 1, 2, 3].map(column);
+const tips = [4, 5, 6].map(column), joints = Array.from({ length: axes }, (_, axis) => column(7 + axis));
+const last = count - 1;
+let now = 0, tool = null, playing = false, before = 0, shown_line = -1;
+
+/** The last sample that is not later than a time. */
+function sample(time) {
+  let low = 0, high = last;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (times[middle] <= time) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}
+
+function show(index) {
+  now = index;
+  if (tools[index] !== tool) view.say("load", tool = tools[index]);
+  const machine = joints.map((values) => values[index]);
+  view.say("moment", {
+    time: times[index], machine, tip: tips.map((values) => values[index]), turns: playing, coolant: false, cutting: false,
+  });
+  [...at("axes").rows].forEach((row, axis) => {
+    row.cells[1].textContent = (machine[axis] - run.part_zero[axis]).toFixed(3);
+    row.cells[2].textContent = machine[axis].toFixed(3);
+  });
+  at("figures").textContent = `T ${tool}${run.has_error ? ` · contour error ${errors[index].toFixed(1)} µm` : ""}`;
+  at("clock").textContent = `${times[index].toFixed(3)} of ${times[last].toFixed(1)} s`;
+  at("time").value = times[index];
+  const line = lines[index];
+  if (line !== shown_line) {
+    at("program").querySelector(".runs")?.classList.remove("runs");
+    const row = at("program").children[line - 1];
+    row?.classList.add("runs");
+    row?.scrollIntoView({ block: "nearest" });
+    shown_line = line;
+  }
+  document.body.dataset.line = line;
+}
+
+function play(on) {
+  playing = on;
+  at("play").textContent = on ? "Pause" : "Play";
+  at("play").setAttribute("aria-pressed", on);
+  if (on && now === last) show(0);
+  before = performance.now();
+  time = times[now];
+  if (on) requestAnimationFrame(step);
+}
+
+let time = 0;
+function step(clock) {
+  if (!playing) return;
+  time += 0.001 * (clock - before) * Number(at("speed").value);
+  before = clock;
+  show(sample(time));
+  if (now === last) play(false);
+  else requestAnimationFrame(step);
+}
+
+function jump(index) {
+  play(false);
+  show(index);
+}
+
+function colour(share) {
+  const place = Math.min(0.9999, Math.max(0, share)) * (COLOURS.length - 1), low = Math.floor(place);
+  return COLOURS[low].map((value, i) => value + (place - low) * (COLOURS[low + 1][i] - value));
+}
+
+function draw_path() {
+  const places = new Float32Array(3 * count), colours = new Float32Array(3 * count);
+  for (let i = 0; i < count; i++) {
+    for (let k = 0; k < 3; k++) places[3 * i + k] = tips[k][i];
+    colours.set(run.has_error && run.error_scale_um ? colour(errors[i] / run.error_scale_um) : [1, 0.54, 0.12], 3 * i);
+  }
+  view.say("path", { places, colours });
+}
+
+/** The cuts of the stock, each with its time. */
+async function read_cuts() {
+  const cuts_of = await (await fetch("cuts.bin")).arrayBuffer();
+  const head = new DataView(cuts_of), found = [];
+  for (let place = 0; place < cuts_of.byteLength;) {
+    const length = head.getUint32(place, true);
+    found.push({ time: head.getFloat32(place + 4, true), patch: await readPatch(cuts_of.slice(place + 8, place + 8 + length)) });
+    place += 8 + length;
+  }
+  view.say("cuts", found);
+  show(now);
+}
+
+at("title").textContent = run.program;
+at("about").textContent = `${run.machine} · ${run.dialect}`;
+at("axes").tBodies[0].replaceChildren(...run.axes.map((axis) => {
+  const row = document.createElement("tr");
+  row.innerHTML = '<th scope="row"></th><td></td><td class="quiet"></td>';
+  row.firstChild.textContent = axis;
+  return row;
+}));
+const first_of = new Map();
+for (let i = last; i >= 0; i--) first_of.set(lines[i], i);
+at("program").replaceChildren(...run.source.map((text, index) => {
+  const row = document.createElement("li"), number = document.createElement("i");
+  number.textContent = index + 1;
+  row.append(number, text);
+  row.setAttribute("role", "option");
+  row.id = `line${index + 1}`;
+  if (first_of.has(index + 1)) row.addEventListener("click", () => jump(first_of.get(index + 1)));
+  else row.className = "idle";
+  return row;
+}));
+at("program").addEventListener("keydown", (event) => {
+  const way = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+  if (!way) return;
+  event.preventDefault();
+  let line = shown_line + way;
+  while (line > 0 && line <= run.source.length && !first_of.has(line)) line += way;
+  if (first_of.has(line)) jump(first_of.get(line));
+});
+at("time").max = times[last];
+at("time").addEventListener("input", () => jump(sample(Number(at("time").value))));
+at("play").addEventListener("click", () => play(!playing));
+addEventListener("keydown", (event) => {
+  if (event.code !== "Space" || event.target.matches("button, select, input")) return;
+  event.preventDefault();
+  play(!playing);
+});
+let worst = 0;
+for (let i = 0; i < count; i++) if (errors[i] > errors[worst]) worst = i;
+if (run.has_error) {
+  at("moments").append(button(`Worst: ${errors[worst].toFixed(1)} µm`, () => jump(worst)));
+  at("legend").hidden = false;
+  at("scale").textContent = `${run.error_scale_um.toFixed(0)} µm`;
+}
+for (const [when, text] of run.alarms) at("moments").append(button(`Alarm: ${text}`, () => jump(sample(when))));
+at("views").append(
+  ...Object.entries(VIEWS).map(([name, label]) => button(label, () => view.say("look", name))),
+  ...Object.entries(SHOWN).map(([name, label]) => button(label, (made) => {
+    const on = made.getAttribute("aria-pressed") !== "true";
+    made.setAttribute("aria-pressed", on);
+    view.say("show", { [name]: on });
+  }, name !== "collision")),
+);
+banner("");
+view.say("show", { trail: true });
+show(last);
+draw_path();
+await read_cuts();
+document.body.dataset.ready = "yes";

@@ -1,0 +1,136 @@
+"""What a page shows of a recording: its samples, thinned where they are many, and the stock's cuts."""
+
+import struct
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from twin.cutting.cut import Cutter
+from twin.cutting.patches import grid_of, patch_message
+from twin.machine.config import Machine
+from twin.nc.canonical import FloatArray, IntArray
+from twin.recording.reader import Samples
+from twin.render.machine_glb import DrawnMachine, drawn_machine
+from twin.render.scene.scene import Scene
+
+MOST_SAMPLES = 100_000
+"""Samples that a page gets; of more every n-th, and the greatest contour error of each group."""
+CUTS = 200
+"""Moments between which the stock is cut: so finely it is seen when it is scrubbed."""
+
+
+class RecordedRun:
+    """A recording with all that its page needs."""
+
+    def __init__(self, scene: Scene, machine: Machine) -> None:
+        """Take a recording, which must stay open.
+
+        Args:
+            scene: The recording with its program, stock and tools.
+            machine: What it was made on.
+        """
+        self._scene = scene
+        self._machine = machine
+        recording = scene.recording
+        self._every = max(1, -(-len(recording) // MOST_SAMPLES))
+
+    def description(self) -> dict[str, Any]:
+        """What is shown once: axes, program, alarms, the scale of the contour error."""
+        scene, recording = self._scene, self._scene.recording
+        header = recording.header
+        return {
+            "program": header.program,
+            "machine": header.machine,
+            "dialect": header.dialect,
+            "axes": header.axes.names,
+            "kinds": header.axes.kinds,
+            "part_zero": header.part_zero.tolist(),
+            "source": [line.rstrip("\r\n") for line in scene.source],
+            "alarms": recording.alarms,
+            "error_scale_um": scene.error_scale,
+            "has_error": recording.contour_um(0, 0) is not None,
+            "tools": [tool.number for tool in scene.summary.tools.tools],
+        }
+
+    def samples(self) -> bytes:
+        """The samples: number of them n and of axes k, then columns of 32 bits.
+
+        Columns: time [s], line, tool, contour error [µm], tip X, Y, Z in the part's frame [mm], and
+        the k axes' machine coordinates [mm or deg].
+        """
+        recording = self._scene.recording
+        rows: list[list[Any]] = []
+        for samples in recording.chunks(self._every * 16384):
+            chosen = slice(self._every - 1, None, self._every)
+            tools, longer = self._tools(samples)
+            tips = recording.header.part_frame.position(samples.joint_position) - longer
+            setpoint = samples.setpoint
+            rows.append(
+                [column[chosen] for column in (setpoint.time, setpoint.line, tools, *tips.T)]
+                + [column[chosen] for column in samples.joint_position.T]
+            )
+        columns = [np.concatenate(parts) for parts in zip(*rows, strict=True)]
+        columns.insert(3, self._errors(len(columns[0])))
+        head = struct.pack("<II", len(columns[0]), len(recording.header.axes))
+        return head + b"".join(column.astype("<f4").tobytes() for column in columns)
+
+    def _tools(self, samples: Samples) -> tuple[IntArray, FloatArray]:
+        """Number of the tool of each sample, and how much longer it is than the first, along Z."""
+        plan = self._scene.summary.tools
+        numbers = np.zeros(len(samples), np.int64)
+        longer = np.zeros((len(samples), 3))
+        for run, tool in plan.runs(samples.setpoint.move):
+            numbers[run] = tool.number
+            longer[run, 2] = plan.longer(tool)
+        return numbers, longer
+
+    def _errors(self, count: int) -> FloatArray:
+        """The greatest contour error of each group of samples [µm]; 0 where it is not known."""
+        recording = self._scene.recording
+        errors = recording.contour_um(0, count * self._every)
+        if errors is None:
+            return np.zeros(count)
+        return errors.reshape(count, self._every).max(axis=1)
+
+    def stock_grid(self) -> dict[str, object] | None:
+        """The grid of the stock; None where there is none."""
+        cutter = self._cutter()
+        return None if cutter is None else grid_of(cutter.map)
+
+    def cuts(self) -> Iterator[bytes]:
+        """The stock's cells as they were cut: length, time [s], patch; the first is the blank."""
+        cutter, recording = self._cutter(), self._scene.recording
+        if cutter is None:
+            return
+        shape = cutter.map.heights.shape
+        yield _timed(0.0, patch_message(cutter.map, (0, shape[0], 0, shape[1])))
+        for samples in recording.chunks(max(1, -(-len(recording) // CUTS))):
+            cutter.add(samples, self._scene.summary.is_rapid(samples.setpoint.move))
+            if cutter.changed[0] < cutter.changed[1]:
+                patch = patch_message(cutter.map, cutter.changed)
+                yield _timed(float(samples.setpoint.time[-1]), patch)
+
+    def _cutter(self) -> Cutter | None:
+        header, stock = self._scene.recording.header, self._scene.stock
+        if stock is None:
+            return None
+        return Cutter(stock, self._scene.summary.tools, header.part_frame, header.part_zero)
+
+    def drawn(self, number: int) -> DrawnMachine | None:
+        """The machine with one of the run's tools; None where there is no such tool."""
+        header = self._scene.recording.header
+        for tool in self._scene.summary.tools.tools:
+            if tool.number == number:
+                return drawn_machine(
+                    self._machine,
+                    tool,
+                    header.part_frame.turn_zero,
+                    self._scene.stock,
+                    header.part_zero,
+                )
+        return None
+
+
+def _timed(time_s: float, patch: bytes) -> bytes:
+    return struct.pack("<If", len(patch), time_s) + patch
