@@ -19,7 +19,7 @@ from twin.calibrate.fit.stretch import stretches_of
 from twin.files.shipped import machine_file
 from twin.logs.column_map import AxisColumns, ColumnTable
 from twin.logs.machine_log import AxisLog
-from twin.machine.config import read_machine
+from twin.machine.description.config import read_machine
 from twin.nc.canonical import FloatArray
 
 RATES = (50, 100, 250, 500, 1000, 4000)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.machine.motion_limits import motion_limits
+from twin.machine.description.motion_limits import motion_limits
 from twin.motion.limits import MotionLimits
 from twin.motion.profile.phases import plan_phases
 from twin.nc.canonical import Chunk, Corner, FloatArray

@@ -78,6 +78,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "run",
         "results",
     ),
+    "twin.machine": ("description", "model", "watching", "simulation", "circle", "describe check"),
     "twin.training": ("scene", "session", "server"),
 }
 """Of each folder with rooms, its rooms from the ground up; those of one floor know nothing of each

@@ -14,8 +14,8 @@ import trimesh
 from tests.nc import fuzz
 from twin.files.shipped import machine_file, machine_names
 from twin.files.stl import read_stl
-from twin.machine.config import Machine, read_machine
-from twin.machine.model import build_spec, physics_model
+from twin.machine.description.config import Machine, read_machine
+from twin.machine.model.model import build_spec, physics_model
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes
 from twin.nc.dialects import DIALECTS

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from twin.columns import join
 from twin.compare.track_comparison import compare_files
 from twin.errors import RecordingError
-from twin.machine.motion_limits import motion_limits
+from twin.machine.description.motion_limits import motion_limits
 from twin.motion.planner import plan as plan_chunks
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Moves, concatenate

@@ -13,15 +13,20 @@ from mujoco.rollout import Rollout
 from twin.columns import join
 from twin.files.shipped import machine_file, machine_names
 from twin.job.fixture import FixtureTable
-from twin.machine.circle_path import CirclePath
-from twin.machine.clearance import Clearance
-from twin.machine.config import read_machine
-from twin.machine.drives import feedforward_name
-from twin.machine.live import LiveMachine
-from twin.machine.model import build_spec, clearance_model, physics_model, spindle_over_table_mm
-from twin.machine.sampling import held_commands, polyline_nodes
-from twin.machine.simulate import simulate
-from twin.machine.tool_shape import DefaultTool
+from twin.machine.circle.circle_path import CirclePath
+from twin.machine.description.config import read_machine
+from twin.machine.model.drives import feedforward_name
+from twin.machine.model.model import (
+    build_spec,
+    clearance_model,
+    physics_model,
+    spindle_over_table_mm,
+)
+from twin.machine.model.tool_shape import DefaultTool
+from twin.machine.simulation.live import LiveMachine
+from twin.machine.simulation.sampling import held_commands, polyline_nodes
+from twin.machine.simulation.simulate import simulate
+from twin.machine.watching.clearance import Clearance
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.recording.reader import Samples
 

@@ -16,7 +16,7 @@ from benches import linuxcnc_simulator
 from benches.row import Row, median_cpu_seconds
 
 from twin.columns import join
-from twin.machine.motion_limits import motion_limits
+from twin.machine.description.motion_limits import motion_limits
 from twin.motion.limits import MotionLimits
 from twin.motion.planner import plan
 from twin.motion.profile.phases import plan_phases

@@ -14,7 +14,7 @@ from benches.row import REPEATS, Row, median_seconds
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import blank
-from twin.cutting.sweep_kernels import Removal, sweep
+from twin.cutting.kernels.sweep import Removal, sweep
 from twin.cutting.tools import profile
 from twin.files.shipped import resource_root
 from twin.job.job_file import StockTable, ToolTable, VideoTable

@@ -23,7 +23,7 @@ from twin.calibrate.calibrate import calibrate
 from twin.calibrate.result import Calibration
 from twin.logs.column_map import read_column_map
 from twin.logs.machine_log import MachineLog, read_machine_log
-from twin.machine.config import read_machine
+from twin.machine.description.config import read_machine
 
 TRUTH = {
     "kv": 5.0, "damping_ratio": 0.7, "dry_friction": 350.0, "viscous_friction": 3.0,

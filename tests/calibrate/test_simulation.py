@@ -6,7 +6,7 @@ from machine_logs import PERIOD, logged, mill, strokes
 
 from twin.calibrate.fit.parameters import of_base
 from twin.calibrate.fit.simulation import command_of, seen_at, simulate_axis
-from twin.machine.model import build_spec, drives
+from twin.machine.model.model import build_spec, drives
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ import hypothesis.strategies as st
 import numpy as np
 import pytest
 
-from twin.cutting.sweep_kernels import Grid, Removal, sweep
-from twin.cutting.thin_kernels import thin
+from twin.cutting.kernels.sweep import Grid, Removal, sweep
+from twin.cutting.kernels.thin import thin
 from twin.cutting.tools import Profile
 from twin.nc.canonical import FloatArray
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from twin.files.shipped import machine_file, resource_root
-from twin.machine.config import Machine, MachineFile
+from twin.machine.description.config import Machine, MachineFile
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 

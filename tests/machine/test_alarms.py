@@ -5,12 +5,12 @@ import pytest
 from machine_fixtures import PERIOD, line, ramp_up, setpoints, shipped_machine
 
 from twin.columns import join
-from twin.machine.alarms import Alarm
-from twin.machine.clearance import NEAR_STEP, TOUCH, Clearance
-from twin.machine.config import FixtureTable, Machine, MachineFile
-from twin.machine.model import build_spec, clearance_model
-from twin.machine.simulate import simulate
-from twin.machine.tool_shape import DefaultTool
+from twin.machine.description.config import FixtureTable, Machine, MachineFile
+from twin.machine.model.model import build_spec, clearance_model
+from twin.machine.model.tool_shape import DefaultTool
+from twin.machine.simulation.simulate import simulate
+from twin.machine.watching.alarms import Alarm
+from twin.machine.watching.clearance import NEAR_STEP, TOUCH, Clearance
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.recording.reader import Samples
 

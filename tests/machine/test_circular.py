@@ -7,11 +7,11 @@ import pytest
 from machine_fixtures import shipped_machine
 
 from twin.errors import UsageError
-from twin.machine.circle_path import PLANES
-from twin.machine.circle_plot import write_circle_plot
-from twin.machine.circular_test import CircularTest, circular_test
-from twin.machine.config import Machine, MachineFile
-from twin.machine.model import build_spec, drives
+from twin.machine.circle.circle_path import PLANES
+from twin.machine.circle.circle_plot import write_circle_plot
+from twin.machine.circle.circular_test import CircularTest, circular_test
+from twin.machine.description.config import Machine, MachineFile
+from twin.machine.model.model import build_spec, drives
 from twin.units import MM, UM_PER_MM
 
 PERFECT = {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0}

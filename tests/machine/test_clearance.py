@@ -11,10 +11,10 @@ from machine_fixtures import setpoints, shipped_machine
 
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
-from twin.machine.clearance import Clearance
-from twin.machine.config import Machine
-from twin.machine.model import build_spec, clearance_model
-from twin.machine.tool_shape import COLLISION_GROUP
+from twin.machine.description.config import Machine
+from twin.machine.model.model import build_spec, clearance_model
+from twin.machine.model.tool_shape import COLLISION_GROUP
+from twin.machine.watching.clearance import Clearance
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 from twin.units import MM

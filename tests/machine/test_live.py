@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 
-import twin.machine.live
+import twin.machine.simulation.live
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file, machine_names
-from twin.machine.alarms import AlarmStandsError
-from twin.machine.config import FixtureTable, Machine, read_machine
-from twin.machine.live import LiveMachine
-from twin.machine.model import build_spec, drives
-from twin.machine.simulate import simulate
-from twin.machine.tool_shape import DefaultTool
+from twin.machine.description.config import FixtureTable, Machine, read_machine
+from twin.machine.model.model import build_spec, drives
+from twin.machine.model.tool_shape import DefaultTool
+from twin.machine.simulation.live import LiveMachine
+from twin.machine.simulation.simulate import simulate
+from twin.machine.watching.alarms import AlarmStandsError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
@@ -36,8 +36,8 @@ def positions(parts: list[Samples]) -> FloatArray:
 
 
 def test_the_example_holds():
-    assert doctest.testmod(twin.machine.live).failed == 0
-    assert doctest.testmod(twin.machine.live).attempted > 5
+    assert doctest.testmod(twin.machine.simulation.live).failed == 0
+    assert doctest.testmod(twin.machine.simulation.live).attempted > 5
 
 
 @pytest.mark.parametrize("size", [1, 4, 37])

@@ -8,9 +8,15 @@ from machine_fixtures import shipped_machine, write_machine
 
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file, machine_names
-from twin.machine.config import read_machine
-from twin.machine.model import build_spec, compiled, drives, physics_model, spindle_over_table_mm
-from twin.machine.tool_shape import DefaultTool
+from twin.machine.description.config import read_machine
+from twin.machine.model.model import (
+    build_spec,
+    compiled,
+    drives,
+    physics_model,
+    spindle_over_table_mm,
+)
+from twin.machine.model.tool_shape import DefaultTool
 from twin.toolpath.part_frame import PartFrame
 from twin.units import DEGREE, MM
 

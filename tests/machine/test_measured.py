@@ -6,10 +6,10 @@ from machine_fixtures import line, shipped_machine
 
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
-from twin.machine.circular_test import circular_test
-from twin.machine.config import read_machine
-from twin.machine.model import build_spec, drives, physics_model
-from twin.machine.simulate import simulate
+from twin.machine.circle.circular_test import circular_test
+from twin.machine.description.config import read_machine
+from twin.machine.model.model import build_spec, drives, physics_model
+from twin.machine.simulation.simulate import simulate
 
 
 @pytest.mark.parametrize(("axis", "mass"), [("X", 95.1), ("X", 2000.0), ("Y", 700.0), ("C", 3.0)])

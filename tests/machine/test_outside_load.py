@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from machine_fixtures import line, shipped_machine
 
-from twin.machine.drives import Drive
-from twin.machine.model import build_spec, drives, physics_model
-from twin.machine.simulate import Load, simulate
+from twin.machine.model.drives import Drive
+from twin.machine.model.model import build_spec, drives, physics_model
+from twin.machine.simulation.simulate import Load, simulate
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples

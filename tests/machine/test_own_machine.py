@@ -10,10 +10,10 @@ from machine_fixtures import line
 
 from twin.errors import ConfigError, UsageError
 from twin.machine.check import check_machine
-from twin.machine.circular_test import circular_test
-from twin.machine.config import read_machine
-from twin.machine.model import build_spec
-from twin.machine.simulate import simulate
+from twin.machine.circle.circular_test import circular_test
+from twin.machine.description.config import read_machine
+from twin.machine.model.model import build_spec
+from twin.machine.simulation.simulate import simulate
 
 MODEL = """\
 <mujoco model="five">

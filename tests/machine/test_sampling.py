@@ -4,10 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 
-from twin.machine.config import Machine
-from twin.machine.model import build_spec
-from twin.machine.sampling import held_commands, polyline_nodes
-from twin.machine.simulate import simulate
+from twin.machine.description.config import Machine
+from twin.machine.model.model import build_spec
+from twin.machine.simulation.sampling import held_commands, polyline_nodes
+from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.recording.reader import Samples
 

@@ -7,11 +7,11 @@ from machine_fixtures import circle, line, shipped_machine
 
 from twin.columns import join
 from twin.files.shipped import machine_file
-from twin.machine.alarms import SimulationError
-from twin.machine.config import read_machine
-from twin.machine.model import build_spec, physics_model
-from twin.machine.sampling import held_commands, polyline_nodes
-from twin.machine.simulate import simulate
+from twin.machine.description.config import read_machine
+from twin.machine.model.model import build_spec, physics_model
+from twin.machine.simulation.sampling import held_commands, polyline_nodes
+from twin.machine.simulation.simulate import simulate
+from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.units import DEGREE, MM
 

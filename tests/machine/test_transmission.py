@@ -6,9 +6,9 @@ import pytest
 from machine_fixtures import PERIOD, circle, line, ramp_up, setpoints, shipped_machine
 
 from twin.errors import ConfigError
-from twin.machine.config import Machine
-from twin.machine.model import build_spec, drives, physics_model
-from twin.machine.simulate import simulate
+from twin.machine.description.config import Machine
+from twin.machine.model.model import build_spec, drives, physics_model
+from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.recording.reader import Samples
 from twin.units import MM

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from machine_fixtures import shipped_machine
 
-from twin.machine.travel import move_bounds, soft_limit_alarm
+from twin.machine.watching.travel import move_bounds, soft_limit_alarm
 from twin.nc.canonical import Axes, Motion, Moves, Shape
 
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))

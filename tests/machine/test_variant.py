@@ -6,9 +6,9 @@ from machine_fixtures import circle, shipped_machine
 
 from twin.errors import UsageError
 from twin.files.shipped import machine_file
-from twin.machine.config import read_machine
-from twin.machine.model import build_spec
-from twin.machine.simulate import simulate
+from twin.machine.description.config import read_machine
+from twin.machine.model.model import build_spec
+from twin.machine.simulation.simulate import simulate
 
 
 def write(folder, text: str, name: str = "machine.toml"):

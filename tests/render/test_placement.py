@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.render.conftest import MODEL, TOOL
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.render.scene.placement import ROTARY_TABLE, Joints, place, tip_position
 
 reach = st.floats(-200.0, 200.0)

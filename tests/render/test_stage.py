@@ -10,7 +10,7 @@ import trimesh
 from tests.render.conftest import SUMMARY, TOOL, Record
 from twin.cutting.tools import ToolPlan, profile
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Recording, open_recording
 from twin.render.drawing.canvas import DRAFT, FINAL, Pixels

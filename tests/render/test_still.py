@@ -11,7 +11,7 @@ from PIL import Image
 from tests.render.conftest import SOURCE, STOCK, SUMMARY, Record
 from twin.cutting.program_summary import Steps
 from twin.errors import RenderError
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.recording.form import STEPS
 from twin.recording.reader import open_recording
 from twin.render.frames import deal

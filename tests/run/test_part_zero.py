@@ -4,8 +4,8 @@ import pytest
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.job.job_file import JobFile, StockTable, ToolTable
-from twin.machine.config import Machine, read_machine
-from twin.machine.model import spindle_over_table_mm
+from twin.machine.description.config import Machine, read_machine
+from twin.machine.model.model import spindle_over_table_mm
 from twin.run.placement import WORK_HOLDING_HEIGHT, part_zero, start_position
 
 

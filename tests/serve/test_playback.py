@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.machine.alarms import Alarm
+from twin.machine.watching.alarms import Alarm
 from twin.recording.reader import open_recording
 from twin.run.preparation import prepare
 from twin.run.progress import no_progress

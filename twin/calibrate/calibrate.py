@@ -15,8 +15,8 @@ from twin.calibrate.refusal import refuse_wrong_force, refuse_wrong_log
 from twin.calibrate.result import FIT, HOLD_OUT, AxisResult, Calibration, Course, LogFigures
 from twin.errors import UsageError
 from twin.logs.machine_log import AxisLog, MachineLog
-from twin.machine.config import Machine
-from twin.machine.model import build_spec, compiled, drives
+from twin.machine.description.config import Machine
+from twin.machine.model.model import build_spec, compiled, drives
 from twin.nc.canonical import FloatArray
 from twin.units import AxisKind
 

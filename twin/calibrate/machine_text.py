@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from twin.calibrate.fit.parameters import Parameters
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.result import AxisResult, Calibration
-from twin.machine.config import AxisTable
+from twin.machine.description.config import AxisTable
 from twin.version import __version__
 
 _OF_THE_LOG = ("delay", "force_delay", "measuring_filter")

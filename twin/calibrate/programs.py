@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from twin.files.atomic import write_text
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.nc.canonical import SPATIAL_AXES
 
 FEEDS = (500.0, 1000.0, 2000.0, 4000.0, 8000.0)

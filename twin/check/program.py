@@ -18,7 +18,7 @@ from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
 from twin.errors import ExitCode, TwinError, UsageError
 from twin.job.job_file import Job
-from twin.machine.alarms import Alarm
+from twin.machine.watching.alarms import Alarm
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.run.messages import alarm_diagnostic, reason_text
 from twin.run.outcome import Outcome

@@ -15,7 +15,7 @@ from twin.files.atomic import write_text
 from twin.files.shipped import machine_file
 from twin.logs.column_map import read_column_map
 from twin.logs.machine_log import MachineLog, read_machine_log
-from twin.machine.config import read_machine
+from twin.machine.description.config import read_machine
 
 if TYPE_CHECKING:
     from twin.calibrate.result import Calibration

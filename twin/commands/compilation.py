@@ -97,7 +97,7 @@ def _run(job: Path) -> None:
 
 
 def _plan(job: Path) -> None:
-    from twin.machine.motion_limits import motion_limits
+    from twin.machine.description.motion_limits import motion_limits
     from twin.motion.report.summary import summarize
     from twin.run.preparation import prepare
 
@@ -107,8 +107,8 @@ def _plan(job: Path) -> None:
 
 
 def _circle() -> None:
-    from twin.machine.circular_test import circular_test
-    from twin.machine.config import read_machine
+    from twin.machine.circle.circular_test import circular_test
+    from twin.machine.description.config import read_machine
 
     circular_test(read_machine(machine_file("mill4")), 20.0, 6000.0)
 

@@ -8,10 +8,10 @@ from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
 from twin.files.shipped import machine_file
 from twin.machine.check import check_machine
-from twin.machine.circle_plot import write_circle_plot
-from twin.machine.circular_test import CircularTest, circular_test
-from twin.machine.config import Machine, read_machine
+from twin.machine.circle.circle_plot import write_circle_plot
+from twin.machine.circle.circular_test import CircularTest, circular_test
 from twin.machine.describe import MachineFacts, describe, shipped_machines
+from twin.machine.description.config import Machine, read_machine
 
 FORMATS = ("text", "json")
 PLOTS = (".svg", ".png", ".pdf")

@@ -13,7 +13,7 @@ from twin import api
 from twin.commands.console import table_console
 from twin.compilation.announcement import announce_compilation
 from twin.errors import UsageError
-from twin.machine.motion_limits import motion_limits
+from twin.machine.description.motion_limits import motion_limits
 from twin.motion.report.drawing import draw_plan
 from twin.motion.report.summary import Summary, summarize
 from twin.run.preparation import prepare

@@ -11,9 +11,9 @@ from twin.cutting.events import CutEvent, EventLog, StockWatch, Stretches
 from twin.cutting.force import cutting_load, cutting_width, kienzle
 from twin.cutting.force_direction import tool_force
 from twin.cutting.height_map import BoolArray, blank
+from twin.cutting.kernels.sweep import Removal, sweep
+from twin.cutting.kernels.thin import thin
 from twin.cutting.stock_contact import EDGE, Head, Points, StockContact
-from twin.cutting.sweep_kernels import Removal, sweep
-from twin.cutting.thin_kernels import thin
 from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray

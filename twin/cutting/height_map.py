@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.cutting.drape_kernels import drape
+from twin.cutting.kernels.drape import drape
+from twin.cutting.kernels.sweep import Grid
 from twin.cutting.outline import BoolArray, Outline, outline
-from twin.cutting.sweep_kernels import Grid
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
 from twin.job.job_file import StockTable

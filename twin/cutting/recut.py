@@ -6,9 +6,9 @@ from typing import Literal
 import numpy as np
 
 from twin.cutting.cut import Cutter
-from twin.cutting.drape_kernels import drape
 from twin.cutting.height_map import HeightMap
 from twin.cutting.inspection import Inspection, inspect
+from twin.cutting.kernels.drape import drape
 from twin.cutting.program_summary import ProgramSummary
 from twin.files.stl import read_stl
 from twin.job.job_file import StockTable

@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.cutting.events import SCRAPE_MM
 from twin.cutting.height_map import BoolArray, HeightMap
-from twin.cutting.overlap_kernels import Overlap, box_overlap, round_overlap
+from twin.cutting.kernels.overlap import Overlap, box_overlap, round_overlap
 from twin.cutting.tools import Profile
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray

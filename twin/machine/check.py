@@ -13,11 +13,11 @@ import mujoco
 import numpy as np
 
 from twin.errors import TwinError
-from twin.machine.alarms import SimulationError
-from twin.machine.config import Machine
-from twin.machine.drives import reflected_inertia
-from twin.machine.model import build_spec, compiled, drives, physics_model
-from twin.machine.simulate import simulate
+from twin.machine.description.config import Machine
+from twin.machine.model.drives import reflected_inertia
+from twin.machine.model.model import build_spec, compiled, drives, physics_model
+from twin.machine.simulation.simulate import simulate
+from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 

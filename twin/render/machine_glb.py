@@ -11,9 +11,9 @@ from trimesh.visual.material import PBRMaterial
 
 from twin.cutting.tools import ToolPlan
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.config import Machine
-from twin.machine.model import build_spec
-from twin.machine.tool_shape import COLLISION_GROUP, VISUAL_GROUP
+from twin.machine.description.config import Machine
+from twin.machine.model.model import build_spec
+from twin.machine.model.tool_shape import COLLISION_GROUP, VISUAL_GROUP
 from twin.nc.canonical import FloatArray
 from twin.render.scene.placement import ROTARY_TABLE, SPINDLE_NOSE, Placement, place
 from twin.render.scene.tool_body import PREFIX, ToolBodies

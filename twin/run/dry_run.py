@@ -5,8 +5,8 @@ from collections.abc import Iterable
 
 from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
 from twin.cutting.spindle import speaks_of_spindle
-from twin.machine.alarms import Alarm
-from twin.machine.travel import soft_limit_alarm
+from twin.machine.watching.alarms import Alarm
+from twin.machine.watching.travel import soft_limit_alarm
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.text.diagnostics import Diagnostic
 from twin.run.preparation import Preparation

@@ -10,9 +10,9 @@ from twin.cutting.part import write_stl
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.spindle import Spindle
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.alarms import Alarm
-from twin.machine.config import Machine
-from twin.machine.head_shape import head_shape
+from twin.machine.description.config import Machine
+from twin.machine.model.head_shape import head_shape
+from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import Chunk, FloatArray
 from twin.recording.form import Samples
 from twin.toolpath.part_frame import PartFrame

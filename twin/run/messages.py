@@ -3,7 +3,7 @@
 import re
 
 from twin.compare.verdict import Reason
-from twin.machine.alarms import Alarm, NearMiss
+from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.text.diagnostics import Diagnostic, Severity
 from twin.nc.text.source import Source
 

@@ -5,7 +5,7 @@ import dataclasses
 from twin.compare.figures import Figures
 from twin.compare.verdict import Verdict
 from twin.cutting.cut import CutResult
-from twin.machine.alarms import Alarm, NearMiss
+from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics import Diagnostic
 

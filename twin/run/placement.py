@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 
 WORK_HOLDING_HEIGHT = 40.0

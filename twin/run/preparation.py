@@ -11,7 +11,7 @@ from twin.errors import RecordingError, UsageError
 from twin.files.overrides import Change
 from twin.files.shipped import machine_file, shipped_program
 from twin.job.job_file import Job, JobFile, read_job
-from twin.machine.config import Machine, read_machine
+from twin.machine.description.config import Machine, read_machine
 from twin.nc.canonical import FloatArray
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import Dialect, dialect_named, recognise

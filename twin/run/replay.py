@@ -7,7 +7,7 @@ from pathlib import Path
 from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
 from twin.cutting.recut import recut
 from twin.errors import UsageError
-from twin.machine.model import build_spec
+from twin.machine.model.model import build_spec
 from twin.recording.reader import Recording, open_recording
 from twin.render.scene.scene import Scene
 from twin.run.preparation import Preparation, prepare_recorded

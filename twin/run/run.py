@@ -13,9 +13,9 @@ from twin.compare.verdict import judge
 from twin.cutting.axis_load import AxisLoad
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
-from twin.machine.model import build_spec, spindle_over_table_mm
-from twin.machine.motion_limits import motion_limits
-from twin.machine.simulate import Simulation, simulate
+from twin.machine.description.motion_limits import motion_limits
+from twin.machine.model.model import build_spec, spindle_over_table_mm
+from twin.machine.simulation.simulate import Simulation, simulate
 from twin.motion.planner import plan
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.motion.setpoints.settle import settle

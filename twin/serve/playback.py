@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.cutting.program_summary import ProgramSummary
-from twin.machine.alarms import Alarm
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
+from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
 from twin.recording.reader import open_recording

@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.cutting.cut import Cutter
 from twin.cutting.patches import grid_of, patch_message
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.render.machine_glb import DrawnMachine, drawn_machine

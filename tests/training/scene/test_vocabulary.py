@@ -4,7 +4,7 @@ import typing
 
 import pytest
 
-from twin.machine.alarms import AlarmCode
+from twin.machine.watching.alarms import AlarmCode
 from twin.nc.dialects import DIALECTS
 from twin.training.scene.texts import LANGUAGES
 from twin.training.scene.vocabulary import Words, vocabulary

@@ -3,7 +3,7 @@
 import dataclasses
 import math
 
-from twin.machine.config import AxisTable
+from twin.machine.description.config import AxisTable
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

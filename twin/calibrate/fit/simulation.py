@@ -1,4 +1,4 @@
-"""One axis along a logged command: the drive model of ``twin.machine.drives``, solved exactly.
+"""One axis along a logged command: the drive model of ``twin.machine.model.drives``, solved exactly.
 
 Between two inputs the axis is linear, so that a step is a matrix exponential; dry friction acts as in
 ``axis_kernels``. ``tests/calibrate/test_simulation.py`` holds it to MuJoCo's run of the same machine
@@ -21,7 +21,7 @@ from twin.units import AxisKind, kv_per_second, to_si
 
 LONGEST_STEP_S = 1e-3
 _POLYLINE_LOSS = 1.0 / 12.0
-"""As in ``twin.machine.sampling``: a setpoint drawn as a polyline loses this, in units of (W h)²."""
+"""As in ``twin.machine.simulation.sampling``: a setpoint drawn as a polyline loses this, in units of (W h)²."""
 _SPEED = 1
 _FASTEST_FILTER_S = 1e-6
 """A filter faster than this is none [s]."""

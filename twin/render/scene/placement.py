@@ -5,7 +5,7 @@ import dataclasses
 import mujoco
 import numpy as np
 
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 from twin.units import MM
 

@@ -8,7 +8,7 @@ import mujoco
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import RenderError
 from twin.job.job_file import StockTable
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.recording.reader import Recording
 from twin.render.scene.cameras import PART_CAMERAS
 

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from twin.cutting.kernels.thin import thin
 from twin.cutting.program_summary import ProgramSummary
-from twin.cutting.thin_kernels import thin
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 from twin.recording.reader import Recording
 from twin.render.drawing.canvas import Canvas

@@ -6,7 +6,7 @@ from typing import Any
 
 import mujoco
 
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.nc.text.source import Source
 from twin.training.scene.scene_file import Scene
 from twin.training.session.program_run import ProgramRun, ProgramRunCopy

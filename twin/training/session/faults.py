@@ -3,7 +3,7 @@
 from typing import Any
 
 from twin.errors import ConfigError
-from twin.machine.config import AxisTable
+from twin.machine.description.config import AxisTable
 from twin.training.scene.fault_table import FaultTable
 from twin.training.session.observed import Observed
 

@@ -8,7 +8,7 @@ class Notice:
     """An alarm.
 
     Attributes:
-        code: Stable, searchable name of its kind: those of ``twin.machine.alarms``, and
+        code: Stable, searchable name of its kind: those of ``twin.machine.watching.alarms``, and
             ``program`` (the interpreter refused a block), ``external`` (a safety circuit).
         message: What happened, with numbers.
         axis: Name of the axis, or empty.

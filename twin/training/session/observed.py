@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from twin.machine.live import LiveMachine
+from twin.machine.simulation.live import LiveMachine
 from twin.recording.reader import Samples
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.modes import Mode

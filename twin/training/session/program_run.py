@@ -16,9 +16,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from twin.machine.config import Machine
-from twin.machine.motion_limits import motion_limits
-from twin.machine.travel import soft_limit_alarm
+from twin.machine.description.config import Machine
+from twin.machine.description.motion_limits import motion_limits
+from twin.machine.watching.travel import soft_limit_alarm
 from twin.motion.live.live_motion import LiveMotion
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves

@@ -12,9 +12,9 @@ import numpy as np
 from twin.cutting.tools import default_cell
 from twin.errors import TwinError, UsageError
 from twin.job.job_file import StockTable
-from twin.machine.alarms import Alarm, AlarmCode, AlarmStandsError
-from twin.machine.live import LiveMachine
-from twin.machine.model import spindle_over_table_mm
+from twin.machine.model.model import spindle_over_table_mm
+from twin.machine.simulation.live import LiveMachine
+from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
 from twin.nc.control.settings import ToolData

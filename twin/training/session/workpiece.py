@@ -8,7 +8,7 @@ from twin.cutting.cut import Cutter, Rectangle, union
 from twin.cutting.height_map import BoolArray, HeightMap
 from twin.cutting.stock_contact import Head
 from twin.job.job_file import StockTable, ToolTable
-from twin.machine.alarms import Alarm
+from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 from twin.run.machining import stock_alarm

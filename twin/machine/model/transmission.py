@@ -17,8 +17,8 @@ import math
 import mujoco
 import numpy as np
 
-from twin.machine.config import AxisTable
-from twin.machine.drives import reflected_inertia
+from twin.machine.description.config import AxisTable
+from twin.machine.model.drives import reflected_inertia
 from twin.units import to_si
 
 STIFF_SPRING_STEP = 0.5

@@ -17,10 +17,10 @@ import mujoco
 import numpy as np
 
 from twin.errors import UsageError
-from twin.machine.circle_path import PLANES, RUN_IN, CirclePath
-from twin.machine.config import Machine
-from twin.machine.model import build_spec, physics_model
-from twin.machine.simulate import simulate
+from twin.machine.circle.circle_path import PLANES, RUN_IN, CirclePath
+from twin.machine.description.config import Machine
+from twin.machine.model.model import build_spec, physics_model
+from twin.machine.simulation.simulate import simulate
 from twin.nc.canonical import FloatArray
 from twin.units import UM_PER_MM
 

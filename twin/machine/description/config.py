@@ -12,7 +12,7 @@ from twin.errors import ConfigError
 from twin.files.overrides import Change, changed
 from twin.files.toml import Data, Table, checked, read_toml
 from twin.job.fixture import FixtureTable
-from twin.machine.variant import on_base
+from twin.machine.description.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
 from twin.units import AxisKind, to_si

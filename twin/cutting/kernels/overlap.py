@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 from twin.compilation.kernel import array_kernel
-from twin.cutting.sweep_kernels import Grid, chord
-from twin.cutting.tool_height_kernels import lowest_height, steepness
+from twin.cutting.kernels.sweep import Grid, chord
+from twin.cutting.kernels.tool_height import lowest_height, steepness
 from twin.nc.canonical import FloatArray
 
 

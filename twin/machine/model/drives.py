@@ -34,7 +34,7 @@ the setpoint less the trail that is meant to be.
 import dataclasses
 import math
 
-from twin.machine.config import AxisTable
+from twin.machine.description.config import AxisTable
 from twin.units import kv_per_second, to_si
 
 

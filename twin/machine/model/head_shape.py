@@ -5,9 +5,9 @@ import dataclasses
 import mujoco
 import numpy as np
 
-from twin.machine.config import Machine
-from twin.machine.model import build_spec, clearance_model
-from twin.machine.tool_shape import (
+from twin.machine.description.config import Machine
+from twin.machine.model.model import build_spec, clearance_model
+from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     TOOL_NAMES,
     TOOL_SIDE,

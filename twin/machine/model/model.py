@@ -4,10 +4,16 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.config import Machine
-from twin.machine.drives import Drive, feedforward_name, integral_name, reflected_inertia, tune
-from twin.machine.measured_mass import set_measured_masses
-from twin.machine.tool_shape import (
+from twin.machine.description.config import Machine
+from twin.machine.description.measured_mass import set_measured_masses
+from twin.machine.model.drives import (
+    Drive,
+    feedforward_name,
+    integral_name,
+    reflected_inertia,
+    tune,
+)
+from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     FRAME_SIDE,
     PART_SIDE,
@@ -18,7 +24,7 @@ from twin.machine.tool_shape import (
     add_materials,
     add_tool,
 )
-from twin.machine.transmission import (
+from twin.machine.model.transmission import (
     FASTEST,
     FASTEST_SPRING,
     add_friction_and_give,

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from twin.machine.alarms import Alarm
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
+from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray, Moves, Shape
 
 ROUNDING = 1e-6

@@ -1,10 +1,10 @@
 """Collisions and near misses of whichever tool is in the spindle."""
 
-from twin.machine.alarms import Alarm, NearMiss
-from twin.machine.clearance import Clearance
-from twin.machine.config import Machine
-from twin.machine.model import build_spec, clearance_model
-from twin.machine.tool_shape import ToolSchedule, ToolShape, tool_cylinders
+from twin.machine.description.config import Machine
+from twin.machine.model.model import build_spec, clearance_model
+from twin.machine.model.tool_shape import ToolSchedule, ToolShape, tool_cylinders
+from twin.machine.watching.alarms import Alarm, NearMiss
+from twin.machine.watching.clearance import Clearance
 from twin.recording.reader import Samples
 
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.motion.limits import MotionLimits
 
 

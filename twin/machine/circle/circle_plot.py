@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from twin.files.atomic import complete_or_absent
-from twin.machine.circular_test import CircularTest
+from twin.machine.circle.circular_test import CircularTest
 from twin.nc.canonical import FloatArray
 
 if TYPE_CHECKING:

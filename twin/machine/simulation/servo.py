@@ -7,13 +7,13 @@ import numpy as np
 from mujoco.rollout import Rollout
 
 from twin.columns import join
-from twin.machine.alarms import SimulationError
-from twin.machine.config import Machine
-from twin.machine.drives import feedforward_name, integral_name
-from twin.machine.model import drives
-from twin.machine.sampling import held_commands, polyline_nodes
-from twin.machine.timers import switch_off_timers
-from twin.machine.transmission import give_name, has_give
+from twin.machine.description.config import Machine
+from twin.machine.model.drives import feedforward_name, integral_name
+from twin.machine.model.model import drives
+from twin.machine.model.timers import switch_off_timers
+from twin.machine.model.transmission import give_name, has_give
+from twin.machine.simulation.sampling import held_commands, polyline_nodes
+from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples

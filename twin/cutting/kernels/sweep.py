@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from twin.compilation.kernel import array_kernel
-from twin.cutting.tool_height_kernels import below_capsule, lowest_height
+from twin.cutting.kernels.tool_height import below_capsule, lowest_height
 from twin.nc.canonical import FloatArray
 
 _FAR = 1e9

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from twin.machine.alarms import Alarm, AlarmCode
-from twin.machine.config import AxisTable, Machine
+from twin.machine.description.config import AxisTable, Machine
+from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 

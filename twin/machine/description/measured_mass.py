@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 
 

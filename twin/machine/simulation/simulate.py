@@ -5,14 +5,14 @@ from collections.abc import Callable, Iterable, Iterator
 import mujoco
 import numpy as np
 
-from twin.machine.alarms import Alarm, NearMiss
-from twin.machine.clearance import Clearance
-from twin.machine.config import Machine
-from twin.machine.model import clearance_model, physics_model
-from twin.machine.servo import Servo
-from twin.machine.tool_changes import ToolClearances
-from twin.machine.tool_shape import ToolSchedule
-from twin.machine.watch import Watch
+from twin.machine.description.config import Machine
+from twin.machine.model.model import clearance_model, physics_model
+from twin.machine.model.tool_shape import ToolSchedule
+from twin.machine.simulation.servo import Servo
+from twin.machine.simulation.tool_changes import ToolClearances
+from twin.machine.watching.alarms import Alarm, NearMiss
+from twin.machine.watching.clearance import Clearance
+from twin.machine.watching.watch import Watch
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples

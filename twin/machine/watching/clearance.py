@@ -23,10 +23,10 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from twin.machine.alarms import Alarm, NearMiss
-from twin.machine.config import Machine
-from twin.machine.relative_motion import RelativeMotion
-from twin.machine.tool_shape import COLLISION_GROUP, CUTTER, CUTTING_PARTS, TOOL_SIDE
+from twin.machine.description.config import Machine
+from twin.machine.model.tool_shape import COLLISION_GROUP, CUTTER, CUTTING_PARTS, TOOL_SIDE
+from twin.machine.watching.alarms import Alarm, NearMiss
+from twin.machine.watching.relative_motion import RelativeMotion
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.units import MM

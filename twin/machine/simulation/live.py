@@ -5,14 +5,14 @@ from typing import Any
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
-from twin.machine.clearance import Clearance
-from twin.machine.config import Machine
-from twin.machine.head_shape import HeadShape
-from twin.machine.model import build_spec, clearance_model, physics_model
-from twin.machine.servo import Servo
-from twin.machine.tool_shape import ToolShape
-from twin.machine.watch import Watch
+from twin.machine.description.config import Machine
+from twin.machine.model.head_shape import HeadShape
+from twin.machine.model.model import build_spec, clearance_model, physics_model
+from twin.machine.model.tool_shape import ToolShape
+from twin.machine.simulation.servo import Servo
+from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
+from twin.machine.watching.clearance import Clearance
+from twin.machine.watching.watch import Watch
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
@@ -33,7 +33,7 @@ class LiveMachine:
     axis may then be driven off its limit switch, and a holder out of the vise, but not further in.
 
     Example:
-        >>> from twin.machine.config import read_machine
+        >>> from twin.machine.description.config import read_machine
         >>> from twin.files.shipped import machine_file
         >>> live = LiveMachine(read_machine(machine_file("mill4")))
         >>> samples = live.hold(100)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from twin.errors import UsageError
-from twin.machine.config import Machine
+from twin.machine.description.config import Machine
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.units import DEGREE, SECONDS_PER_MINUTE

@@ -1,0 +1,1 @@
+"""The circular test of ISO 230-4."""

@@ -1,0 +1,1 @@
+"""What a machine is: its file, its variants, its limits."""

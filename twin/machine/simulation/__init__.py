@@ -1,0 +1,1 @@
+"""Setpoints in, simulated joints out: whole runs, and live in slices."""

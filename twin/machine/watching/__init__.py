@@ -1,0 +1,1 @@
+"""What raises an alarm: limits, following error, clearance between bodies."""
