@@ -27,7 +27,7 @@ def drawn(request):
 
 def moved(drawn) -> trimesh.Scene:
     """The file, with its nodes moved as the description says."""
-    scene = trimesh.load(io.BytesIO(drawn.glb()), file_type="glb")
+    scene = trimesh.load_scene(io.BytesIO(drawn.glb()), file_type="glb")
     described = drawn.description()
     for joint, value in zip(described["joints"], POSITION, strict=True):
         name = joint["body"]
@@ -66,7 +66,7 @@ def test_bodies_part_and_tip_are_where_mujoco_has_them(drawn):
 def test_the_file_is_small_and_tells_what_only_collides(drawn):
     content = drawn.glb()
     assert len(content) < 2_000_000
-    scene = trimesh.load(io.BytesIO(content), file_type="glb")
+    scene = trimesh.load_scene(io.BytesIO(content), file_type="glb")
     names = list(scene.geometry)
     assert any(name.startswith(COLLISION_PREFIX) for name in names)
     assert any(name.startswith("cutter_1") for name in names)

@@ -1,7 +1,7 @@
 """One axis along a logged command: the drive model of ``twin.machine.model.drives``, solved exactly.
 
 Between two inputs the axis is linear, so that a step is a matrix exponential; dry friction acts as in
-``axis_kernels``. ``tests/calibrate/test_simulation.py`` holds it to MuJoCo's run of the same machine
+``axis_kernels``. ``tests/calibrate/test_drive_simulation.py`` holds it to MuJoCo's run of the same machine
 file. The state is (q, v, y, x): position, speed, what the measuring filter shows, and what the
 velocity loop has integrated; inputs are the setpoint, its velocity and acceleration, and what pushes
 from outside over mass.

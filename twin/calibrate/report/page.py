@@ -28,7 +28,7 @@ def calibration_page(result: Calibration) -> str:
     """The page, as HTML that needs no other file."""
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader(
-            [jinja2.PackageLoader(room, "page") for room in (__package__, "twin.compare.report")]
+            [jinja2.PackageLoader(room, "page") for room in _ROOMS]
         ),
         autoescape=True, undefined=jinja2.StrictUndefined,
         trim_blocks=True, lstrip_blocks=True,

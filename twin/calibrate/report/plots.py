@@ -96,8 +96,8 @@ def correlation_plot(names: tuple[str, ...], correlations: FloatArray) -> str:
     figure, axes = new_figure(5.1, side)
     axes.grid(visible=False)
     places = np.arange(len(names))
-    for row in places:
-        for column in places:
+    for row in range(len(names)):
+        for column in range(len(names)):
             value = float(correlations[row, column])
             size = min(1.0, abs(value))
             axes.scatter(column, row, s=20 + 420 * size, color=LIMIT if value < 0 else BLUE,
@@ -144,5 +144,6 @@ def _spectrum(values: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
     power = np.mean(
         [np.abs(np.fft.rfft((piece - piece.mean()) * window)) ** 2 for piece in pieces], axis=0
     )
-    density = np.sqrt(2.0 * power * step / np.sum(window**2))
-    return np.fft.rfftfreq(size, step)[1:], density[1:]
+    density: FloatArray = np.sqrt(2.0 * power * step / np.sum(window**2))
+    frequency: FloatArray = np.fft.rfftfreq(size, step)
+    return frequency[1:], density[1:]

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import Twin
-from machine_fixtures import line
 
+from tests.machine.machine_fixtures import line
 from twin.errors import ConfigError, UsageError
 from twin.machine.check import check_machine
 from twin.machine.circle.circular_test import circular_test

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from machine_fixtures import line, shipped_machine
 
+from tests.machine.machine_fixtures import line, shipped_machine
 from twin.machine.model.drives import Drive
 from twin.machine.model.model import build_spec, drives, physics_model
 from twin.machine.simulation.simulate import Load, simulate

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from machine_fixtures import shipped_machine
 
+from tests.machine.machine_fixtures import shipped_machine
 from twin.machine.watching.travel import move_bounds, soft_limit_alarm
 from twin.nc.canonical import Axes, Motion, Moves, Shape
 

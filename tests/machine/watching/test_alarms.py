@@ -2,8 +2,8 @@ import itertools
 
 import numpy as np
 import pytest
-from machine_fixtures import PERIOD, line, ramp_up, setpoints, shipped_machine
 
+from tests.machine.machine_fixtures import PERIOD, line, ramp_up, setpoints, shipped_machine
 from twin.columns import join
 from twin.machine.description.config import FixtureTable, Machine, MachineFile
 from twin.machine.model.model import build_spec, clearance_model

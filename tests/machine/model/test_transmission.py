@@ -3,8 +3,8 @@
 import mujoco
 import numpy as np
 import pytest
-from machine_fixtures import PERIOD, circle, line, ramp_up, setpoints, shipped_machine
 
+from tests.machine.machine_fixtures import PERIOD, circle, line, ramp_up, setpoints, shipped_machine
 from twin.errors import ConfigError
 from twin.machine.description.config import Machine
 from twin.machine.model.model import build_spec, drives, physics_model

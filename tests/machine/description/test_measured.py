@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from machine_fixtures import line, shipped_machine
 
+from tests.machine.machine_fixtures import line, shipped_machine
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
 from twin.machine.circle.circular_test import circular_test

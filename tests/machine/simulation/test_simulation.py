@@ -3,8 +3,8 @@ import itertools
 import mujoco
 import numpy as np
 import pytest
-from machine_fixtures import circle, line, shipped_machine
 
+from tests.machine.machine_fixtures import circle, line, shipped_machine
 from twin.columns import join
 from twin.files.shipped import machine_file
 from twin.machine.description.config import read_machine

@@ -7,8 +7,8 @@ import hypothesis.strategies as st
 import mujoco
 import numpy as np
 import pytest
-from machine_fixtures import setpoints, shipped_machine
 
+from tests.machine.machine_fixtures import setpoints, shipped_machine
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import Machine

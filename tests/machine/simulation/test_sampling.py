@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 
+from tests.machine.machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 from twin.machine.description.config import Machine
 from twin.machine.model.model import build_spec
 from twin.machine.simulation.sampling import held_commands, polyline_nodes

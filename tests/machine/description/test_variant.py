@@ -2,8 +2,8 @@ import re
 
 import numpy as np
 import pytest
-from machine_fixtures import circle, shipped_machine
 
+from tests.machine.machine_fixtures import circle, shipped_machine
 from twin.errors import UsageError
 from twin.files.shipped import machine_file
 from twin.machine.description.config import read_machine

@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 import pytest
-from machine_fixtures import shipped_machine
 
+from tests.machine.machine_fixtures import shipped_machine
 from twin.errors import UsageError
 from twin.machine.circle.circle_path import PLANES
 from twin.machine.circle.circle_plot import write_circle_plot

@@ -4,8 +4,8 @@ from typing import cast
 import mujoco
 import numpy as np
 import pytest
-from machine_fixtures import shipped_machine, write_machine
 
+from tests.machine.machine_fixtures import shipped_machine, write_machine
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file, machine_names
 from twin.machine.description.config import read_machine

@@ -4,9 +4,9 @@ import doctest
 
 import numpy as np
 import pytest
-from machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 
 import twin.machine.simulation.live
+from tests.machine.machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file, machine_names
 from twin.machine.description.config import FixtureTable, Machine, read_machine
