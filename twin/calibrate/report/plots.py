@@ -144,6 +144,6 @@ def _spectrum(values: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
     power = np.mean(
         [np.abs(np.fft.rfft((piece - piece.mean()) * window)) ** 2 for piece in pieces], axis=0
     )
-    density: FloatArray = np.sqrt(2.0 * power * step / np.sum(window**2))
-    frequency: FloatArray = np.fft.rfftfreq(size, step)
+    density = np.asarray(np.sqrt(2.0 * power * step / np.sum(window**2)), dtype=np.float64)
+    frequency = np.asarray(np.fft.rfftfreq(size, step), dtype=np.float64)
     return frequency[1:], density[1:]
