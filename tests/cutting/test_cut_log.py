@@ -26,7 +26,7 @@ def chunk(chance: random.Random, lines: list[int]) -> tuple[Stretches, FloatArra
 
 
 def enter(book: dict[int, BlockCut], stretches: Stretches, width: FloatArray, force: FloatArray):
-    """The same as the cut_log does, stretch by stretch."""
+    """Enter stretch by stretch what the cut log enters at once."""
     for i in np.flatnonzero(stretches.removed > 0):
         block = book.setdefault(int(stretches.line[i]), BlockCut())
         block.removed_mm3 += stretches.removed[i]

@@ -20,10 +20,10 @@ class Course:
     Attributes:
         time: [s].
         logged: Lag of position [mm or deg], or of velocity where a log is slow.
-        predicted: The same of the model.
+        predicted: The model's lag, in the same units.
         slow: Whether it is the lag of velocity at single samples within ramps.
         logged_force: Force [N or N m] or what the control shows [A]; empty where none is logged.
-        predicted_force: The same of the model.
+        predicted_force: The model's force or current.
     """
 
     time: FloatArray

@@ -27,7 +27,7 @@ def compare_and_print(
 
     Args:
         first: Recording or log.
-        second: The same.
+        second: Recording or log that is compared with the first.
         form: ``text`` or ``json``.
         period_s: Time between the samples of logs without a time column [s].
         offset_s: Known offset in time [s]; found by the commanded positions by default.

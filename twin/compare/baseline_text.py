@@ -202,7 +202,7 @@ def text(entry: Entry, names: tuple[str, ...], position: tuple[float, ...], feed
         entry: What it is about.
         names: Of the axes.
         position: What need not be repeated [mm or deg].
-        feed: The same.
+        feed: What need not be repeated [mm/min or deg/min].
     """
     if entry.kind not in _MOVES:
         return f"{entry.kind} {number(entry.value)}" if entry.kind == "dwell" else entry.kind

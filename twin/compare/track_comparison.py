@@ -65,7 +65,7 @@ def compare_files(
 
     Args:
         first: Recording (``.h5``) or log of a real machine, in a form that ``twin.logs`` reads.
-        second: The same.
+        second: Recording or log that is compared with the first.
         period_s: Time between the samples of logs without a time column [s].
         offset_s: Known offset in time [s]; found by the commanded positions by default.
         columns: What the columns of logs are; by default what their headings say.

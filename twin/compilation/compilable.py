@@ -37,7 +37,7 @@ def compilable(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """The same, as a part of each function that calls it.
+    """Let kernels compile a function that makes no array into each function that calls it.
 
     A call hands over hundreds of values, one for each size and step of a column, which may take
     longer than the block that is run.
@@ -47,7 +47,7 @@ def inlined(function: Function) -> Function:
 
 
 def compilable_arithmetic(function: Function) -> Function:
-    """The same, where an undefined value comes out as infinity or NaN and nothing is raised."""
+    """Let kernels compile a function whose undefined values are infinity or NaN, raising nothing."""
 
     @functools.wraps(function)
     def run(*values: Any) -> Any:

@@ -132,7 +132,8 @@ class Moves:
             machine's.
         acceleration: Programmed limit along the path, shape (n,) [mm/s² or deg/s² by
             ``feed_unit``]; NaN: the machine's.
-        deceleration: The same for slowing down, positive, shape (n,).
+        deceleration: Programmed limit for slowing down, positive, in the units of ``acceleration``,
+            shape (n,).
     """
 
     axes: Axes

@@ -12,7 +12,7 @@ def step_axis(transition, now, then, push, inputs, state, dry, moved):
 
     Args:
         transition: State after a step by state before it, shape (k, k).
-        now: The same by the inputs at its begin, shape (k, m).
+        now: State after a step by the inputs at its begin, shape (k, m).
         then: By the inputs at its end, shape (k, m).
         push: By a constant unit acceleration during it, shape (k,).
         inputs: Shape (n, m).

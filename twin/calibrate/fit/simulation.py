@@ -97,7 +97,7 @@ def command_of(
 
 
 def drawn_otherwise(command: Command, asked: FloatArray) -> Command:
-    """The same command, drawn between its samples by another rule (monotone cubics).
+    """A copy of the command, drawn between its samples by another rule (monotone cubics).
 
     Args:
         command: As drawn by a spline.

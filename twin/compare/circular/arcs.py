@@ -78,7 +78,7 @@ class ArcCollector:
 
         Args:
             moves: The moves at hand.
-            path: The same in the part's frame; arcs on which the table turns are no circles there.
+            path: The moves in the part's frame; arcs on which the table turns are no circles there.
             first: Number of the first of them in the program.
             place: Index in ``moves`` of each sample's nearest place, shape (n,).
             fraction: Fraction of that place, shape (n,).
@@ -148,7 +148,7 @@ def _in_their_planes(
 
     Args:
         moves: The moves at hand.
-        path: The same in the part's frame.
+        path: The moves in the part's frame.
         runs: Which arcs the tool runs through in turn, shape (m,).
         length: In how many points each, shape (m,).
         point: In the part's frame, shape (n, 3) [mm].

@@ -16,7 +16,7 @@ def collect_by_angle(points, radius, count, angle_sum, deviation_sum, least, gre
         angle_sum: By bin: sum of their angles, added to, shape (m,) [rad].
         deviation_sum: By bin: sum of their radial deviations, added to, shape (m,) [mm].
         least: By bin: least radial deviation [mm] and its angle [rad], shape (m, 2).
-        greatest: The same of the greatest.
+        greatest: By bin: greatest radial deviation [mm] and its angle [rad], shape (m, 2).
     """
     turn = 2.0 * math.pi
     bins = len(count)

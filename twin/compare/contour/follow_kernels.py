@@ -27,7 +27,7 @@ def follow(path, point, command, back, state, distance, place_move, place_fracti
         path: ``PathColumns`` of the moves at hand.
         point: Simulated tool points in the part's frame, shape (n, 3) [mm].
         command: Move number (within ``path``) and fraction of the setpoints, shape (n, 2).
-        back: The same for the setpoint beyond which no tool can be late, shape (n, 2).
+        back: Move number and fraction of the setpoint beyond which no tool can be late, shape (n, 2).
         state: Where the tool was found before: move, fraction, its point, its error, shape (6,);
             read and written.
         distance: Out: contour error, shape (n,) [mm].

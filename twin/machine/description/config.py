@@ -274,7 +274,7 @@ class Machine:
         return self.file.axes[name]
 
     def changed(self, axis: str, **fields: Any) -> "Machine":
-        """The same machine with some fields of one axis changed.
+        """A copy of the machine with some fields of one axis changed.
 
         Args:
             axis: Its name.

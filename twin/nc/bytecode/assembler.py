@@ -251,19 +251,19 @@ class Assembler:
     # --- flow
 
     def jump(self, location: Location) -> None:
-        """Go on at a location."""
+        """Jump to a location."""
         self._add(opcodes.JUMP, number_of_location(location))
 
     def jump_if(self, location: Location) -> None:
-        """The same where the topmost value is true."""
+        """Jump to a location if the topmost value is true."""
         self._add(opcodes.JUMP_IF, number_of_location(location))
 
     def jump_unless(self, location: Location) -> None:
-        """The same where it is not."""
+        """Jump to a location unless the topmost value is true."""
         self._add(opcodes.JUMP_UNLESS, number_of_location(location))
 
     def jump_case(self, location: Location) -> None:
-        """The same where it equals the value below, which stays."""
+        """Jump to a location if the topmost value equals the one below, which stays."""
         self._add(opcodes.JUMP_CASE, number_of_location(location))
 
     def jump_counted(self, location: Location, counter: str, times: float) -> None:

@@ -7,9 +7,9 @@ that cannot be undone it has met all that could stop it.
 BLOCK = 0
 """A block begins; ``operand``: row of the line's next block, 0 for none."""
 NEXT = 1
-"""It ends."""
+"""The block ends."""
 TRAP = 2
-"""the interpreter tier must run this block."""
+"""The interpreter tier must run this block."""
 CONSTANT = 3
 """Put ``immediate`` on the stack."""
 LOAD = 4
@@ -17,9 +17,9 @@ LOAD = 4
 LOAD_NUMBERED = 5
 """Put the variable with the number on the stack in its place."""
 LOAD_BELOW = 6
-"""As ``LOAD``, below the topmost value."""
+"""Put the variable with the slot ``operand`` below the topmost value."""
 LOAD_NUMBERED_BELOW = 7
-"""As ``LOAD_BELOW``, of the variable whose number lies below the topmost value."""
+"""Put the variable whose number lies below the topmost value in that number's place."""
 DEFINED = 8
 """Put on the stack whether the variable with the slot ``operand`` has a value."""
 NEGATE = 9
@@ -31,29 +31,29 @@ BINARY = 11
 TERNARY = 12
 """Replace the three topmost values by the function ``operand`` of them."""
 DROP = 13
-"""Forget the topmost value."""
+"""Take the topmost value off the stack."""
 STORE = 14
 """Give the variable with the slot ``operand`` the topmost value."""
 STORE_DECLARED = 15
-"""The same where it has a value of its own already."""
+"""Store the topmost value in the slot ``operand``, if that variable has a value of its own already."""
 STORE_NUMBERED = 16
-"""The same for the variable whose number lies below."""
+"""Store the topmost value in the variable whose number lies below it."""
 WORD = 17
-"""The topmost value is that of a word with the token_kind ``operand``."""
+"""The topmost value becomes a word of the token kind ``operand``."""
 WORD_CONSTANT = 18
-"""``immediate`` is."""
+"""``immediate`` becomes a word of the token kind ``operand``."""
 RUN = 19
-"""Run the words."""
+"""Execute the block's words."""
 RUN_REPEATEDLY = 20
-"""Run them as often as the topmost value says, at most ``immediate`` times."""
+"""Execute the block's words as often as the topmost value says, at most ``immediate`` times."""
 JUMP = 21
-"""Go on at the location ``operand``."""
+"""Jump to the location ``operand``."""
 JUMP_IF = 22
-"""The same where the topmost value is not 0."""
+"""Jump to the location ``operand`` if the topmost value is not 0."""
 JUMP_UNLESS = 23
-"""The same where it is 0."""
+"""Jump to the location ``operand`` if the topmost value is 0."""
 JUMP_CASE = 24
-"""The same where it equals the value below, which stays."""
+"""Jump to the location ``operand`` if the topmost value equals the one below, which stays."""
 BEGIN_FOR = 25
 """First, last and step become whether first lies beyond last, and first."""
 STEP_FOR = 26
@@ -66,7 +66,7 @@ CHECK_CALL = 28
 OWN_VARIABLES = 29
 """The part that is called next has local variables of its own."""
 RESTORE_CODES = 30
-"""Its end puts back into force what is in force now."""
+"""The end of the part that is called next restores the codes that are active now."""
 CALL = 31
 """Run the part that begins at the location ``operand``."""
 RANGE = 32
@@ -78,58 +78,58 @@ CHECK_RETURN = 34
 RETURN = 35
 """Go back behind the call."""
 SNAPSHOT = 36
-"""What follows changes more than variables; keep how all was."""
+"""What follows changes more than variables: keep a snapshot of the registers."""
 RUN_CODES = 37
-"""Run the words so far, and forget them but for N."""
+"""Execute the block's words so far, and drop them except N."""
 RUN_POLAR = 38
-"""Run the words, on a straight way to where R (``operand`` 1), Q (2) or both (3) lead, whose
-values are the topmost."""
+"""Execute the block's words, on a straight line to where R (``operand`` 1), Q (2) or both (3) lead,
+whose values are the topmost."""
 ACTIVATE = 39
-"""The G code ``operand`` is in force."""
+"""The G code ``operand`` becomes active."""
 PLANE = 40
-"""The plane ``operand`` is in force: 0 to 2."""
+"""The plane ``operand`` becomes active: 0 to 2."""
 FUNCTION = 41
 """Report the M function ``operand``."""
 SPINDLE_FUNCTION = 42
-"""The same with the spindle's speed."""
+"""Report the M function ``operand`` together with the spindle's speed."""
 SPEED = 43
 """The spindle's speed is the topmost value; ``operand`` 1: report it."""
 TOOL = 44
-"""The tool with the topmost number comes next; ``operand`` 1: it must be one of the job's."""
+"""The topmost value is the number of the tool to prepare; ``operand`` 1: it must be one of the job's."""
 AUXILIARY = 45
 """Report H with the topmost value."""
 DWELL = 46
 """Wait as many seconds as the topmost value."""
 CHANGE_TOOL = 47
-"""The tool that comes next is used from now on."""
+"""The tool that was prepared last becomes the tool in use."""
 OFFSET_ON = 48
-"""Tools have their offset, or with ``operand`` 0 not."""
+"""``operand`` 1: tool offsets apply; 0: they do not."""
 TOOL_LENGTH = 49
-"""The tool in use moves Z by its length, where it has its offset."""
+"""Shift Z by the length of the tool in use, if its offset applies."""
 SHIFT = 50
 """The topmost values, one for each axis, are the shift ``operand``."""
 REFRAME = 51
 """The shifts have changed."""
 BEGIN_TARGET = 52
-"""The place where the machine stands gets new coordinates: at first those that it has."""
+"""Begin to set new coordinates for the present position: until set, each axis keeps its own."""
 TARGET = 53
-"""The topmost value is that of the axis ``operand``."""
+"""The topmost value is the new coordinate of the axis ``operand``."""
 SET_POSITION = 54
-"""They hold from now on, by the shift ``operand``."""
+"""The new coordinates hold from here on, by the shift ``operand``."""
 POLAR_ORIGIN = 55
-"""The two topmost values (``operand`` 2) are the polar origin; 0: it is where the tool stands."""
+"""``operand`` 2: the two topmost values are the polar origin; 0: the present position is."""
 TO_MILLIMETRES = 56
-"""The topmost value is in the unit in force, of the axis ``operand``."""
+"""Convert the topmost value from the active unit, as one of the axis ``operand``."""
 NO_PECKS = 57
 """No drilling cycle with pecks may be in force."""
 FORGET_POLAR = 58
-"""The last R and Q hold no longer."""
+"""The last R and Q are no longer modal."""
 TOOL_RADIUS = 59
 """Put the radius of the tool in use on the stack; ``operand`` 1: 0 where it has no offset."""
 COMPENSATE = 60
 """Radius compensation begins, of the topmost value, left (``operand`` 1) or right (-1)."""
 END_COMPENSATION = 61
-"""It ends."""
+"""Radius compensation ends."""
 CYCLE_WORD = 62
 """The topmost value is that of the drilling cycle's word for ``operand``."""
 PROGRAMMED_RADIUS = 63
@@ -138,10 +138,10 @@ stack what it gave last."""
 MIRROR = 64
 """The topmost value, -1 or 1, is the sign of the axis ``operand``."""
 SCALE = 65
-"""It is the scale."""
+"""The topmost value is the scale."""
 ROTATE = 66
 """The topmost values are angle, abscissa and ordinate of the rotation, which must be the only one."""
 END_ROTATION = 67
-"""It ends."""
+"""The rotation ends."""
 TRANSFORM = 68
 """Mirror, scale and rotation have changed."""

@@ -83,7 +83,7 @@ class BlockTables(NamedTuple):
         kind: Kind of each interpolation, shape (i,).
         clockwise: Of arcs, shape (i,).
         mismatch: How far start and end radius of an arc may differ, shape (i,) [mm].
-        mismatch_share: The same as a share of the larger one, shape (i,).
+        mismatch_share: How far they may differ as a share of the larger one, shape (i,).
         shift: How far its centre may be moved to fit, shape (i,) [mm].
         signed_radius: A negative radius asks for the larger arc, else it is not plain, shape (i,).
         fits_radius: A centre found by its radius is fitted like a given one, shape (i,).
@@ -111,7 +111,7 @@ class Constants(NamedTuple):
 
     Attributes:
         default_feed: Where none is programmed [mm/min].
-        default_rotary_feed: The same for rotary axes alone [deg/min].
+        default_rotary_feed: Where none is programmed and only rotary axes move [deg/min].
         feed_may_lack: A feed move without a programmed feed was warned of already.
         rapid_feed: [mm/min]; NaN: the machine's.
         own_rapid_feed: Feed per second of rapids that the program paces, 0 where they follow F;

@@ -20,7 +20,7 @@ class Variables:
         common: Values of the shared ones, shape (n,).
         local: Values of the others, of the main program and of each call, shape (calls, m).
         given_common: What the job gives where the program has set none, shape (n,).
-        given_local: The same, shape (m,).
+        given_local: What the job gives of the others, shape (m,).
         depth: Row of ``local`` that is in use.
     """
 

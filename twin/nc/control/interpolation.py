@@ -21,7 +21,7 @@ class ArcRule:
     Attributes:
         clockwise: Its sense.
         mismatch: How far the distances of start and end from the centre may differ [mm].
-        mismatch_share: The same as a share of the larger one.
+        mismatch_share: How far they may differ as a share of the larger one.
         shift: How far the centre may be moved to fit [mm].
         signed_radius: A negative radius asks for the larger arc; else it is not plain.
         fits_radius: A centre found by its radius is fitted to both points like a given one.

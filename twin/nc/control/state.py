@@ -83,7 +83,7 @@ class ControlState:
         rapid_feed: Feed of rapids where the program limits it [mm/min]; NaN: the machine's.
         rapid_acceleration: Acceleration of rapids where the program sets their own [mm/s²]; NaN:
             that of the path.
-        rapid_deceleration: The same for slowing down.
+        rapid_deceleration: Deceleration of rapids, likewise [mm/s²].
         axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
         axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
         ended: An end code was run.

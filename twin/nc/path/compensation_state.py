@@ -78,7 +78,7 @@ class CompensationResult:
         state: How far it has come, or None.
         waiting: Moves and events at the end of the held move, in order.
         latest: The last programmed move, or None where there was none.
-        before: The same, unless an event came behind it.
+        before: The last programmed move, or None where an event came behind it.
         came: Something came at all.
     """
 

@@ -36,8 +36,8 @@ class Page:
 
     Attributes:
         lines: Their numbers, from 0.
-        text: They as UTF-8, with their ends.
-        data: The same, shape (bytes,).
+        text: The lines as UTF-8, with their ends.
+        data: The bytes of ``text``, shape (bytes,).
         starts: Where each line begins in it, and where the last one ends, shape (n + 1,).
     """
 

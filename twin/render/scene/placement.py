@@ -44,7 +44,7 @@ class Placement(Frame):
     """The part's frame, seen from the body that carries the part and turns with it.
 
     Attributes:
-        at_rest: The same, seen from the body that carries the turning one, while the part's frame
+        at_rest: Where it lies, seen from the body that carries the turning one, while the part's frame
             is parallel to the machine's.
     """
 

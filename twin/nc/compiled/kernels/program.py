@@ -137,9 +137,9 @@ def unread_lines(
 
     Args:
         data: As for ``run_program``.
-        starts: The same.
-        first_line: The same.
-        line_tables: The same.
+        starts: As for ``run_program``.
+        first_line: As for ``run_program``.
+        line_tables: As for ``run_program``.
         first: First row of each compiled line.
         line: The line before them, from 0.
         most: How many lines are looked at.

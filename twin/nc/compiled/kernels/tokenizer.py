@@ -39,7 +39,7 @@ class LineTables(NamedTuple):
     Attributes:
         token_kinds: What each letter is, shape (26,).
         openings: First bytes of each kind of comment, 0 where there is none, shape (c, 2).
-        closings: The same of what ends it; 0, 0: the end of the line.
+        closings: First bytes of what ends a comment of each kind; 0, 0: the end of the line.
         whole_line: It can only begin its line, shape (c,).
     """
 
