@@ -61,7 +61,7 @@ def _installed() -> bool:
     """Whether pytest knows the plugin by the package's entry point."""
     code = "from importlib.metadata import entry_points as e; print(e(group='pytest11').names)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    return "'twin'" in done.stdout
+    return "'mill-twin'" in done.stdout
 
 
 def shell(command: str, *, code: int = 0) -> str:
@@ -139,7 +139,7 @@ def test_a_build_server_runs_its_example(shop: Path, monkeypatch: pytest.MonkeyP
     assert f"pip install mill-twin=={__version__}" in install
     shell(install)
     told = shell(check, code=1)
-    assert "part.nc:3:1: error baseline-path: arc of 180 degrees, baseline -180" in told
+    assert "part.nc:3:1: error baseline-path: arc counter-clockwise by 180 degrees" in told
     text = (EXAMPLES / example).read_text(encoding="utf-8")
     for kept in ("twin.xml", "reports"):
         assert (shop / kept).exists()

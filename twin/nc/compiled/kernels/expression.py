@@ -173,7 +173,8 @@ def binary(function: int, a: float, b: float) -> float:
     if function == 18:
         return arithmetic.larger(a, b)
     if function == 19:
-        return np.fmod(a, b)  # exact, as that of math, which Numba lacks
+        # NumPy warns of a remainder by zero; its own is exact, as that of math, which Numba lacks.
+        return np.fmod(a, b) if b != 0.0 else math.nan
     return math.pow(a, b)
 
 
