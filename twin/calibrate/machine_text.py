@@ -12,7 +12,6 @@ from twin.version import __version__
 
 _OF_THE_LOG = ("delay", "force_delay", "measuring_filter")
 """Parameters of a log's columns; the machine has none."""
-_POSITIVE = ("kv", "damping_ratio", "mass", "current_scale")
 
 
 def machine_text(result: Calibration, *, base: str, name: str) -> str:

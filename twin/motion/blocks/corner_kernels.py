@@ -33,7 +33,6 @@ NEARLY = 1e-6
 NARROWEST = 1e-4
 """A rounding narrower than this is none [mm or deg]."""
 
-TANGENT_PEAK = 3.0 / 16.0
 CURVATURE_PEAK = 0.01074
 """Largest value of ``smooth_square(t) - max(t, 0)²/2`` (0.010736)."""
 

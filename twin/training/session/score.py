@@ -15,8 +15,6 @@ from twin.training.session.session import Session
 from twin.version import __version__
 
 LOG_FILE = "log.jsonl"
-SHEET_FILES = ("score.json", "score.html")
-
 WRITTEN_EVERY_S = 1.0
 """Shortest time between two writings [s]."""
 
