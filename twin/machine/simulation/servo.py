@@ -233,10 +233,14 @@ class Servo:
             load = np.zeros((steps, len(self._dof)))
         if load is not None:
             controls, held = np.hstack([controls, self._pushes(load)]), _CONTROL | _PUSH
+        states = np.zeros((1, steps, len(self._state)))
         with Rollout(nthread=0) as rollout:
-            states, _ = rollout.rollout(
-                self.model, self._data, self._state[None], controls[None],
-                control_spec=held, initial_warmstart=self._warmstart,
+            # Its checks of shapes cost more than a slice of a live machine.
+            rollout.rollout(
+                [self.model], [self._data], self._state[None], controls[None],
+                control_spec=held, skip_checks=True, nstep=steps,
+                initial_warmstart=self._warmstart, state=states,
+                sensordata=np.zeros((1, steps, self.model.nsensordata)),
             )  # fmt: skip
         self._data.qfrc_applied[:] = 0.0
         self._refuse_warnings()

@@ -62,6 +62,7 @@ class RelativeMotion:
         mujoco.mj_kinematics(model, self._data)
         hinge = mujoco.mjtJoint.mjJNT_HINGE
         self._hinge = [mujoco.mjtJoint(model.jnt_type[joint]) == hinge for joint in joints]
+        self._links = _links(model, joints, self._hinge)
         self.seen: list[Seen] = []
 
     def follow(self, seen: Seen) -> int:
@@ -117,7 +118,7 @@ class RelativeMotion:
         """
         joint = np.ascontiguousarray((position * self._scale).T)
         rotary = [axis for axis, hinge in enumerate(self._hinge) if hinge]
-        poses: _Poses = {}
+        poses: _Poses = {0: (np.zeros((3, 1)), np.eye(3)[:, :, None])}
         found = np.zeros((len(self.seen), 3 + len(rotary), len(position)))
         for track, seen in zip(found, self.seen, strict=True):
             origin, turn = self._pose(seen.frame, joint, poses)
@@ -131,33 +132,71 @@ class RelativeMotion:
     def _pose(self, body: int, joint: FloatArray, poses: "_Poses") -> tuple[FloatArray, FloatArray]:
         """Position and orientation of a body, shapes (3, m) and (3, 3, m); m is 1 while it rests."""
         if body not in poses:
-            poses[body] = self._moved(body, joint, poses)
+            poses[body] = self._moved(self._links[body], joint, poses)
         return poses[body]
 
     def _moved(
-        self, body: int, joint: FloatArray, poses: "_Poses"
+        self, link: "_Link", joint: FloatArray, poses: "_Poses"
     ) -> tuple[FloatArray, FloatArray]:
-        model = self._model
-        if body == 0:
-            return np.zeros((3, 1)), np.eye(3)[:, :, None]
-        place, turn = self._pose(int(model.body_parentid[body]), joint, poses)
-        place = place + _applied(turn, model.body_pos[body][:, None])
-        turn = _product(turn, _matrix(model.body_quat[body])[:, :, None])
-        for axis, number in enumerate(self._joints):
-            if model.jnt_bodyid[number] != body:
+        place, turn = self._pose(link.parent, joint, poses)
+        place = place + _applied(turn, link.place)
+        turn = _product(turn, link.turn)
+        for axis in link.axes:
+            moved = joint[axis.number] - axis.zero
+            if not axis.hinge:
+                place = place + _applied(turn, axis.along[:, None]) * moved
                 continue
-            along = model.jnt_axis[number]
-            moved = joint[axis] - model.qpos0[model.jnt_qposadr[number]]
-            if not self._hinge[axis]:
-                place = place + _applied(turn, along[:, None]) * moved
-                continue
-            anchor = model.jnt_pos[number][:, None]
             if np.ptp(moved) < _STILL:
                 moved = moved[:1]
-            place = place + _applied(turn, anchor)
-            turn = _product(turn, _turned(along, moved))
-            place = place - _applied(turn, anchor)
+            place = place + _applied(turn, axis.anchor)
+            turn = _product(turn, _turned(axis.along, moved))
+            place = place - _applied(turn, axis.anchor)
         return place, turn
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Axis:
+    """An axis at the body that it moves: its number, direction, anchor, and where it begins."""
+
+    number: int
+    hinge: bool
+    along: FloatArray
+    anchor: FloatArray
+    zero: float
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Link:
+    """How a body stands on its parent, with the axes that move it.
+
+    Copied from the model once: its arrays are slow to ask for.
+    """
+
+    parent: int
+    place: FloatArray
+    turn: FloatArray
+    axes: tuple[_Axis, ...]
+
+
+def _links(model: mujoco.MjModel, joints: list[int], hinge: list[bool]) -> list[_Link]:
+    """All bodies of a model by their numbers."""
+    found = []
+    for body in range(model.nbody):
+        axes = tuple(
+            _Axis(
+                number,
+                hinge[number],
+                model.jnt_axis[joint].copy(),
+                model.jnt_pos[joint].copy()[:, None],
+                float(model.qpos0[model.jnt_qposadr[joint]]),
+            )
+            for number, joint in enumerate(joints)
+            if model.jnt_bodyid[joint] == body
+        )
+        place = model.body_pos[body].copy()[:, None]
+        turn = _matrix(model.body_quat[body])[:, :, None]
+        found.append(_Link(int(model.body_parentid[body]), place, turn, axes))
+    return found
 
 
 _Poses = dict[int, tuple[FloatArray, FloatArray]]
