@@ -44,7 +44,13 @@ class FakeControl:
                 if leaves:
                     self._ask(channel, LEAVING, 0, 0, positions[-1])
 
-        threading.Thread(target=ask, daemon=True).start()
+        self._thread = threading.Thread(target=ask, daemon=True)
+        self._thread.start()
+
+    def finish(self) -> None:
+        """Wait until the last answer has come."""
+        self._thread.join(20.0)
+        assert not self._thread.is_alive()
 
     @property
     def feedback(self) -> FloatArray:

@@ -44,6 +44,7 @@ def driven(
         control = FakeControl(motion, noise)
         control.start(positions)
         samples = join(list(motion))
+        control.finish()
     return samples, control, motion
 
 
