@@ -117,7 +117,7 @@ def change_tool(control: Control) -> None:
     control.tools.change()
     memory_of(control).offset_on = True
     tool = control.tools.data(control.tools.spindle)
-    if control.tools.spindle == 0:
+    if control.tools.spindle == 0 and 0 not in control.tools.table:
         set_length(control, 0.0)
     elif tool is not None:
         set_length(control, control.tools.longer(tool))
