@@ -11,7 +11,7 @@ from twin.nc.control.codes import Action, Compiler, GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode, ModalChanges
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
-from twin.nc.dialects.fagor8070.cycles import CYCLES
+from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.offset_table import compile_offset, offset_code

@@ -19,9 +19,9 @@ from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode, Ground, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
-from twin.nc.dialects.fagor8070.pockets import call_pocket, mill_pocket
+from twin.nc.dialects.fagor8070.cycles.pockets import call_pocket, mill_pocket
+from twin.nc.dialects.fagor8070.cycles.tapping import tapping_code
 from twin.nc.dialects.fagor8070.polar import take_goal
-from twin.nc.dialects.fagor8070.tapping import tapping_code
 from twin.nc.iso.drilling import cycle_code
 from twin.nc.path.drilling_cycle import (
     BOTTOM,
