@@ -8,7 +8,6 @@ from twin.nc.bytecode.registers import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
     PLANE,
-    SCALE,
     TURNED,
     UNIT,
     BlockTables,
@@ -17,11 +16,12 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.compiled.kernels.frame import turn_arc
-from twin.nc.compiled.kernels.plane import SHORTEST
 from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.compiled.kernels.tokenizer import AXIS, CENTER, RADIUS
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import Bounds, Point
+from twin.nc.geometry.planes import vector_of
+from twin.nc.path.moves import SMALLEST_MOVE, arc_length
 
 
 @inlined
@@ -61,9 +61,6 @@ def emit_arc(
     if not clear:
         return False
     sweep = arcs.sweep_between(start, end, center, tables.clockwise[interpolation])
-    length = arcs.distance(start, center) * abs(sweep) * state.registers[SCALE]
-    if not length > SHORTEST * arcs.TURN:
-        return False
     value = rows.values[row]
     value[first_axis], value[second_axis] = center
     value[across] = state.programmed[across]
@@ -75,7 +72,10 @@ def emit_arc(
     else:
         for axis in range(3):
             value[axis] += state.total[axis]
-    return True
+    turned_center, normal = vector_of(value), vector_of(value[3:])
+    position = rows.positions[row]
+    length = arc_length(position[0], position[1], turned_center, normal, value[6])
+    return length >= SMALLEST_MOVE
 
 
 @inlined
