@@ -15,9 +15,18 @@ from twin.files.toml import Table, read_toml
 from twin.job.job_file import Job, JobFile
 from twin.run.preparation import Preparation, prepare_job
 from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.modes import Mode
 from twin.training.scene.tasks import TaskTable
-from twin.training.scene.texts import Language, Text
+from twin.training.scene.vocabulary import Language, Text
+
+Mode = Literal["auto", "single", "jog", "mdi"]
+"""Automatic, single block, manual jog, manual data input."""
+
+MODES: tuple[Mode, ...] = ("auto", "single", "jog", "mdi")
+
+FEED_OVERRIDES = (0, 120)
+"""Ends of the feed override dial [%]."""
+RAPID_OVERRIDES = (0, 100)
+"""Ends of the rapid override dial [%]."""
 
 _SHIPPED = Path(__file__).resolve().parent.parent / "scenes"
 
@@ -34,8 +43,8 @@ class StartTable(Table):
     """How much longer the tool table has the tool in the spindle than it is [mm]."""
     spindle: bool = False
     """Whether the spindle turns already."""
-    feed_override: Annotated[int, Field(ge=0, le=120)] = 100
-    rapid_override: Annotated[int, Field(ge=0, le=100)] = 100
+    feed_override: Annotated[int, Field(ge=FEED_OVERRIDES[0], le=FEED_OVERRIDES[1])] = 100
+    rapid_override: Annotated[int, Field(ge=RAPID_OVERRIDES[0], le=RAPID_OVERRIDES[1])] = 100
     alarm: str = ""
     """An alarm that stands when the operator comes: ``hard-limit`` for an axis on its switch."""
 
