@@ -1,5 +1,6 @@
 """Reference of the command line: every command, from its declaration."""
 
+import html
 from collections.abc import Iterator
 from typing import Any
 
@@ -68,4 +69,4 @@ def _row(option: Any) -> str:
 
 
 def _cell(text: str | None) -> str:
-    return (text or "").replace("|", "\\|")
+    return html.escape(text or "", quote=False).replace("|", "\\|")

@@ -35,6 +35,12 @@ def test_the_site_is_built_without_a_warning_and_fetches_nothing(tmp_path: Path)
     for name, page in pages.items():
         assert '<script src="http' not in page, name
         assert "fonts.googleapis" not in page, name
+        assert "```" not in page, f"{name}: a block of code that was not understood"
+
+
+def test_every_room_and_machine_has_its_page():
+    written = {*ROOT.glob("twin/*/README.md"), *ROOT.glob("models/*/README.md")}
+    assert {page.relative_to(ROOT).as_posix() for page in written} <= set(PAGES)
 
 
 def test_a_link_that_leads_nowhere_is_refused():

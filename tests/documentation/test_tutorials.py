@@ -23,17 +23,15 @@ class Block(NamedTuple):
     """A fenced block of a page.
 
     Attributes:
-        language: ``sh``, ``text``, ``toml``, ``python``.
+        language: ``sh`` is run; ``console`` is what cannot be run here, a server or a real machine's log.
         title: The file that it is; empty for what is none.
-        exit_code: Of a command.
-        runs: Whether it can be run here: no server, no log of a machine.
+        exit_code: Of a command, as its comment says.
         text: Its lines.
     """
 
     language: str
     title: str
     exit_code: int
-    runs: bool
     text: str
 
 
@@ -45,11 +43,10 @@ def blocks(page: str) -> Iterator[Block]:
     )
     for _, language, about, text in (block.groups() for block in found):
         title = re.search(r'title="(.*?)"', about)
-        code = re.search(r"exit=(\d+)", about)
+        code = re.search(r"# ends with exit code (\d+)$", text)
         yield Block(
-            language, title[1] if title else "", int(code[1]) if code else 0, "norun" not in about,
-            textwrap.dedent(text),
-        )  # fmt: skip
+            language, title[1] if title else "", int(code[1]) if code else 0, textwrap.dedent(text)
+        )
 
 
 @pytest.fixture
@@ -94,7 +91,7 @@ def test_a_tutorial_does_what_it_says(desk: Path, page: str):
             file = desk / block.title
             file.parent.mkdir(exist_ok=True)
             file.write_text(block.text, encoding="utf-8")
-        elif block.language == "sh" and block.runs:
+        elif block.language == "sh":
             done = subprocess.run(
                 ["sh", "-ec", block.text],
                 capture_output=True,
@@ -117,9 +114,8 @@ def test_a_tutorial_does_what_it_says(desk: Path, page: str):
 def test_commands_of_the_pages_and_their_options_exist(page: str):
     root: Any = get_command(app)
     for block in blocks(page):
-        for call in (
-            re.findall(r"^twin (.*)", block.text, re.MULTILINE) if block.language == "sh" else ()
-        ):
+        commands = block.text if block.language in ("sh", "console") else ""
+        for call in re.findall(r"^(?:\$ )?twin (.*)", commands, re.MULTILINE):
             command: Any = root
             for word in call.split():
                 command = getattr(command, "commands", {}).get(word, command)
