@@ -80,7 +80,7 @@ def shows(said: str, shown: str) -> bool:
     """Whether each line that a page shows was said; dots stand for what changes."""
     lines = [line.rstrip() for line in shown.splitlines() if line.strip()]
     patterns = [re.escape(line).replace(r"\.\.\.", ".*") for line in lines]
-    return all(re.search(f"^{pattern}$", said, re.MULTILINE) for pattern in patterns)
+    return all(re.search(rf"^\s*{pattern}$", said, re.MULTILINE) for pattern in patterns)
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if page.startswith("tutorials/")])
