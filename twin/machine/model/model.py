@@ -134,7 +134,13 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
             integral = spec.add_actuator(
                 name=integral_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
             )
-            integral.set_to_pid(kp=0.0, kv=0.0, ki=drive.integral_gain, ctrlspec=_POSITION_INPUT)
+            integral.set_to_pid(
+                kp=0.0,
+                kv=0.0,
+                ki=drive.integral_gain,
+                imax=drive.integral_limit,
+                ctrlspec=_POSITION_INPUT,
+            )
         joint = spec.joint(axis.joint)
         joint.actfrclimited = axis.force_limit > 0
         joint.actfrcrange = np.array([-axis.force_limit, axis.force_limit])

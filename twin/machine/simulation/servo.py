@@ -260,6 +260,9 @@ class Servo:
             nodes = polyline_nodes(setpoints, self._period)
             meant = ((nodes[1:] + nodes[:-1]) / 2 - self._trail * velocity) * self._scale
             controls[:, self._position_input] = meant[:, self._integrates]
+            # Within a step the axis passes under the held input, and the integral bulges by V h²/12.
+            bulge = self._period**2 / 12 * velocity * self._scale * self._integral_gain
+            controls[:, self._force_input] -= bulge
         return controls
 
     def _pushes(self, load: FloatArray) -> FloatArray:
@@ -303,9 +306,5 @@ class Servo:
         )
         first = 1 + self.model.nq + self.model.nv
         left_behind = states[:, first + self._integral_state]
-        # Within a step the axis passes under the held input: the integral bulges by V h²/12.
-        left_behind = (
-            left_behind + self._period**2 / 12 * (velocity * self._scale)[:, self._integrates]
-        )
         force[:, self._integrates] += self._integral_gain[self._integrates] * left_behind
         return np.clip(force * np.sign(self._scale), -self._limit, self._limit)
