@@ -22,6 +22,8 @@ class Drives(NamedTuple):
         velocity_told: Force that is added in advance per commanded velocity.
         acceleration_told: Force that is added in advance per commanded acceleration.
         trail: How long an axis that the integrator has settled trails its setpoint [s].
+        speed_bulge: What the motor's speed is higher between samples than at them, on average, per
+            commanded acceleration [s]: the speed that it is told stands still over a step.
         limit: Of the force [N or N m].
         constant: Force from outside that never changes [N or N m].
         velocity_input: Control that tells the drive its velocity.
@@ -44,6 +46,7 @@ class Drives(NamedTuple):
     velocity_told: FloatArray
     acceleration_told: FloatArray
     trail: FloatArray
+    speed_bulge: FloatArray
     limit: FloatArray
     constant: FloatArray
     velocity_input: IntArray
@@ -143,7 +146,8 @@ def read_states(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The axes in states of the model.
 
-    The force is what the drives push with around the instants of the samples, within their limits.
+    The force is what the drives push with around the instants of the samples, on average over the
+    step, within their limits.
     It is taken from the setpoint itself: at a corner of the polyline that is drawn through it the
     push is off by kp h²/12 a for a part of the step.
 
@@ -164,7 +168,8 @@ def read_states(
             motor = states[row, drives.qpos[axis]] / scale
             speed = states[row, drives.qvel[axis]] / scale
             push = drives.position_gain[axis] * ((points.position[row, axis] - motor) * scale)
-            push -= drives.velocity_gain[axis] * speed * scale
+            bulge = drives.speed_bulge[axis] * points.acceleration[row, axis]
+            push -= drives.velocity_gain[axis] * (speed + bulge) * scale
             push += _told(drives, axis, points.velocity[row, axis], points.acceleration[row, axis])
             if drives.integral[axis] >= 0:
                 push += drives.integral_gain[axis] * states[row, drives.integral[axis]]
