@@ -30,6 +30,7 @@ from twin.nc.bytecode.registers import (
     UNIT,
     BlockTables,
     Constants,
+    Rows,
     State,
 )
 from twin.nc.canonical import FloatArray
@@ -47,7 +48,6 @@ from twin.nc.path.event_columns import (
     SPEED,
     TOOL,
 )
-from twin.nc.path.rows import Rows
 
 _NO_EVENT = -1
 _PECKING = Cycle._fields.index("pecking")
