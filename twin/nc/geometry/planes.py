@@ -5,8 +5,10 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from twin.compilation.compilable import compilable
-from twin.nc.canonical import FloatArray
 
 Vector = tuple[float, float, float]
 Directions = tuple[Vector, Vector, Vector]
@@ -14,7 +16,7 @@ Directions = tuple[Vector, Vector, Vector]
 
 
 @compilable
-def vector_of(column: Sequence[float] | FloatArray) -> Vector:
+def vector_of(column: Sequence[float] | npt.NDArray[np.float64]) -> Vector:
     """The first three of a column's numbers."""
     return (float(column[0]), float(column[1]), float(column[2]))
 
