@@ -46,7 +46,7 @@ def world(plane: Directions, point: tuple[float, float], height: float) -> Vecto
 
 @compilable
 def put_point(
-    plane: Directions, point: tuple[float, float], height: float, target: FloatArray
+    plane: Directions, point: tuple[float, float], height: float, target: npt.NDArray[np.float64]
 ) -> None:
     """Put that point into the first places of a column."""
     target[0], target[1], target[2] = world(plane, point, height)
