@@ -8,6 +8,7 @@ import typer
 from twin.command_line.calibration import calibrate
 from twin.command_line.examples import epilog
 from twin.command_line.knowledge import dialects, doctor, explain
+from twin.command_line.links import link_app
 from twin.command_line.machines import machine_app
 from twin.command_line.monitoring import serve
 from twin.command_line.pictures import render
@@ -20,6 +21,7 @@ from twin.version import __version__
 app = typer.Typer(
     name="twin",
     help="A digital twin of a 4-axis mill: NC text in, a verdict, a part and a picture out.",
+    epilog=epilog("twin"),
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -64,6 +66,7 @@ for command in (
 ):
     app.command(epilog=epilog(command.__name__))(command)
 app.add_typer(machine_app, name="machine")
+app.add_typer(link_app, name="link")
 
 
 def main() -> None:

@@ -179,7 +179,7 @@ def test_axes_that_have_caught_up_with_a_computing_program_rest_and_go_on(driver
     computing = "$FOR P1=0,2000,1\nP2=P1*2\n$ENDFOR"
     ask(driver, "edit", line=1, text=f"%WAIT\nG91 G1 X1 F3000\n{computing}\nG1 X2\nM30")
     ask(driver, "cycle_start")
-    start, stood = room.machine.position[0], False
+    start, at, stood = room.machine.position[0], 0.0, False
     for _ in range(600):
         run_for(driver, 0.01)
         at = room.machine.position[0] - start
