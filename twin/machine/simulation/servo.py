@@ -1,6 +1,7 @@
 """The physics of a run: setpoints in, samples of the joints out, state in between."""
 
 import dataclasses
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -8,16 +9,17 @@ from mujoco.rollout import Rollout
 
 from twin.columns import join
 from twin.machine.description.config import Machine
-from twin.machine.model.drives import feedforward_name, integral_name
+from twin.machine.model.drive_actuators import LagActuator, lag_actuator
+from twin.machine.model.drives import feedforward_name, integral_name, lag_name
 from twin.machine.model.model import drives
 from twin.machine.model.timers import switch_off_timers
 from twin.machine.model.transmission import give_name, has_give
+from twin.machine.simulation.drive_commands import DriveCommands, Told
 from twin.machine.simulation.sampling import held_commands, polyline_nodes
 from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
-from twin.units import kv_per_second
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 _CONTROL = int(mujoco.mjtState.mjSTATE_CTRL)
@@ -35,6 +37,21 @@ class Stand:
     setpoint: FloatArray
     integral: FloatArray
     """Force of the drive's integrator; NaN where it has none."""
+    lagging: dict[str, float]
+    """Speed as each lag shows it, by the lag's name."""
+    commands: DriveCommands
+
+
+class _Lag(NamedTuple):
+    """A lag of an axis's speed, as it is played."""
+
+    name: str
+    axis: int
+    gain: float
+    """Of the lagging speed [N s/m or N m s/rad]."""
+    actuator: LagActuator
+    state: int
+    """Place of the actuator's state."""
 
 
 class Servo:
@@ -54,8 +71,9 @@ class Servo:
         self._data = mujoco.MjData(model)
         loops = drives(machine, model)
         self._position_gain = np.array([loop.position_gain for loop in loops])
-        self._velocity_gain = np.array([loop.velocity_gain for loop in loops])
-        self._moved = np.array([loop.moved for loop in loops])
+        self._damping_gain = np.array([loop.damping_gain for loop in loops])
+        self._commands = DriveCommands(machine, loops)
+        self._substeps = round(self._period / model.opt.timestep)
         axes = [machine.axis(name) for name in machine.axes.names]
         joints = [model.joint(axis.joint) for axis in axes]
         self._qpos = np.array([int(joint.qposadr[0]) for joint in joints])
@@ -73,9 +91,14 @@ class Servo:
         self._position_input = model.actuator_ctrladr[integral]
         self._integral_state = model.actuator_actadr[integral]
         self._integral_gain = np.array([loop.integral_gain for loop in loops])
-        self._trail = np.array(
-            [(1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) for axis in axes]
-        )
+        self._lags = [
+            _Lag(
+                lag_name(name, number), index, lag.gain, lag_actuator(lag, model.opt.timestep),
+                int(model.actuator_actadr[model.actuator(lag_name(name, number)).id]),
+            )
+            for index, (name, loop) in enumerate(zip(machine.axes.names, loops, strict=True))
+            for number, lag in enumerate(loop.lags)
+        ]  # fmt: skip
         self._gives = np.flatnonzero([has_give(axis) for axis in axes])
         give = [model.joint(give_name(axes[index])) for index in self._gives]
         self._give_qpos = np.array([int(joint.qposadr[0]) for joint in give], np.int64)
@@ -84,9 +107,7 @@ class Servo:
         self._stiffness = model.tendon_stiffness[walls]
         self._half_gap = model.tendon_lengthspring[walls, 1]
         self._scale = machine.joint_scale
-        self._velocity_share = np.array([axis.velocity_feedforward for axis in axes])
         self._limit = np.array([axis.force_limit or np.inf for axis in axes])
-        self._acceleration_share = np.array([axis.acceleration_feedforward for axis in axes])
         self._constant = np.array([axis.constant_force for axis in axes])
         self._last: Setpoints | None = None
         self._state = np.zeros(0)
@@ -118,16 +139,20 @@ class Servo:
             raise SimulationError("a setpoint is not a finite number")
         if self._last is None:
             self._begin(chunk)
+            told = self._commands.follow(chunk)
             after = None if load is None else load[1:]
-            states = np.concatenate([self._state[None], self._roll(chunk, after)])
+            states = np.concatenate([self._state[None], self._roll(told, after)])
         else:
-            states = self._roll(join([self._last, chunk]), load)
+            told = self._commands.follow(join([self._last, chunk]))
+            states = self._roll(told, load)
+            told = Told(told.setpoints[1:], told.late[1:])
         self._last, self._chunk, self._states = chunk[-1:], chunk, states
-        return self._samples(chunk, states)
+        return self._samples(chunk, told, states)
 
     def go_back(self, row: int) -> None:
         """Take back what came after a row of the last chunk."""
         assert self._chunk is not None
+        self._commands.go_to(row - len(self._chunk))
         self._last = self._chunk[row : row + 1]
         self._state = self._states[row].copy()
         self._warm_up()
@@ -140,6 +165,8 @@ class Servo:
         mujoco.mj_forward(model, data)
         stand = data.qpos[self._qpos] + self._carry(self._load())
         data.act[self._setpoint_state] = stand
+        data.act[[lag.state for lag in self._lags]] = 0.0
+        self._commands.come_to_rest()
         mujoco.mj_getState(model, data, self._state, _STATE)
         still = np.zeros((1, len(stand)))
         self._last = dataclasses.replace(
@@ -160,7 +187,11 @@ class Servo:
         data.qpos[self._qpos] = before.axis - give
         data.qpos[self._give_qpos] = give[self._gives]
         data.qvel[self._dof] = before.speed
-        data.act[self._setpoint_state] = before.setpoint
+        jump = self._commands.take_over(before.commands)
+        data.act[self._setpoint_state] = before.setpoint + jump * self._scale
+        for lag in self._lags:
+            speed = float(before.speed[lag.axis])
+            data.act[lag.state] = lag.actuator.current(speed, before.lagging.get(lag.name, speed))
         mujoco.mj_forward(self.model, data)
         self._carry(np.where(np.isnan(before.integral), self._load(), before.integral))
         self._state = np.zeros(mujoco.mj_stateSize(self.model, _STATE))
@@ -181,7 +212,13 @@ class Servo:
             self._integral_gain[self._integrates] * data.act[self._integral_state]
         )
         setpoint = data.act[self._setpoint_state].copy()
-        return Stand(data.qpos[self._qpos] + give, speed, give, setpoint, integral)
+        lagging = {
+            lag.name: float(lag.actuator.lagging(speed[[lag.axis]], data.act[[lag.state]])[0])
+            for lag in self._lags
+        }
+        return Stand(
+            data.qpos[self._qpos] + give, speed, give, setpoint, integral, lagging, self._commands
+        )
 
     def _load(self) -> FloatArray:
         """What every axis carries as it stands, shape (k,) [N or N m]."""
@@ -223,16 +260,18 @@ class Servo:
         self._state = np.zeros(mujoco.mj_stateSize(model, _STATE))
         mujoco.mj_getState(model, data, self._state, _STATE)
 
-    def _roll(self, setpoints: Setpoints, load: FloatArray | None) -> FloatArray:
-        steps = len(setpoints) - 1
+    def _roll(self, told: Told, load: FloatArray | None) -> FloatArray:
+        steps = len(told.setpoints) - 1
         if steps == 0:
             return np.zeros((0, len(self._state)))
         self._data.warning.number[:] = 0
-        controls, held = self._controls(setpoints), _CONTROL
+        controls, held = self._controls(told), _CONTROL
         if load is None and self._constant.any():
             load = np.zeros((steps, len(self._dof)))
         if load is not None:
             controls, held = np.hstack([controls, self._pushes(load)]), _CONTROL | _PUSH
+        if self._substeps > 1:
+            controls = controls.repeat(self._substeps, axis=0)
         with Rollout(nthread=0) as rollout:
             states, _ = rollout.rollout(
                 self.model, self._data, self._state[None], controls[None],
@@ -242,7 +281,7 @@ class Servo:
         self._refuse_warnings()
         self._state = states[0, -1].copy()
         self._warmstart = self._data.qacc_warmstart[None].copy()
-        return states[0]
+        return states[0, self._substeps - 1 :: self._substeps]
 
     def _refuse_warnings(self) -> None:
         raised = np.flatnonzero(self._data.warning.number)
@@ -250,16 +289,16 @@ class Servo:
             names = ", ".join(mujoco.mjtWarning(int(code)).name for code in raised)
             raise SimulationError(f"MuJoCo warned during the simulation: {names}")
 
-    def _controls(self, setpoints: Setpoints) -> FloatArray:
+    def _controls(self, told: Told) -> FloatArray:
         """Controls to hold between consecutive setpoints, shape (n - 1, nu), SI."""
-        velocity, acceleration = held_commands(setpoints, self._period)
+        velocity, _ = held_commands(told.setpoints, self._period)
         controls = np.zeros((len(velocity), self.model.nu))
         controls[:, self._velocity_input] = velocity * self._scale
-        controls[:, self._force_input] = self._told(velocity, acceleration)
+        controls[:, self._force_input] = self._commands.held_force(told)
         if len(self._integrates):
-            nodes = polyline_nodes(setpoints, self._period)
-            meant = ((nodes[1:] + nodes[:-1]) / 2 - self._trail * velocity) * self._scale
-            controls[:, self._position_input] = meant[:, self._integrates]
+            nodes = polyline_nodes(told.setpoints, self._period)
+            meant = (nodes[1:] + nodes[:-1]) / 2 - self._commands.trail * velocity
+            controls[:, self._position_input] = (meant * self._scale)[:, self._integrates]
         return controls
 
     def _pushes(self, load: FloatArray) -> FloatArray:
@@ -269,17 +308,10 @@ class Servo:
         pushes[:, self._give_dof] = pushes[:, self._dof[self._gives]]
         return pushes
 
-    def _told(self, velocity: FloatArray, acceleration: FloatArray) -> FloatArray:
-        """Force that the drives add in advance [N or N m]."""
-        return self._scale * (
-            self._velocity_share * self._velocity_gain * velocity
-            + self._acceleration_share * self._moved * acceleration
-        )
-
-    def _samples(self, setpoint: Setpoints, states: FloatArray) -> Samples:
+    def _samples(self, setpoint: Setpoints, told: Told, states: FloatArray) -> Samples:
         motor = states[:, 1 + self._qpos] / self._scale
         speed = states[:, 1 + self.model.nq + self._dof] / self._scale
-        force = self._force(setpoint, motor, speed, states)
+        force = self._force(told, motor, speed, states)
         position, velocity = motor.copy(), speed.copy()
         position[:, self._gives] += states[:, 1 + self._give_qpos] / self._scale[self._gives]
         velocity[:, self._gives] += (
@@ -288,20 +320,25 @@ class Servo:
         return Samples(setpoint, position, velocity, force)
 
     def _force(
-        self, setpoint: Setpoints, position: FloatArray, velocity: FloatArray, states: FloatArray
+        self, told: Told, position: FloatArray, velocity: FloatArray, states: FloatArray
     ) -> FloatArray:
         """What the drives push with around the instants of the samples, within their limits.
 
         Taken from the setpoint itself: at a corner of the polyline that is drawn through it the
         push is off by kp h²/12 a for a part of the step.
         """
-        lag = (setpoint.position - position) * self._scale
+        lag = (told.setpoints.position - position) * self._scale
         force = (
             self._position_gain * lag
-            - self._velocity_gain * velocity * self._scale
-            + self._told(setpoint.velocity, setpoint.acceleration)
+            - self._damping_gain * velocity * self._scale
+            + self._commands.force(told)
         )
         first = 1 + self.model.nq + self.model.nv
+        for lag in self._lags:
+            speed = velocity[:, lag.axis] * self._scale[lag.axis]
+            force[:, lag.axis] -= lag.gain * lag.actuator.lagging(
+                speed, states[:, first + lag.state]
+            )
         left_behind = states[:, first + self._integral_state]
         # Within a step the axis passes under the held input: the integral bulges by V h²/12.
         left_behind = (
