@@ -9,12 +9,10 @@ Between samples the velocity is the cubic through the velocities and acceleratio
 leaves a fraction (W h)⁴/720 of a sine's trail.
 """
 
-import dataclasses
-
 import numpy as np
 
+from twin.machine.simulation.drive_kernels import Points
 from twin.machine.simulation.filter_kernels import trail_behind
-from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 
 _SPENT = 40.0
@@ -47,28 +45,25 @@ class SetpointFilter:
         """Whether any axis has a lag."""
         return len(self._time) > 0
 
-    def follow(self, setpoints: Setpoints) -> Setpoints:
+    def follow(self, points: Points) -> Points:
         """Setpoints behind the lags.
 
         Args:
-            setpoints: The last row of the chunk before, and what follows; the first of all stands.
+            points: The last row of the chunk before, and what follows; the first of all stands.
         """
         if not self:
-            return setpoints
-        columns = [setpoints.position, setpoints.velocity, setpoints.acceleration]
-        position, velocity, acceleration = (column[:, self._lags] for column in columns)
+            return points
+        position, velocity, acceleration = (column[:, self._lags] for column in points)
         self._trails = trail_behind(
             self.trail[self._lags], self._keeps, self._weights, velocity, acceleration
         )
         self.go_to(-1)
         rate = self._trails / self._time
         behind = (position - self._trails, rate, (velocity - rate) / self._time)
-        filtered = [column.copy() for column in columns]
+        filtered = Points(*(column.copy() for column in points))
         for column, values in zip(filtered, behind, strict=True):
             column[:, self._lags] = values
-        return dataclasses.replace(
-            setpoints, position=filtered[0], velocity=filtered[1], acceleration=filtered[2]
-        )
+        return filtered
 
     def go_to(self, row: int) -> None:
         """Stand at a row of what was followed last."""

@@ -30,12 +30,11 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.compiled.kernels.arc import emit_arc
-from twin.nc.compiled.kernels.columns import copy
 from twin.nc.compiled.kernels.cycle import drill
 from twin.nc.compiled.kernels.effects import report
 from twin.nc.compiled.kernels.frame import turn_place
 from twin.nc.compiled.kernels.plane import move_length
-from twin.nc.compiled.kernels.target import aim, axis_target
+from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
 from twin.nc.compiled.kernels.tokenizer import (
     AXIS,
     CODE,
@@ -47,6 +46,7 @@ from twin.nc.compiled.kernels.tokenizer import (
 )
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path.event_columns import FUNCTION_ALONE
+from twin.nc.path.rows import copy
 from twin.nc.text.line_reader import LARGEST_LABEL
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
@@ -135,40 +135,11 @@ def execute_block(
     early = function != UNSUPPORTED and tables.function[function] == EARLY
     if early:
         report(rows, state, row, line, FUNCTION_ALONE, function, np.nan)
+    block = PlainBlock(line, number, token_kinds, values, seen, feed, modal, polar)
     if drills and moves:
-        after = drill(
-            line,
-            number,
-            token_kinds,
-            values,
-            seen,
-            begins != 0,
-            anew,
-            tables,
-            constants,
-            state,
-            modal,
-            feed,
-            rows,
-            row,
-            polar,
-        )
+        after = drill(block, (begins != 0, anew), tables, constants, state, rows, row)
     elif moves:
-        after = _move(
-            line,
-            number,
-            token_kinds,
-            values,
-            seen,
-            tables,
-            constants,
-            state,
-            modal,
-            feed,
-            rows,
-            row,
-            polar,
-        )
+        after = _move(block, tables, constants, state, rows, row)
     if after < 0:
         state.event_count[0] = event_count
         return after
@@ -194,35 +165,29 @@ def execute_block(
 
 @inlined
 def _move(
-    line: int,
-    number: int,
-    token_kinds: IntArray,
-    values: FloatArray,
-    seen: int,
+    block: PlainBlock,
     tables: BlockTables,
     constants: Constants,
     state: State,
-    modal: FloatArray,
-    feed: float,
     rows: Rows,
     row: int,
-    polar: bool,
 ) -> int:
     """Write the block's move; the number of rows after it, or ``UNSUPPORTED``."""
+    modal, seen, feed = block.modal, block.seen, block.feed
     kind = tables.kind[int(modal[INTERPOLATION])]
     if kind == NO_MOTION:
         return UNSUPPORTED
     is_arc = kind == ARC
-    if polar and is_arc:
+    if block.polar and is_arc:
         return UNSUPPORTED
     if not is_arc and (seen >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1):
         return UNSUPPORTED
     axes = len(state.part)
     position = rows.positions[row]
-    if polar:
-        aim(constants.planes[int(modal[PLANE])], token_kinds, values, seen, state, modal)
+    if block.polar:
+        aim(constants.planes[int(modal[PLANE])], block, seen, state)
     for axis in range(axes):
-        target = axis_target(axis, token_kinds, values, seen, tables, state, modal, polar)
+        target = axis_target(axis, block, seen, tables, state)
         if not abs(target) <= LARGEST_COORDINATE:
             return UNSUPPORTED
         position[0, axis] = state.part[axis]
@@ -230,7 +195,7 @@ def _move(
         position[2, axis] = target
     turn_place(position[2], state, position[1])
     if is_arc:
-        if not emit_arc(token_kinds, values, seen, tables, constants, state, modal, rows, row):
+        if not emit_arc(block, tables, constants, state, rows, row):
             return UNSUPPORTED
     else:
         way = move_length(position)
@@ -257,7 +222,7 @@ def _move(
     copy(constants.last_values, rows.values[row, 8:])
     rows.codes[row, 0] = _RAPID if kind == RAPID_LINE else _FEED
     rows.codes[row, 1] = _ARC if is_arc else _LINE
-    rows.codes[row, 2] = line
-    rows.codes[row, 3] = number
+    rows.codes[row, 2] = block.line
+    rows.codes[row, 3] = block.number
     rows.codes[row, 4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
     return row + 1
