@@ -15,7 +15,6 @@ from twin.machine.model.drives import (
     feedforward_name,
     integral_name,
     lag_name,
-    reflected_inertia,
     swings_up,
     tune,
 )
@@ -23,6 +22,7 @@ from twin.machine.model.transmission import (
     FASTEST,
     FASTEST_SPRING,
     add_friction_and_give,
+    felt,
     has_give,
     swinging,
 )
@@ -81,7 +81,10 @@ def _add_drive(spec: mujoco.MjSpec, name: str, axis: AxisTable, drive: Drive, st
     feedforward.set_to_motor()
     if drive.integral_gain:
         integral = _on_joint(spec, axis, integral_name(name))
-        integral.set_to_pid(kp=0.0, kv=0.0, ki=drive.integral_gain, ctrlspec=_POSITION_INPUT)
+        integral.set_to_pid(
+            kp=0.0, kv=0.0, ki=drive.integral_gain, imax=drive.integral_limit,
+            ctrlspec=_POSITION_INPUT,
+        )  # fmt: skip
     along = max(-drive.damping_gain, 0.0)
     for number, lag in enumerate(drive.lags):
         played = lag_actuator(lag, step)
@@ -163,8 +166,8 @@ class _Need(NamedTuple):
 
 def _needs(machine: Machine, name: str, drive: Drive) -> Iterator[_Need]:
     axis, period = machine.axis(name), machine.file.servo_period_s
-    felt = reflected_inertia(axis) if has_give(axis) else drive.moved
-    yield _Need("kv", math.ceil(drive.velocity_gain / felt * period / FASTEST))
+    fastest = drive.velocity_gain / felt(axis, drive.moved) * period
+    yield _Need("kv", math.ceil(fastest / FASTEST))
     for lag in drive.lags:
         of_delay = lag.time_s == drive.dead_time_s / 2.0
         key = "loop_delay_s" if of_delay else "velocity_filter_s"
@@ -193,7 +196,7 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
     """A loop or a spring that swings within a step cannot be simulated with it."""
     axis = machine.axis(name)
     period = machine.file.servo_period_s
-    if has_give(axis) and not reflected_inertia(axis) > 0.0:
+    if not felt(axis, drive.moved) > 0.0:
         raise ConfigError(
             f"{machine.path}: axes.{name}: behind a backlash or spring the motor needs an inertia "
             "of its own; give motor_inertia"

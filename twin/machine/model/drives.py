@@ -30,6 +30,10 @@ Since q' and p' integrate to q and p, that is kv/Tn (p - q) + kv Kv/Tn ∫ (p - 
 stiffer proportional part, and a ``<pid>`` actuator that has nothing but an integrator, whose input is
 the setpoint less the trail that is meant to be.
 
+On a line that integrator holds the load less kv/Tn (1 - s) V/Kv, which the stiffer proportional part
+pushes too much. It stops where it gives the drive's whole force beside that of a rapid: what a drive at
+its force limit cannot do does not pile up.
+
 A real drive filters the speed that it measures and gives its force late. A filter of time constant T is a
 lag of first order, 1/(1 + T s). A dead time d is taken as its Padé approximation,
 
@@ -79,6 +83,7 @@ class Drive:
         position_gain: Of the position error, kp and what the integrator adds [N/m or N m/rad].
         velocity_gain: kv [N s/m or N m s/rad].
         integral_gain: Of the position error's integral [N/(m s) or N m/(rad s)]; 0: none.
+        integral_limit: Where that integral stops [m s or rad s]; 0: nowhere.
         damping_gain: Of the axis's speed as it is, kv where nothing lags [N s/m or N m s/rad].
         lags: Of the axis's speed as lags show it, in place of the rest of kv.
         dead_time_s: d [s].
@@ -89,6 +94,7 @@ class Drive:
     position_gain: float
     velocity_gain: float
     integral_gain: float
+    integral_limit: float
     damping_gain: float
     lags: tuple[Lag, ...] = ()
     dead_time_s: float = 0.0
@@ -119,6 +125,9 @@ def tune(axis: AxisTable, moved: float) -> Drive:
     reset_rate = 1.0 / axis.reset_time_s if axis.reset_time_s else 0.0
     position_gain = moved * frequency**2 + velocity_gain * reset_rate
     integral_gain = velocity_gain * reset_rate * loop_gain
+    trail = (1.0 - axis.velocity_feedforward) * axis.velocity * to_si(axis.kind) / loop_gain
+    limited = integral_gain > 0.0 and axis.force_limit > 0.0
+    most = axis.force_limit + velocity_gain * reset_rate * trail
     late, filtered = axis.loop_delay_s / 2.0, axis.velocity_filter_s
     if filtered and abs(late - filtered) < _APART * late:
         filtered = late * (1.0 + _APART)
@@ -136,6 +145,7 @@ def tune(axis: AxisTable, moved: float) -> Drive:
         position_gain=position_gain - 2.0 * late * integral_gain,
         velocity_gain=velocity_gain,
         integral_gain=integral_gain,
+        integral_limit=most / integral_gain if limited else 0.0,
         damping_gain=0.0 if filtered else -velocity_gain if late else velocity_gain,
         lags=tuple(lags),
         dead_time_s=axis.loop_delay_s,

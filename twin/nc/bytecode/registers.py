@@ -6,8 +6,10 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.path import rows
 from twin.nc.path.drilling_cycle import VALUES
-from twin.nc.path.rows import Rows as Rows
+
+Rows = rows.Rows
 
 (
     INTERPOLATION,
