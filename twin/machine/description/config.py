@@ -193,7 +193,9 @@ class MachineFile(Table):
     """The whole machine file."""
 
     schema_: Literal[1] = Field(alias="schema")
+    """Version of this form."""
     name: str
+    """What results, reports and recordings call the machine."""
     model: str
     """MJCF file, relative to the machine file (to that of ``base``, where it comes from there)."""
     servo_period_s: ServoPeriod = 0.001
