@@ -166,7 +166,9 @@ class VirtualMachine:
             and control.path.transferable
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)
-            and not (control.axis_limits or control.axis_accelerations)
+            and not (
+                control.axis_limits or control.axis_accelerations or control.axis_decelerations
+            )
             and (disturbed is None or not disturbed(control))
         )
 

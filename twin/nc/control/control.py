@@ -85,11 +85,11 @@ class Control(ControlWords):
         if rapid:
             acceleration = _either(self.rapid_acceleration, acceleration)
             deceleration = _either(self.rapid_deceleration, deceleration)
-        if self.axis_limits or self.axis_accelerations:
+        if self.axis_limits or self.axis_accelerations or self.axis_decelerations:
             share = self._axis_shares(end, length, is_arc)
             feed = _limited(feed, self.axis_limits, share)
             acceleration = _limited(acceleration, self.axis_accelerations, share)
-            deceleration = _limited(deceleration, self.axis_accelerations, share)
+            deceleration = _limited(deceleration, self.axis_decelerations, share)
         self._last = Segment(
             motion=Motion.RAPID if rapid else Motion.FEED,
             line=self.block.line,

@@ -86,6 +86,7 @@ class ControlState:
         rapid_deceleration: Deceleration of rapids, likewise [mm/s²].
         axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
         axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
+        axis_decelerations: Their largest deceleration [mm/s² or deg/s²].
         ended: An end code was run.
     """
 
@@ -127,6 +128,7 @@ class ControlState:
         self.rapid_feed = NAN
         self.axis_limits: dict[int, float] = {}
         self.axis_accelerations: dict[int, float] = {}
+        self.axis_decelerations: dict[int, float] = {}
         self._last: Segment | None = None
         self.ended = False
 

@@ -109,6 +109,11 @@ class Compensation:
         return self._lookahead is not None and bool(self._lookahead.waiting)
 
     @property
+    def begun(self) -> bool:
+        """A move of the contour has come."""
+        return self._lookahead is not None
+
+    @property
     def state(self) -> CompensationState:
         """How far it has come, where nothing waits."""
         held, stage = self._lookahead, Stage.STARTED

@@ -222,6 +222,11 @@ class Path:
         """Compensation is in force."""
         return self._compensation is not None
 
+    @property
+    def compensation_has_moved(self) -> bool:
+        """Compensation is in force and a move of its contour has come."""
+        return self._compensation is not None and self._compensation.begun
+
     def start_compensation(
         self, plane: Plane, side: float, radius: float, *, square: bool, indirect: bool
     ) -> None:
