@@ -69,7 +69,9 @@ class VirtualMachine:
         self._kernels = kernels
         self._lines = control.program_counter.lines
         self._page = Page(0, b"")
-        self._tables = DecodeTables(control.dialect, control.settings)
+        self._tables = DecodeTables(
+            control.dialect, control.settings, control.interpreted_functions
+        )
         self._line_compiler = LineCompiler(control, self._tables, kernels)
         self._rows = Rows(
             np.zeros((CHUNK, 5), np.int64),

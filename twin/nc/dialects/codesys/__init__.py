@@ -103,7 +103,8 @@ CODESYS = Dialect(
             (f"F{each}" for each in f"XYZ{ADDITIONAL}"), "largest velocity of the axis"
         ),
         **dict.fromkeys(
-            (f"E{each}" for each in f"XYZ{ADDITIONAL}"), "largest acceleration of the axis"
+            (f"E{each}{sign}" for each in f"XYZ{ADDITIONAL}" for sign in ("", "-")),
+            "largest acceleration of the axis; below 0 its largest deceleration",
         ),
     },
     units="mm, degrees; F in units per second, E in units per second squared",
@@ -112,7 +113,7 @@ CODESYS = Dialect(
         Mark(r"^[^\"$;\[]*\bN[ \t]*\d+\b[^\"$;\[]*\bN[ \t]*\d+\b", "several N blocks on one line"),
         Mark(r"\bG0?[23]\b.*[IJK].*\bT[ \t]*\d", "an arc with the opening angle T"),
         Mark(r"\bG0?4[ \t]*T", "G4 T"),
-        Mark(r"\bE[ \t]*[-+]?\d", "E, the acceleration"),
+        Mark(r"^(?!.*\bG5(?:1[ \t]*A|01)).*\bE[ \t]*[-+]?\d", "E, the acceleration"),
         Mark(r"\$[A-Z_]\w*\$", "$variable$"),
         Mark(r"\bLET[ \t]+#|\bSUBPROGRAM\b", "LET, SUBPROGRAM"),
         Mark(r"\bG20[ \t]+L|\bL[?!][ \t]*\d", "G20 L, L?, L!"),
