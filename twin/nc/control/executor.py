@@ -6,7 +6,6 @@ be used by something; a word that nothing wants is an error, because ignoring it
 """
 
 import dataclasses
-import re
 from typing import NoReturn
 
 from twin.nc.control.codes import GCode, Interpolation, MCode

@@ -21,7 +21,6 @@ from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
 
-
 _SPINDLE_CODES = frozenset((3, 4, 5))
 _FEED_PER_REVOLUTION = re.compile(rb"G[ \t]*0*95(?![0-9])")
 
