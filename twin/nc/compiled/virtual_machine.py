@@ -25,7 +25,6 @@ from twin.nc.bytecode.registers import (
     SPINDLE,
     TURNED,
     Constants,
-    Rows,
     State,
 )
 from twin.nc.canonical import FloatArray
@@ -43,7 +42,7 @@ from twin.nc.path.compensation.contour import new_contour
 from twin.nc.path.drilling_cycle import most_acts, no_values
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import CHUNK
-from twin.nc.path.rows import Row
+from twin.nc.path.rows import Row, Rows
 from twin.nc.text.lines import Page
 
 _PLANES = np.array([plane.axes for plane in PLANE_ORDER])

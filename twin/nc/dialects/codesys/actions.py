@@ -214,7 +214,7 @@ def lead_into_length(control: Control) -> None:
     normal, mode = control.modal.plane.normal, control.modal.interpolation
     height = sum(a * n for a, n in zip(across, normal, strict=True))
     beside = max(abs(a - height * n) for a, n in zip(across, normal, strict=True))
-    if mode is not None and mode.rule.__class__ is not LineRule and beside > 0.0:
+    if mode is not None and not isinstance(mode.rule, LineRule) and beside > 0.0:
         message = "the tool's length is led into on the next move, which must be a straight one"
         control.fail("length-ramp", message, hint="write G0 or G1 behind G43")
 
