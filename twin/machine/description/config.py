@@ -97,7 +97,8 @@ class AxisTable(Table):
     damping_ratio: Positive = 1.0
     """Of the position loop seen as a second-order system; 1 is the fastest that cannot overshoot."""
     reset_time_s: NonNegative = 0.0
-    """Integral action of the velocity loop: takes what friction and weight leave behind [s]; 0: none."""
+    """Integral action of the velocity loop: takes what friction, weight and cut leave behind [s];
+    0: none. With a ``force_limit`` it stops at what the drive can give."""
     velocity_feedforward: Share = 0.0
     """Share of the setpoint velocity that the drive is told; 1 removes the lag."""
     acceleration_feedforward: Share = 0.0

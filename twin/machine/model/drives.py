@@ -29,6 +29,10 @@ time Tn the velocity loop also integrates what is left of its error,
 Since q' and p' integrate to q and p, that is kv/Tn (p - q) + kv Kv/Tn ∫ (p - (1 - s) p'/Kv - q) dt: a
 stiffer proportional part, and a ``<pid>`` actuator that has nothing but an integrator, whose input is
 the setpoint less the trail that is meant to be.
+
+On a line that integrator holds the load less kv/Tn (1 - s) V/Kv, which the stiffer proportional part
+pushes too much. It stops where it gives the drive's whole force beside that of a rapid: what a drive at
+its force limit cannot do does not pile up.
 """
 
 import dataclasses
@@ -48,6 +52,7 @@ class Drive:
         position_gain: Of the position error, kp and what the integrator adds [N/m or N m/rad].
         velocity_gain: kv [N s/m or N m s/rad].
         integral_gain: Of the position error's integral [N/(m s) or N m/(rad s)]; 0: none.
+        integral_limit: Where that integral stops [m s or rad s]; 0: nowhere.
     """
 
     moved: float
@@ -55,6 +60,7 @@ class Drive:
     position_gain: float
     velocity_gain: float
     integral_gain: float
+    integral_limit: float
 
 
 def reflected_inertia(axis: AxisTable) -> float:
@@ -80,12 +86,17 @@ def tune(axis: AxisTable, moved: float) -> Drive:
     frequency = 2.0 * axis.damping_ratio * loop_gain
     velocity_gain = 2.0 * axis.damping_ratio * moved * frequency
     reset_rate = 1.0 / axis.reset_time_s if axis.reset_time_s else 0.0
+    integral_gain = velocity_gain * reset_rate * loop_gain
+    trail = (1.0 - axis.velocity_feedforward) * axis.velocity * to_si(axis.kind) / loop_gain
+    limited = integral_gain > 0.0 and axis.force_limit > 0.0
+    most = axis.force_limit + velocity_gain * reset_rate * trail
     return Drive(
         moved=moved,
         natural_frequency=frequency,
         position_gain=moved * frequency**2 + velocity_gain * reset_rate,
         velocity_gain=velocity_gain,
-        integral_gain=velocity_gain * reset_rate * loop_gain,
+        integral_gain=integral_gain,
+        integral_limit=most / integral_gain if limited else 0.0,
     )
 
 

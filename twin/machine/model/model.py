@@ -10,7 +10,6 @@ from twin.machine.model.drives import (
     Drive,
     feedforward_name,
     integral_name,
-    reflected_inertia,
     tune,
 )
 from twin.machine.model.tool_shape import (
@@ -29,6 +28,7 @@ from twin.machine.model.transmission import (
     FASTEST_SPRING,
     add_friction_and_give,
     add_inertia,
+    felt,
     has_give,
     swinging,
 )
@@ -134,7 +134,13 @@ def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
             integral = spec.add_actuator(
                 name=integral_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
             )
-            integral.set_to_pid(kp=0.0, kv=0.0, ki=drive.integral_gain, ctrlspec=_POSITION_INPUT)
+            integral.set_to_pid(
+                kp=0.0,
+                kv=0.0,
+                ki=drive.integral_gain,
+                imax=drive.integral_limit,
+                ctrlspec=_POSITION_INPUT,
+            )
         joint = spec.joint(axis.joint)
         joint.actfrclimited = axis.force_limit > 0
         joint.actfrcrange = np.array([-axis.force_limit, axis.force_limit])
@@ -148,13 +154,13 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
     """A loop or a spring that swings within a step cannot be simulated with it."""
     axis = machine.axis(name)
     period = machine.file.servo_period_s
-    felt = reflected_inertia(axis) if has_give(axis) else drive.moved
-    if not felt > 0.0:
+    motor = felt(axis, drive.moved)
+    if not motor > 0.0:
         raise ConfigError(
             f"{machine.path}: axes.{name}: behind a backlash or spring the motor needs an inertia "
             "of its own; give motor_inertia"
         )
-    rate = drive.velocity_gain / felt * period
+    rate = drive.velocity_gain / motor * period
     if rate > FASTEST:
         reason = " behind the backlash or spring, where it moves no more than itself" * has_give(
             axis

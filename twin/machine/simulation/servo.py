@@ -11,7 +11,7 @@ from twin.machine.description.config import Machine
 from twin.machine.model.drives import feedforward_name, integral_name
 from twin.machine.model.model import drives
 from twin.machine.model.timers import switch_off_timers
-from twin.machine.model.transmission import give_name, has_give
+from twin.machine.model.transmission import felt, give_name, has_give
 from twin.machine.simulation.drive_kernels import (
     Drives,
     Points,
@@ -110,6 +110,13 @@ class Servo:
             trail=np.array(
                 [(1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) for axis in axes]
             ),
+            speed_bulge=np.array(
+                [
+                    axis.velocity_feedforward * loop.velocity_gain / felt(axis, loop.moved)
+                    for axis, loop in zip(axes, loops, strict=True)
+                ]
+            )
+            * (self._period**2 / 12),
             limit=np.array([axis.force_limit or np.inf for axis in axes]),
             constant=self._constant,
             velocity_input=_numbers(everywhere, slice(None), model.actuator_ctrladr[servos]),
