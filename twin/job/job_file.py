@@ -27,6 +27,7 @@ class StockTable(Table):
     """The blank: ``box``, ``cylinder``, ``tube``, or the shape of an ``stl`` file."""
 
     shape: Literal["box", "cylinder", "tube", "stl"]
+    """Each shape has its own measures: size; diameter and height; these and bore; file."""
     size: tuple[Positive, Positive, Positive] | None = None
     """Box: along X, Y, Z [mm]."""
     diameter: Positive | None = None
@@ -88,7 +89,9 @@ class ToolTable(Table):
     """One tool of the job."""
 
     number: Annotated[int, Field(ge=0)]
+    """By which the program calls it."""
     kind: Literal["flat", "ball", "bull", "drill", "chamfer"] = "flat"
+    """Shape of its end: flat, round, flat with a round corner, or a point."""
     diameter: Positive = 10.0
     """Of the cutting edge [mm]."""
     length: Positive = 60.0
@@ -210,10 +213,12 @@ class VideoTable(Table):
     renderer: Literal["opengl", "filament"] = "opengl"
     """``filament`` is physically based: it needs a Vulkan driver and takes longer."""
     fps: Annotated[int, Field(ge=1, le=60)] = 25
+    """Frames per second."""
     size: tuple[Annotated[int, Field(ge=64, le=1920)], Annotated[int, Field(ge=64, le=1080)]] = (
         1280,
         720,
     )
+    """Width and height of a frame [pixels]."""
 
 
 class JobFile(Table):

@@ -26,6 +26,7 @@ class StartTable(Table):
     """How the machine and its control are found."""
 
     mode: Mode = "auto"
+    """Automatic, single block, jog, or a line typed in."""
     position: dict[str, float] = Field(default_factory=dict)
     """Where the axes stand, machine coordinates [mm or deg]; none: as the job's start says."""
     zero_error: dict[str, float] = Field(default_factory=dict)
@@ -35,7 +36,9 @@ class StartTable(Table):
     spindle: bool = False
     """Whether the spindle turns already."""
     feed_override: Annotated[int, Field(ge=0, le=120)] = 100
+    """Of programmed feeds [%]."""
     rapid_override: Annotated[int, Field(ge=0, le=100)] = 100
+    """Of rapids [%]."""
     alarm: str = ""
     """An alarm that stands when the operator comes: ``hard-limit`` for an axis on its switch."""
 
@@ -55,6 +58,7 @@ class StepTable(Table):
     do: str | None = None
     """A command; its arguments stand in ``give``."""
     give: dict[str, Any] = Field(default_factory=dict)
+    """Arguments of the command, such as ``{ axis = "X", direction = 1, step = 10.0 }``."""
     wait: Literal["rest", "alarm", "moving", "line", "end", "seconds", "contact"] | None = None
     """``rest``: the axes stand; ``end``: the program has ended; ``line``: that line runs;
     ``contact``: the feeler lamp is lit."""
@@ -76,8 +80,11 @@ class SceneFile(Table):
     """A scene file."""
 
     schema_: Literal[1] = Field(alias="schema")
+    """Version of this form."""
     title: Text
+    """What the list of scenes and the page call it."""
     story: Text
+    """What the operator is told first."""
     language: Language = "en"
     """What labels, messages and texts are in, unless ``--language`` says otherwise."""
     job: JobFile
@@ -87,6 +94,7 @@ class SceneFile(Table):
     """What is broken from the start."""
     tasks: Annotated[tuple[TaskTable, ...], Field(min_length=1)]
     hints: tuple[Text, ...] = ()
+    """Given one after the other when the operator asks for one."""
     hint_cost: Annotated[int, Field(ge=0)] = 1
     """Points that a hint costs."""
     time_limit_s: Annotated[float, Field(gt=0)] = 1800.0
