@@ -12,6 +12,7 @@ from twin.errors import ConfigError
 from twin.files.overrides import Change, changed
 from twin.files.toml import Data, Table, checked, read_toml
 from twin.job.fixture import FixtureTable
+from twin.job.machine_functions import MachineFunctions
 from twin.machine.description.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -187,6 +188,8 @@ class ControlTable(Table):
     """``gost``: G102 also relabels the start of G0 blocks."""
     module_rotary: bool = False
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
+    m_functions: MachineFunctions = Field(default_factory=dict)
+    """M codes of the machine's builder: ``M10 = "clamp the table"``."""
 
 
 class MachineFile(Table):
