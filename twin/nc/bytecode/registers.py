@@ -7,7 +7,6 @@ import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.path.drilling_cycle import VALUES
-from twin.nc.path.rows import Rows as Rows
 
 (
     INTERPOLATION,

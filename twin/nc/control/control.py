@@ -17,6 +17,10 @@ LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 
 
+_SPINDLE = {"M3": True, "M4": True, "M5": False}
+"""Whether the spindle turns behind these functions."""
+
+
 class Control(ControlWords):
     """One control, as the actions of codes see it; positions are programmed ones."""
 
@@ -83,11 +87,11 @@ class Control(ControlWords):
         if rapid:
             acceleration = _either(self.rapid_acceleration, acceleration)
             deceleration = _either(self.rapid_deceleration, deceleration)
-        if self.axis_limits or self.axis_accelerations:
+        if self.axis_limits or self.axis_accelerations or self.axis_decelerations:
             share = self._axis_shares(end, length, is_arc)
             feed = _limited(feed, self.axis_limits, share)
             acceleration = _limited(acceleration, self.axis_accelerations, share)
-            deceleration = _limited(deceleration, self.axis_accelerations, share)
+            deceleration = _limited(deceleration, self.axis_decelerations, share)
         self._last = Segment(
             motion=Motion.RAPID if rapid else Motion.FEED,
             line=self.block.line,
@@ -140,8 +144,8 @@ class Control(ControlWords):
         elif mode is FeedMode.SECONDS_PER_BLOCK:
             return length / self.feed * 60.0
         factor = FEED_FACTORS.get(mode, self.spindle)
-        if self.feed is not None and not factor:
-            self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
+        if self.feed is not None and mode not in FEED_FACTORS:
+            self._refuse_standing_spindle()
         return feed_per_minute(
             NAN if self.feed is None else self.feed,
             not is_arc and only_turns(self.part, end, self.linear),
@@ -150,6 +154,18 @@ class Control(ControlWords):
             (settings.default_feed, settings.default_rotary_feed),
         )
 
+    def _refuse_standing_spindle(self) -> None:
+        """A feed per revolution needs a spindle that turns.
+
+        Raises:
+            ProgramError: It does not.
+        """
+        if not self.spindle:
+            self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
+        if not self.spindle_turns:
+            message = "a feed per revolution never moves while the spindle stands"
+            self.fail("feed-per-revolution", message, hint="start it by M3 or M4 before")
+
     def dwell(self, seconds: float) -> None:
         """Wait."""
         line = self.block.line
@@ -157,6 +173,8 @@ class Control(ControlWords):
 
     def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
         """Report a function at this place of the path."""
+        if word in _SPINDLE:
+            self.spindle_turns = _SPINDLE[word]
         line, given = self.block.line, dict(arguments)
         self.path.event(lambda columns: columns.function(line, word, given, at))
 

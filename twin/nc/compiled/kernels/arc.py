@@ -12,7 +12,6 @@ from twin.nc.bytecode.registers import (
     UNIT,
     BlockTables,
     Constants,
-    Rows,
     State,
 )
 from twin.nc.compiled.kernels.frame import turn_arc
@@ -22,6 +21,7 @@ from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import Bounds, Point
 from twin.nc.geometry.planes import vector_of
 from twin.nc.path.moves import SMALLEST_MOVE, arc_length
+from twin.nc.path.rows import Rows
 
 
 @inlined
