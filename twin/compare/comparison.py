@@ -156,7 +156,7 @@ class Comparison:
         if size == 0.0:
             return {}
         found = {
-            name: float(shift @ away) / size * UM_PER_MM
+            name: float(shift @ away) / size * UM_PER_MM + 0.0
             for name, shift in self._frame.shares(joints).items()
         }
         return {DRIVES: size * UM_PER_MM - sum(found.values()), **found}
