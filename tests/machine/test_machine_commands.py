@@ -54,8 +54,8 @@ def test_wrong_arguments_are_refused(tmp_path):
     with pytest.raises(UsageError, match="feed must be positive"):
         print_machine("mill4", feed=-1.0, form="text")
     with pytest.raises(
-        UsageError, match="shipped machines are mill4, mill4_light, mill4/as_built, "
-        "mill4/uncompensated"
+        UsageError,
+        match="shipped machines are mill4, mill4_light, mill4/as_built, mill4/uncompensated",
     ):
         print_check("mill9")
     with pytest.raises(UsageError, match=r"no plot of kind '\.txt'"):
