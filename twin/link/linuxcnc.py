@@ -67,6 +67,9 @@ class LinuxCnc:
                 os.killpg(self._process.pid, number)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(_END_TIMEOUT_S)
+        for number in processes_at_home(self.folder):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
 
 
 def require_linuxcnc() -> Path:
@@ -112,6 +115,17 @@ def running(start: Path, ini: Path, log: Path) -> Iterator[LinuxCnc]:
         finally:
             linuxcnc.end()
             _tidy_up(at_home)
+
+
+def processes_at_home(folder: Path) -> list[int]:
+    """Processes that a LinuxCNC started from a folder, which is their home; it leaves its session."""
+    home = f"HOME={folder}".encode()
+    found = []
+    for path in Path("/proc").glob("[0-9]*/environ"):
+        with contextlib.suppress(OSError):
+            if home in path.read_bytes().split(b"\0"):
+                found.append(int(path.parent.name))
+    return found
 
 
 def operator_log(folder: Path) -> Path:

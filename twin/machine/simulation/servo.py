@@ -166,7 +166,7 @@ class Servo:
 
     def begin_anew(self) -> None:
         """Forget all that was followed: the next chunk is the first of all."""
-        self._last = None
+        self._chunk = None
         self._warmstart = np.zeros((1, self.model.nv))
 
     def go_back(self, row: int) -> None:
