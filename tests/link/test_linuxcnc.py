@@ -75,7 +75,12 @@ def folder() -> Iterator[Path]:
         Path(name).chmod(0o755)
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield Path(name)
-    assert not LOCK.exists()
+        left = processes_at_home(Path(name) / "out" / "linuxcnc")
+        for number in left:
+            os.kill(number, signal.SIGKILL)
+        locked = LOCK.exists()
+        LOCK.unlink(missing_ok=True)
+        assert (left, locked) == ([], False)
 
 
 def linked(twin: Twin, folder: Path, program: str, *options: object) -> Finished:
@@ -91,7 +96,7 @@ def result(folder: Path) -> dict:
 def test_a_sound_machine_runs_a_program_and_can_be_played_back(folder: Path, twin: Twin):
     ran = linked(twin, folder, SQUARE, "--machine", "mill4")
     told = result(folder)
-    assert ran.code in (0, 1), ran.err
+    assert ran.code in (0, 1), ran.stderr
     assert told["alarms"] == []
     assert told["link"]["missed"] == 0
     # LinuxCNC's own f-error is the recording's lag, to what commands are rounded to.
@@ -117,7 +122,7 @@ def test_linuxcncs_own_limit_trips_where_the_lag_reaches_it(folder: Path, twin: 
     ran = linked(twin, folder, RAPID, "--machine", "mill4", "--ferror", 2)
     told = result(folder)
     assert ran.code == 4
-    assert "following error" in ran.err
+    assert "following error" in ran.stderr
     assert told["alarms"][0]["code"] == "following-error"
     with open_recording(folder / "out" / "recording.h5") as recording:
         samples = join(list(recording.chunks()))
@@ -131,7 +136,7 @@ def test_the_twins_alarm_arrives_as_an_amplifier_fault_with_its_reason(folder: P
     machine.write_text('schema = 1\nname = "dull"\nbase = "mill4"\n[axes.X]\nkv = 1.5\n')
     ran = linked(twin, folder, RAPID, "--machine", machine, "--ferror", 100)
     assert ran.code == 4
-    assert "joint 0 amplifier fault" in ran.err
+    assert "joint 0 amplifier fault" in ran.stderr
     alarm = result(folder)["alarms"][0]
     assert (alarm["code"], alarm["line"]) == ("following-error", 3)
     with open_recording(folder / "out" / "recording.h5") as recording:
@@ -150,7 +155,7 @@ def test_the_twins_alarm_arrives_as_an_amplifier_fault_with_its_reason(folder: P
 def test_a_program_that_linuxcnc_refuses_ends_with_its_line(folder: Path, twin: Twin):
     ran = linked(twin, folder, "G21\nG1 X1 F100\nG1 X2 Q\nM2\n")
     assert ran.code == 3
-    assert "part.ngc:3:1: error linuxcnc:" in ran.err
+    assert "part.ngc:3:1: error linuxcnc:" in ran.stderr
 
 
 @contextlib.contextmanager
@@ -172,7 +177,9 @@ def running_link(folder: Path) -> Iterator[subprocess.Popen[str]]:
         yield process
     finally:
         process.kill()
-        process.communicate()
+        process.wait()
+        if process.stdout is not None:
+            process.stdout.close()
 
 
 def until(done: Callable[[], bool], seconds: float) -> None:
@@ -185,7 +192,7 @@ def until(done: Callable[[], bool], seconds: float) -> None:
 def test_a_killed_twin_is_a_fault_and_linuxcnc_ends_by_itself(folder: Path):
     with running_link(folder) as process:
         process.kill()
-        process.communicate()
+        process.wait()
         log = folder / "out" / "linuxcnc" / "operator.jsonl"
         until(lambda: "failed" in log.read_text(), 60.0)
         until(lambda: not LOCK.exists(), 60.0)
@@ -214,7 +221,8 @@ def test_an_unloaded_component_ends_both_sides(folder: Path):
         at_home = ["runuser", "-u", "nobody", "--", *at_home]
     with running_link(folder) as process:
         for order in (["delf", "mill-twin", "servo-thread"], ["unloadrt", "mill_twin"]):
-            subprocess.run([*at_home, "halcmd", *order], check=True, timeout=60)
+            # LinuxCNC may be on its way out when the second comes.
+            subprocess.run([*at_home, "halcmd", *order], check=False, timeout=60)
         output, _ = process.communicate(timeout=120)
     assert process.returncode == 4, output
     assert result(folder)["alarms"][0]["code"] in ("control-stop", "following-error")
@@ -235,7 +243,7 @@ def test_no_question_is_missed_with_a_busy_process_on_each_core(folder: Path, tw
             process.kill()
             process.wait()
     told = result(folder)
-    assert ran.code in (0, 1), ran.err
+    assert ran.code in (0, 1), ran.stderr
     assert told["alarms"] == []
     assert told["link"]["missed"] == 0
     assert told["link"]["f_error_difference"] < 1e-6

@@ -39,6 +39,8 @@ TICKS_PER_CHUNK = 500
 """Samples that are handed on at once."""
 SETTLING_S = 0.25
 """How long the end of a program is kept after its last motion [s]."""
+LONGEST_SILENCE_S = 15.0
+"""A control that has asked and then says nothing for so long is gone [s]."""
 _WAKE_S = 0.2
 """How often the twin looks around while nobody asks [s]."""
 _LOOPBACK = "127.0.0.1"
@@ -126,13 +128,16 @@ class LockstepMotion:
         """Yield chunks of samples until the control has left."""
         question, answer = bytearray(REQUEST_LAYOUT.size + 1), bytearray(ANSWER_LAYOUT.size)
         view = memoryview(question)
+        silent_s = 0.0
         while not self._left:
             try:
                 size, sender = self._socket.recvfrom_into(question)
             except TimeoutError:
-                if not self.goes_on():
+                silent_s += _WAKE_S
+                if not self.goes_on() or (self.answered and silent_s > LONGEST_SILENCE_S):
                     break
                 continue
+            silent_s = 0.0
             request = read_request(view[:size])
             if request is None:
                 continue

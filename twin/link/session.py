@@ -104,7 +104,7 @@ def run_on_twin(
             if not session:
                 motion.last_word = _last_word(linuxcnc, axes.names)
             outcome = run.execute(dry_run, folder, progress, motion)
-            linuxcnc.wait()
+            linuxcnc.end_soon()
             for event in linuxcnc.events():
                 if event.text:
                     say(f"linuxcnc: {event.text}")
@@ -141,7 +141,7 @@ def _last_word(linuxcnc: LinuxCnc, axes: tuple[str, ...]) -> Callable[[float, in
     """What LinuxCNC itself stopped for, asked when it has gone."""
 
     def alarm(time_s: float, line: int) -> Alarm | None:
-        linuxcnc.wait()
+        linuxcnc.end_soon()
         events = linuxcnc.events()
         if any(event.event == "finished" for event in events):
             return None
