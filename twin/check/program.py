@@ -11,8 +11,7 @@ from typing import Any
 
 from twin.check.expectation import expectation, held_to_expectation
 from twin.check.outcome import CheckOutcome, Finding
-from twin.check.settings import CheckSettings
-from twin.check.variation import Variant
+from twin.check.task import CheckSettings, Variant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
