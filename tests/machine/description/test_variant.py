@@ -118,7 +118,7 @@ def test_wrong_machine_files_are_refused_with_what_is_wrong(tmp_path, text, mess
             "[axes.X]\ndry_friction = 9.0\n[axes.X.lugre]\nstiffness = 1e8\n",
             "axes.X.lugre.stiffness = 1e+08 swings faster",
         ),
-        ("servo_period_s = 0.02\n", "axes.X: with kv = 7.5 the motor reacts faster"),
+        ("[axes.X]\nkv = 1000.0\n", "axes.X: with kv = 1000 the motor reacts faster"),
     ],
 )
 def test_machines_that_cannot_be_simulated_are_refused_with_what_can(tmp_path, text, message):

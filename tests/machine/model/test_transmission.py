@@ -262,8 +262,8 @@ def test_a_drive_at_its_force_limit_pushes_no_harder():
 
 @pytest.mark.parametrize(
     "fields",
-    [{"kv": 40.0}, {"kv": 7.5, "backlash": 0.01, "motor_inertia": 1e-5, "screw_inertia": 0.0}],
+    [{"kv": 1000.0}, {"kv": 7.5, "backlash": 0.01, "motor_inertia": 1e-6, "screw_inertia": 0.0}],
 )
-def test_a_loop_faster_than_the_servo_period_is_refused_with_what_works(fields):
+def test_a_loop_faster_than_the_shortest_step_is_refused_with_what_works(fields):
     with pytest.raises(ConfigError, match=r"axes\.[XYZC]: with kv = .* works"):
         build_spec(shipped_machine(**fields))

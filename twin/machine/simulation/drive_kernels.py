@@ -17,7 +17,7 @@ class Drives(NamedTuple):
         period: The servo period [s].
         scale: SI units per mm or deg of each axis, as its joint turns or slides, shape (k,); so on.
         position_gain: Force per position.
-        velocity_gain: Force per velocity.
+        velocity_gain: Force per velocity, as far as none is late.
         integral_gain: Force per integral of the position's error; 0: the drive has no integrator.
         velocity_told: Force that is added in advance per commanded velocity.
         acceleration_told: Force that is added in advance per commanded acceleration.

@@ -6,10 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.path import rows
 from twin.nc.path.drilling_cycle import VALUES
-
-Rows = rows.Rows
 
 (
     INTERPOLATION,

@@ -25,7 +25,6 @@ from twin.nc.bytecode.registers import (
     UNIT,
     BlockTables,
     Constants,
-    Rows,
     State,
 )
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
@@ -46,7 +45,7 @@ from twin.nc.compiled.kernels.tokenizer import (
 )
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path.event_columns import FUNCTION_ALONE
-from twin.nc.path.rows import copy
+from twin.nc.path.rows import Rows, copy
 from twin.nc.text.line_reader import LARGEST_LABEL
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
