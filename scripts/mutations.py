@@ -45,10 +45,11 @@ class Change(NamedTuple):
             raise ValueError(f"{self.file}: '{self.old}' stands there {text.count(self.old)} times")
         line = text[: text.index(self.old)].count("\n") + 1
         if self.new:
-            return text.replace(self.old, self.new), range(line, line + 1 + self.new.count("\n"))
+            # A block that goes nowhere any more is lost, which is told at the next one.
+            return text.replace(self.old, self.new), range(line, line + 2 + self.new.count("\n"))
         lines = text.splitlines(keepends=True)
-        # What is lost is told at the line that stands in its place or at the next move behind it.
-        return "".join(lines[: line - 1] + lines[line:]), range(line, line + 3)
+        # What is lost is told where it stood: at the next block, or at the table of a key.
+        return "".join(lines[: line - 1] + lines[line:]), range(line - 1, line + 3)
 
 
 def changes() -> list[Change]:
