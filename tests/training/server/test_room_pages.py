@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browsers import CHROMIUM, FIREFOX
-from panel_player import Player, browser, open_page, play, served, without_view
+from panel_player import Player, launch, open_page, play, served, without_view
 
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.web.server import THREE
@@ -49,21 +49,31 @@ INSIDE = """() => [...document.querySelectorAll(
 
 
 @pytest.fixture(scope="module")
-def chromium():
-    with browser() as opened:
-        yield opened
+def leader():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        yield playwright
+
+
+@pytest.fixture(scope="module")
+def chromium(leader):
+    opened = launch(leader, "chromium")
+    yield opened
+    opened.close()
 
 
 @pytest.fixture(scope="module", params=["chromium", "firefox"])
-def led(request):
+def led(request, leader):
     """Each of the browsers."""
     if request.param == "firefox" and FIREFOX is None:
         pytest.skip("no Firefox here; Debian has it in the package firefox-esr")
     if request.param == "chromium":
         yield request.getfixturevalue("chromium")
         return
-    with browser(request.param) as opened:
-        yield opened
+    opened = launch(leader, request.param)
+    yield opened
+    opened.close()
 
 
 def test_the_first_scene_is_solved_with_the_keys_of_the_page(led, tmp_path):

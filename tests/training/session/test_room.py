@@ -327,3 +327,15 @@ def test_going_far_back_restores_a_checkpoint_without_living_it_again(session, m
     assert session.room.time_s == pytest.approx(4.5)
     session.rewind(0.8)
     assert session.room.time_s == pytest.approx(3.0)
+
+
+def test_a_reset_in_the_midst_of_a_cut_is_no_cut_without_rotation(session):
+    do(session, "cycle_start")
+    while session.room.machine.setpoint.line[0] < 5 or not session.room.moving:
+        session.advance()
+    session.advance(20)
+    do(session, "reset")
+    session.advance(100)
+    assert session.room.alarm is None
+    assert not session.room.moving
+    assert not session.room.spindle.turns
