@@ -36,6 +36,16 @@ def compilable(function: Function) -> Function:
     return function
 
 
+def compilable_as(compiled: Function) -> Callable[[Function], Function]:
+    """Let kernels compile another function in the place of one that only CPython can run fast."""
+
+    def declare(function: Function) -> Function:
+        _declared.append(Declared(function, compiled, {"_nrt": False}))
+        return function
+
+    return declare
+
+
 def inlined(function: Function) -> Function:
     """Let kernels compile a function that makes no array into each function that calls it.
 

@@ -139,6 +139,25 @@ class LiveMachine:
         """
         return self.follow(self._ramp(ticks))
 
+    def stand_at(self, position: FloatArray) -> Samples:
+        """Stand at rest somewhere, as when the machine was switched on there.
+
+        Args:
+            position: Machine coordinates, shape (k,) [mm or deg].
+
+        Returns:
+            One sample, at time 0.
+
+        Raises:
+            AlarmStandsError: An alarm has not been cleared.
+        """
+        if self.alarm is not None:
+            raise AlarmStandsError(f"{self.alarm.code} has not been cleared")
+        self._servo.begin_anew()
+        self._stand = self._servo.follow(_standing(position))
+        self._watch.acknowledge(self.position)
+        return self._stand
+
     def brake(self, ticks: int) -> Samples:
         """Bring the axes to rest, each at its own acceleration, and hold them there.
 

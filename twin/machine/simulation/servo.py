@@ -164,6 +164,11 @@ class Servo:
         self._chunk, self._states = chunk, states
         return Samples(chunk, *read_states(self._drives, points, states))
 
+    def begin_anew(self) -> None:
+        """Forget all that was followed: the next chunk is the first of all."""
+        self._last = None
+        self._warmstart = np.zeros((1, self.model.nv))
+
     def go_back(self, row: int) -> None:
         """Take back what came after a row of the last chunk."""
         assert self._chunk is not None

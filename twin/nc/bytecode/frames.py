@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.path.contour_registers import Contour
+from twin.nc.path.compensation.contour import Contour
 
 LINE, PART, FURTHEST, INSTRUCTION_BUDGET, DEPTH, CALLS, BLOCKS, MADE = range(8)
 """Places in the progress: line and part that come next, from 0; the furthest place that was run;

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.path.drilling_cycle import VALUES
+from twin.nc.path.rows import Rows as Rows
 
 (
     INTERPOLATION,
@@ -170,29 +171,3 @@ class State(NamedTuple):
     shifts: FloatArray
     total: FloatArray
     target: FloatArray
-
-
-class Rows(NamedTuple):
-    """Room for the moves of a run, as ``MoveColumns`` keeps them.
-
-    Attributes:
-        codes: Shape (n, 5).
-        values: Shape (n, 11).
-        positions: Start, end and display, shape (n, 3, k).
-        events: Moves before each event, its line, kind and number, shape (m, 4).
-        event_values: What it counts, NaN for nothing, shape (m,).
-    """
-
-    codes: IntArray
-    values: FloatArray
-    positions: FloatArray
-    events: IntArray
-    event_values: FloatArray
-
-    def first(self, count: int) -> "Rows":
-        """The first moves, as columns again."""
-        return self._replace(
-            codes=self.codes[:count],
-            values=self.values[:count],
-            positions=self.positions[:count],
-        )

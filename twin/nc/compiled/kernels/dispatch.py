@@ -41,8 +41,7 @@ from twin.nc.compiled.kernels.block import (
 from twin.nc.compiled.kernels.cycle import NO_ROOM
 from twin.nc.compiled.kernels.effects import polar_target, run_effect
 from twin.nc.compiled.kernels.expression import evaluate
-from twin.nc.compiled.kernels.leads import begin_compensation, end_compensation
-from twin.nc.compiled.kernels.lookahead import hold_events
+from twin.nc.compiled.kernels.frame import begin_compensation
 from twin.nc.compiled.kernels.tokenizer import NUMBER
 from twin.nc.compiled.kernels.variables import (
     NO_SLOT,
@@ -51,7 +50,9 @@ from twin.nc.compiled.kernels.variables import (
     slot_of_number,
     store,
 )
-from twin.nc.path.contour_registers import OFF, STAGE
+from twin.nc.path.compensation import leads
+from twin.nc.path.compensation.contour import OFF, STAGE
+from twin.nc.path.compensation.lookahead import hold_events
 
 DONE = -1
 """The block was run."""
@@ -132,7 +133,7 @@ def dispatch_loop(
             if not begin_compensation(operand, stack[top], constants, state, contour):
                 break
         elif opcode == opcodes.END_COMPENSATION:
-            after = end_compensation(made, state.event_count[0], contour, rows)
+            after = leads.end(made, state.event_count[0], contour, rows)
             if after < 0:
                 break
             made = progress[MADE] = after  # not undone: to end it twice is to end it once

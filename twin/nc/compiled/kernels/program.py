@@ -41,7 +41,7 @@ from twin.nc.compiled.kernels.tokenizer import (
     read_words,
 )
 from twin.nc.compiled.kernels.variables import end_parts
-from twin.nc.path.contour_registers import OFF, ROOM, STAGE
+from twin.nc.path.compensation.contour import MOST_LET_GO, OFF, STAGE
 from twin.nc.text.lexer import LONGEST_LINE
 
 _PART_MASK = (1 << PART_BITS) - 1
@@ -89,7 +89,9 @@ def run_program(
         line = int(progress[LINE])
         if line >= lines:
             return ENDED
-        room = ROOM if contour.counts[STAGE] != OFF else 1
+        room = 1
+        if contour.counts[STAGE] != OFF:
+            room = len(contour.waiting.codes) + MOST_LET_GO
         if progress[MADE] + room > len(rows.codes) or state.event_count[0] + MOST_EVENTS > len(
             rows.events
         ):

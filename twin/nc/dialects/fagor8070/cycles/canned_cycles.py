@@ -11,11 +11,16 @@ the least; after each the tool lifts by H, after every J of them (or where H is 
 reference plane, and returns with rapid to C, 1 mm, above where it was.
 """
 
+import dataclasses
 from collections.abc import Mapping
 
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode, Ground, Interpolation
+from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
-from twin.nc.dialects.fagor8070.pockets import call_pocket, mill_pocket
+from twin.nc.dialects.fagor8070.cycles.pockets import call_pocket, mill_pocket
+from twin.nc.dialects.fagor8070.cycles.tapping import tapping_code
 from twin.nc.dialects.fagor8070.polar import take_goal
 from twin.nc.iso.drilling import cycle_code
 from twin.nc.path.drilling_cycle import (
@@ -50,8 +55,9 @@ def _drilling(
     clearance: float = CHIP_CLEARANCE,
     retract: Retract = Retract.RAPID,
     ground: Ground = "decision",
+    options: Mapping[str, tuple[float, ...]] | None = None,
 ) -> GCode:
-    """A cycle that drills, by its words besides Z and I."""
+    """A cycle that drills, by its words besides Z and I; ``options`` change nothing of its path."""
     cycle = Cycle(
         lasting=False,
         across=REFERENCE,
@@ -62,7 +68,33 @@ def _drilling(
     )
     rule = CycleRule(f"G{number}", cycle, {**words, "I": BOTTOM})
     meaning = f"{meaning}: Z I {' '.join(words)}"
-    return cycle_code(rule, meaning, lambda control: take_goal(control, arc=False).target, ground)
+    code = cycle_code(rule, meaning, _hole, ground)
+    return code if options is None else _with_options(code, options)
+
+
+def _hole(control: Control) -> list[float]:
+    return take_goal(control, arc=False).target
+
+
+def _with_options(code: GCode, options: Mapping[str, tuple[float, ...]]) -> GCode:
+    """The same cycle with words of which some values are known that change nothing of its path."""
+
+    def call(control: Control) -> None:
+        for letter, known in options.items():
+            word = control.take(letter)
+            if word is not None and control.number(word) not in known:
+                values = " or ".join(f"{letter}{value:g}" for value in known)
+                control.fail("unsupported-word", f"only {values} is followed here", word)
+        assert code.action is not None
+        code.action(control)
+
+    def write(block: BlockWords, assembler: Assembler) -> None:
+        if any(block.take(letter) is not None for letter in options):
+            raise UnsupportedError
+        assert code.compiler is not None
+        code.compiler(block, assembler)
+
+    return dataclasses.replace(code, action=call, compiler=write)
 
 
 def _pocket(
@@ -76,15 +108,20 @@ def _pocket(
         group="cycle",
         sets={"cycle": mill},
         action=lambda control: call_pocket(control, words, lengths),
+        takes="" if circular else "M",
         ground="manual",
     )
 
 
 _DWELL = {"K": DWELL}
+_SPINDLE = {"A": (0.0,)}
+"""A: what the spindle does on the way back; 0 as without it."""
+_RIGID = {"R": (0.0, 1.0), "J": (1.0,)}
+"""R: 0 with a tapping chuck, 1 rigid: one path. J: how much faster the way back is."""
 
 CYCLES = {
     80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, ground="manual"),
-    81: _drilling(81, "drilling", _DWELL, ground="manual"),
+    81: _drilling(81, "drilling", _DWELL, ground="manual", options=_SPINDLE),
     82: _drilling(
         82,
         "drilling in variable pecks",
@@ -109,9 +146,17 @@ CYCLES = {
         needed=1 << COUNT,
         pecking=Pecking.COUNTED,
     ),
-    84: _drilling(84, "tapping", _DWELL, retract=Retract.REVERSED),
-    85: _drilling(85, "reaming, back with the feed", _DWELL, retract=Retract.FEED),
-    86: _drilling(86, "boring, back with the spindle stopped", _DWELL, retract=Retract.STOPPED),
-    87: _pocket(87, "rectangular pocket", "DAJKBCLHV", "DJKBCLHV"),
+    84: tapping_code(_drilling(84, "tapping", _DWELL, retract=Retract.REVERSED, options=_RIGID)),
+    85: _drilling(
+        85, "reaming, back with the feed", _DWELL, retract=Retract.FEED, options=_SPINDLE
+    ),
+    86: _drilling(
+        86,
+        "boring, back with the spindle stopped",
+        _DWELL,
+        retract=Retract.STOPPED,
+        options=_SPINDLE,
+    ),
+    87: _pocket(87, "rectangular pocket", "DAJKBCLHVMQ", "DJKBCLHVQ"),
     88: _pocket(88, "circular pocket", "DJBCLHV", "DJBCLHV", circular=True),
 }

@@ -1,51 +1,59 @@
-"""Radius compensation of one block after the other, compiled: ``Compensation`` where all is clear.
+"""Radius compensation of one move after the other: the path that keeps the tool's edge on the contour.
 
-Each step is the one of ``Compensation`` between two moves of a contour, with the same functions of
-``curves``. Warnings and refusals are left to it.
+It looks one move ahead. Outside corners are rolled around on an arc about the corner, inside
+corners end where the parallel paths meet, the straight lead-in ends square to the first element of
+the contour and the straight lead-out starts square to its last; indirect leads go around the
+contour's first and last point where the straight way would cut them off. What does not fit is refused: an
+inside arc smaller than the tool, an element that its neighbours leave no room for, or a neck of the
+contour that is narrower than the tool. A lead that cuts into the contour is refused as well, unless
+the contour says that it may.
 """
 
 from twin.compilation.compilable import compilable
-from twin.nc.bytecode.registers import BAILOUT, Rows
 from twin.nc.canonical import Shape
-from twin.nc.compiled.kernels.columns import copy, copy_rows
-from twin.nc.compiled.kernels.gouge import crosses_passed, gouges, pass_by
-from twin.nc.compiled.kernels.leads import lead_in, lead_out, take_lead
-from twin.nc.compiled.kernels.lookahead import (
-    curve_of,
-    flush_lookahead,
-    go_around,
-    hold_events,
-    hold_move,
-    set_curve,
-    take_move,
-)
-from twin.nc.compiled.kernels.plane import along_axis
 from twin.nc.geometry import curves
 from twin.nc.geometry.arcs import SAME_POINT, distance
 from twin.nc.geometry.corners import corner_of
 from twin.nc.geometry.curves import Curve
 from twin.nc.geometry.matrices import dot
-from twin.nc.path.compensation_state import Stage
-from twin.nc.path.contour_registers import (
+from twin.nc.geometry.planes import point_of, vector_of
+from twin.nc.path.compensation.contour import (
+    BEGINS_ON_ARC,
     CONTOUR,
     ELEMENT,
-    MOST_WAITING,
+    LEADING_IN,
+    LEADING_OUT,
     MOVED_ROWS,
+    NARROW_CORNER,
+    NARROW_NECK,
+    NO_ROOM_TO_WAIT,
     OLDEST,
+    OUTSIDE_PLANE,
     PASSED,
     PLACED,
+    SEVERAL_MOVES,
+    SMALL_ARC,
     SQUARE,
     STAGE,
+    STARTED,
     WAITING,
     Contour,
+    curve_of,
+    plane_of,
+    set_curve,
 )
+from twin.nc.path.compensation.gouge import gouges, pass_by
+from twin.nc.path.compensation.leads import lead_in, lead_out, take_lead
+from twin.nc.path.compensation.lookahead import (
+    flush_lookahead,
+    go_around,
+    hold_events,
+    hold_move,
+    take_move,
+)
+from twin.nc.path.rows import Rows, copy, copy_rows
 from twin.nc.path.segments import IN_PLANE
 
-_STARTED, _LEADING_IN, _LEADING_OUT = (
-    int(Stage.STARTED),
-    int(Stage.LEADING_IN),
-    int(Stage.LEADING_OUT),
-)
 _ARC = int(Shape.ARC)
 
 
@@ -62,41 +70,40 @@ def follow(row: int, made: int, first_event: int, behind: int, contour: Contour,
         rows: The block's row is replaced by those that it lets go.
 
     Returns:
-        The row after those, or ``BAILOUT`` with the contour untouched.
+        The row after those, or why not, with the contour untouched.
     """
     if made - row > 1:
-        return BAILOUT
+        return SEVERAL_MOVES
     if made == row:
         hold_events(contour, rows, first_event, behind)
         return row
     stage, early = contour.counts[STAGE], first_event
     while early < behind and rows.events[early, 0] == row:
         early += 1
-    if stage == _LEADING_OUT:
+    if stage == LEADING_OUT:
         return lead_out(row, early, behind, contour, rows)
-    plane, position = contour.plane, rows.positions[row]
-    start = (along_axis(position[0], plane[0]), along_axis(position[0], plane[1]))
-    end = (along_axis(position[1], plane[0]), along_axis(position[1], plane[1]))
+    plane, position = plane_of(contour), rows.positions[row]
+    start, end = point_of(plane, vector_of(position[0])), point_of(plane, vector_of(position[1]))
     is_arc = rows.codes[row, 1] == _ARC
     if not is_arc and distance(start, end) < SAME_POINT:
         return _along_normal(row, first_event, early, behind, contour, rows)
-    if stage == _STARTED:
-        if is_arc:
-            return BAILOUT
-        return take_lead(start, end, row, early, behind, contour, rows)
     curve = (False, start, end, (0.0, 0.0), 0.0)
     if is_arc:
         value = rows.values[row]
-        center = (along_axis(value[:3], plane[0]), along_axis(value[:3], plane[1]))
-        sense = dot((value[3], value[4], value[5]), (plane[2, 0], plane[2, 1], plane[2, 2]))
-        if sense < IN_PLANE:
-            return BAILOUT
-        curve = (True, start, end, center, value[6] * sense)
-    signed_offset = contour.signed_offset[0]
+        sense = dot(vector_of(value[3:]), plane[2])
+        if not abs(sense) >= IN_PLANE:
+            return OUTSIDE_PLANE
+        curve = (True, start, end, point_of(plane, vector_of(value)), float(value[6]) * sense)
+    if stage == STARTED:
+        if is_arc:
+            return BEGINS_ON_ARC
+        return take_lead(start, end, row, early, behind, contour, rows)
+    signed_offset = float(contour.signed_offset[0])
     if not curves.leaves_room(curve, signed_offset):
-        return BAILOUT
+        contour.measured[0] = curves.radius_of(curve)
+        return SMALL_ARC
     element = curves.parallel_of(curve, signed_offset)
-    if stage == _LEADING_IN:
+    if stage == LEADING_IN:
         return lead_in(curve, element, row, first_event, early, behind, contour, rows)
     return _go_on(curve, element, row, first_event, early, behind, contour, rows)
 
@@ -108,13 +115,13 @@ def _along_normal(
     """A move that does not go in the plane: at once before the lead-in, else behind the held move."""
     counts = contour.counts
     waiting = counts[WAITING]
-    if counts[STAGE] == _STARTED:
+    if counts[STAGE] == STARTED:
         take_move(contour, rows, row, early)
         copy(rows.positions[row, 1], contour.here)
         counts[PLACED], counts[MOVED_ROWS] = 1, row + 1
         return row + 1
-    if waiting == MOST_WAITING:
-        return BAILOUT
+    if waiting == len(contour.waiting.codes):
+        return NO_ROOM_TO_WAIT
     hold_events(contour, rows, first_event, early)
     take_move(contour, rows, row, early)
     copy(rows.codes[row], contour.waiting.codes[waiting])
@@ -138,39 +145,34 @@ def _go_on(
     rows: Rows,
 ) -> int:
     """The contour's next element, with its parallel: as ``lead_in``."""
-    counts, signed_offset = contour.counts, contour.signed_offset[0]
+    counts, signed_offset = contour.counts, float(contour.signed_offset[0])
     held, before = curve_of(contour.curves[CONTOUR]), curve_of(contour.curves[ELEMENT])
-    begin = (contour.start[0], contour.start[1])
+    begin = (float(contour.start[0]), float(contour.start[1]))
     turn = curves.turn_from(held, curve)
-    clear, rolls, at, follows = corner_of(
+    fits, rolls, at, follows = corner_of(
         (held, before, begin), (curve, element), turn, signed_offset, counts[SQUARE] != 0
     )
-    if not clear:
-        return BAILOUT
+    if not fits:
+        return NARROW_CORNER
     part = curves.cut(before, begin, at)
     box = curves.box_of(part)
-    corner = (
-        True,
-        before[2],
-        element[1],
-        curve[1],
-        abs(turn) if signed_offset < 0.0 else -abs(turn),
-    )
-    if gouges(contour, part, box, held):
-        return BAILOUT
+    if gouges(contour, part, box, held, True):
+        return NARROW_NECK
+    passed, oldest = counts[PASSED], counts[OLDEST]
+    pass_by(contour, part, box, held, True)
+    sweep = abs(turn) if signed_offset < 0.0 else -abs(turn)
+    corner = (True, before[2], element[1], curve[1], sweep)
     if rolls:
-        full = 1 if counts[PASSED] == len(contour.gouge_history) else 0
-        if curves.crossing_of(part, corner)[0] or crosses_passed(
-            contour, corner, curves.box_of(corner), full
-        ):
-            return BAILOUT
+        box = curves.box_of(corner)
+        if gouges(contour, corner, box, held, False):
+            counts[PASSED], counts[OLDEST] = passed, oldest
+            return NARROW_NECK
+        pass_by(contour, corner, box, held, False)
     hold_events(contour, rows, first_event, early)
     take_move(contour, rows, row, early)
     after = flush_lookahead(contour, before, part, at, rows, row, early)
-    pass_by(contour, part, box, held, True)
     if rolls:
         after = go_around(contour, corner, rows, after)
-        pass_by(contour, corner, curves.box_of(corner), held, False)
     hold_move(contour, curve, follows)
     set_curve(contour.curves[ELEMENT], element)
     hold_events(contour, rows, early, behind)

@@ -1,79 +1,72 @@
-"""How radius compensation begins and ends, compiled: ``Compensation`` and ``lead_out`` where all is clear.
-
-Warnings and refusals are left to them.
-"""
+"""How radius compensation begins and ends: the straight moves to and from the contour."""
 
 from twin.compilation.compilable import compilable
-from twin.nc.bytecode.registers import BAILOUT, PLANE, Constants, Rows, State
 from twin.nc.canonical import Shape
-from twin.nc.compiled.kernels.columns import copy, copy_rows
-from twin.nc.compiled.kernels.frame import put_part_plane, transfer
-from twin.nc.compiled.kernels.gouge import gouges
-from twin.nc.compiled.kernels.lookahead import (
+from twin.nc.geometry import curves, lead_curves
+from twin.nc.geometry.arcs import SAME_POINT, Point, distance
+from twin.nc.geometry.curves import Curve
+from twin.nc.geometry.planes import along, point_of, put_point, vector_of
+from twin.nc.path.compensation.contour import (
+    CONTOUR,
+    ELEMENT,
+    ENDS_ON_ARC,
+    FOLLOWING,
+    INDIRECT,
+    LEAD_IN_CUTS,
+    LEAD_OUT_CUTS,
+    LEADING_IN,
+    LEADING_OUT,
+    MAY_CUT,
+    MOVED_ROWS,
+    NARROW_NECK,
+    OFF,
+    OLDEST,
+    PASSED,
+    PLACED,
+    SQUARE,
+    STAGE,
+    STARTED,
+    WAITING,
+    Contour,
     curve_of,
+    plane_of,
+    set_curve,
+)
+from twin.nc.path.compensation.gouge import gouges
+from twin.nc.path.compensation.lookahead import (
     flush_lookahead,
     go_around,
     hold_events,
     hold_move,
     level_arc,
-    set_curve,
     stands,
     take_move,
 )
-from twin.nc.compiled.kernels.plane import along_axis, place
-from twin.nc.geometry import curves, lead_curves
-from twin.nc.geometry.arcs import SAME_POINT, Point, distance
-from twin.nc.geometry.curves import Curve
-from twin.nc.path.compensation_state import Stage
-from twin.nc.path.contour_registers import (
-    CONTOUR,
-    ELEMENT,
-    INDIRECT,
-    MOVED_ROWS,
-    OLDEST,
-    PASSED,
-    PLACED,
-    PLANE_NUMBER,
-    SQUARE,
-    STAGE,
-    WAITING,
-    Contour,
-)
+from twin.nc.path.rows import Rows, copy, copy_rows
 
-_OFF, _STARTED, _LEADING_IN = int(Stage.OFF), int(Stage.STARTED), int(Stage.LEADING_IN)
-_FOLLOWING, _LEADING_OUT = int(Stage.FOLLOWING), int(Stage.LEADING_OUT)
 _ARC = int(Shape.ARC)
 
 
 @compilable
-def begin_compensation(
-    side: int, radius: float, constants: Constants, state: State, contour: Contour
-) -> bool:
-    """Compensate from the next move on: ``tool_compensation.compensate``; False where that refuses.
+def begin(contour: Contour, signed_offset: float, square: bool, indirect: bool) -> None:
+    """Compensate from the next move on, in the plane that the contour has.
 
     Args:
-        side: +1 left of the contour, -1 right of it.
-        radius: Of the tool [mm].
-        constants: What stays.
-        state: Its plane, as the part sees it, is compensated.
         contour: Is made to wait for the move that leads in.
+        signed_offset: The tool's radius, positive left of the contour [mm].
+        square: Outside corners between lines are extended as far as 90°.
+        indirect: Leads go around the contour's first and last point.
     """
     counts = contour.counts
-    if counts[STAGE] != _OFF or not radius >= 0.0:
-        return False
-    if radius == 0.0:
-        return True
-    counts[PLANE_NUMBER] = int(state.modal[PLANE])
-    put_part_plane(constants.planes[counts[PLANE_NUMBER]], state, contour.plane)
-    contour.signed_offset[0] = side * transfer(state) * radius
-    counts[STAGE], counts[PLACED], counts[PASSED], counts[OLDEST] = _STARTED, 0, 0, 0
-    counts[SQUARE] = 1 if constants.square_corners else 0
-    counts[INDIRECT] = 1 if constants.indirect_leads else 0
-    return True
+    contour.signed_offset[0] = signed_offset
+    counts[STAGE] = STARTED
+    counts[WAITING] = counts[PLACED] = counts[PASSED] = counts[OLDEST] = 0
+    counts[SQUARE] = 1 if square else 0
+    counts[INDIRECT] = 1 if indirect else 0
 
 
 @compilable
-def end_compensation(row: int, events: int, contour: Contour, rows: Rows) -> int:
+def end(row: int, events: int, contour: Contour, rows: Rows) -> int:
     """Let go of what is held, square to itself, and wait for the line that leads out.
 
     Args:
@@ -83,26 +76,34 @@ def end_compensation(row: int, events: int, contour: Contour, rows: Rows) -> int
         rows: Where the moves go.
 
     Returns:
-        The row after those, or ``BAILOUT`` with the contour untouched.
+        The row after those, or ``NARROW_NECK`` with the contour untouched.
     """
     counts = contour.counts
     stage = counts[STAGE]
-    if stage in (_OFF, _LEADING_OUT):
+    if stage in (OFF, LEADING_OUT):
         return row
     after = row
-    begin = (contour.start[0], contour.start[1])
-    if stage == _LEADING_IN:
+    start = (float(contour.start[0]), float(contour.start[1]))
+    if stage == LEADING_IN:
         lead = curve_of(contour.curves[CONTOUR])
         after = flush_lookahead(contour, lead, lead, lead[2], rows, row, events)
-    elif stage == _FOLLOWING:
+    elif stage == FOLLOWING:
         element = curve_of(contour.curves[ELEMENT])
-        part = curves.cut(element, begin, element[2])
-        if gouges(contour, part, curves.box_of(part), curve_of(contour.curves[CONTOUR])):
-            return BAILOUT
+        part = curves.cut(element, start, element[2])
+        if gouges(contour, part, curves.box_of(part), curve_of(contour.curves[CONTOUR]), True):
+            return NARROW_NECK
         after = flush_lookahead(contour, element, part, element[2], rows, row, events)
-    counts[STAGE] = _LEADING_OUT if stage == _FOLLOWING else _OFF
+    counts[STAGE] = LEADING_OUT if stage == FOLLOWING else OFF
     counts[WAITING] = counts[PASSED] = counts[OLDEST] = counts[PLACED] = 0
     return after
+
+
+@compilable
+def _cuts(contour: Contour, lead: Curve, element: Curve) -> bool:
+    """Whether a lead cuts into an element of the contour, and may not."""
+    depth = lead_curves.depth_of(lead, element, abs(float(contour.signed_offset[0])))
+    contour.measured[0] = depth
+    return depth > 0.0 and contour.counts[MAY_CUT] == 0
 
 
 @compilable
@@ -114,7 +115,7 @@ def take_lead(
     if contour.counts[PLACED] == 0:
         copy(rows.positions[row, 0], contour.here)
     hold_move(contour, (False, start, end, (0.0, 0.0), 0.0), start)
-    contour.counts[STAGE], contour.counts[MOVED_ROWS] = _LEADING_IN, row
+    contour.counts[STAGE], contour.counts[MOVED_ROWS] = LEADING_IN, row
     hold_events(contour, rows, early, behind)
     return row
 
@@ -143,17 +144,18 @@ def lead_in(
         rows: The element's row is replaced by those that lead to it.
 
     Returns:
-        The row after those, or ``BAILOUT`` with the contour untouched.
+        The row after those, or ``LEAD_IN_CUTS`` with the contour untouched.
     """
-    signed_offset = contour.signed_offset[0]
-    begin, touch, turns, arc = (contour.start[0], contour.start[1]), element[1], False, curve
+    signed_offset = float(contour.signed_offset[0])
+    start = (float(contour.start[0]), float(contour.start[1]))
+    touch, turns, arc = element[1], False, curve
     if contour.counts[INDIRECT] != 0:
-        turns, arc = lead_curves.way_around(begin, element[1], curve[1], signed_offset)
+        turns, arc = lead_curves.way_around(start, element[1], curve[1], signed_offset)
         if turns:
             touch = arc[1]
-    lead = (False, begin, touch, (0.0, 0.0), 0.0)
-    if lead_curves.depth_of(lead, curve, abs(signed_offset)) > 0.0:
-        return BAILOUT
+    lead = (False, start, touch, (0.0, 0.0), 0.0)
+    if _cuts(contour, lead, curve):
+        return LEAD_IN_CUTS
     hold_events(contour, rows, first_event, early)
     take_move(contour, rows, row, early)
     after = flush_lookahead(contour, lead, lead, touch, rows, row, early)
@@ -161,14 +163,14 @@ def lead_in(
         after = go_around(contour, arc, rows, after)
     hold_move(contour, curve, element[1])
     set_curve(contour.curves[ELEMENT], element)
-    contour.counts[STAGE] = _FOLLOWING
+    contour.counts[STAGE] = FOLLOWING
     hold_events(contour, rows, early, behind)
     return after
 
 
 @compilable
 def lead_out(row: int, early: int, behind: int, contour: Contour, rows: Rows) -> int:
-    """``lead_out.lead_out``, which waits for the first line in the plane.
+    """The first line in the plane leads out; until then only the normal and other axes move.
 
     Args:
         row: The move's row, which is replaced.
@@ -178,24 +180,23 @@ def lead_out(row: int, early: int, behind: int, contour: Contour, rows: Rows) ->
         rows: Where the moves go.
 
     Returns:
-        The row after the moves, or ``BAILOUT`` with the contour untouched.
+        The row after the moves, or why not, with the contour untouched.
     """
     if rows.codes[row, 1] == _ARC:
-        return BAILOUT
-    plane, position = contour.plane, rows.positions[row]
+        return ENDS_ON_ARC
+    plane, position = plane_of(contour), rows.positions[row]
     stand = contour.position if row == 0 else rows.positions[row - 1, 1]
-    here = (along_axis(stand, plane[0]), along_axis(stand, plane[1]))
-    start = (along_axis(position[0], plane[0]), along_axis(position[0], plane[1]))
-    end = (along_axis(position[1], plane[0]), along_axis(position[1], plane[1]))
+    here = point_of(plane, vector_of(stand))
+    start, end = point_of(plane, vector_of(position[0])), point_of(plane, vector_of(position[1]))
     leads, turns, last = distance(start, end) >= SAME_POINT, False, row
     contour_end = curve_of(contour.curves[CONTOUR])
     arc = contour_end
     if leads and contour.counts[INDIRECT] != 0:
-        turns, arc = lead_curves.way_around(end, here, contour_end[2], -contour.signed_offset[0])
-    begin = arc[1] if turns else here
-    lead = (False, begin, end, (0.0, 0.0), 0.0)
-    if leads and lead_curves.depth_of(lead, contour_end, abs(contour.signed_offset[0])) > 0.0:
-        return BAILOUT
+        side = -float(contour.signed_offset[0])
+        turns, arc = lead_curves.way_around(end, here, contour_end[2], side)
+    lead = (False, arc[1] if turns else here, end, (0.0, 0.0), 0.0)
+    if leads and _cuts(contour, lead, contour_end):
+        return LEAD_OUT_CUTS
     take_move(contour, rows, row, early)
     if turns:
         last = row + 1
@@ -203,14 +204,14 @@ def lead_out(row: int, early: int, behind: int, contour: Contour, rows: Rows) ->
         copy(rows.values[row], rows.values[last])
         copy_rows(rows.positions[row], rows.positions[last])
         back = (True, here, arc[1], arc[3], -arc[4])
-        level_arc(contour.latest, plane, back, stand, rows, row)
+        level_arc(contour.latest, contour, back, stand, rows, row)
         stand = rows.positions[row, 1]
     copy(stand, rows.positions[last, 0])
     if leads:
-        contour.counts[STAGE] = _OFF
+        contour.counts[STAGE] = OFF
     else:
-        height = along_axis(rows.positions[last, 1], plane[2])
-        place(plane, here, height, rows.positions[last, 1])
+        level = rows.positions[last, 1]
+        put_point(plane, here, along(vector_of(level), plane[2]), level)
     after = last if stands(rows.positions[last]) else last + 1
     contour.counts[MOVED_ROWS] = after
     for event in range(early, behind):

@@ -1,8 +1,9 @@
-"""The browser that tests and benches lead, and how it is started."""
+"""The browsers that tests and benches lead, and how they are started."""
 
 import shutil
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "chrome"))), None)
+FIREFOX = next(filter(None, map(shutil.which, ("firefox-esr", "firefox"))), None)
 QUIET = [
     "--headless",
     "--no-sandbox",

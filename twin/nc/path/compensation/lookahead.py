@@ -1,18 +1,14 @@
-"""The move that compensation holds, compiled: kept until its successor is known, let go, gone around.
-
-Each step is the one of ``Compensation``.
-"""
+"""The move that compensation holds: kept until its successor is known, let go, gone around."""
 
 from twin.compilation.compilable import compilable
-from twin.nc.bytecode.registers import Rows
 from twin.nc.canonical import Corner, FloatArray, Shape
-from twin.nc.compiled.kernels.columns import copy, copy_rows
-from twin.nc.compiled.kernels.plane import along_axis, place
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.curves import Curve
-from twin.nc.path.compensation_state import Stage
-from twin.nc.path.contour_registers import (
+from twin.nc.geometry.planes import along, put_point, vector_of
+from twin.nc.path.compensation.contour import (
     CONTOUR,
+    FOLLOWING,
+    LEADING_IN,
     MOVED,
     MOVED_EVENTS,
     MOVED_ROWS,
@@ -20,10 +16,11 @@ from twin.nc.path.contour_registers import (
     STAGE,
     WAITING,
     Contour,
-    Row,
+    plane_of,
+    set_curve,
 )
+from twin.nc.path.rows import Row, Rows, copy, copy_rows
 
-_LEADING_IN, _FOLLOWING = int(Stage.LEADING_IN), int(Stage.FOLLOWING)
 _ARC = int(Shape.ARC)
 _EXACT_PATH = int(Corner.EXACT_PATH)
 
@@ -31,7 +28,7 @@ _EXACT_PATH = int(Corner.EXACT_PATH)
 @compilable
 def hold_events(contour: Contour, rows: Rows, first: int, behind: int) -> None:
     """Events of the block, from ``first`` on, wait for the end of the held move, if there is one."""
-    if contour.counts[STAGE] not in (_LEADING_IN, _FOLLOWING):
+    if contour.counts[STAGE] not in (LEADING_IN, FOLLOWING):
         return
     for event in range(first, behind):
         rows.events[event, 0] = -1 - contour.counts[WAITING]
@@ -58,33 +55,11 @@ def hold_move(contour: Contour, curve: Curve, start: Point) -> None:
 
 
 @compilable
-def curve_of(column: FloatArray) -> Curve:
-    """A curve that is kept as a column."""
-    return (
-        column[0] != 0.0,
-        (column[1], column[2]),
-        (column[3], column[4]),
-        (column[5], column[6]),
-        column[7],
-    )
-
-
-@compilable
-def set_curve(column: FloatArray, curve: Curve) -> None:
-    """Keep a curve."""
-    column[0] = 1.0 if curve[0] else 0.0
-    column[1], column[2] = curve[1]
-    column[3], column[4] = curve[2]
-    column[5], column[6] = curve[3]
-    column[7] = curve[4]
-
-
-@compilable
 def flush_lookahead(
     contour: Contour, before: Curve, part: Curve, at: Point, rows: Rows, row: int, events: int
 ) -> int:
     """The held move up to a point, then what waits for its end; the row after them."""
-    held, plane, counts = contour.lookahead, contour.plane, contour.counts
+    held, plane, counts = contour.lookahead, plane_of(contour), contour.counts
     after = row
     for number in range(counts[WAITING] + 1):
         value, position = rows.values[after], rows.positions[after]
@@ -99,11 +74,10 @@ def flush_lookahead(
             copy_rows(waiting.positions[number - 1], position)
         is_arc = number == 0 and before[0]
         if is_arc:
-            place(plane, before[3], along_axis(position[0], plane[2]), value)
-            for axis in range(3):
-                value[3 + axis] = plane[2, axis]
+            put_point(plane, before[3], along(vector_of(position[0]), plane[2]), value)
+            value[3], value[4], value[5] = plane[2]
             value[6] = part[4]
-        place(plane, at, along_axis(position[1], plane[2]), position[1])
+        put_point(plane, at, along(vector_of(position[1]), plane[2]), position[1])
         copy(contour.here, position[0])
         copy(position[1], contour.here)
         after += 0 if not is_arc and stands(position) else 1
@@ -127,21 +101,30 @@ def stands(position: FloatArray) -> bool:
 
 @compilable
 def level_arc(
-    move: Row, plane: FloatArray, arc: Curve, start: FloatArray, rows: Rows, row: int
+    move: Row, contour: Contour, arc: Curve, start: FloatArray, rows: Rows, row: int
 ) -> None:
-    """An arc at one height with all else of a move, as ``segments.level_arc`` has it."""
+    """Write an arc at one height with all else of a move; further axes stand still.
+
+    Args:
+        move: Whose line, feed and the like it takes.
+        contour: Its plane is that of the arc.
+        arc: In the plane.
+        start: Where it begins, shape (k,).
+        rows: Where it is written.
+        row: Its row.
+    """
     code, value, position = rows.codes[row], rows.values[row], rows.positions[row]
     copy(move.codes, code)
     copy(move.values, value)
     code[1] = _ARC
-    height = along_axis(start, plane[2])
-    place(plane, arc[3], height, value)
-    for axis in range(3):
-        value[3 + axis] = plane[2, axis]
+    plane = plane_of(contour)
+    height = along(vector_of(start), plane[2])
+    put_point(plane, arc[3], height, value)
+    value[3], value[4], value[5] = plane[2]
     value[6] = arc[4]
     copy(start, position[0])
     copy(start, position[1])
-    place(plane, arc[2], height, position[1])
+    put_point(plane, arc[2], height, position[1])
     for axis in range(len(start)):
         shown, end = move.positions[2, axis], move.positions[1, axis]
         position[2, axis] = position[1, axis] + shown - end
@@ -150,7 +133,7 @@ def level_arc(
 @compilable
 def go_around(contour: Contour, corner: Curve, rows: Rows, row: int) -> int:
     """Go around a corner where the path has come to; the row after it."""
-    level_arc(contour.lookahead, contour.plane, corner, contour.here, rows, row)
+    level_arc(contour.lookahead, contour, corner, contour.here, rows, row)
     rows.codes[row, 4] = _EXACT_PATH
     copy(rows.positions[row, 1], contour.here)
     contour.counts[MOVED_ROWS] = row + 1

@@ -5,10 +5,12 @@ half length or radius (its sign is the direction: + clockwise), K half width, A 
 B depth of a pass, C width of a pass, L finishing stock, H feed of the finishing pass, V feed of
 plunging. Decision, since the manual does not give the path: each pass plunges at the centre and
 clears outwards along parallels of the wall, C apart at most; the finishing pass runs once along the
-wall at the full depth; corners are as round as the tool.
+wall at the full depth. The corners of a rectangle are M0 as round as the tool, M1 rounded by the
+radius Q, M2 cut off at the distance Q; a radius below the tool's is the tool's.
 """
 
 import dataclasses
+import enum
 import math
 
 from twin.nc.control.control import Control
@@ -32,6 +34,38 @@ _MOST_PASSES = 10_000
 """Rings and depths of one pocket, so that a slip of the pen does not run for hours."""
 
 
+class CornerKind(enum.IntEnum):
+    """What the corners of a pocket are: M of G87."""
+
+    SQUARE = 0
+    ROUNDED = 1
+    CHAMFERED = 2
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Corner:
+    """The corners of a rectangular pocket.
+
+    Attributes:
+        kind: What they are.
+        size: Radius, or distance of the chamfer's ends from the corner, at the wall [mm].
+        radius: Of the tool [mm].
+    """
+
+    kind: CornerKind = CornerKind.SQUARE
+    size: float = 0.0
+    radius: float = 0.0
+
+    def at(self, inset: float) -> float:
+        """Size on a ring that lies so far from the tool's path along the wall [mm].
+
+        A parallel at the distance d shortens a radius by d, and the legs of a chamfer of 45 degrees
+        by d (2 - root of 2).
+        """
+        share = 1.0 if self.kind is CornerKind.ROUNDED else 2.0 - math.sqrt(2.0)
+        return max(0.0, self.size - share * (self.radius + inset))
+
+
 @dataclasses.dataclass(frozen=True, slots=True)
 class Pocket:
     """A pocket in the working plane.
@@ -42,6 +76,7 @@ class Pocket:
         width: Half its width less the tool's radius; None for a circular pocket [mm].
         angle: Of its length against the abscissa [deg].
         clockwise: Direction of machining.
+        corner: Of a rectangle.
     """
 
     center: Point
@@ -49,6 +84,7 @@ class Pocket:
     width: float | None
     angle: float
     clockwise: bool
+    corner: Corner
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -80,7 +116,6 @@ def call_pocket(control: Control, words: str, lengths: str) -> None:
     """Take the words of a pocket where it is called; ``lengths`` are those that count lengths."""
     axis = control.modal.plane.axes[2]
     control.cycle_values = values = {"start": control.programmed[axis]}
-    _refuse_corner_type(control, words)
     for address in words:
         if (word := control.take(address)) is not None:
             in_mm = address in lengths
@@ -98,14 +133,23 @@ def call_pocket(control: Control, words: str, lengths: str) -> None:
         values["bottom"] = control.length(depth) + (values["Z"] if relative else 0.0)
 
 
-def _refuse_corner_type(control: Control, words: str) -> None:
-    """M and Q in a block of G87: rounded and chamfered corners."""
-    if "A" not in words:
-        return
-    for word in control.block.words:
-        if word.address == "Q" or (word.address == "M" and word.value in (0.0, 1.0, 2.0)):
-            message = "corners of a pocket are as round as the tool; M and Q are not followed"
-            control.fail("unsupported-word", message, word, "leave it out of the cycle's block")
+def _corner(control: Control, name: str, radius: float) -> Corner:
+    """Corners by M and Q.
+
+    Raises:
+        ProgramError: M is none of them, or Q does not fit into the pocket.
+    """
+    values = control.cycle_values
+    kind, size = values.get("M", 0.0), values.get("Q", 0.0)
+    if kind not in tuple(CornerKind):
+        control.fail("cycle-word", f"{name} knows the corners M0, M1 and M2, not M{kind:g}")
+    largest = min(abs(values["J"]), values["K"])
+    if kind == CornerKind.CHAMFERED:
+        largest -= (math.sqrt(2.0) - 1.0) * radius
+    if kind != CornerKind.SQUARE and not 0.0 < size <= largest:
+        message = f"{name} needs the size of its corners in Q, above 0 and up to {largest:g}"
+        control.fail("cycle-size", message)
+    return Corner(CornerKind(int(kind)), size, radius)
 
 
 def mill_pocket(control: Control, name: str, *, circular: bool) -> None:
@@ -127,6 +171,7 @@ def mill_pocket(control: Control, name: str, *, circular: bool) -> None:
         None if circular else values["K"] - tool.radius,
         values.get("A", 0.0),
         values["J"] > 0.0,
+        Corner() if circular else _corner(control, name, tool.radius),
     )
     least = min(pocket.length, math.inf if pocket.width is None else pocket.width)
     if least - passes.stock < 0.0:
@@ -216,11 +261,54 @@ def _ring(control: Control, pocket: Pocket, inset: float) -> None:
             center = plane.world(*pocket.center, height)
             control.arc_to(list(control.programmed), center, sign * 360.0)
         return
-    width = sign * (pocket.width - inset)
-    path = [(length, 0.0), (length, width), (-length, width), (-length, -width), (length, -width)]
-    for along, across in [*path, path[0]]:
-        point = (pocket.center[0] + along, pocket.center[1] + across)
-        _go(control, turned(point, pocket.center, pocket.angle), rapid=False)
+    _rectangle(control, pocket, length, pocket.width - inset, pocket.corner.at(inset))
+
+
+def _rectangle(
+    control: Control, pocket: Pocket, length: float, width: float, corner: float
+) -> None:
+    """Go once around a rectangle by its half length and half width, corners cut or rounded."""
+    sign = -1.0 if pocket.clockwise else 1.0
+    corner = min(corner, length, width)
+
+    def go(along: float, across: float) -> Point:
+        point = (pocket.center[0] + along, pocket.center[1] + sign * across)
+        place = turned(point, pocket.center, pocket.angle)
+        _go(control, place, rapid=False)
+        return place
+
+    go(length, 0.0)
+    for along, across in ((1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)):
+        ends = [
+            (along * length, across * (width - corner)),
+            (along * (length - corner), across * width),
+        ]
+        if along != across:
+            ends.reverse()
+        go(*ends[0])
+        if corner > 0.0 and pocket.corner.kind is CornerKind.ROUNDED:
+            middle = (along * (length - corner), sign * across * (width - corner))
+            center = turned(
+                (pocket.center[0] + middle[0], pocket.center[1] + middle[1]),
+                pocket.center,
+                pocket.angle,
+            )
+            end = turned(
+                (pocket.center[0] + ends[1][0], pocket.center[1] + sign * ends[1][1]),
+                pocket.center,
+                pocket.angle,
+            )
+            _arc(control, end, center, sign * 90.0)
+        elif corner > 0.0:
+            go(*ends[1])
+    go(length, 0.0)
+
+
+def _arc(control: Control, end: Point, center: Point, sweep: float) -> None:
+    plane, target = control.modal.plane, list(control.programmed)
+    height = plane.local(target).height
+    target[:3] = plane.world(*end, height)
+    control.arc_to(target, plane.world(*center, height), sweep)
 
 
 def _go(control: Control, point: Point, *, rapid: bool) -> None:
