@@ -273,7 +273,7 @@ MEFI = Dialect(
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(
-        Mark(r'^[^;$]*"', 'a comment after "'),
+        Mark(r'^[^;$#]*"', 'a comment after "'),
         Mark(r"\bG73\b.*\bL[ \t]*\d|\bL[ \t]*\d+.*\bG73\b", "G73 with L"),
         Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
     ),
