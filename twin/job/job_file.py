@@ -14,6 +14,7 @@ from twin.files.stl import stl_extent
 from twin.files.toml import Data, Table, checked, load_toml
 from twin.job.fixture import FixtureTable
 from twin.job.layers import extended_layers, laid_over, layer_of, shared_layers
+from twin.job.machine_functions import MachineFunctions
 
 Positive = Annotated[float, Field(gt=0)]
 
@@ -253,6 +254,9 @@ class JobFile(Table):
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
     variables: dict[str, float] = Field(default_factory=dict)
     """Values of variables that the program reads but does not set, by their name in it."""
+    m_functions: MachineFunctions = Field(default_factory=dict)
+    """M codes of the machine's builder that the program holds, beside those of the machine file:
+    ``M10 = "clamp the table"``, with a time ``M22 = { meaning = "pallet", dwell = 4.0 }``."""
     block_skip: bool = False
     """Blocks that begin with a slash are left out."""
     step_limit: Annotated[int, Field(gt=0)] = 20_000

@@ -4,7 +4,7 @@ Nothing is said here of any dialect: a code, a letter or an interpolation that t
 not describe completely is not plain.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -48,6 +48,7 @@ from twin.nc.control.interpolation import ArcRule, CycleRule, MotionMode
 from twin.nc.control.modal import FEED_FACTORS, FeedMode, Modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import SPINDLE_STARTS
+from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.drilling_cycle import Cycle
 from twin.nc.text.syntax import Comment
@@ -64,6 +65,9 @@ _FIELDS: Mapping[str, int] = {
 """The fields of ``Modal`` that plain codes may set, and their places."""
 
 
+_NO_ARC = ArcRule(clockwise=False, bounds=Bounds(0.0, 0.0, 0.0, 0.0))
+
+
 class DecodeTables:
     """The tables of one dialect on one machine.
 
@@ -74,11 +78,15 @@ class DecodeTables:
         token_kinds: What the letters of plain words are.
     """
 
-    def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
+    def __init__(
+        self, dialect: Dialect, settings: ControlSettings, interpreted: Iterable[int]
+    ) -> None:
+        """Make them; ``interpreted`` are M codes that only the interpreter tier may run."""
         self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
         self._interpolations = _interpolations(dialect)
         self._places = {id(each): float(at) for at, each in enumerate(self._interpolations)}
         self._cycles = _cycles(dialect)
+        self._interpreted = [number for number in interpreted if number < CODES]
         self.token_kinds = _token_kinds(dialect, settings)
         self.lines = _line_tables(dialect, self.token_kinds)
         self.blocks = self._block_tables(dialect, settings)
@@ -134,19 +142,17 @@ class DecodeTables:
             if meant is not None:
                 field[number], value[number] = meant
         plain = [each.rule if each else None for each in self._interpolations]
-        arcs = [each if isinstance(each, ArcRule) else ArcRule(clockwise=False) for each in plain]
+        arcs = [each if isinstance(each, ArcRule) else _NO_ARC for each in plain]
         return BlockTables(
             field=field,
             value=value,
             group=group,
             cycle=cycle,
             cycles=_cycle_rows(self._cycles, self.token_kinds),
-            function=_functions(dialect),
+            function=_functions(dialect, self._interpreted),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
-            mismatch=np.array([arc.mismatch for arc in arcs]),
-            mismatch_share=np.array([arc.mismatch_share for arc in arcs]),
-            shift=np.array([arc.shift for arc in arcs]),
+            bounds=np.array([arc.bounds for arc in arcs]),
             fits_radius=np.array([arc.fits_radius for arc in arcs]),
             signed_radius=np.array([arc.signed_radius for arc in arcs]),
             linear=np.array([kind == "linear" for kind in settings.axes.kinds]),
@@ -204,14 +210,14 @@ def _cycle_rows(cycles: list[MotionMode | None], token_kinds: Mapping[str, int])
     return rows
 
 
-def _functions(dialect: Dialect) -> IntArray:
+def _functions(dialect: Dialect, interpreted: Iterable[int]) -> IntArray:
     """M codes that are only reported; a spindle's start carries its speed, and is not plain."""
     function = np.full(CODES, EARLY if dialect.any_m else UNSUPPORTED, np.int64)
     for number, code in dialect.m.items():
         only_told = code.action is None and not code.silent and not code.ends
         function[number] = (LATE if code.late else EARLY) if only_told else UNSUPPORTED
-    for start in SPINDLE_STARTS:
-        function[int(start[1:])] = UNSUPPORTED
+    for number in (*(int(start[1:]) for start in SPINDLE_STARTS), *interpreted):
+        function[number] = UNSUPPORTED
     return function
 
 

@@ -9,6 +9,7 @@ from twin.nc.control.modal import FEED_FACTORS, FeedMode
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.planes import Plane, Vector, cross
 from twin.nc.path.move_columns import NAN, Segment
+from twin.nc.path.moves import SMALLEST_MOVE, arc_length, feed_per_minute, line_length, only_turns
 from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
 
@@ -16,8 +17,8 @@ LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 
 
-_SMALLEST_MOVE = 1e-9
-"""A block that goes less far than this moves nothing [mm or deg]: far below any resolution."""
+_SPINDLE = {"M3": True, "M4": True, "M5": False}
+"""Whether the spindle turns behind these functions."""
 
 
 class Control(ControlWords):
@@ -70,10 +71,11 @@ class Control(ControlWords):
         spline: tuple[bool] | None = None,
     ) -> None:
         end = self.frame.to_part(target)
-        if center is None and math.dist(self.part[:3], end[:3]) < _SMALLEST_MOVE:
-            end[:3] = self.part[:3]  # what a frame has rounded is no way
-        length = self._length(end, center, normal, sweep)
-        if length < _SMALLEST_MOVE:
+        if center is None:
+            length = line_length(self.part, end)
+        else:
+            length = arc_length(self.part, end, center, normal, sweep)
+        if length < SMALLEST_MOVE:
             self.programmed = target
             return
         modal = self.modal
@@ -85,11 +87,11 @@ class Control(ControlWords):
         if rapid:
             acceleration = _either(self.rapid_acceleration, acceleration)
             deceleration = _either(self.rapid_deceleration, deceleration)
-        if self.axis_limits or self.axis_accelerations:
+        if self.axis_limits or self.axis_accelerations or self.axis_decelerations:
             share = self._axis_shares(end, length, is_arc)
             feed = _limited(feed, self.axis_limits, share)
             acceleration = _limited(acceleration, self.axis_accelerations, share)
-            deceleration = _limited(deceleration, self.axis_accelerations, share)
+            deceleration = _limited(deceleration, self.axis_decelerations, share)
         self._last = Segment(
             motion=Motion.RAPID if rapid else Motion.FEED,
             line=self.block.line,
@@ -125,28 +127,13 @@ class Control(ControlWords):
         move = self._last
         return None if move is None else self.frame.unturn(direction_of(move, at_end=True))
 
-    def _length(
-        self, end: list[float], center: Vector | None, normal: Vector, sweep: float
-    ) -> float:
-        """What the feed counts, by the convention of ``canonical`` [mm or deg]."""
-        start = self.part
-        if center is not None:
-            radius = math.dist(start[:3], center)
-            advance = sum((end[i] - start[i]) * normal[i] for i in range(3))
-            return math.hypot(radius * math.radians(sweep), advance)
-        spatial = math.dist(start[:3], end[:3])
-        return spatial or math.dist(start[3:], end[3:])
-
     def _axis_shares(self, end: list[float], length: float, is_arc: bool) -> list[float]:
         """How much of the path's speed each axis takes at most."""
         shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
         return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
-        turning = not is_arc and all(
-            new == old or not linear
-            for new, old, linear in zip(end, self.part, self.linear, strict=True)
-        )
+        settings, mode = self.settings, self.modal.feed_mode
         if self.feed is None:
             self.report.warn_once(
                 "no-feed",
@@ -154,19 +141,30 @@ class Control(ControlWords):
                 *self._blamed(None),
                 hint="write F in the first block that needs it",
             )
-            settings = self.settings
-            return settings.default_rotary_feed if turning else settings.default_feed
-        mode = self.modal.feed_mode
-        if mode is FeedMode.SECONDS_PER_BLOCK:
+        elif mode is FeedMode.SECONDS_PER_BLOCK:
             return length / self.feed * 60.0
-        feed = self.feed if turning else self.feed * self.modal.unit
-        if mode is FeedMode.PER_MINUTE:
-            return feed
-        if mode in FEED_FACTORS:
-            return feed * FEED_FACTORS[mode]
+        factor = FEED_FACTORS.get(mode, self.spindle)
+        if self.feed is not None and mode not in FEED_FACTORS:
+            self._refuse_standing_spindle()
+        return feed_per_minute(
+            NAN if self.feed is None else self.feed,
+            not is_arc and only_turns(self.part, end, self.linear),
+            self.modal.unit,
+            factor or 1.0,
+            (settings.default_feed, settings.default_rotary_feed),
+        )
+
+    def _refuse_standing_spindle(self) -> None:
+        """A feed per revolution needs a spindle that turns.
+
+        Raises:
+            ProgramError: It does not.
+        """
         if not self.spindle:
             self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
-        return feed * self.spindle
+        if not self.spindle_turns:
+            message = "a feed per revolution never moves while the spindle stands"
+            self.fail("feed-per-revolution", message, hint="start it by M3 or M4 before")
 
     def dwell(self, seconds: float) -> None:
         """Wait."""
@@ -175,6 +173,8 @@ class Control(ControlWords):
 
     def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
         """Report a function at this place of the path."""
+        if word in _SPINDLE:
+            self.spindle_turns = _SPINDLE[word]
         line, given = self.block.line, dict(arguments)
         self.path.event(lambda columns: columns.function(line, word, given, at))
 

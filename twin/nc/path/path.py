@@ -15,6 +15,7 @@ from twin.nc.path.compensation.contour import (
     MOVED_EVENTS,
     MOVED_ROWS,
     OFF,
+    STARTED,
     Contour,
 )
 from twin.nc.path.compensation.stage import Compensation, Refuse, Warn
@@ -200,12 +201,21 @@ class Path:
         """Compensation is in force."""
         return self._compensation.in_force
 
+    @property
+    def compensation_has_moved(self) -> bool:
+        """Compensation is in force and a move of its contour has come."""
+        return self.compensating and self._compensation.stage != STARTED
+
     def start_compensation(
         self, plane: Plane, signed_offset: float, *, square: bool, indirect: bool
     ) -> None:
         """Compensate from the next move on; as ``Compensation.begin``."""
         self._flush()
         self._compensation.begin(plane, signed_offset, square=square, indirect=indirect)
+
+    def compensate_in(self, plane: Plane) -> None:
+        """Compensation, which has not moved yet, acts in another plane."""
+        self._compensation.contour.plane[:] = plane.directions
 
     def end_compensation(self) -> None:
         """The next line leads out."""

@@ -4,7 +4,7 @@ A scene is one TOML file in a folder of its own or of several; what it names lie
 """
 
 import dataclasses
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import pydantic
@@ -14,10 +14,20 @@ from twin.errors import ConfigError, UsageError
 from twin.files.toml import Table, read_toml
 from twin.job.job_file import Job, JobFile
 from twin.run.preparation import Preparation, prepare_job
+from twin.training.scene.confinement import Confinement, leaves_folder
 from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.modes import Mode
 from twin.training.scene.tasks import TaskTable
-from twin.training.scene.texts import Language, Text
+from twin.training.scene.vocabulary import Language, Text
+
+Mode = Literal["auto", "single", "jog", "mdi"]
+"""Automatic, single block, manual jog, manual data input."""
+
+MODES: tuple[Mode, ...] = ("auto", "single", "jog", "mdi")
+
+FEED_OVERRIDES = (0, 120)
+"""Ends of the feed override dial [%]."""
+RAPID_OVERRIDES = (0, 100)
+"""Ends of the rapid override dial [%]."""
 
 _SHIPPED = Path(__file__).resolve().parent.parent / "scenes"
 
@@ -35,9 +45,9 @@ class StartTable(Table):
     """How much longer the tool table has the tool in the spindle than it is [mm]."""
     spindle: bool = False
     """Whether the spindle turns already."""
-    feed_override: Annotated[int, Field(ge=0, le=120)] = 100
+    feed_override: Annotated[int, Field(ge=FEED_OVERRIDES[0], le=FEED_OVERRIDES[1])] = 100
     """Of programmed feeds [%]."""
-    rapid_override: Annotated[int, Field(ge=0, le=100)] = 100
+    rapid_override: Annotated[int, Field(ge=RAPID_OVERRIDES[0], le=RAPID_OVERRIDES[1])] = 100
     """Of rapids [%]."""
     alarm: str = ""
     """An alarm that stands when the operator comes: ``hard-limit`` for an axis on its switch."""
@@ -112,8 +122,7 @@ class SceneFile(Table):
     def _stay_in_folder(cls, job: JobFile) -> JobFile:
         named = [job.program, job.machine, (job.stock and job.stock.file) or ""]
         for name in named:
-            path = PurePosixPath(name)
-            if path.is_absolute() or ".." in path.parts or "\\" in name:
+            if leaves_folder(name):
                 raise ValueError(f"'{name}' leaves the scene's folder")
         return job
 
@@ -170,7 +179,9 @@ def read_scene(path: Path) -> Scene:
     """
     file = read_toml(path, SceneFile)
     folder = path.resolve().parent
-    _require_inside(folder, path, file)
+    Confinement(path).require(file.job)
+    if not (folder / file.job.program).is_file():
+        raise ConfigError(f"{path}: no NC program '{file.job.program}' beside it")
     scene = Scene(path.stem, file, prepare_job(Job(folder, file.job)))
     axes = scene.preparation.machine.axes.names
     named = [*file.start.position, *file.start.zero_error, *(f.axis for f in file.faults if f.axis)]
@@ -180,12 +191,3 @@ def read_scene(path: Path) -> Scene:
         if axis not in axes:
             raise ConfigError(f"{path}: no axis '{axis}': the machine has {', '.join(axes)}")
     return scene
-
-
-def _require_inside(folder: Path, path: Path, file: SceneFile) -> None:
-    """Refuse links that lead out of the scene's folder."""
-    for name in (file.job.program, (file.job.stock and file.job.stock.file) or ""):
-        if name and not (folder / name).resolve().is_relative_to(folder):
-            raise ConfigError(f"{path}: '{name}' leads out of the scene's folder")
-    if not (folder / file.job.program).is_file():
-        raise ConfigError(f"{path}: no NC program '{file.job.program}' beside it")

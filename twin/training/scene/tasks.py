@@ -10,7 +10,7 @@ import pydantic
 from pydantic import Field
 
 from twin.files.toml import Table
-from twin.training.scene.texts import Text
+from twin.training.scene.vocabulary import Text
 
 
 class ReachedTable(Table):

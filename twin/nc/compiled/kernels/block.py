@@ -7,12 +7,12 @@ import numpy as np
 
 from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.bytecode import MOST_STORES, MOST_VALUES
-from twin.nc.bytecode.registers import MOST_WORDS, BlockTables, Constants, Rows, State
+from twin.nc.bytecode.registers import MOST_WORDS, BlockTables, Constants, State
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.words import execute_block
 from twin.nc.path.compensation.contour import OFF, STAGE, Contour
 from twin.nc.path.compensation.follow import follow
-from twin.nc.path.rows import copy, copy_rows
+from twin.nc.path.rows import Rows, copy, copy_rows
 
 
 class Scratch(NamedTuple):

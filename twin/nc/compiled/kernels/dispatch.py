@@ -31,7 +31,7 @@ from twin.nc.bytecode.frames import (
     TRAPPED,
     ExecutionState,
 )
-from twin.nc.bytecode.registers import BAILOUT, CYCLE, BlockTables, Constants, Rows, State
+from twin.nc.bytecode.registers import BAILOUT, CYCLE, BlockTables, Constants, State
 from twin.nc.compiled.kernels.block import (
     Scratch,
     copy_active_codes,
@@ -53,6 +53,7 @@ from twin.nc.compiled.kernels.variables import (
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import OFF, STAGE
 from twin.nc.path.compensation.lookahead import hold_events
+from twin.nc.path.rows import Rows
 
 DONE = -1
 """The block was run."""

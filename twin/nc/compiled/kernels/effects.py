@@ -30,7 +30,6 @@ from twin.nc.bytecode.registers import (
     UNIT,
     BlockTables,
     Constants,
-    Rows,
     State,
 )
 from twin.nc.canonical import FloatArray
@@ -48,6 +47,7 @@ from twin.nc.path.event_columns import (
     SPEED,
     TOOL,
 )
+from twin.nc.path.rows import Rows
 
 _NO_EVENT = -1
 _PECKING = Cycle._fields.index("pecking")

@@ -29,7 +29,7 @@ from twin.nc.bytecode.frames import (
     UNCOMPILED_LINE,
     ExecutionState,
 )
-from twin.nc.bytecode.registers import MOST_EVENTS, MOST_WORDS, BlockTables, Constants, Rows, State
+from twin.nc.bytecode.registers import MOST_EVENTS, MOST_WORDS, BlockTables, Constants, State
 from twin.nc.canonical import IntArray
 from twin.nc.compiled.kernels.block import Scratch
 from twin.nc.compiled.kernels.dispatch import DONE, dispatch_loop
@@ -42,6 +42,7 @@ from twin.nc.compiled.kernels.tokenizer import (
 )
 from twin.nc.compiled.kernels.variables import end_parts
 from twin.nc.path.compensation.contour import MOST_LET_GO, OFF, STAGE
+from twin.nc.path.rows import Rows
 from twin.nc.text.lexer import LONGEST_LINE
 
 _PART_MASK = (1 << PART_BITS) - 1

@@ -25,7 +25,6 @@ from twin.nc.bytecode.registers import (
     UNIT,
     BlockTables,
     Constants,
-    Rows,
     State,
 )
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
@@ -33,7 +32,6 @@ from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
 from twin.nc.compiled.kernels.effects import report
 from twin.nc.compiled.kernels.frame import turn_place
-from twin.nc.compiled.kernels.plane import move_length
 from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
 from twin.nc.compiled.kernels.tokenizer import (
     AXIS,
@@ -46,7 +44,8 @@ from twin.nc.compiled.kernels.tokenizer import (
 )
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path.event_columns import FUNCTION_ALONE
-from twin.nc.path.rows import copy
+from twin.nc.path.moves import feed_per_minute, line_length, only_turns
+from twin.nc.path.rows import Rows, copy
 from twin.nc.text.line_reader import LARGEST_LABEL
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
@@ -198,9 +197,8 @@ def _move(
         if not emit_arc(block, tables, constants, state, rows, row):
             return UNSUPPORTED
     else:
-        way = move_length(position)
-        if way <= 0.0:
-            return row if way == 0.0 else UNSUPPORTED
+        if line_length(position[0], position[1]) == 0.0:
+            return row
         rows.values[row, :6] = np.nan
         rows.values[row, 6] = 0.0
     pace = constants.rapid_feed
@@ -208,16 +206,11 @@ def _move(
     if kind == RAPID_LINE and not np.isnan(own):
         pace = (own if own != 0.0 else feed) * 60.0
     elif kind != RAPID_LINE:
-        turning = not is_arc
-        for axis in range(axes):
-            moves = position[0, axis] != position[1, axis]
-            turning = turning and not (moves and tables.linear[axis])
-        if np.isnan(feed):
-            if not constants.feed_may_lack:
-                return UNSUPPORTED
-            pace = constants.default_rotary_feed if turning else constants.default_feed
-        else:
-            pace = (feed if turning else feed * modal[UNIT]) * modal[FEED_FACTOR]
+        if np.isnan(feed) and not constants.feed_may_lack:
+            return UNSUPPORTED
+        turning = not is_arc and only_turns(position[0], position[1], tables.linear)
+        otherwise = (constants.default_feed, constants.default_rotary_feed)
+        pace = feed_per_minute(feed, turning, modal[UNIT], modal[FEED_FACTOR], otherwise)
     rows.values[row, 7] = pace
     copy(constants.last_values, rows.values[row, 8:])
     rows.codes[row, 0] = _RAPID if kind == RAPID_LINE else _FEED
