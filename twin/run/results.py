@@ -3,6 +3,7 @@
 import dataclasses
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from twin.compare.report.report import Report, write_report
@@ -29,15 +30,18 @@ The result, written last, is removed first: where it stands, everything that it 
 """
 
 
-def write_results(run: Run, outcome: Outcome, folder: Path) -> None:
+def write_results(
+    run: Run, outcome: Outcome, folder: Path, further: Mapping[str, Any] = MappingProxyType({})
+) -> None:
     """Write the verdict and every figure behind it, for programs and for people.
 
     Args:
         run: The run.
         outcome: What it came to.
         folder: Where the files go; stills that were drawn there are put on the page.
+        further: What ``result.json`` says besides.
     """
-    content = result_of(run, outcome)
+    content = {**result_of(run, outcome), **further}
     moments = [
         (f"Line {alarm.line}, {alarm.time_s:.3f} s: {alarm.message}", folder / ALARM_STILL_NAME)
         for alarm in outcome.alarms[:1]
@@ -93,7 +97,15 @@ def _summary(run: Run, outcome: Outcome) -> RunSummary:
         wall_s=run.clock.wall_s,
         stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
         near_miss=None if outcome.near_miss is None else dataclasses.asdict(outcome.near_miss),
-        cut=None if outcome.cut is None else outcome.cut.as_json(),
+        cut=_cut(outcome),
         commanded=named(outcome.final_commanded),
         simulated=named(outcome.final_simulated),
     )
+
+
+def _cut(outcome: Outcome) -> dict[str, Any] | None:
+    """The object ``cut`` of ``result.json``."""
+    if outcome.cut is None:
+        return None
+    gouge = None if outcome.gouge is None else outcome.gouge.as_json()
+    return {**outcome.cut.as_json(), "nominal_gouge": gouge}
