@@ -1,7 +1,12 @@
 """What the compiled run through a program is given and changes besides its moves, as columns."""
 
+from copy import deepcopy
 from typing import NamedTuple
 
+import numpy as np
+
+from twin.nc.bytecode.bytecode import MOST_STORES, MOST_VALUES
+from twin.nc.bytecode.registers import MOST_WORDS, State
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.path.contour_registers import Contour
 
@@ -71,3 +76,45 @@ class ExecutionState(NamedTuple):
     memory: VariableStore
     saved: Saved
     contour: Contour
+
+
+WORDS, STORES = range(2)
+"""Places in the counts of ``Scratch``."""
+
+
+class Scratch(NamedTuple):
+    """Room to work in.
+
+    Attributes:
+        counts: How many ``WORDS`` and ``STORES`` there are, shape (2,).
+        token_kinds: Of words, shape (``MOST_WORDS``,).
+        values: Of words, shape (``MOST_WORDS``,).
+        modal: Modal state of the block.
+        snapshot: State before a block that runs often.
+        stack: Shape (``MOST_VALUES``,).
+        slots: Variables that the block has set, shape (``MOST_STORES``,).
+        before: What they held before, shape (``MOST_STORES``,).
+    """
+
+    counts: IntArray
+    token_kinds: IntArray
+    values: FloatArray
+    modal: FloatArray
+    snapshot: State
+    stack: FloatArray
+    slots: IntArray
+    before: FloatArray
+
+
+def new_scratch(state: State) -> Scratch:
+    """Room to work in, for a state of this size."""
+    return Scratch(
+        np.zeros(2, np.int64),
+        np.zeros(MOST_WORDS, np.int64),
+        np.zeros(MOST_WORDS),
+        np.zeros_like(state.modal),
+        deepcopy(state),
+        np.zeros(MOST_VALUES),
+        np.zeros(MOST_STORES, np.int64),
+        np.zeros(MOST_STORES),
+    )

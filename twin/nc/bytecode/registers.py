@@ -196,3 +196,19 @@ class Rows(NamedTuple):
             values=self.values[:count],
             positions=self.positions[:count],
         )
+
+
+class Machine(NamedTuple):
+    """What blocks run on.
+
+    Attributes:
+        tables: What words mean.
+        constants: What stays.
+        state: What changes with moves.
+        rows: Room for moves and events.
+    """
+
+    tables: BlockTables
+    constants: Constants
+    state: State
+    rows: Rows

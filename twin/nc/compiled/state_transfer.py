@@ -29,8 +29,8 @@ from twin.nc.bytecode.frames import (
     VariableStore,
 )
 from twin.nc.bytecode.registers import State
+from twin.nc.bytecode.token_kinds import UNSUPPORTED
 from twin.nc.canonical import IntArray
-from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import SavedModal
 from twin.nc.control.program_counter import CallFrame, Progress

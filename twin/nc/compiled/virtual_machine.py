@@ -9,7 +9,14 @@ import math
 
 import numpy as np
 
-from twin.nc.bytecode.frames import FULL, OFF_PAGE, PAUSED, TRAPPED, UNCOMPILED_LINE
+from twin.nc.bytecode.frames import (
+    FULL,
+    OFF_PAGE,
+    PAUSED,
+    TRAPPED,
+    UNCOMPILED_LINE,
+    new_scratch,
+)
 from twin.nc.bytecode.registers import (
     CYCLE,
     CYCLE_STATE,
@@ -25,16 +32,16 @@ from twin.nc.bytecode.registers import (
     SPINDLE,
     TURNED,
     Constants,
+    Machine,
     Rows,
     State,
 )
+from twin.nc.bytecode.token_kinds import UNSUPPORTED
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.contour_columns import fill, new_contour, result_of
 from twin.nc.compiled.decode_tables import DecodeTables
-from twin.nc.compiled.entries import Kernels, hot
-from twin.nc.compiled.kernels.block import new_scratch
+from twin.nc.compiled.entries import Kernels, hot, page_columns
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
-from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
 from twin.nc.compiled.line_compiler import LineCompiler
 from twin.nc.compiled.state_transfer import StateTransfer, put_into_force
 from twin.nc.control.executor import Executor
@@ -141,15 +148,10 @@ class VirtualMachine:
     ) -> tuple[object, ...]:
         """What ``run_program`` is given."""
         return (
-            self._page.data,
-            self._page.starts,
-            self._page.lines.start,
+            page_columns(self._page),
             self._tables.lines,
-            self._tables.blocks,
-            constants,
-            state,
-            rows,
             self._line_compiler.bytecode.table,
+            Machine(self._tables.blocks, constants, state, rows),
             transfer.execution,
             self._scratch,
             _MOST,

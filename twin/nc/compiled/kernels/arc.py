@@ -3,7 +3,7 @@
 The geometry is that of ``arcs``, compiled as it stands there.
 """
 
-from twin.compilation.compilable import compilable, inlined
+from twin.compilation.compilable import inlined
 from twin.nc.bytecode.registers import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
@@ -16,91 +16,50 @@ from twin.nc.bytecode.registers import (
     Rows,
     State,
 )
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.bytecode.token_kinds import AXIS, CENTER, RADIUS
 from twin.nc.compiled.kernels.frame import turn_arc
 from twin.nc.compiled.kernels.plane import SHORTEST
-from twin.nc.compiled.kernels.tokenizer import AXIS, CENTER, RADIUS
+from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import Point
 
 
-@compilable
-def value_of(token_kind: int, token_kinds: IntArray, values: FloatArray) -> float:
-    """Value of the word with a token_kind; 0 where there is none."""
-    for word in range(len(token_kinds)):
-        if token_kinds[word] == token_kind:
-            return values[word]
-    return 0.0
-
-
 @inlined
 def emit_arc(
-    token_kinds: IntArray,
-    values: FloatArray,
-    seen: int,
+    block: PlainBlock,
     tables: BlockTables,
     constants: Constants,
     state: State,
-    modal: FloatArray,
     rows: Rows,
     row: int,
 ) -> bool:
     """Write the centre, normal and sweep of a row whose positions stand.
 
     Args:
-        token_kinds: What each word's letter is, shape (w,).
-        values: The words' values, shape (w,).
-        seen: Which token_kinds there are, as bits.
+        block: Its words.
         tables: What blocks mean.
         constants: What stays as it is.
         state: Where the block begins.
-        modal: The modal state with this block's codes.
         rows: Where the move is written.
         row: Its row.
 
     Returns:
         Whether nothing about the arc is doubtful; if something is, the row is not to be used.
     """
-    interpolation = int(modal[INTERPOLATION])
-    plane = constants.planes[int(modal[PLANE])]
+    interpolation = int(block.modal[INTERPOLATION])
+    plane = constants.planes[int(block.modal[PLANE])]
     first_axis, second_axis, across = int(plane[0]), int(plane[1]), int(plane[2])
     display = rows.positions[row, 2]
     start = (state.programmed[first_axis], state.programmed[second_axis])
     end = (display[first_axis], display[second_axis])
-    clockwise = tables.clockwise[interpolation]
-    has_first = seen & (1 << (CENTER + first_axis)) != 0
-    has_second = seen & (1 << (CENTER + second_axis)) != 0
-    if seen & (1 << (CENTER + across)):
+    found, fits, center = _center_of(block, (first_axis, second_axis, across), start, end, tables)
+    if not found:
         return False
-    if seen & (1 << RADIUS):
-        in_plane = (1 << (AXIS + first_axis)) | (1 << (AXIS + second_axis))
-        if has_first or has_second or not seen & in_plane:
-            return False
-        radius = value_of(RADIUS, token_kinds, values) * modal[UNIT]
-        larger = radius < 0.0
-        if larger and not tables.signed_radius[interpolation]:
-            return False
-        if radius == 0.0 or not arcs.reaches(start, end, abs(radius)):
-            return False
-        fits = tables.fits_radius[interpolation]
-        center = arcs.center_at_radius(start, end, abs(radius), clockwise, larger)
-    else:
-        fits = True
-        if not (has_first or has_second):
-            return False
-        first = value_of(CENTER + first_axis, token_kinds, values) * modal[UNIT]
-        second = value_of(CENTER + second_axis, token_kinds, values) * modal[UNIT]
-        if modal[CENTER_ABSOLUTE] != 0.0:
-            if not (has_first and has_second):
-                return False
-            center = (first, second)
-        else:
-            center = (start[0] + first, start[1] + second)
     if fits:
         fitted, center = _fitted(center, start, end, interpolation, tables)
         if not fitted:
             return False
-    sweep = arcs.sweep_between(start, end, center, clockwise)
+    sweep = arcs.sweep_between(start, end, center, tables.clockwise[interpolation])
     length = arcs.distance(start, center) * abs(sweep) * state.registers[SCALE]
     if not length > SHORTEST * arcs.TURN:
         return False
@@ -116,6 +75,36 @@ def emit_arc(
         for axis in range(3):
             value[axis] += state.total[axis]
     return True
+
+
+@inlined
+def _center_of(
+    block: PlainBlock, axes: tuple[int, int, int], start: Point, end: Point, tables: BlockTables
+) -> tuple[bool, bool, Point]:
+    """Whether a block's words give a centre without a doubt, whether it has to fit, and where it is."""
+    interpolation, seen, unit = int(block.modal[INTERPOLATION]), block.seen, block.modal[UNIT]
+    first_axis, second_axis, across = axes
+    has_first = seen & (1 << (CENTER + first_axis)) != 0
+    has_second = seen & (1 << (CENTER + second_axis)) != 0
+    if seen & (1 << (CENTER + across)):
+        return False, False, start
+    if seen & (1 << RADIUS):
+        in_plane = (1 << (AXIS + first_axis)) | (1 << (AXIS + second_axis))
+        if has_first or has_second or not seen & in_plane:
+            return False, False, start
+        radius = value_of(RADIUS, block) * unit
+        larger, clockwise = radius < 0.0, tables.clockwise[interpolation]
+        if larger and not tables.signed_radius[interpolation]:
+            return False, False, start
+        if radius == 0.0 or not arcs.reaches(start, end, abs(radius)):
+            return False, False, start
+        fits = tables.fits_radius[interpolation]
+        return True, fits, arcs.center_at_radius(start, end, abs(radius), clockwise, larger)
+    first = value_of(CENTER + first_axis, block) * unit
+    second = value_of(CENTER + second_axis, block) * unit
+    if block.modal[CENTER_ABSOLUTE] != 0.0:
+        return has_first and has_second, True, (first, second)
+    return has_first or has_second, True, (start[0] + first, start[1] + second)
 
 
 @inlined

@@ -1,5 +1,7 @@
 """Drilling cycles, compiled: what ``drilling`` does for a block of plain words, with the same ``holes``."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from twin.compilation.compilable import compilable
@@ -19,13 +21,13 @@ from twin.nc.bytecode.registers import (
     Rows,
     State,
 )
-from twin.nc.canonical import Corner, FloatArray, IntArray, Motion, Shape
+from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
+from twin.nc.canonical import Corner, FloatArray, Motion, Shape
 from twin.nc.compiled.kernels.columns import copy
 from twin.nc.compiled.kernels.effects import report
 from twin.nc.compiled.kernels.frame import turn_place
 from twin.nc.compiled.kernels.plane import move_length
-from twin.nc.compiled.kernels.target import aim, axis_target
-from twin.nc.compiled.kernels.tokenizer import AXIS, RADIUS, UNSUPPORTED
+from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
@@ -42,62 +44,59 @@ _LINE = int(Shape.LINE)
 _STOP = int(Corner.EXACT_STOP)
 
 
+class _Travel(NamedTuple):
+    """How a straight move goes.
+
+    Attributes:
+        motion: Rapid or feed.
+        pace: [mm/min]; NaN: the machine's.
+        corner: How its end is passed.
+    """
+
+    motion: int
+    pace: float
+    corner: int
+
+
 @compilable
 def drill(
-    line: int,
-    number: int,
-    token_kinds: IntArray,
-    values: FloatArray,
-    seen: int,
-    begins: bool,
-    anew: bool,
+    block: PlainBlock,
+    called: tuple[bool, bool],
     tables: BlockTables,
     constants: Constants,
     state: State,
-    modal: FloatArray,
-    feed: float,
     rows: Rows,
     row: int,
-    polar: bool,
 ) -> int:
     """Drill the hole that a block names.
 
     Args:
-        line: The block's line, from 1.
-        number: Its N number.
-        token_kinds: What each word's letter is, shape (w,).
-        values: The words' values, shape (w,).
-        seen: Which token_kinds there are, as bits.
-        begins: The block calls the cycle.
-        anew: No cycle was in force before.
+        block: Its words.
+        called: Whether the block calls the cycle, and whether no cycle was in force before.
         tables: What blocks mean.
         constants: What stays; its ``over`` becomes where the tool stands.
         state: Where the block begins; its target becomes where the path ends.
-        modal: The modal state with this block's codes.
-        feed: F.
         rows: Room for moves and events.
         row: The next row.
-        polar: The target of ``state`` holds where the hole lies in the plane.
 
     Returns:
         The number of rows after it, ``NO_ROOM``, or ``UNSUPPORTED`` with the cycle untouched.
     """
-    axes = len(state.part)
-    plane = constants.planes[int(modal[PLANE])]
-    taken, hole = _read_cycle(token_kinds, values, begins, anew, tables, constants, state, modal)
+    plane = constants.planes[int(block.modal[PLANE])]
+    taken, hole = _read_cycle(block, called, tables, constants, state)
     if hole.fault != 0 or hole.stops > MOST_STOPS:
         return UNSUPPORTED
-    rest = seen & ~taken
+    rest = block.seen & ~taken
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
         return UNSUPPORTED
-    if polar:
-        aim(plane, token_kinds, values, rest, state, modal)
+    if block.polar:
+        aim(plane, block, rest, state)
     target = constants.over
-    for axis in range(axes):
-        target[axis] = axis_target(axis, token_kinds, values, rest, tables, state, modal, polar)
+    for axis in range(len(state.part)):
+        target[axis] = axis_target(axis, block, rest, tables, state)
         if not abs(target[axis]) <= LARGEST_COORDINATE:
             return UNSUPPORTED
-    after = _emit_hole(line, number, target, hole, constants, state, modal, feed, rows, row)
+    after = _emit_hole(block, hole, constants, state, rows, row)
     if after >= 0:
         for value in range(drilling_cycle.VALUES):
             state.registers[CYCLE_STATE + value] = constants.hole[0, value]
@@ -107,24 +106,21 @@ def drill(
 
 @compilable
 def _read_cycle(
-    token_kinds: IntArray,
-    values: FloatArray,
-    begins: bool,
-    anew: bool,
+    block: PlainBlock,
+    called: tuple[bool, bool],
     tables: BlockTables,
     constants: Constants,
     state: State,
-    modal: FloatArray,
 ) -> tuple[int, Hole]:
     """Take the words of a block that belong to its drilling cycle: ``drilling`` does the same.
 
     The first row of ``constants.hole`` becomes what the cycle remembers.
 
     Returns:
-        The token_kinds of those words as bits, and what is done at the hole.
+        The token kinds of those words as bits, and what is done at the hole.
     """
-    number = int(modal[CYCLE])
-    row = tables.cycles[number]
+    modal, (begins, anew) = block.modal, called
+    row = tables.cycles[int(modal[CYCLE])]
     cycle = Cycle(
         row[0] != 0.0, int(row[1]), int(row[2]), int(row[3]), row[4] != 0.0, row[5], int(row[6])
     )
@@ -139,13 +135,13 @@ def _read_cycle(
         drilling_cycle.begin(remembered, across, state.programmed[across], cycle.lasting)
     taken = 0
     if begins or cycle.lasting:
-        for word in range(len(token_kinds)):
-            token_kind = token_kinds[word]
+        for word in range(len(block.token_kinds)):
+            token_kind = block.token_kinds[word]
             value = int(row[_WORDS + token_kind])
             if token_kind == AXIS + across:
                 value = cycle.across
             if value >= 0:
-                given[value] = values[word]
+                given[value] = block.values[word]
                 taken |= 1 << token_kind
     for value in range(drilling_cycle.VALUES):
         if (drilling_cycle.LENGTHS >> value) & 1:
@@ -158,23 +154,17 @@ def _read_cycle(
 
 @compilable
 def _emit_hole(
-    line: int,
-    number: int,
-    target: FloatArray,
-    hole: Hole,
-    constants: Constants,
-    state: State,
-    modal: FloatArray,
-    feed: float,
-    rows: Rows,
-    row: int,
+    block: PlainBlock, hole: Hole, constants: Constants, state: State, rows: Rows, row: int
 ) -> int:
-    """Go over the hole, drill it, return: ``drilling.drill``; the arguments are those of ``drill``."""
+    """Go over the hole, drill it, return: ``drilling.drill``; the hole lies at ``constants.over``."""
+    modal, feed = block.modal, block.feed
     if row + drilling_cycle.most_acts(hole.stops) + 2 > len(rows.codes):
         return NO_ROOM
     if np.isnan(feed) and not constants.feed_may_lack:
         return UNSUPPORTED
     pace = constants.default_feed if np.isnan(feed) else feed * modal[UNIT] * modal[FEED_FACTOR]
+    rapidly = _Travel(_RAPID, constants.rapid_feed, _STOP)
+    feeding = _Travel(_FEED, pace, int(modal[CORNER]))
     axis = int(constants.planes[int(modal[PLANE])][2])
     here, part, goal = constants.room[0], constants.room[1], constants.room[2]
     copy(state.programmed, here)
@@ -186,12 +176,10 @@ def _emit_hole(
         act = _UP if step < 0 else int(acts[step])
         if act <= _DOWN:
             if step == -1:
-                copy(target, goal)
+                copy(constants.over, goal)
             goal[axis] = over if step < 0 else amounts[step]
-            rapid = act == _UP
-            speed = constants.rapid_feed if rapid else pace
-            corner = _STOP if rapid else int(modal[CORNER])
-            after = _go(goal, rapid, speed, corner, here, part, state, rows, after)
+            travel = rapidly if act == _UP else feeding
+            after = _go(goal, travel, constants, state, rows, after)
             if after == UNSUPPORTED:
                 return UNSUPPORTED
         else:
@@ -200,29 +188,21 @@ def _emit_hole(
                 kind, amount = DWELL, amounts[step]
             elif act == _M5:
                 kind, amount = FUNCTION_ALONE, np.nan
-            report(rows, state, after, line, kind, act, amount)
+            report(rows, state, after, block.line, kind, act, amount)
     for each in range(row, after):
-        rows.codes[each, 2], rows.codes[each, 3] = line, number
+        rows.codes[each, 2], rows.codes[each, 3] = block.line, block.number
         copy(constants.last_values, rows.values[each, 8:])
-    copy(here, target)
+    copy(here, constants.over)
     copy(part, state.target)
     return after
 
 
 @compilable
 def _go(
-    goal: FloatArray,
-    rapid: bool,
-    pace: float,
-    corner: int,
-    here: FloatArray,
-    part: FloatArray,
-    state: State,
-    rows: Rows,
-    row: int,
+    goal: FloatArray, travel: _Travel, constants: Constants, state: State, rows: Rows, row: int
 ) -> int:
-    """Write a straight move; ``here`` and ``part`` become its end."""
-    position = rows.positions[row]
+    """Write a straight move; the first two rows of ``constants.room`` become its end."""
+    position, here, part = rows.positions[row], constants.room[0], constants.room[1]
     for axis in range(len(goal)):
         if not abs(goal[axis]) <= LARGEST_COORDINATE:
             return UNSUPPORTED
@@ -236,6 +216,6 @@ def _go(
     copy(position[1], part)
     value, code = rows.values[row], rows.codes[row]
     value[:6] = np.nan
-    value[6], value[7] = 0.0, pace
-    code[0], code[1], code[4] = _RAPID if rapid else _FEED, _LINE, corner
+    value[6], value[7] = 0.0, travel.pace
+    code[0], code[1], code[4] = travel.motion, _LINE, travel.corner
     return row + 1

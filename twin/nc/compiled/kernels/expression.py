@@ -10,11 +10,11 @@ import numpy as np
 
 from twin.compilation.compilable import compilable_arithmetic, inlined
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.bytecode import BytecodeTable
-from twin.nc.bytecode.frames import VariableStore
+from twin.nc.bytecode.bytecode import Instruction
+from twin.nc.bytecode.frames import WORDS, Scratch, VariableStore
 from twin.nc.bytecode.registers import BAILOUT
-from twin.nc.canonical import FloatArray
-from twin.nc.compiled.kernels.variables import NO_SLOT, load, slot_of_number
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.compiled.kernels.variables import NO_SLOT, assign, load, slot_of_number
 from twin.nc.text import arithmetic
 from twin.nc.text.expressions import LARGEST_NUMBER
 
@@ -187,33 +187,66 @@ def ternary(function: int, a: float, b: float, c: float) -> float:
 
 
 @inlined
-def evaluate(
-    opcode: int,
-    operand: int,
-    row: int,
+def compute(
+    instruction: Instruction,
+    top: int,
+    depth: int,
+    numbered: IntArray,
+    memory: VariableStore,
+    scratch: Scratch,
+) -> int:
+    """Run an instruction that fills stack, variables or words.
+
+    Args:
+        instruction: One from ``CONSTANT`` to ``WORD_CONSTANT``.
+        top: How many values there are.
+        depth: Row of the local variables.
+        numbered: Slots of the variables that have a number.
+        memory: The variables.
+        scratch: Values and words.
+
+    Returns:
+        How many values there are then, or ``BAILOUT`` where one is undefined.
+    """
+    opcode, words = instruction.opcode, scratch.counts[WORDS]
+    if opcode <= opcodes.DROP:
+        return _evaluate(instruction, scratch.stack, top, depth, numbered, memory)
+    if opcode <= opcodes.STORE_NUMBERED:
+        return top - 1 if assign(instruction, top, depth, numbered, memory, scratch) else BAILOUT
+    value = instruction.immediate
+    if opcode == opcodes.WORD:
+        top -= 1
+        value = scratch.stack[top]
+    scratch.token_kinds[words], scratch.values[words] = instruction.operand, value
+    scratch.counts[WORDS] = words + 1
+    return top
+
+
+@inlined
+def _evaluate(
+    instruction: Instruction,
     stack: FloatArray,
     top: int,
     depth: int,
-    table: BytecodeTable,
+    numbered: IntArray,
     memory: VariableStore,
 ) -> int:
     """Run an instruction that does nothing but compute.
 
     Args:
-        opcode: One from ``CONSTANT`` to ``DROP``.
-        operand: Its operand.
-        row: Its row.
+        instruction: One from ``CONSTANT`` to ``DROP``.
         stack: Values.
         top: How many there are.
         depth: Row of the local variables.
-        table: The instructions.
+        numbered: Slots of the variables that have a number.
         memory: The variables.
 
     Returns:
         How many values there are then, or ``BAILOUT`` where one is undefined.
     """
+    opcode, operand = instruction.opcode, instruction.operand
     if opcode == opcodes.CONSTANT:
-        stack[top] = table.immediate[row]
+        stack[top] = instruction.immediate
         top += 1
     elif opcode == opcodes.LOAD:
         value = load(memory, depth, operand)
@@ -241,7 +274,7 @@ def evaluate(
     elif opcode == opcodes.NEGATE:
         stack[top - 1] = -stack[top - 1]
     elif opcode == opcodes.LOAD_NUMBERED:
-        slot = slot_of_number(table.numbered, stack[top - 1])
+        slot = slot_of_number(numbered, stack[top - 1])
         value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
         if np.isnan(value):
             return BAILOUT
@@ -249,7 +282,7 @@ def evaluate(
     elif opcode in (opcodes.LOAD_BELOW, opcodes.LOAD_NUMBERED_BELOW):
         slot = operand
         if opcode == opcodes.LOAD_NUMBERED_BELOW:
-            slot = slot_of_number(table.numbered, stack[top - 2])
+            slot = slot_of_number(numbered, stack[top - 2])
         value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
         if np.isnan(value):
             return BAILOUT

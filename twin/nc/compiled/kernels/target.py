@@ -1,51 +1,80 @@
-"""Where a plain block goes: the goals of its axes, as ``ControlMotion.target`` and the polar forms have them."""
+"""Where a plain block goes: the goals of its axes, as ``Control.target`` and the polar forms have them."""
+
+from typing import NamedTuple
 
 from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.registers import INCREMENTAL, UNIT, BlockTables, State
+from twin.nc.bytecode.token_kinds import AXIS
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.compiled.kernels.arc import value_of
 from twin.nc.compiled.kernels.frame import directions
 from twin.nc.compiled.kernels.plane import place
-from twin.nc.compiled.kernels.tokenizer import AXIS
+
+
+class PlainBlock(NamedTuple):
+    """A block of plain words, and what is in force with its codes.
+
+    Attributes:
+        line: Its line, from 1.
+        number: Its N number.
+        token_kinds: What each word's letter is, shape (w,).
+        values: The words' values, shape (w,).
+        seen: Which token kinds there are, as bits.
+        feed: F.
+        modal: The modal state with its codes, shape (``MODAL``,).
+        polar: The target of ``State`` holds where it goes in the plane.
+    """
+
+    line: int
+    number: int
+    token_kinds: IntArray
+    values: FloatArray
+    seen: int
+    feed: float
+    modal: FloatArray
+    polar: bool
+
+
+@compilable
+def value_of(token_kind: int, block: PlainBlock) -> float:
+    """Value of the word with a token kind; 0 where there is none."""
+    for word in range(len(block.token_kinds)):
+        if block.token_kinds[word] == token_kind:
+            return block.values[word]
+    return 0.0
 
 
 @inlined
 def axis_target(
-    axis: int,
-    token_kinds: IntArray,
-    values: FloatArray,
-    seen: int,
-    tables: BlockTables,
-    state: State,
-    modal: FloatArray,
-    polar: bool,
+    axis: int, block: PlainBlock, seen: int, tables: BlockTables, state: State
 ) -> float:
-    """Where the block wants an axis, as programmed; a polar block has aimed already."""
-    if polar and axis < 3:
+    """Where the block wants an axis, as programmed; a polar block has aimed already.
+
+    Args:
+        axis: Which.
+        block: Its words.
+        seen: Those of them that say where it goes, as bits.
+        tables: What blocks mean.
+        state: Where the block begins.
+    """
+    if block.polar and axis < 3:
         return state.target[axis]
     if not seen & (1 << (AXIS + axis)):
         return state.programmed[axis]
-    value = value_of(AXIS + axis, token_kinds, values)
-    value *= modal[UNIT] if tables.linear[axis] else 1.0
-    return value + state.programmed[axis] if modal[INCREMENTAL] != 0.0 else value
+    value = value_of(AXIS + axis, block)
+    value *= block.modal[UNIT] if tables.linear[axis] else 1.0
+    return value + state.programmed[axis] if block.modal[INCREMENTAL] != 0.0 else value
 
 
 @compilable
-def aim(
-    plane: IntArray,
-    token_kinds: IntArray,
-    values: FloatArray,
-    seen: int,
-    state: State,
-    modal: FloatArray,
-) -> None:
+def aim(plane: IntArray, block: PlainBlock, seen: int, state: State) -> None:
     """Abscissa and ordinate of the target and the height of the block, as ``Plane.world`` has them."""
     abscissa, ordinate = state.target[0], state.target[1]
     x, y, z = state.programmed[0], state.programmed[1], state.programmed[2]
     across = plane[2]
     if seen & (1 << (AXIS + across)):
-        value = value_of(AXIS + across, token_kinds, values) * modal[UNIT]
-        height = value + state.programmed[across] if modal[INCREMENTAL] != 0.0 else value
+        value = value_of(AXIS + across, block) * block.modal[UNIT]
+        incremental = block.modal[INCREMENTAL] != 0.0
+        height = value + state.programmed[across] if incremental else value
         x = height if across == 0 else x
         y = height if across == 1 else y
         z = height if across == 2 else z
