@@ -51,7 +51,7 @@ class KernelBuildHook(BuildHookInterface[Any]):
             subprocess.run(
                 [sys.executable, "-c", _COMPILE, str(kernels)],
                 cwd=self.root,
-                env={**os.environ, "PYTHONPATH": self.root},
+                env={**os.environ, "PYTHONPATH": self._python_path()},
                 check=True,
             )
         for kernel in sorted([*kernels.glob("*/*.kernel"), *kernels.glob("complete-*")]):
@@ -59,6 +59,10 @@ class KernelBuildHook(BuildHookInterface[Any]):
             build_data["force_include"][str(kernel)] = place
         build_data["pure_python"] = False
         build_data["tag"] = _tag()
+
+    def _python_path(self) -> str:
+        """This source before what is there, by which pip shows the build its own environment."""
+        return os.pathsep.join(filter(None, (self.root, os.environ.get("PYTHONPATH"))))
 
     def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
         """Remove the temporary folder."""

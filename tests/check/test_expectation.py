@@ -1,10 +1,16 @@
 """A job that is to end badly passes when it does so, and in no other case."""
 
+from pathlib import Path
+
 import pytest
 
 from twin.check.expectation import held_to_expectation
 from twin.check.outcome import CheckOutcome, Finding
+from twin.check.settings import CheckSettings
+from twin.check.task import check_program
 from twin.errors import ExitCode
+from twin.files.shipped import resource_root
+from twin.job.job_file import read_job
 
 ALARM = CheckOutcome(
     program="part.toml",
@@ -43,3 +49,36 @@ def test_something_else_beside_it_fails():
 def test_a_defect_is_never_expected():
     crashed = CheckOutcome(program="part.toml", verdict="error", exit_code=ExitCode.CRASH)
     assert held_to_expectation(crashed, "crash") is crashed
+
+
+BAD_ENDS = {
+    "alarm": ("N10 G01 X5 F600\nN20 G00 X9999\n", "soft-limit"),
+    "no program": ("N10 G01 X5 F600\nN20 QQ7\n", "missing-value"),
+}
+
+
+@pytest.mark.parametrize("end", BAD_ENDS)
+def test_what_is_expected_has_a_baseline_like_any_other(tmp_path: Path, end: str):
+    text, expected = BAD_ENDS[end]
+    (tmp_path / "part.nc").write_text(text, encoding="utf-8")
+    job = tmp_path / "part.toml"
+    job.write_text(f'program = "part.nc"\ndialect = "mefi"\nexpect = "{expected}"\n', "utf-8")
+    baseline = tmp_path / "baselines"
+    update = check_program(job, CheckSettings(baseline=baseline, update_baseline=True))
+    assert update.passed, update.findings
+    held = CheckSettings(baseline=baseline)
+    assert check_program(job, held).passed
+    (tmp_path / "part.nc").write_text(text.replace("X5", "X6"), encoding="utf-8")
+    changed = check_program(job, held)
+    # Without moves there is nothing to hold but the expectation itself.
+    assert changed.passed == (end == "no program")
+
+
+def test_every_shipped_job_that_ends_badly_says_so():
+    alarms = resource_root("programs") / "alarms"
+    jobs = {
+        path.stem: read_job(path).file.expect
+        for path in alarms.rglob("*.toml")
+        if "machines" not in path.parts
+    }
+    assert [name for name, expected in jobs.items() if expected is None] == ["near_miss"]

@@ -52,7 +52,7 @@ def test_the_same_run_holds_however_it_is_chunked(stored: Path):
 
 def test_the_file_is_text_with_a_line_an_entry_and_no_word_twice(stored: Path):
     assert stored.read_text(encoding="utf-8").splitlines() == [
-        "twin baseline 3",
+        "twin baseline 4",
         "cycle_time_s 20.000000",
         "contour_um 5.000",
         "axes X Y Z C",
@@ -160,20 +160,23 @@ def test_how_a_block_is_driven_is_held_too(
 
 def test_the_job_and_the_cut_are_held_too(tmp_path: Path):
     path = tmp_path / "part.baseline"
-    cut = {"removed_mm3": 1000.0, "gouges_count": 0.0}
+    cut = {"removed_mm3": 1000.0, "tool.1": 600.0, "tool.2": 400.0, "gouges_count": 0.0}
     stored = dataclasses.replace(FIGURES, cut=cut)
     job = {"tools.1.diameter": "8.0", "stock.size": "[60.0, 60.0, 20.0]"}
     write_baseline(path, stored, AXES, [PROGRAM], job)
     assert compare_baseline(path, stored, AXES, [PROGRAM], BaselineTable(), job) == []
     other = {"tools.1.diameter": "6.0", "offsets.G54.X": "1.0"}
-    now = dataclasses.replace(FIGURES, cut={"removed_mm3": 1011.0, "gouges_count": 1.0})
+    now = {"removed_mm3": 1000.0, "tool.1": 590.0, "tool.3": 410.0, "gouges_count": 1.0}
+    now = dataclasses.replace(FIGURES, cut=now)
     found = compare_baseline(path, now, AXES, [PROGRAM], BaselineTable(), other)
     assert [(reason.what, reason.message) for reason in found] == [
         ("baseline-job", "offsets.G54.X is 1.0, baseline not set"),
         ("baseline-job", "stock.size is not set, baseline [60.0, 60.0, 20.0]"),
         ("baseline-job", "tools.1.diameter is 6.0, baseline 8.0"),
-        ("baseline-cut", "cut: gouges_count 1, baseline 0"),
-        ("baseline-cut", "cut: removed_mm3 1011, baseline 1000"),
+        ("baseline-cut", "cut: gouges 1, baseline 0"),
+        ("baseline-cut", "cut: tool 1 removes 590 mm³, baseline 600"),
+        ("baseline-cut", "cut: tool 2 removes 0 mm³, baseline 400"),
+        ("baseline-cut", "cut: tool 3 removes 410 mm³, baseline 0"),
     ]
 
 

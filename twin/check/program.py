@@ -73,6 +73,8 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         dry_run = run.dry_run()
         outcome = run.execute(dry_run, None, no_progress)
     except ProgramError as error:
+        if preparation.job.file.expect is not None:
+            return _not_run(path, error)  # without moves there is nothing to store or to hold
         differing = _baseline_reasons(preparation, None, settings)
         return _not_run(path, error, _findings(preparation, differing))
     if settings.reports is not None:
@@ -83,7 +85,8 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
         write_report(file_of(settings.reports, preparation.job, ".html"), page)
     contour = outcome.figures.contour
     alarmed = outcome.verdict.outcome == "alarm"
-    figures = None if alarmed else _figures(outcome)
+    ended = not alarmed or preparation.job.file.expect is not None
+    figures = _figures(outcome) if ended else None
     differing = _baseline_reasons(preparation, figures, settings)
     if not dry_run.moves and not alarmed:
         differing.insert(0, Reason("empty-program", "the program makes no move", 0, 0.0))
@@ -107,7 +110,10 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
 def _baseline_reasons(
     preparation: Preparation, figures: RunFigures | None, settings: CheckSettings
 ) -> list[Reason]:
-    """Hold the run to its baseline, or store it; only a run that came to its end is stored."""
+    """Hold the run to its baseline, or store it.
+
+    Only a run that came to its end is stored, be that the alarm that its job expects.
+    """
     if settings.baseline is None:
         return []
     file = file_of(settings.baseline, preparation.job, ".baseline")
@@ -128,6 +134,7 @@ def _figures(outcome: Outcome) -> RunFigures:
     if cut is not None:
         figures = {
             "removed_mm3": cut.removed_mm3,
+            **{f"tool.{tool}": mm3 for tool, mm3 in cut.removed_by_tool_mm3.items()},
             "air_share": cut.air_share,
             "gouges_count": float(len(cut.gouges)),
             "rapid_into_stock_count": float(len(cut.rapid_into_stock)),

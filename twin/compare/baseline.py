@@ -35,6 +35,14 @@ _LOOK_AHEAD = 24
 """Blocks that may be inserted or lost in one place and the rest be recognised again."""
 _SMALLEST_TIME = 1e-6
 """A cycle time that differs by no more than this is the same [s]: what the file resolves."""
+_CUT_FIGURES = {
+    "removed_mm3": "removes {} mm³ in all",
+    "air_share": "share of the feed's path in air {}",
+    "gouges_count": "gouges {}",
+    "rapid_into_stock_count": "rapids into stock {}",
+    "spindle_off_count": "feeds into stock with the spindle off {}",
+}
+"""Figures of the cut in words; all others are a tool's volume."""
 
 
 def write_baseline(
@@ -130,7 +138,8 @@ def _figure_reasons(stored: RunFigures, now: RunFigures, limits: BaselineTable) 
         # Counts must be equal; volumes and shares, which are not whole, may differ a little.
         share = 0.0 if name.endswith("_count") else limits.cut_percent / 100.0
         if abs(here - there) > share * max(abs(there), 1e-3):
-            message = f"cut: {name} {number(here)}, baseline {number(there)}"
+            what = _CUT_FIGURES.get(name) or f"tool {name.removeprefix('tool.')} removes {{}} mm³"
+            message = f"cut: {what.format(number(here))}, baseline {number(there)}"
             reasons.append(Reason("baseline-cut", message, 0, 0.0))
     return reasons
 

@@ -1,10 +1,11 @@
 """Baselines as text: one entry a line, modal like an NC program, so that they are small and diff well.
 
-    twin baseline 3
+    twin baseline 4
     cycle_time_s 12.5
     contour_um 3.2
     axes X Y Z C
     cut removed_mm3 812.5
+    cut tool.1 812.5
     job tolerance.contour_um 20.0
     M3 S3000
     start X0 Y0 Z50 C0
@@ -27,7 +28,7 @@ from typing import NamedTuple, TextIO
 
 from twin.nc.canonical import Chunk, Corner, Dwell, Event, Function, Motion, Moves, Shape
 
-HEADING = "twin baseline 3"
+HEADING = "twin baseline 4"
 _DECIMALS = 6
 """Of coordinates in the file: a nanometre, far below any tolerance."""
 

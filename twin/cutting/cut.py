@@ -42,6 +42,8 @@ class CutResult:
 
     removed_mm3: float
     """Material taken off [mm³]."""
+    removed_by_tool_mm3: Mapping[int, float]
+    """What each tool took off, by its number, in the order of use [mm³]."""
     cell_mm: float
     """Side of a cell of the height map [mm]."""
     air_share: float
@@ -131,7 +133,7 @@ class Cutter:
         self._along = along
         self._part_frame = part_frame
         self._last: tuple[FloatArray, FloatArray, float] | None = None
-        self._removed = 0.0
+        self._removed: dict[int, float] = {}
         self._feed_path = 0.0
         self._air_path = 0.0
         self._force: float | None = None
@@ -154,7 +156,7 @@ class Cutter:
         Returns:
             Material that this chunk took off [mm³].
         """
-        before = self._removed
+        before = sum(self._removed.values())
         self.changed = (0, 0, 0, 0)
         self.force = np.zeros((len(samples), 3))
         if not len(samples):
@@ -176,7 +178,7 @@ class Cutter:
             self.tool = tool
             force = self._cut(way[run].lowered(self._plan.longer(tool)))
             self.force[run.start : run.start + len(force)] = force
-        return self._removed - before
+        return sum(self._removed.values()) - before
 
     def events(self) -> tuple[CutEvent, ...]:
         """Gouges, rapids into stock and feeds with the spindle off so far."""
@@ -186,7 +188,8 @@ class Cutter:
         """What was cut so far."""
         bin_s, over_time = self._cut_log.over_time
         return CutResult(
-            removed_mm3=self._removed,
+            removed_mm3=sum(self._removed.values()),
+            removed_by_tool_mm3=dict(self._removed),
             cell_mm=self.map.cell,
             air_share=self._air_path / self._feed_path if self._feed_path else 0.0,
             gouges=self._gouges.events(),
@@ -230,7 +233,8 @@ class Cutter:
         points, sample = points[: count + 1], sample[:count]
         rapids, standing = rapids[:count], standing[:count]
         self._travelled += float(_lengths(points.tip).sum())
-        self._removed += float(found.volume.sum())
+        so_far = self._removed.get(self.tool.number, 0.0)
+        self._removed[self.tool.number] = so_far + float(found.volume.sum())
         time, line = way.time[sample], way.line[sample]
         stretches = Stretches(points.tip, time, line, rapid[:count], *found)
         latest = self._note_contacts(stretches, met)
