@@ -91,21 +91,22 @@ class Interpretation:
         control = self._control
         try:
             control.prepare()
-            done, due = 0, self._compiled_after()
+            done, moves, due = 0, 0, self._compiled_after()
             machine = self._virtual_machine(done) if due == 0 else None
             while not control.ended:
                 if machine is None or not machine.run():
                     block = control.program_counter.next()
                     if block is None:
                         break
-                    before = len(control.path)
                     control.run(block)
-                    if machine is None:
-                        done += 1 + len(control.path) - before
-                        if done >= due:
-                            machine, due = self._virtual_machine(done), done + _LOOK_AGAIN
-                if len(control.path) >= CHUNK or (machine is not None and machine.full):
+                before, moves = moves, len(control.path)
+                if machine is None:
+                    done += 1 + moves - before
+                    if done >= due:
+                        machine, due = self._virtual_machine(done), done + _LOOK_AGAIN
+                if moves >= CHUNK or (machine is not None and machine.full):
                     yield control.path.take()
+                    moves = 0
             control.finish()
         except ProgramError:
             yield control.path.take()

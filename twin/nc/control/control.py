@@ -24,12 +24,12 @@ class Control(ControlWords):
 
     def target(self) -> list[float]:
         """Take the axis words; the programmed position that they ask for, shape (k,)."""
-        target = list(self.programmed)
+        target, modal = list(self.programmed), self.modal
         for index, word in self.take_axis_words():
             value = self.axis_value(index, word)
-            if self.modal.incremental or word.incremental:
+            if modal.incremental or word.incremental:
                 value += target[index]
-            if not abs(value) <= LARGEST_COORDINATE:
+            if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value
         return target
@@ -68,10 +68,14 @@ class Control(ControlWords):
         sweep: float = 0.0,
         spline: tuple[bool] | None = None,
     ) -> None:
-        end = self.frame.to_part(target)
-        if center is None and math.dist(self.part[:3], end[:3]) < _SMALLEST_MOVE:
-            end[:3] = self.part[:3]  # what a frame has rounded is no way
-        length = self._length(end, center, normal, sweep)
+        start, end = self.part, self.frame.to_part(target)
+        if center is not None:
+            length = _arc_length(start, end, center, normal, sweep)
+        else:
+            length = math.dist(start[:3], end[:3])
+            if length < _SMALLEST_MOVE:
+                end[:3] = start[:3]  # what a frame has rounded is no way
+                length = math.dist(start[3:], end[3:])
         if length < _SMALLEST_MOVE:
             self.programmed = target
             return
@@ -93,7 +97,7 @@ class Control(ControlWords):
             motion=Motion.RAPID if rapid else Motion.FEED,
             line=self.block.line,
             block=self.block.number,
-            start=self.part,
+            start=start,
             end=end,
             display=target,
             feed=feed,
@@ -124,28 +128,13 @@ class Control(ControlWords):
         move = self._last
         return None if move is None else self.frame.unturn(direction_of(move, at_end=True))
 
-    def _length(
-        self, end: list[float], center: Vector | None, normal: Vector, sweep: float
-    ) -> float:
-        """What the feed counts, by the convention of ``canonical`` [mm or deg]."""
-        start = self.part
-        if center is not None:
-            radius = math.dist(start[:3], center)
-            advance = sum((end[i] - start[i]) * normal[i] for i in range(3))
-            return math.hypot(radius * math.radians(sweep), advance)
-        spatial = math.dist(start[:3], end[:3])
-        return spatial or math.dist(start[3:], end[3:])
-
     def _axis_shares(self, end: list[float], length: float, is_arc: bool) -> list[float]:
         """How much of the path's speed each axis takes at most."""
         shares = [abs(new - old) / length for new, old in zip(end, self.part, strict=True)]
         return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
-        turning = not is_arc and all(
-            new == old or not linear
-            for new, old, linear in zip(end, self.part, self.linear, strict=True)
-        )
+        turning = not is_arc and self._turns(end)
         if self.feed is None:
             self.report.warn_once(
                 "no-feed",
@@ -166,6 +155,11 @@ class Control(ControlWords):
         if not self.spindle:
             self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
         return feed * self.spindle
+
+    def _turns(self, end: list[float]) -> bool:
+        """Whether a move with this end moves no linear axis."""
+        part = self.part
+        return all(end[column] == part[column] for column in self.linear_columns)
 
     def dwell(self, seconds: float) -> None:
         """Wait."""
@@ -213,6 +207,15 @@ class Control(ControlWords):
     @abc.abstractmethod
     def place_switches(self, length: float) -> None:
         """Report the block's switch points, told the length of its move."""
+
+
+def _arc_length(
+    start: list[float], end: list[float], center: Vector, normal: Vector, sweep: float
+) -> float:
+    """What the feed of an arc counts, by the convention of ``canonical`` [mm]."""
+    radius = math.dist(start[:3], center)
+    advance = sum((end[i] - start[i]) * normal[i] for i in range(3))
+    return math.hypot(radius * math.radians(sweep), advance)
 
 
 def _limited(value: float, limits: Mapping[int, float], shares: list[float]) -> float:

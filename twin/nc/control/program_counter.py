@@ -284,8 +284,9 @@ class ProgramCounter:
             return self._here
         blocks = self._cache.get(line)
         if blocks is None:
-            previous = self._lines[line - 1] if line else ""
-            blocks = self._lexer.blocks(self._lines[line], line + 1, previous)
+            blocks = self._lexer.blocks(
+                self._lines[line], line + 1, lambda: self._lines[line - 1] if line else ""
+            )
             if self._jumped and len(self._cache) < _CACHED_LINES:
                 self._cache[line] = blocks
         self._here, self._here_line = blocks, line
