@@ -1,4 +1,4 @@
-"""Operators and functions of expressions by number, compiled as they stand in ``arithmetic``.
+"""Instructions that compute, with the operators and functions of ``text/arithmetic`` by number.
 
 A value that is undefined comes out as infinity or NaN, and stops the block before anything happens.
 """
