@@ -20,16 +20,17 @@ print("serves", flush=True)
 sys.stdin.read()
 """
 BEGINS_AND_ENDS = """
+import os
 from twin.compilation.beside import Beside
+os.environ["BEGAN_BY"] = str(os.getpid())
 Beside("outlives").start()
 """
 OUTLIVES = """
 import os, pathlib, time
 from twin.compilation.beside import serve
 from twin.compilation.folders import writable_folder
-parent = os.getppid()
 serve(writable_folder())
-while os.getppid() == parent:
+while os.getppid() == int(os.environ["BEGAN_BY"]):
     time.sleep(0.01)
 pathlib.Path(os.environ["DONE"]).touch()
 """

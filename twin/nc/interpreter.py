@@ -39,6 +39,7 @@ class Interpretation:
         dialect: The language it is read in.
         settings: What the control was told of the machine and the job.
         before_compiled_tier: Done when the compiled tier is about to be loaded, which may have to compile it.
+        compiled_after: Blocks and moves after which the compiled tier has taken over; None: it has not.
     """
 
     def __init__(
@@ -63,6 +64,7 @@ class Interpretation:
         self.dialect = dialect
         self.settings = settings
         self.before_compiled_tier: Callable[[], None] = lambda: None
+        self.compiled_after: int | None = None
         self._compiled_from = compiled_from
         self._speed = usual_speed() if speed is None else speed
         self._control = Executor(dialect, settings, source)
@@ -123,9 +125,10 @@ class Interpretation:
         if self._speed is Speed.COLD:
             return cold
         waits = self._speed is Speed.HOT or done >= _PAYS
-        if waits or not compiles_beside(cold):
-            return VirtualMachine(self._control, hot())
-        return None
+        if not waits and compiles_beside(cold):
+            return None
+        self.compiled_after = done
+        return VirtualMachine(self._control, hot())
 
     def _compiled_after(self) -> int:
         """Blocks and moves after which the compiled tier begins."""
