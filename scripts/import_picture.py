@@ -25,7 +25,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "machine compare cutting",
         "render calibrate",
         "run",
-        "api check serve training view",
+        "api check link serve training view",
         "commands",
         "command_line",
         "cli",

@@ -1,15 +1,16 @@
 """An operator at the real page: plays a scene's steps with the keys that the panel has."""
 
 import contextlib
+import dataclasses
 import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from chromium import CHROMIUM, QUIET
+from browsers import CHROMIUM, FIREFOX, QUIET
 
-from twin.training.scene.scene_file import Scene, StepTable
+from twin.training.scene.scene_file import Scene, StepTable, read_scene, scene_path
 from twin.training.server.launch import OpenRoom, open_room
 
 if TYPE_CHECKING:
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
 
 PATIENCE_S = 90.0
 STEPS = (10.0, 1.0, 0.1, 0.01)
+PLAYED_FASTER = 5.0
+"""Machine time per time on the wall in a play; a machine that cannot keep it runs as fast as it can."""
+
+What = Literal["solution", "mistake"]
 
 
 @contextlib.contextmanager
@@ -33,12 +38,15 @@ def served(scene: Scene, out: Path | None = None) -> Iterator[OpenRoom]:
 
 
 @contextlib.contextmanager
-def browser() -> Iterator["Browser"]:
-    """A headless browser."""
+def browser(name: str = "chromium") -> Iterator["Browser"]:
+    """A headless browser: Chromium, or the Firefox of the system, led by WebDriver BiDi."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
+        if name == "firefox":
+            opened = playwright.firefox.launch(executable_path=FIREFOX, channel="moz-firefox")
+        else:
+            opened = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
         yield opened
         opened.close()
 
@@ -58,6 +66,48 @@ def open_page(
 def without_view(page: "Page | BrowserContext") -> None:
     """Leave the view out: drawing by a processor is what costs."""
     page.route("**/view_worker.js", lambda route: route.abort())
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Played:
+    """What became of a play.
+
+    Attributes:
+        failed: Numbers of the tasks that failed.
+        expected: Those that must fail by the scene's own word.
+        score: Points reached.
+        full: What all tasks are worth.
+    """
+
+    failed: tuple[int, ...]
+    expected: tuple[int, ...]
+    score: int
+    full: int
+
+    @property
+    def intended(self) -> bool:
+        """Whether it ended as the scene says; only a solution reaches full points."""
+        return self.failed == self.expected and (self.score == self.full) == (not self.expected)
+
+
+def play(opened: "Browser", name: str, what: What, out: Path | None = None) -> Played:
+    """Play a scene's solution or its mistake on the operator's page, without its view."""
+    scene = read_scene(scene_path(name))
+    with served(scene, out) as room:
+        room.driver.speed = PLAYED_FASTER
+        context = opened.new_context()
+        without_view(context)
+        player = Player(room, open_page(room, context))
+        player.play(getattr(scene.file, what))
+        judge = player.machine.judge
+        context.close()
+    states = [verdict.state for verdict in judge.verdicts]
+    return Played(
+        failed=tuple(number for number, state in enumerate(states, 1) if state == "failed"),
+        expected=scene.file.mistake_fails if what == "mistake" else (),
+        score=judge.score,
+        full=scene.points,
+    )
 
 
 class Player:

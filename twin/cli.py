@@ -8,6 +8,7 @@ import typer
 from twin.command_line.calibration import calibrate
 from twin.command_line.examples import epilog
 from twin.command_line.knowledge import dialects, doctor, explain
+from twin.command_line.links import link_app
 from twin.command_line.machines import machine_app
 from twin.command_line.monitoring import serve
 from twin.command_line.pictures import render
@@ -64,6 +65,7 @@ for command in (
 ):
     app.command(epilog=epilog(command.__name__))(command)
 app.add_typer(machine_app, name="machine")
+app.add_typer(link_app, name="link")
 
 
 def main() -> None:

@@ -24,7 +24,11 @@ from twin.machine.model.model import (
 )
 from twin.machine.model.tool_shape import DefaultTool
 from twin.machine.simulation.live import LiveMachine
-from twin.machine.simulation.sampling import held_commands, polyline_nodes
+from twin.machine.simulation.sampling import (
+    held_acceleration,
+    held_velocity,
+    polyline_node,
+)
 from twin.machine.simulation.simulate import simulate
 from twin.machine.watching.clearance import Clearance
 from twin.motion.setpoints.setpoints import Setpoints
@@ -41,19 +45,26 @@ def rows() -> Iterator[Row]:
     for name in machine_names():
         yield _beside_rollout(name)
     yield from _watching()
-    points = _circle("mill4")[: 2000 * SLICE]
+    yield _operated(SLICE)
+    ticks = _operated(1)
+    yield dataclasses.replace(
+        ticks, task="mill4, one servo period alone", figure=1e3 / ticks.figure, unit="µs"
+    )
+
+
+def _operated(periods: int) -> Row:
+    """A machine of 1 ms that is operated so many servo periods at a time."""
+    points = _circle("mill4")[: 8000 + periods]
+    machine = read_machine(machine_file("mill4"))
 
     def operate() -> None:
-        live = LiveMachine(read_machine(machine_file("mill4")), position=points.position[0])
-        for first in range(1, len(points), SLICE):
-            live.follow(points[first : first + SLICE])
+        live = LiveMachine(machine, position=points.position[0])
+        for first in range(1, len(points), periods):
+            live.follow(points[first : first + periods])
 
-    period = read_machine(machine_file("mill4")).file.servo_period_s
-    seconds = median_seconds(operate)
-    yield Row(
-        "machine", f"mill4, operated in slices of {SLICE} ms", len(points) * period / seconds,
-        "x real time",
-    )  # fmt: skip
+    simulated = len(points) * machine.file.servo_period_s
+    task = f"mill4, operated in slices of {periods} ms"
+    return Row("machine", task, simulated / median_seconds(operate), "x real time")
 
 
 def _beside_rollout(name: str) -> Row:
@@ -118,12 +129,16 @@ def _roll(model: mujoco.MjModel, name: str, chunks: list[Setpoints]) -> None:
     forces = [model.actuator(feedforward_name(axis)).id for axis in machine.axes.names]
     joints = [model.joint(machine.axis(axis).joint).qposadr[0] for axis in machine.axes.names]
     data.qpos[joints] = chunks[0].position[0] * scale
-    data.act[model.actuator_actadr[servos]] = polyline_nodes(chunks[0][:1], period)[0] * scale
+    data.act[model.actuator_actadr[servos]] = (
+        polyline_node(chunks[0].position[0], chunks[0].acceleration[0], period) * scale
+    )
     kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
     state = np.zeros((1, mujoco.mj_stateSize(model, kind)))
     mujoco.mj_getState(model, data, state[0], kind)
     for chunk in chunks:
-        velocity, acceleration = held_commands(chunk, period)
+        nodes = polyline_node(chunk.position, chunk.acceleration, period)
+        velocity = held_velocity(nodes[:-1], nodes[1:], period)
+        acceleration = held_acceleration(chunk.velocity[:-1], chunk.velocity[1:], period)
         controls = np.zeros((1, len(velocity), model.nu))
         controls[0, :, model.actuator_ctrladr[servos]] = (velocity * scale).T
         controls[0, :, model.actuator_ctrladr[forces]] = (0.0 * acceleration).T

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from benches.row import REPEATS, Row
 from benches.training_room import SCENE, RoomProcess, room_process
-from chromium import CHROMIUM
+from browsers import CHROMIUM
 from panel_player import browser, without_view
 
 from twin.training.scene.scene_file import read_scene, scene_path

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from chromium import CHROMIUM, QUIET
+from browsers import CHROMIUM, QUIET
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.compare.test_report import MOVES, report_of

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
+from twin.cutting.tools import EMPTY_SPINDLE, default_cell
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.nc.canonical import Axes
@@ -38,6 +39,14 @@ def test_tools_change_between_moves(dialect: str) -> None:
     assert found.is_rapid(np.array([-1, 0, 1, 2, 3, 4, 5])).tolist() == [
         False, True, False, False, False, True, False,
     ]  # fmt: skip
+
+
+def test_tool_0_leaves_the_spindle_empty() -> None:
+    found = summary("T4 M6\nG1 X2 F100\nT0 M6\nG0 X5\nM30\n", dialect="fagor8070")
+    lengths = [found.tools.at(move).length for move in range(2)]
+    assert lengths == [75.0, EMPTY_SPINDLE.length]
+    stock = StockTable(shape="box", size=(90.0, 90.0, 9.0))
+    assert default_cell(found.tools.tools, stock) == default_cell(TOOLS, stock)
 
 
 def test_the_spindle_as_the_program_speaks_of_it() -> None:

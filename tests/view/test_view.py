@@ -6,7 +6,7 @@ import zlib
 
 import numpy as np
 import pytest
-from chromium import CHROMIUM
+from browsers import CHROMIUM
 from panel_player import browser
 
 from twin.commands.run import run_and_print

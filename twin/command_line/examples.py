@@ -25,6 +25,7 @@ EXAMPLES = {
     "calibrate": ("twin calibrate log.csv --base mill4 --out mine.toml",),
     "export": ("twin export out/part/recording.h5 --every 10",),
     "train": ("twin train --list", "twin train mefi_helix_hold"),
+    "linuxcnc": ("twin link linuxcnc --machine mill4 --out out/helix --headless mefi/helix",),
     "dialects": ("twin dialects", "twin dialects fagor8070"),
     "explain": ("twin explain arc-radius",),
     "doctor": ("twin doctor", "twin doctor --compile"),

@@ -54,8 +54,8 @@ def run_and_print(
                 with run.clock.stage("render"):
                     _draw_collision(run, dry_run, folder)
         write_results(run, outcome, folder)
-    _print_findings(run, outcome)
-    typer.echo(_summary(run, outcome, folder))
+    print_findings(run, outcome)
+    typer.echo(summary(run, outcome, folder))
     return outcome.verdict.exit_code
 
 
@@ -67,7 +67,8 @@ def _draw_collision(run: Run, dry_run: DryRun, folder: Path) -> None:
         typer.echo(f"no picture of the collision: {error}", err=True)
 
 
-def _print_findings(run: Run, outcome: Outcome) -> None:
+def print_findings(run: Run, outcome: Outcome) -> None:
+    """Tell a person what the interpreter, the machine and the verdict found."""
     for warning in outcome.warnings:
         typer.echo(str(warning), err=True)
     if outcome.near_miss is not None:
@@ -80,7 +81,8 @@ def _print_findings(run: Run, outcome: Outcome) -> None:
             typer.echo(reason_text(reason, run.preparation.source), err=True)
 
 
-def _summary(run: Run, outcome: Outcome, folder: Path) -> str:
+def summary(run: Run, outcome: Outcome, folder: Path) -> str:
+    """The verdict in a line."""
     contour = outcome.figures.contour
     if outcome.alarms:
         first = outcome.alarms[0]

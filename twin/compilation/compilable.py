@@ -37,6 +37,16 @@ def compilable(function: Function) -> Function:
     return function
 
 
+def compilable_as(compiled: Function) -> Callable[[Function], Function]:
+    """Let kernels compile another function in the place of one that only CPython can run fast."""
+
+    def declare(function: Function) -> Function:
+        _declared.append(Declared(function, compiled, {"_nrt": False}))
+        return function
+
+    return declare
+
+
 def inlined(function: Function) -> Function:
     """Let kernels compile a function that makes no array into each function that calls it.
 
@@ -45,16 +55,6 @@ def inlined(function: Function) -> Function:
     """
     _declared.append(Declared(function, function, {"_nrt": False, "forceinline": True}))
     return function
-
-
-def compiled_as(called: Callable[..., Any]) -> Callable[[Function], Function]:
-    """Let kernels compile a function in the place of another, which the compiler does not know."""
-
-    def declare(function: Function) -> Function:
-        _declared.append(Declared(called, function, _ARITHMETIC))
-        return function
-
-    return declare
 
 
 def compilable_choice(functions: Sequence[Callable[..., float]]) -> Callable[..., float]:

@@ -98,6 +98,7 @@ class CutLog:
         self._remembered = remembered
         self._kept = _NOTHING
         self._fresh: list[_Lines] = []
+        self._fresh_lines = 0
         self._latest = 0
         self._bin_s = FIRST_BIN_S
         self._bins = np.zeros(BINS)
@@ -122,13 +123,14 @@ class CutLog:
         entries = entries[cutting]
         self._latest = int(entries.line[-1])
         self._fresh.append(entries.each_once())
-        if sum(len(lines) for lines in self._fresh) > self._remembered:
+        self._fresh_lines += len(self._fresh[-1])
+        if self._fresh_lines > self._remembered:
             self._tidy()
 
     def _tidy(self) -> None:
         """Put what is fresh to what is kept, and let go of the least where that is too much."""
         together = join([self._kept, *self._fresh]).each_once()
-        self._fresh = []
+        self._fresh, self._fresh_lines = [], 0
         self._kept = together
         if len(together) > 2 * self._remembered:
             ended = together.line != self._latest

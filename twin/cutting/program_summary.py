@@ -7,7 +7,7 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from twin.cutting.tools import ToolPlan
+from twin.cutting.tools import EMPTY_SPINDLE, ToolPlan
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, ToolTable
 from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
@@ -146,7 +146,7 @@ class SummaryBuilder:
                 self._turn(float(np.copysign(self._speed, self._turns)), move)
 
     def _change_tool(self, number: int, line: int, move: int) -> None:
-        tool = self._tools.get(number)
+        tool = self._tools.get(number, EMPTY_SPINDLE if number == 0 else None)
         if tool is None and not self._any_tool and self._cuts:
             known = ", ".join(str(number) for number in self._tools)
             raise ConfigError(

@@ -99,11 +99,17 @@ class ToolPlan:
         ]
 
 
+EMPTY_SPINDLE = ToolTable(
+    number=0, diameter=1.0, length=0.001, flute=0.001, free_length=0.001, holder=0.001
+)
+"""What stands for no tool: a stub of a micrometre at the spindle nose, which reaches nothing first."""
+
+
 def default_cell(tools: Iterable[ToolTable], stock: StockTable) -> float:
     """Grid for a job that names none: a tenth of the smallest tool's radius, 0.1 mm at least [mm].
 
     A stock that is small beside its tools still gets ``FEWEST_CELLS`` along its shorter side.
     """
     width, depth, _ = stock.extent
-    tenth = 0.05 * min(tool.diameter for tool in tools)
+    tenth = 0.05 * min(tool.diameter for tool in tools if tool.length != EMPTY_SPINDLE.length)
     return max(FINEST_CELL_MM, min(tenth, min(width, depth) / FEWEST_CELLS))

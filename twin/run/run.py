@@ -4,8 +4,10 @@ import dataclasses
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
+from typing import Protocol
 
 import mujoco
+import numpy as np
 
 from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
@@ -16,6 +18,7 @@ from twin.errors import ConfigError
 from twin.machine.description.motion_limits import motion_limits
 from twin.machine.model.model import build_spec, spindle_over_table_mm
 from twin.machine.simulation.simulate import Simulation, simulate
+from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.motion.planner import plan
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.motion.setpoints.settle import settle
@@ -31,6 +34,22 @@ from twin.run.progress import Progress
 from twin.run.stages import StageClock
 from twin.toolpath.part_frame import PartFrame
 from twin.version import __version__
+
+
+class Motion(Protocol):
+    """What moves the machine along a program; iterated once, for the samples of its joints."""
+
+    @property
+    def alarm(self) -> Alarm | None:
+        """What stopped it, None while nothing did."""
+        ...
+
+    @property
+    def near_miss(self) -> NearMiss | None:
+        """The closest that the tool's side and the part's came without touching."""
+        ...
+
+    def __iter__(self) -> Iterator[Samples]: ...
 
 
 class Run:
@@ -74,7 +93,9 @@ class Run:
         """
         return interpret_all(self.preparation, self.part_zero, self.clock)
 
-    def execute(self, dry_run: DryRun, out: Path | None, progress: Progress) -> Outcome:
+    def execute(
+        self, dry_run: DryRun, out: Path | None, progress: Progress, motion: Motion | None = None
+    ) -> Outcome:
         """Run the chain and write ``recording.h5`` and ``part.stl`` into a folder.
 
         A program that would leave the travel moves nothing and writes nothing.
@@ -83,6 +104,7 @@ class Run:
             dry_run: What the dry run found.
             out: The folder; None writes neither, for who wants the verdict alone.
             progress: Told how far the simulation is.
+            motion: Moves the machine along the program; None: the twin's own planner and drives.
 
         Raises:
             SimulationError: The simulation failed; the recording is not kept.
@@ -92,9 +114,12 @@ class Run:
         alarm, near_miss = dry_run.alarm, None
         if alarm is None:
             with self._recording(out) as writer:
-                setpoints = self._setpoints(comparison, machining)
-                simulation = self._simulation(setpoints, dry_run.summary)
-                for simulated in self.clock.watch("simulate", simulation):
+                if motion is None:
+                    setpoints = self._setpoints(comparison, machining)
+                    motion = self._simulation(setpoints, dry_run.summary)
+                else:
+                    self._expect_all(comparison, machining)
+                for simulated in self.clock.watch("simulate", motion):
                     with self.clock.stage("cut"):
                         samples, alarm = machining.add(simulated)
                     reached.add(samples)
@@ -107,14 +132,14 @@ class Run:
                     progress("simulate", reached.share_of(dry_run.moves))
                     if alarm is not None:
                         break
-                alarm, near_miss = alarm or simulation.alarm, simulation.near_miss
+                alarm, near_miss = alarm or motion.alarm, motion.near_miss
                 if alarm is not None and writer is not None:
                     writer.note_alarms([(alarm.time_s, alarm.message)])
         with self.clock.stage("cut"):
             cut = machining.finish(out) if len(reached) else None
         figures = comparison.result()
         alarms = () if alarm is None else (alarm,)
-        duration_s = min(self._planned_s, reached.time_s)
+        duration_s = min(self._planned_s or reached.last_motion_s, reached.time_s)
         tolerance = self.preparation.job.file.tolerance
         return Outcome(
             verdict=judge(figures, tolerance, alarms, cycle_time_s=duration_s),
@@ -128,6 +153,12 @@ class Run:
             final_commanded=reached.commanded,
             final_simulated=reached.simulated,
         )
+
+    def _expect_all(self, comparison: Comparison, machining: Machining) -> None:
+        """Let those who judge the motion hear of the whole program at once."""
+        for chunk in self.clock.watch("interpret", self.preparation.interpretation().chunks()):
+            comparison.expect(chunk.moves)
+            machining.expect(chunk)
 
     def _setpoints(self, comparison: Comparison, machining: Machining) -> Iterator[Setpoints]:
         """The planned motion; those who judge it hear of every move before it is simulated."""
@@ -215,6 +246,7 @@ class _Reached:
         self._count = 0
         self._place = (-1, 0.0)
         self.time_s = 0.0
+        self.last_motion_s = 0.0
         self.commanded = start
         self.simulated = start
 
@@ -226,6 +258,9 @@ class _Reached:
         setpoint = samples.setpoint
         self._count += len(samples)
         self.time_s = float(setpoint.time[-1])
+        moving = np.flatnonzero(setpoint.velocity.any(axis=1))
+        if len(moving):
+            self.last_motion_s = float(setpoint.time[moving[-1]])
         self._place = (int(setpoint.move[-1]), float(setpoint.fraction[-1]))
         self.commanded = setpoint.position[-1] - self._part_zero
         self.simulated = samples.joint_position[-1] - self._part_zero

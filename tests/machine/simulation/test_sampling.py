@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from tests.machine.machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 from twin.machine.description.config import Machine
 from twin.machine.model.model import build_spec
-from twin.machine.simulation.sampling import held_commands, polyline_nodes
+from twin.machine.simulation.sampling import held_acceleration, held_velocity, polyline_node
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.recording.reader import Samples
@@ -47,9 +47,9 @@ def test_the_polyline_contains_a_sine_with_its_full_amplitude(turns, per_turn, p
     points = setpoints(
         np.sin(angle)[:, None], rate * np.cos(angle)[:, None], -(rate**2) * np.sin(angle)[:, None]
     )
-    nodes = polyline_nodes(points, h)[:, 0]
-    velocity, _ = held_commands(points, h)
-    assert nodes[0] + np.cumsum(velocity[:, 0]) * h == pytest.approx(nodes[1:], abs=1e-9)
+    nodes = polyline_node(points.position, points.acceleration, h)[:, 0]
+    velocity = held_velocity(nodes[:-1], nodes[1:], h)
+    assert nodes[0] + np.cumsum(velocity) * h == pytest.approx(nodes[1:], abs=1e-9)
     fine = 64
     parameter = (np.arange(n * fine) + 0.5) / fine
     drawn = np.interp(parameter, np.arange(n + 1), nodes)
@@ -60,8 +60,10 @@ def test_the_polyline_contains_a_sine_with_its_full_amplitude(turns, per_turn, p
 
 def test_a_straight_line_is_drawn_exactly():
     points = line(1, 80.0, 0.5)[300:]
-    velocity, acceleration = held_commands(points, PERIOD)
-    assert velocity[:, 1] == pytest.approx(np.full(len(velocity), 80.0), rel=1e-9)
+    nodes = polyline_node(points.position, points.acceleration, PERIOD)[:, 1]
+    velocity = held_velocity(nodes[:-1], nodes[1:], PERIOD)
+    acceleration = held_acceleration(points.velocity[:-1], points.velocity[1:], PERIOD)
+    assert velocity == pytest.approx(np.full(len(velocity), 80.0), rel=1e-9)
     assert np.abs(acceleration).max() < 1e-9
 
 

@@ -9,7 +9,7 @@ from twin.columns import join
 from twin.files.shipped import machine_file
 from twin.machine.description.config import read_machine
 from twin.machine.model.model import build_spec, physics_model
-from twin.machine.simulation.sampling import held_commands, polyline_nodes
+from twin.machine.simulation.sampling import held_velocity, polyline_node
 from twin.machine.simulation.simulate import simulate
 from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
@@ -82,8 +82,8 @@ def test_rollout_equals_stepping_in_python_bit_for_bit():
     joints = [data.joint(machine.axis(name).joint) for name in machine.axes.names]
     for joint, value in zip(joints, points.position[0] * unit, strict=True):
         joint.qpos[0] = value
-    nodes = polyline_nodes(points, 0.001)
-    velocity, _ = held_commands(points, 0.001)
+    nodes = polyline_node(points.position, points.acceleration, 0.001)
+    velocity = held_velocity(nodes[:-1], nodes[1:], 0.001)
     servos = [model.actuator(name).id for name in machine.axes.names]
     data.act[model.actuator_actadr[servos]] = nodes[0] * unit
     expected = [[joint.qpos[0] for joint in joints]]

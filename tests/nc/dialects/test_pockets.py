@@ -92,6 +92,31 @@ def test_pockets_that_cannot_be_milled(words: str, code: str) -> None:
     assert bad(f"G00 Z10\nG88 X0 Y0 {words} F100", "fagor8070", tools=TOOLS).code == code
 
 
-def test_corner_types_are_refused() -> None:
-    text = "G00 Z10\nG87 X0 Y0 Z2 I-4 J20 K10 B2 M1 Q3 F100"
-    assert bad(text, "fagor8070", tools=TOOLS).code == "unsupported-word"
+@pytest.mark.parametrize(("kind", "size"), [(1, 8.0), (2, 6.0), (1, 15.0), (2, 12.5), (1, 2.0)])
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_corners_are_rounded_or_cut_off(kind: int, size: float, direction: float) -> None:
+    x, y, radius = 25.0, 15.0, 5.0
+    words = f"J{direction * x:g} K{y:g} B3 C6 M{kind} Q{size:g}"
+    text = f"G00 Z10 F200\nG87 X20 Y10 Z2 I-3 D2 {words}\nG80\nM30"
+    moves = good(text, "fagor8070", tools=TOOLS).moves
+    beyond = np.abs(cutting_points(moves, -3.0) - [20.0, 10.0]) - [x, y]
+    assert beyond.max(axis=0) == pytest.approx([-radius, -radius])
+    if kind == 2:
+        assert (beyond.sum(axis=1) + size).max() == pytest.approx(-radius * math.sqrt(2.0))
+    else:
+        corner = np.maximum(beyond + max(size, radius), 0.0)
+        assert np.hypot(*corner.T).max() == pytest.approx(max(size, radius) - radius, abs=1e-9)
+    grid = np.stack(np.meshgrid(np.linspace(-x, x, 60), np.linspace(-y, y, 60)), -1).reshape(-1, 2)
+    left = np.abs(grid) - [x, y]
+    room = left.sum(axis=1) + size <= 0.0 if kind == 2 else True
+    round_off = np.maximum(left + max(size if kind == 1 else radius, radius), 0.0)
+    rounded = np.hypot(*round_off.T) <= max(size if kind == 1 else radius, radius)
+    inside = grid[room & (rounded if kind == 1 else np.ones(len(grid), bool))] + [20.0, 10.0]
+    slack = radius * (math.sqrt(2.0) - 1.0) if kind == 2 else 0.0
+    assert uncut(moves, -3.0, inside, radius) < 0.05 + slack
+
+
+@pytest.mark.parametrize("words", ["M1", "M2 Q0", "M1 Q11", "M2 Q9", "M3 Q2"])
+def test_corners_that_do_not_fit_are_refused(words: str) -> None:
+    text = f"G00 Z10\nG87 X0 Y0 Z2 I-4 J20 K10 B2 {words} F100"
+    assert bad(text, "fagor8070", tools=TOOLS).code in ("cycle-size", "cycle-word")

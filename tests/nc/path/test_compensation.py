@@ -143,3 +143,13 @@ def test_a_full_circle_changes_its_radius(code: str) -> None:
     wanted = 17.0 if code == "G41" else 23.0
     assert outcome.moves.radius[2] == pytest.approx(wanted)
     assert outcome.moves.sweep[2] == pytest.approx(360.0)
+
+
+def test_any_number_of_plunges_waits_for_the_end_of_an_element() -> None:
+    """Forty moves along the tool's axis, with a function behind each, more than there is room for at first."""
+    plunges = "\n".join(f"Z{-number}\nM8" for number in range(1, 41))
+    text = f"F100\nG41\nG1 X20 Y0\nX40\n{plunges}\nX60\nG40\nX80 Y20\n"
+    outcome = good(text, "gost", tools=TOOLS)
+    heights = outcome.moves.end[:, 2].tolist()
+    assert heights == [0.0, 0.0, *(-float(number) for number in range(1, 41)), -40.0, -40.0]
+    assert [event.before for event in outcome.events] == list(range(3, 43))

@@ -1,6 +1,7 @@
 """What pages are sent."""
 
 import dataclasses
+import json
 import struct
 import zlib
 
@@ -9,7 +10,7 @@ import numpy as np
 from twin.cutting.patches import LEVELS
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.driver import Driver
-from twin.training.server.frames import Changes, StockFeed, panel_words, state_message
+from twin.training.server.frames import Changes, StockFeed, as_texts, panel_words, state_message
 from twin.training.server.launch import CELLS_ACROSS
 from twin.training.server.seats import MESSAGES, MOST_PAGES, Seats
 from twin.training.session.session import Session
@@ -58,13 +59,12 @@ def test_a_page_that_follows_has_the_stock_as_it_is_cut():
 def test_words_are_sent_when_they_change():
     driver = Driver(Session(read_scene(scene_path("fagor_first_steps"))))
     changes = Changes()
-    assert {"program", "mode", "alarm", "verdicts"} <= set(
-        changes.since_last(panel_words(driver.look))
-    )
-    assert not changes.since_last(panel_words(driver.look))
+    first = json.loads(changes.since_last(as_texts(panel_words(driver.look))))
+    assert {"program", "mode", "alarm", "verdicts"} <= set(first)
+    assert changes.since_last(as_texts(panel_words(driver.look))) == ""
     driver.ask({"do": "mode", "mode": "jog"}, "operator", 1)
     driver._step(0.01)
-    assert changes.since_last(panel_words(driver.look)) == {"mode": "jog"}
+    assert changes.since_last(as_texts(panel_words(driver.look))) == '{"mode":"jog"}'
     assert len(state_message(driver.look, cutting=False)) == 8 + 8 * (7 + 5 * 4)
 
 

@@ -6,8 +6,8 @@ import time
 from pathlib import Path
 
 import pytest
-from chromium import CHROMIUM
-from panel_player import Player, browser, open_page, served, without_view
+from browsers import CHROMIUM
+from panel_player import Player, browser, open_page, play, served, without_view
 
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.web.files import THREE
@@ -53,33 +53,15 @@ def chromium():
         yield opened
 
 
-def play(chromium, tmp_path, name: str, what: str) -> dict:
-    scene = read_scene(scene_path(name))
-    with served(scene, tmp_path) as room:
-        room.driver.speed = 5.0
-        page = chromium.new_page()
-        page.close()
-        context = chromium.new_context()
-        without_view(context)
-        player = Player(room, open_page(room, context))
-        player.play(getattr(scene.file, what))
-        states = [verdict.state for verdict in player.machine.judge.verdicts]
-        context.close()
-    failed = tuple(number for number, state in enumerate(states, 1) if state == "failed")
-    assert failed == (() if what == "solution" else scene.file.mistake_fails)
-    sheet = next(tmp_path.glob("*/score.json"))
-    return json.loads(sheet.read_text(encoding="utf-8"))
-
-
 def test_the_first_scene_is_solved_with_the_keys_of_the_page(chromium, tmp_path):
-    sheet = play(chromium, tmp_path, "fagor_first_steps", "solution")
+    assert play(chromium, "fagor_first_steps", "solution", tmp_path).intended
+    sheet = json.loads(next(tmp_path.glob("*/score.json")).read_text(encoding="utf-8"))
     assert (sheet["points"], sheet["of"], sheet["handed_in"]) == (10, 10, True)
     assert sheet["actions"][0]["command"] == {"do": "cycle_start"}
 
 
-def test_questions_and_edits_are_played_on_the_page(chromium, tmp_path):
-    sheet = play(chromium, tmp_path, "codesys_opening_angle", "mistake")
-    assert sheet["points"] < sheet["of"]
+def test_questions_and_edits_are_played_on_the_page(chromium):
+    assert play(chromium, "codesys_opening_angle", "mistake").intended
 
 
 @pytest.fixture

@@ -27,7 +27,8 @@ class LiveMachine:
     """A machine that someone operates.
 
     It is stepped in slices of any length, one setpoint per servo period, and moves bit for bit as
-    ``simulate`` moves it along the same setpoints. At an alarm it goes no further: the samples
+    ``simulate`` moves it along the same setpoints. A control that asks for one period at a time
+    gives ``follow`` one row; that is made to be quick. At an alarm it goes no further: the samples
     that come back end with the one that raised it. The alarm is latched; what is left is to
     ``brake`` to rest and, once the cause is dealt with, to ``clear`` it. As at a real machine an
     axis may then be driven off its limit switch, and a holder out of the vise, but not further in.
@@ -115,10 +116,11 @@ class LiveMachine:
         samples = self._step(setpoints)
         if not len(samples):
             return samples
-        raised = (self._watch.look(samples), self._clearance.look(samples))
-        self.alarm = min(filter(None, raised), key=lambda alarm: alarm.time_s, default=None)
-        if self.alarm is None:
+        seen, collision = self._watch.look(samples), self._clearance.look(samples)
+        if seen is None and collision is None:
             return samples
+        raised = filter(None, (seen, collision))
+        self.alarm = min(raised, key=lambda alarm: alarm.time_s)
         end = int(np.searchsorted(samples.setpoint.time, self.alarm.time_s, side="right"))
         self._servo.go_back(end - 1)
         self._stand = samples[end - 1 : end]
@@ -136,6 +138,25 @@ class LiveMachine:
             AlarmStandsError: An alarm has not been cleared.
         """
         return self.follow(self._ramp(ticks))
+
+    def stand_at(self, position: FloatArray) -> Samples:
+        """Stand at rest somewhere, as when the machine was switched on there.
+
+        Args:
+            position: Machine coordinates, shape (k,) [mm or deg].
+
+        Returns:
+            One sample, at time 0.
+
+        Raises:
+            AlarmStandsError: An alarm has not been cleared.
+        """
+        if self.alarm is not None:
+            raise AlarmStandsError(f"{self.alarm.code} has not been cleared")
+        self._servo.begin_anew()
+        self._stand = self._servo.follow(_standing(position))
+        self._watch.acknowledge(self.position)
+        return self._stand
 
     def brake(self, ticks: int) -> Samples:
         """Bring the axes to rest, each at its own acceleration, and hold them there.
@@ -207,9 +228,8 @@ class LiveMachine:
     def _step(self, setpoints: Setpoints) -> Samples:
         if not len(setpoints):
             return self._stand[:0]
-        samples = self._servo.follow(setpoints)
-        self._stand = samples[len(samples) - 1 :]
-        return samples
+        self._stand = self._servo.follow(setpoints)
+        return self._stand
 
     def _ramp(self, ticks: int) -> Setpoints:
         """Setpoints that slow down to rest and stay there."""

@@ -26,36 +26,31 @@ the loss of holding ((W h)²/24) undone, to the same order. The acceleration tha
 mean of the step, (v1 - v0)/h. ``tests/machine/test_sampling.py`` holds all of this to closed forms.
 """
 
-from twin.motion.setpoints.setpoints import Setpoints
-from twin.nc.canonical import FloatArray
+from twin.compilation.kernel import array_kernel
 
 _POLYLINE_LOSS = 1.0 / 12.0
 """Second-order loss of a signal drawn as a polyline, in units of (W h)²."""
 
 
-def polyline_nodes(setpoints: Setpoints, period_s: float) -> FloatArray:
-    """Where the drives' position setpoint stands at each sample.
+@array_kernel
+def polyline_node(position: float, acceleration: float, period_s: float) -> float:
+    """Where a drive's position setpoint stands at a sample; elementwise of arrays.
 
     Args:
-        setpoints: n setpoints over k axes.
+        position: Of the setpoint [mm or deg].
+        acceleration: Of the setpoint [mm/s² or deg/s²].
         period_s: The servo period h, which is also the step [s].
-
-    Returns:
-        Shape (n, k), in the units of the positions.
     """
-    return setpoints.position - _POLYLINE_LOSS * period_s**2 * setpoints.acceleration
+    return position - _POLYLINE_LOSS * period_s**2 * acceleration
 
 
-def held_commands(setpoints: Setpoints, period_s: float) -> tuple[FloatArray, FloatArray]:
-    """What the drives hold between consecutive setpoints.
+@array_kernel
+def held_velocity(node: float, next_node: float, period_s: float) -> float:
+    """The velocity that leads from one node to the next; elementwise of arrays."""
+    return (next_node - node) / period_s
 
-    Args:
-        setpoints: n consecutive setpoints over k axes.
-        period_s: The servo period h, which is also the step [s].
 
-    Returns:
-        Velocity and acceleration, each of shape (n - 1, k), in the units of the setpoints.
-    """
-    nodes = polyline_nodes(setpoints, period_s)
-    velocity = setpoints.velocity
-    return (nodes[1:] - nodes[:-1]) / period_s, (velocity[1:] - velocity[:-1]) / period_s
+@array_kernel
+def held_acceleration(velocity: float, next_velocity: float, period_s: float) -> float:
+    """The acceleration that belongs to the step between two setpoints; elementwise of arrays."""
+    return (next_velocity - velocity) / period_s

@@ -4,24 +4,34 @@ import dataclasses
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 from mujoco.rollout import Rollout
 
-from twin.columns import join
 from twin.machine.description.config import Machine
 from twin.machine.model.drives import feedforward_name, integral_name
 from twin.machine.model.model import drives
 from twin.machine.model.timers import switch_off_timers
 from twin.machine.model.transmission import give_name, has_give
-from twin.machine.simulation.sampling import held_commands, polyline_nodes
+from twin.machine.simulation.drive_kernels import (
+    Drives,
+    Points,
+    all_finite,
+    hold_controls,
+    hold_pushes,
+    read_states,
+)
+from twin.machine.simulation.sampling import polyline_node
 from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.units import kv_per_second
 
-_STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
+_STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
 _CONTROL = int(mujoco.mjtState.mjSTATE_CTRL)
 _PUSH = int(mujoco.mjtState.mjSTATE_QFRC_APPLIED)
+_FEW = 8
+"""Steps that are sooner made one by one than by calling ``mujoco.rollout``."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -38,7 +48,7 @@ class Stand:
 
 
 class Servo:
-    """The drives and what they move, stepped through ``mujoco.rollout`` from one setpoint to the next.
+    """The drives and what they move, stepped from one setpoint to the next.
 
     It is carried over from chunk to chunk by the state, the solver's warm start and the last
     setpoint, so that how setpoints are cut into chunks changes no bit of the motion.
@@ -54,28 +64,20 @@ class Servo:
         self._data = mujoco.MjData(model)
         loops = drives(machine, model)
         self._position_gain = np.array([loop.position_gain for loop in loops])
-        self._velocity_gain = np.array([loop.velocity_gain for loop in loops])
-        self._moved = np.array([loop.moved for loop in loops])
         axes = [machine.axis(name) for name in machine.axes.names]
         joints = [model.joint(axis.joint) for axis in axes]
         self._qpos = np.array([int(joint.qposadr[0]) for joint in joints])
         self._dof = np.array([int(joint.dofadr[0]) for joint in joints])
         servos = [model.actuator(name).id for name in machine.axes.names]
         forces = [model.actuator(feedforward_name(name)).id for name in machine.axes.names]
-        self._velocity_input = model.actuator_ctrladr[servos]
-        self._force_input = model.actuator_ctrladr[forces]
         self._setpoint_state = model.actuator_actadr[servos]
         self._integrates = np.flatnonzero([loop.integral_gain > 0 for loop in loops])
         integral = [
             model.actuator(integral_name(machine.axes.names[index])).id
             for index in self._integrates
         ]
-        self._position_input = model.actuator_ctrladr[integral]
         self._integral_state = model.actuator_actadr[integral]
         self._integral_gain = np.array([loop.integral_gain for loop in loops])
-        self._trail = np.array(
-            [(1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) for axis in axes]
-        )
         self._gives = np.flatnonzero([has_give(axis) for axis in axes])
         give = [model.joint(give_name(axes[index])) for index in self._gives]
         self._give_qpos = np.array([int(joint.qposadr[0]) for joint in give], np.int64)
@@ -84,11 +86,47 @@ class Servo:
         self._stiffness = model.tendon_stiffness[walls]
         self._half_gap = model.tendon_lengthspring[walls, 1]
         self._scale = machine.joint_scale
-        self._velocity_share = np.array([axis.velocity_feedforward for axis in axes])
-        self._limit = np.array([axis.force_limit or np.inf for axis in axes])
-        self._acceleration_share = np.array([axis.acceleration_feedforward for axis in axes])
         self._constant = np.array([axis.constant_force for axis in axes])
-        self._last: Setpoints | None = None
+        everywhere = len(axes)
+        joined = 1 + model.nq
+        self._drives = Drives(
+            period=self._period,
+            scale=self._scale,
+            position_gain=self._position_gain,
+            velocity_gain=np.array([loop.velocity_gain for loop in loops]),
+            integral_gain=self._integral_gain,
+            velocity_told=np.array(
+                [
+                    axis.velocity_feedforward * loop.velocity_gain
+                    for axis, loop in zip(axes, loops, strict=True)
+                ]
+            ),
+            acceleration_told=np.array(
+                [
+                    axis.acceleration_feedforward * loop.moved
+                    for axis, loop in zip(axes, loops, strict=True)
+                ]
+            ),
+            trail=np.array(
+                [(1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) for axis in axes]
+            ),
+            limit=np.array([axis.force_limit or np.inf for axis in axes]),
+            constant=self._constant,
+            velocity_input=_numbers(everywhere, slice(None), model.actuator_ctrladr[servos]),
+            force_input=_numbers(everywhere, slice(None), model.actuator_ctrladr[forces]),
+            position_input=_numbers(everywhere, self._integrates, model.actuator_ctrladr[integral]),
+            qpos=1 + self._qpos,
+            qvel=joined + self._dof,
+            dof=self._dof,
+            give_qpos=_numbers(everywhere, self._gives, 1 + self._give_qpos),
+            give_qvel=_numbers(everywhere, self._gives, joined + self._give_dof),
+            give_dof=_numbers(everywhere, self._gives, self._give_dof),
+            integral=_numbers(
+                everywhere, self._integrates, joined + model.nv + self._integral_state
+            ),
+        )
+        self._ctrl, self._pushed = self._data.ctrl, self._data.qfrc_applied
+        self._warned = self._data.warning.number
         self._state = np.zeros(0)
         self._states = np.zeros((0, 0))
         self._chunk: Setpoints | None = None
@@ -97,8 +135,8 @@ class Servo:
     @property
     def last(self) -> Setpoints:
         """The setpoint that the machine has come to, one row."""
-        assert self._last is not None, "the machine has not followed anything"
-        return self._last
+        assert self._chunk is not None, "the machine has not followed anything"
+        return self._chunk[-1:]
 
     def follow(self, chunk: Setpoints, load: FloatArray | None = None) -> Samples:
         """Step through one chunk and give its samples.
@@ -112,23 +150,29 @@ class Servo:
         Raises:
             SimulationError: MuJoCo warned, or a setpoint is not finite.
         """
-        if not all(
-            np.isfinite(v).all() for v in (chunk.position, chunk.velocity, chunk.acceleration)
-        ):
+        points = _points(chunk)
+        if not all_finite(points):
             raise SimulationError("a setpoint is not a finite number")
-        if self._last is None:
+        if self._chunk is None:
             self._begin(chunk)
             after = None if load is None else load[1:]
-            states = np.concatenate([self._state[None], self._roll(chunk, after)])
+            first = Points(*(column[:1] for column in points))
+            rest = Points(*(column[1:] for column in points))
+            states = np.concatenate([self._state[None], self._roll(first, rest, after)])
         else:
-            states = self._roll(join([self._last, chunk]), load)
-        self._last, self._chunk, self._states = chunk[-1:], chunk, states
-        return self._samples(chunk, states)
+            states = self._roll(_points(self._chunk), points, load)
+        self._chunk, self._states = chunk, states
+        return Samples(chunk, *read_states(self._drives, points, states))
+
+    def begin_anew(self) -> None:
+        """Forget all that was followed: the next chunk is the first of all."""
+        self._last = None
+        self._warmstart = np.zeros((1, self.model.nv))
 
     def go_back(self, row: int) -> None:
         """Take back what came after a row of the last chunk."""
         assert self._chunk is not None
-        self._last = self._chunk[row : row + 1]
+        self._chunk = self._chunk[row : row + 1]
         self._state = self._states[row].copy()
         self._warm_up()
 
@@ -142,7 +186,7 @@ class Servo:
         data.act[self._setpoint_state] = stand
         mujoco.mj_getState(model, data, self._state, _STATE)
         still = np.zeros((1, len(stand)))
-        self._last = dataclasses.replace(
+        self._chunk = dataclasses.replace(
             self.last, position=(stand / self._scale)[None], velocity=still, acceleration=still
         )
         self._warm_up()
@@ -165,7 +209,7 @@ class Servo:
         self._carry(np.where(np.isnan(before.integral), self._load(), before.integral))
         self._state = np.zeros(mujoco.mj_stateSize(self.model, _STATE))
         mujoco.mj_getState(self.model, data, self._state, _STATE)
-        self._last = other.last
+        self._chunk = other.last
         self._warm_up()
 
     def stand(self) -> "Stand":
@@ -215,7 +259,9 @@ class Servo:
         mujoco.mj_resetData(model, data)
         rest = chunk.position[0] * self._scale
         data.qpos[self._qpos] = rest
-        data.act[self._setpoint_state] = polyline_nodes(chunk[:1], self._period)[0] * self._scale
+        data.act[self._setpoint_state] = (
+            polyline_node(chunk.position[0], chunk.acceleration[0], self._period) * self._scale
+        )
         mujoco.mj_forward(model, data)
         carried = self._carried(self._give_dof, self._gives)
         data.qpos[self._qpos] = rest - self._carry(self._load())
@@ -223,89 +269,64 @@ class Servo:
         self._state = np.zeros(mujoco.mj_stateSize(model, _STATE))
         mujoco.mj_getState(model, data, self._state, _STATE)
 
-    def _roll(self, setpoints: Setpoints, load: FloatArray | None) -> FloatArray:
-        steps = len(setpoints) - 1
+    def _roll(self, past: Points, points: Points, load: FloatArray | None) -> FloatArray:
+        """Step from the last of some setpoints to others; the states there, shape (n, width)."""
+        steps = len(points.position)
         if steps == 0:
             return np.zeros((0, len(self._state)))
-        self._data.warning.number[:] = 0
-        controls, held = self._controls(setpoints), _CONTROL
+        model, data = self.model, self._data
+        controls, held = hold_controls(self._drives, past, points, model.nu), _CONTROL
+        pushes = None
         if load is None and self._constant.any():
             load = np.zeros((steps, len(self._dof)))
         if load is not None:
-            controls, held = np.hstack([controls, self._pushes(load)]), _CONTROL | _PUSH
-        with Rollout(nthread=0) as rollout:
-            states, _ = rollout.rollout(
-                self.model, self._data, self._state[None], controls[None],
-                control_spec=held, initial_warmstart=self._warmstart,
-            )  # fmt: skip
-        self._data.qfrc_applied[:] = 0.0
-        self._refuse_warnings()
-        self._state = states[0, -1].copy()
-        self._warmstart = self._data.qacc_warmstart[None].copy()
-        return states[0]
+            pushes, held = hold_pushes(self._drives, load, model.nv), _CONTROL | _PUSH
+        self._warned[:] = 0
+        if steps <= _FEW:
+            states = self._step_one_by_one(controls, pushes)
+        else:
+            with Rollout(nthread=0) as rollout:
+                rolled, _ = rollout.rollout(
+                    model, data, self._state[None],
+                    (controls if pushes is None else np.hstack([controls, pushes]))[None],
+                    control_spec=held, initial_warmstart=self._warmstart,
+                )  # fmt: skip
+            states = rolled[0]
+        self._pushed[:] = 0.0
+        if self._warned.any():
+            self._refuse_warnings()
+        self._state = states[-1].copy()
+        self._warmstart = data.qacc_warmstart[None].copy()
+        return states
+
+    def _step_one_by_one(self, controls: FloatArray, pushes: FloatArray | None) -> FloatArray:
+        """What ``mujoco.rollout`` does, to the last bit."""
+        model, data = self.model, self._data
+        states = np.zeros((len(controls), len(self._state)))
+        mujoco.mj_setState(model, data, self._state, _STATE)
+        data.qacc_warmstart[:] = self._warmstart[0]
+        for row, state in enumerate(states):
+            self._ctrl[:] = controls[row]
+            if pushes is not None:
+                self._pushed[:] = pushes[row]
+            mujoco.mj_step(model, data)
+            mujoco.mj_getState(model, data, state, _STATE)
+        return states
 
     def _refuse_warnings(self) -> None:
-        raised = np.flatnonzero(self._data.warning.number)
-        if len(raised):
-            names = ", ".join(mujoco.mjtWarning(int(code)).name for code in raised)
-            raise SimulationError(f"MuJoCo warned during the simulation: {names}")
-
-    def _controls(self, setpoints: Setpoints) -> FloatArray:
-        """Controls to hold between consecutive setpoints, shape (n - 1, nu), SI."""
-        velocity, acceleration = held_commands(setpoints, self._period)
-        controls = np.zeros((len(velocity), self.model.nu))
-        controls[:, self._velocity_input] = velocity * self._scale
-        controls[:, self._force_input] = self._told(velocity, acceleration)
-        if len(self._integrates):
-            nodes = polyline_nodes(setpoints, self._period)
-            meant = ((nodes[1:] + nodes[:-1]) / 2 - self._trail * velocity) * self._scale
-            controls[:, self._position_input] = meant[:, self._integrates]
-        return controls
-
-    def _pushes(self, load: FloatArray) -> FloatArray:
-        """Load and constant forces as generalised forces, (n, nv); they act beyond what gives."""
-        pushes = np.zeros((len(load), self.model.nv))
-        pushes[:, self._dof] = (load + self._constant) * np.sign(self._scale)
-        pushes[:, self._give_dof] = pushes[:, self._dof[self._gives]]
-        return pushes
-
-    def _told(self, velocity: FloatArray, acceleration: FloatArray) -> FloatArray:
-        """Force that the drives add in advance [N or N m]."""
-        return self._scale * (
-            self._velocity_share * self._velocity_gain * velocity
-            + self._acceleration_share * self._moved * acceleration
+        names = ", ".join(
+            mujoco.mjtWarning(int(code)).name for code in np.flatnonzero(self._warned)
         )
+        raise SimulationError(f"MuJoCo warned during the simulation: {names}")
 
-    def _samples(self, setpoint: Setpoints, states: FloatArray) -> Samples:
-        motor = states[:, 1 + self._qpos] / self._scale
-        speed = states[:, 1 + self.model.nq + self._dof] / self._scale
-        force = self._force(setpoint, motor, speed, states)
-        position, velocity = motor.copy(), speed.copy()
-        position[:, self._gives] += states[:, 1 + self._give_qpos] / self._scale[self._gives]
-        velocity[:, self._gives] += (
-            states[:, 1 + self.model.nq + self._give_dof] / self._scale[self._gives]
-        )
-        return Samples(setpoint, position, velocity, force)
 
-    def _force(
-        self, setpoint: Setpoints, position: FloatArray, velocity: FloatArray, states: FloatArray
-    ) -> FloatArray:
-        """What the drives push with around the instants of the samples, within their limits.
+def _points(setpoints: Setpoints) -> Points:
+    """What the drives are told of setpoints."""
+    return Points(setpoints.position, setpoints.velocity, setpoints.acceleration)
 
-        Taken from the setpoint itself: at a corner of the polyline that is drawn through it the
-        push is off by kp h²/12 a for a part of the step.
-        """
-        lag = (setpoint.position - position) * self._scale
-        force = (
-            self._position_gain * lag
-            - self._velocity_gain * velocity * self._scale
-            + self._told(setpoint.velocity, setpoint.acceleration)
-        )
-        first = 1 + self.model.nq + self.model.nv
-        left_behind = states[:, first + self._integral_state]
-        # Within a step the axis passes under the held input: the integral bulges by V h²/12.
-        left_behind = (
-            left_behind + self._period**2 / 12 * (velocity * self._scale)[:, self._integrates]
-        )
-        force[:, self._integrates] += self._integral_gain[self._integrates] * left_behind
-        return np.clip(force * np.sign(self._scale), -self._limit, self._limit)
+
+def _numbers(count: int, axes: IntArray | slice, numbers: npt.NDArray[np.integer]) -> IntArray:
+    """Numbers of some of all axes, -1 elsewhere, shape (k,)."""
+    out = np.full(count, -1)
+    out[axes] = numbers
+    return out

@@ -10,6 +10,7 @@
 | ``rapid-into-stock`` | a rapid move cut into the stock |
 | ``spindle-off`` | a feed cut into the stock with the spindle standing |
 | ``emergency-stop`` | an operator pressed the button |
+| ``control-stop`` | a real control that drives the twin stopped by itself, or was killed |
 """
 
 import dataclasses
@@ -26,6 +27,7 @@ AlarmCode = Literal[
     "rapid-into-stock",
     "spindle-off",
     "emergency-stop",
+    "control-stop",
 ]
 
 

@@ -26,6 +26,7 @@ import numpy as np
 from twin.machine.description.config import Machine
 from twin.machine.model.tool_shape import COLLISION_GROUP, CUTTER, CUTTING_PARTS, TOOL_SIDE
 from twin.machine.watching.alarms import Alarm, NearMiss
+from twin.machine.watching.plane_kernels import PlaneColumns, find_suspects, least_clearance
 from twin.machine.watching.relative_motion import RelativeMotion
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
@@ -76,47 +77,31 @@ class _Plane(NamedTuple):
 
 
 class _Planes:
-    """The planes of all p pairs as columns."""
+    """The planes of all p pairs, of which t tracks tell."""
 
     def __init__(self, reach: FloatArray, track: IntArray, width: int) -> None:
-        self.clearance = np.full(len(reach), -np.inf)
-        self.normal = np.zeros((len(reach), 3))
-        self.place = np.zeros((len(reach), width))
-        self.slack = np.zeros(len(reach))
-        self.reach = reach
+        count = len(reach)
         self.track = track
+        self.columns = PlaneColumns(
+            np.full(count, -np.inf), np.zeros((count, 3)), np.zeros((count, width)),
+            reach, np.zeros(count), track,
+        )  # fmt: skip
 
     def __getitem__(self, pair: int) -> _Plane:
+        clearance, normal, place, reach, slack, _ = self.columns
         return _Plane(
-            float(self.clearance[pair]),
-            self.normal[pair].copy(),
-            self.place[pair].copy(),
-            float(self.reach[pair]),
-            float(self.slack[pair]),
-        )
+            float(clearance[pair]), normal[pair].copy(), place[pair].copy(),
+            float(reach[pair]), float(slack[pair]),
+        )  # fmt: skip
 
     def __setitem__(self, pair: int, plane: _Plane) -> None:
-        self.clearance[pair], self.normal[pair] = plane.clearance, plane.normal
-        self.place[pair], self.slack[pair] = plane.place, plane.slack
+        clearance, normal, place, _, slack, _ = self.columns
+        clearance[pair], normal[pair], place[pair] = plane.clearance, plane.normal, plane.place
+        slack[pair] = plane.slack
 
-    def bound_of_boxes(self, pairs: IntArray, low: FloatArray, high: FloatArray) -> FloatArray:
-        """Clearance that their planes leave wherever the tracks go within boxes.
-
-        Args:
-            pairs: Numbers of m pairs.
-            low: Lowest values of each of t tracks, shape (t, w).
-            high: Highest values, shape (t, w).
-
-        Returns:
-            Shape (m,) [mm].
-        """
-        track, place, normal = self.track[pairs], self.place[pairs], self.normal[pairs]
-        below, above = low[track] - place, high[track] - place
-        farthest = np.maximum(-below, above)
-        left = np.minimum(normal * below[:, :3], normal * above[:, :3]).sum(axis=1)
-        left += self.clearance[pairs]
-        left -= self.reach[pairs] * farthest[:, 3:].sum(axis=1)
-        return left - self.slack[pairs] * farthest[:, :3].sum(axis=1)
+    def forget(self) -> None:
+        """There are none: the axes have moved."""
+        self.columns.clearance[:] = -np.inf
 
 
 class Clearance:
@@ -148,6 +133,7 @@ class Clearance:
             np.array([track for _, track, _ in followed], np.int64),
             3 + machine.axes.kinds.count("rotary"),
         )
+        self._all = np.arange(len(self._pairs))
         self._threshold = np.full(len(self._pairs), -TOUCH)
         cuts = [model.geom(one).name in CUTTING_PARTS for one, _ in self._pairs]
         self._near = np.where(cuts, -np.inf, self._worth_reporting)
@@ -169,7 +155,7 @@ class Clearance:
     def begin(self) -> None:
         """Look anew at the next sample: the axes have moved since the last one."""
         self._last = None
-        self._planes.clearance[:] = -np.inf
+        self._planes.forget()
 
     def acknowledge(self, position: FloatArray) -> None:
         """Raise again only what gets worse than it is: what has met may be driven apart.
@@ -191,29 +177,24 @@ class Clearance:
             position, known = np.concatenate([self._last, position]), 1
         self._last = position[-1:].copy()
         tracks = self._motion.tracks(position)
-        way = _Way(samples, position, tracks, known)
-        suspects = self._suspects(np.arange(len(self._pairs)), tracks, slice(known, None))
+        suspects = self._suspects(self._all, tracks, known, len(position))
         if not len(suspects):
             return None
+        way = _Way(samples, position, tracks, known)
         for start in range(known, len(position), _BLOCK):
             block = slice(start, min(start + _BLOCK, len(position)))
-            near = self._suspects(suspects, tracks, block).tolist()
+            near = self._suspects(suspects, tracks, block.start, block.stop).tolist()
             met = [(found, pair) for pair in near if (found := self._along(pair, way, block))]
             if met:
                 (row, depth), pair = min(met)
                 return self._alarm(way, row, depth, pair)
         return None
 
-    def _suspects(self, pairs: IntArray, tracks: FloatArray, rows: slice) -> IntArray:
+    def _suspects(self, pairs: IntArray, tracks: FloatArray, first: int, last: int) -> IntArray:
         """Of some pairs those that their planes do not clear of the box around some samples."""
-        low, high = tracks[:, :, rows].min(axis=2), tracks[:, :, rows].max(axis=2)
-        return pairs[self._planes.bound_of_boxes(pairs, low, high) < self._limits()[pairs]]
-
-    def _limits(self) -> FloatArray:
-        """Clearance below which each pair is measured [mm]; what was acknowledged always is."""
-        limits = np.maximum(self._near, self._threshold)
-        limits[self._threshold < -TOUCH] = np.inf
-        return limits
+        return find_suspects(
+            self._planes.columns, pairs, tracks, first, last, self._near, self._threshold, -TOUCH
+        )
 
     def _along(self, pair: int, way: "_Way", block: slice) -> tuple[int, float] | None:
         """Follow a pair along a block of samples.
@@ -223,7 +204,7 @@ class Clearance:
         """
         track, row = way.tracks[self._planes.track[pair]], block.start
         while row < block.stop:
-            limit = self._limits()[pair]
+            limit = least_clearance(self._near[pair], self._threshold[pair], -TOUCH)
             close = self._planes[pair].bound(track[:, row : block.stop]) < limit
             ahead = int(np.argmax(close))
             if not close[ahead]:
@@ -302,8 +283,10 @@ class Clearance:
             frame = data.xmat[model.geom_bodyid[fixed]].reshape(3, 3)
             normal = frame.T @ apart / np.copysign(np.linalg.norm(apart), distance)
             slack = 0.0
-        place = np.zeros(self._planes.place.shape[1]) if place is None else place
-        return clearance, _Plane(clearance, normal, place, float(self._planes.reach[pair]), slack)
+        place = np.zeros(self._planes.columns.place.shape[1]) if place is None else place
+        return clearance, _Plane(
+            clearance, normal, place, float(self._planes.columns.reach[pair]), slack
+        )
 
     def _names(self, pair: int) -> tuple[str, str]:
         one, two = (self._model.geom(geom).name for geom in self._pairs[pair])

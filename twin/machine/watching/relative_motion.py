@@ -1,19 +1,19 @@
-"""How things on a machine move as seen from one another: the kinematics of many samples at once.
+"""How things on a machine move as seen from one another.
 
 Axes slide and turn; whatever hangs on them moves rigidly. Of two things the clearance needs only how
 a point of the one goes in the frame of the other, and by what angle the two turn against each other.
 """
 
 import dataclasses
+import itertools
 
 import mujoco
 import numpy as np
 
+from twin.machine.watching.track_kernels import Chain, Followed, follow_tracks
 from twin.nc.canonical import FloatArray
 from twin.units import MM
 
-_STILL = 1e-9
-"""Turning of an axis that stands: it trembles by rounding [rad]."""
 _PARALLEL = 1e-9
 """Sine of an angle below which two directions are parallel, and length below which a point lies on
 an axis [m]."""
@@ -63,11 +63,14 @@ class RelativeMotion:
         hinge = mujoco.mjtJoint.mjJNT_HINGE
         self._hinge = [mujoco.mjtJoint(model.jnt_type[joint]) == hinge for joint in joints]
         self.seen: list[Seen] = []
+        self._chain = self._carriers()
+        self._followed: Followed | None = None
 
     def follow(self, seen: Seen) -> int:
         """Follow something; return the number of its track."""
         if seen not in self.seen:
             self.seen.append(seen)
+            self._followed = None
         return self.seen.index(seen)
 
     def view(self, geom: int, frame: int) -> Seen:
@@ -115,73 +118,46 @@ class RelativeMotion:
             stands [rad] if it turns the two against each other, else 0; shape
             (t, 3 + rotary axes, n).
         """
-        joint = np.ascontiguousarray((position * self._scale).T)
+        if self._followed is None:
+            self._followed = self._points()
+        return follow_tracks(self._chain, self._followed, position * self._scale)
+
+    def _points(self) -> Followed:
+        """What is followed, as columns."""
         rotary = [axis for axis, hinge in enumerate(self._hinge) if hinge]
-        poses: _Poses = {}
-        found = np.zeros((len(self.seen), 3 + len(rotary), len(position)))
-        for track, seen in zip(found, self.seen, strict=True):
-            origin, turn = self._pose(seen.frame, joint, poses)
-            place, own = self._pose(seen.body, joint, poses)
-            offset = place + _applied(own, np.array(seen.point)[:, None]) - origin
-            track[:3] = _applied(turn.swapaxes(0, 1), offset) / MM
-            for axis in seen.turning:
-                track[3 + rotary.index(axis)] = joint[axis]
-        return found
+        return Followed(
+            np.array([seen.frame for seen in self.seen], np.int64),
+            np.array([seen.body for seen in self.seen], np.int64),
+            np.array([seen.point for seen in self.seen], float).reshape(-1, 3),
+            np.array(
+                [[axis if axis in seen.turning else -1 for axis in rotary] for seen in self.seen],
+                np.int64,
+            ).reshape(-1, len(rotary)),
+        )
 
-    def _pose(self, body: int, joint: FloatArray, poses: "_Poses") -> tuple[FloatArray, FloatArray]:
-        """Position and orientation of a body, shapes (3, m) and (3, 3, m); m is 1 while it rests."""
-        if body not in poses:
-            poses[body] = self._moved(body, joint, poses)
-        return poses[body]
-
-    def _moved(
-        self, body: int, joint: FloatArray, poses: "_Poses"
-    ) -> tuple[FloatArray, FloatArray]:
+    def _carriers(self) -> Chain:
+        """The bodies of the model with the joints of the axes."""
         model = self._model
-        if body == 0:
-            return np.zeros((3, 1)), np.eye(3)[:, :, None]
-        place, turn = self._pose(int(model.body_parentid[body]), joint, poses)
-        place = place + _applied(turn, model.body_pos[body][:, None])
-        turn = _product(turn, _matrix(model.body_quat[body])[:, :, None])
-        for axis, number in enumerate(self._joints):
-            if model.jnt_bodyid[number] != body:
-                continue
-            along = model.jnt_axis[number]
-            moved = joint[axis] - model.qpos0[model.jnt_qposadr[number]]
-            if not self._hinge[axis]:
-                place = place + _applied(turn, along[:, None]) * moved
-                continue
-            anchor = model.jnt_pos[number][:, None]
-            if np.ptp(moved) < _STILL:
-                moved = moved[:1]
-            place = place + _applied(turn, anchor)
-            turn = _product(turn, _turned(along, moved))
-            place = place - _applied(turn, anchor)
-        return place, turn
-
-
-_Poses = dict[int, tuple[FloatArray, FloatArray]]
-
-
-def _applied(turn: FloatArray, vector: FloatArray) -> FloatArray:
-    """Rotations (3, 3, m) applied to vectors (3, m)."""
-    return (turn * vector).sum(axis=1)
-
-
-def _product(one: FloatArray, two: FloatArray) -> FloatArray:
-    """Rotations (3, 3, m) one after another."""
-    return (one[:, :, None] * two).sum(axis=1)
+        of_body = [
+            [axis for axis, joint in enumerate(self._joints) if model.jnt_bodyid[joint] == body]
+            for body in range(model.nbody)
+        ]
+        axes = list(itertools.chain(*of_body))
+        joints = [self._joints[axis] for axis in axes]
+        return Chain(
+            model.body_parentid.astype(np.int64),
+            model.body_pos.copy(),
+            np.array([_matrix(quaternion) for quaternion in model.body_quat]),
+            np.cumsum([0, *map(len, of_body)]),
+            np.array(axes, np.int64),
+            np.array([self._hinge[axis] for axis in axes], np.bool_),
+            model.jnt_axis[joints],
+            model.jnt_pos[joints],
+            model.qpos0[model.jnt_qposadr[joints]],
+        )
 
 
 def _matrix(quaternion: FloatArray) -> FloatArray:
     matrix = np.zeros(9)
     mujoco.mju_quat2Mat(matrix, quaternion)
     return matrix.reshape(3, 3)
-
-
-def _turned(axis: FloatArray, angle: FloatArray) -> FloatArray:
-    """Rotations about an axis (Rodrigues), shape (3, 3, n)."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    once, twice = cross[:, :, None], (cross @ cross)[:, :, None]
-    return np.eye(3)[:, :, None] + np.sin(angle) * once + (1.0 - np.cos(angle)) * twice

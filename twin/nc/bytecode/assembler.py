@@ -1,6 +1,6 @@
 """Writes one block as bytecode: the vocabulary in which dialects say what their blocks do."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import MOST_ROWS, MOST_STORES, Bytecode, number_of_location
@@ -45,7 +45,7 @@ class Assembler:
         token_kinds: Mapping[str, int],
         functions: tuple[Functions, Functions, Functions],
         number_kind: int,
-        live: frozenset[str],
+        live: Container[str],
     ) -> None:
         """Write into a table.
 

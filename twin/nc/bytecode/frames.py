@@ -8,7 +8,7 @@ import numpy as np
 from twin.nc.bytecode.bytecode import MOST_STORES, MOST_VALUES
 from twin.nc.bytecode.registers import MOST_WORDS, State
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.path.contour_registers import Contour
+from twin.nc.path.compensation.contour import Contour
 
 LINE, PART, FURTHEST, INSTRUCTION_BUDGET, DEPTH, CALLS, BLOCKS, MADE = range(8)
 """Places in the progress: line and part that come next, from 0; the furthest place that was run;

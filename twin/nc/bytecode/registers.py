@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from twin.compilation.compilable import compilable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.path.drilling_cycle import VALUES
+from twin.nc.path.rows import Rows, copy, copy_rows
 
 (
     INTERPOLATION,
@@ -172,32 +174,6 @@ class State(NamedTuple):
     target: FloatArray
 
 
-class Rows(NamedTuple):
-    """Room for the moves of a run, as ``MoveColumns`` keeps them.
-
-    Attributes:
-        codes: Shape (n, 5).
-        values: Shape (n, 11).
-        positions: Start, end and display, shape (n, 3, k).
-        events: Moves before each event, its line, kind and number, shape (m, 4).
-        event_values: What it counts, NaN for nothing, shape (m,).
-    """
-
-    codes: IntArray
-    values: FloatArray
-    positions: FloatArray
-    events: IntArray
-    event_values: FloatArray
-
-    def first(self, count: int) -> "Rows":
-        """The first moves, as columns again."""
-        return self._replace(
-            codes=self.codes[:count],
-            values=self.values[:count],
-            positions=self.positions[:count],
-        )
-
-
 class Machine(NamedTuple):
     """What blocks run on.
 
@@ -212,3 +188,24 @@ class Machine(NamedTuple):
     constants: Constants
     state: State
     rows: Rows
+
+
+@compilable
+def copy_active_codes(
+    modal: FloatArray, active_codes: IntArray, to_modal: FloatArray, to_active_codes: IntArray
+) -> None:
+    """Copy what is in force."""
+    copy(modal, to_modal)
+    copy(active_codes, to_active_codes)
+
+
+@compilable
+def copy_state(source: State, target: State) -> None:
+    """Copy every column of a state."""
+    copy_active_codes(source.modal, source.active_codes, target.modal, target.active_codes)
+    copy(source.programmed, target.programmed)
+    copy(source.part, target.part)
+    copy(source.registers, target.registers)
+    copy(source.total, target.total)
+    copy_rows(source.shifts, target.shifts)
+    target.event_count[0] = source.event_count[0]

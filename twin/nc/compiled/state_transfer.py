@@ -34,7 +34,7 @@ from twin.nc.canonical import IntArray
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import SavedModal
 from twin.nc.control.program_counter import CallFrame, Progress
-from twin.nc.path.contour_registers import Contour
+from twin.nc.path.compensation.contour import Contour
 from twin.nc.text.blocks import Location
 
 
@@ -94,8 +94,8 @@ class StateTransfer:
 
     @property
     def gone_on(self) -> bool:
-        """The run has gone past a block or a line."""
-        return self.blocks > 0 or self.line != self._begin.location.line
+        """The run has gone past a block or a line, or has let go a move that compensation held."""
+        return self.blocks > 0 or self.made > 0 or self.line != self._begin.location.line
 
     def give_back(self) -> None:
         """The control goes on from where the run has come to; its codes are those of the begin."""

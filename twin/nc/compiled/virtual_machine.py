@@ -38,7 +38,6 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.bytecode.token_kinds import UNSUPPORTED
 from twin.nc.canonical import FloatArray
-from twin.nc.compiled.contour_columns import fill, new_contour, result_of
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.entries import Kernels, hot, page_columns
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
@@ -47,10 +46,11 @@ from twin.nc.compiled.state_transfer import StateTransfer, put_into_force
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import FEED_FACTORS
 from twin.nc.geometry.planes import PLANE_ORDER
-from twin.nc.path.contour_registers import Row
+from twin.nc.path.compensation.contour import new_contour
 from twin.nc.path.drilling_cycle import most_acts, no_values
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import CHUNK
+from twin.nc.path.rows import Row
 from twin.nc.text.lines import Page
 
 _PLANES = np.array([plane.axes for plane in PLANE_ORDER])
@@ -90,7 +90,6 @@ class VirtualMachine:
         self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
         self._radii = np.array([tool.radius for tool in table.values()])
         self._hole = np.zeros((4, most_acts(MOST_STOPS)))
-        self._contour = new_contour(axes)
         self._scratch = new_scratch(self._state())
         self._pause = 1
         self._wait = 0
@@ -106,9 +105,11 @@ class VirtualMachine:
         room = CHUNK - len(control.path)
         if room <= 0 or not self._may_run():
             return False
+        contour = control.path.begin_rows()
+        if contour is None:
+            return False
         state, rows = self._state(), self._rows.first(room)
-        fill(self._contour, control.path.compensation_state, control.path.position)
-        transfer = StateTransfer(control, state, self._contour)
+        transfer = StateTransfer(control, state, contour)
         why = self._run(state, rows, transfer)
         self.full = why == FULL and room - transfer.made < CHUNK
         worthwhile = transfer.blocks >= _WORTHWHILE
@@ -139,7 +140,8 @@ class VirtualMachine:
         from twin.compilation.cache import is_compiled
 
         state = self._state()
-        transfer = StateTransfer(self._control, state, self._contour)
+        contour = new_contour(len(self._control.settings.axes))
+        transfer = StateTransfer(self._control, state, contour)
         arguments = self._arguments(state, self._rows, self._constants(), transfer)
         return is_compiled(hot().run_program, arguments)
 
@@ -165,7 +167,6 @@ class VirtualMachine:
             and modal.plane in PLANE_ORDER
             and modal.feed_mode in FEED_FACTORS
             and modal.correct_center
-            and control.path.transferable
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)
             and not (control.axis_limits or control.axis_accelerations)
@@ -258,9 +259,8 @@ class VirtualMachine:
         event_count = int(state.event_count[0])
         events = EventRows(rows.events[:event_count], rows.event_values[:event_count])
         moves = Row(rows.codes, rows.values, rows.positions)
-        result, placed = result_of(self._contour, moves, events)
-        control.path.add_rows(moves, placed, result)
-        control.resume_at(state.programmed.tolist(), state.part.tolist(), result.latest)
+        latest = control.path.add_rows(moves, events)
+        control.resume_at(state.programmed.tolist(), state.part.tolist(), latest)
 
 
 def compiles_beside(machine: VirtualMachine) -> bool:

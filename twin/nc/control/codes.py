@@ -42,7 +42,7 @@ class GCode:
         sets: What it puts into force.
         action: Done before the block moves.
         perform: Done in place of a move.
-        takes: Addresses that ``perform`` wants although they have a modal meaning elsewhere.
+        takes: Addresses that the code wants although they have a meaning of their own elsewhere.
         after: Done when the block has moved.
         once: What it sets holds for its block only.
         alone: No other word may stand in its block.
@@ -63,6 +63,11 @@ class GCode:
     refused: str = ""
     compiler: Compiler | None = None
     ground: Ground = "decision"
+
+    @property
+    def refusal(self) -> str:
+        """Meaning and reason of a code that is refused."""
+        return f"({self.meaning}): {self.refused}"
 
     @property
     def begins_cycle(self) -> bool:

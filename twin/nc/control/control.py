@@ -10,6 +10,7 @@ from twin.nc.control.words import ControlWords
 from twin.nc.geometry.planes import Plane, Vector, cross
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.segments import direction_of
+from twin.nc.text.blocks import Block
 
 LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
@@ -203,6 +204,10 @@ class Control(ControlWords):
     def reframed(self) -> None:
         """The frame has changed: see where it stands now."""
         self.programmed = self.frame.to_programmed(self.part)
+
+    @abc.abstractmethod
+    def run(self, block: Block) -> None:
+        """Run one block, also one that stands within a statement."""
 
     @abc.abstractmethod
     def place_switches(self, length: float) -> None:

@@ -1,7 +1,7 @@
 """What a dialect declares: its codes, words, syntax, start state and the decisions behind them."""
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from pathlib import Path
 
 from twin.nc.control.block_compiler import BlockCompiler
@@ -124,7 +124,7 @@ class Dialect:
     given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
         given.get(name)
     )
-    live_variables: frozenset[str] = frozenset()
+    live_variables: Container[str] = frozenset()
     place_switches: Callable[[Control, float], None] | None = None
     library: Callable[[Source, Path], Source] | None = None
     prepare: Action | None = None
@@ -135,3 +135,8 @@ class Dialect:
     disturbed: Callable[[Control], bool] | None = None
     registers: Callable[[Control], Mapping[int, float]] = lambda _control: {}
     take_registers: Callable[[Control, list[float]], None] = lambda _control, _values: None
+
+    def refusal(self, code: float) -> str | None:
+        """Why a G code that the control knows is refused, given its number; None: it is not."""
+        declared = self.g.get(int(code)) if code == int(code) else None
+        return None if declared is None or not declared.refused else declared.refusal

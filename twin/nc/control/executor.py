@@ -149,7 +149,7 @@ class Executor(Control):
             address = word.address
             if address == "G":
                 codes.append((word, self._g_code(word)))
-            elif address == "M":
+            elif address == "M" and not self._takes_m(block):
                 functions.append((word, self._m_code(word)))
             elif address in dialect.series and self._has_switch(block):
                 if isinstance(word.value, Expression):
@@ -164,6 +164,12 @@ class Executor(Control):
         if len(functions) > 1:
             self._check_functions(functions)
         return functions
+
+    def _takes_m(self, block: Block) -> bool:
+        """Whether M is a word of one of the block's G codes, and no machine function."""
+        numbers = (word.value for word in block.words if word.address == "G")
+        codes = (self.dialect.g.get(integer_of(n)) for n in numbers if isinstance(n, float))
+        return any(code is not None and "M" in code.takes for code in codes)
 
     def _has_switch(self, block: Block) -> bool:
         return any(word.address == self.dialect.series[0] for word in block.words)
@@ -181,7 +187,7 @@ class Executor(Control):
                 hint=f"known: {known}" if instead is None else instead,
             )
         if code.refused:
-            self.fail("unsupported-g", f"{word.text} ({code.meaning}): {code.refused}", word)
+            self.fail("unsupported-g", f"{word.text} {code.refusal}", word)
         return code
 
     def _m_code(self, word: Word) -> MCode:

@@ -8,9 +8,9 @@ import math
 
 from twin.compilation.compilable import compilable
 from twin.nc.geometry.arcs import Point, direction
-from twin.nc.geometry.planes import Vector
+from twin.nc.geometry.planes import Directions, Vector
 
-Matrix = tuple[Vector, Vector, Vector]
+Matrix = Directions
 IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 SMALLEST_SCALE, LARGEST_SCALE = 1e-3, 1e3

@@ -2,11 +2,52 @@
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from twin.compilation.compilable import compilable
+from twin.nc.canonical import FloatArray
 
 Vector = tuple[float, float, float]
+Directions = tuple[Vector, Vector, Vector]
+"""Abscissa, ordinate and normal of a plane."""
+
+
+@compilable
+def vector_of(column: Sequence[float] | FloatArray) -> Vector:
+    """The first three of a column's numbers."""
+    return (float(column[0]), float(column[1]), float(column[2]))
+
+
+@compilable
+def along(point: Vector, direction: Vector) -> float:
+    """A coordinate of a point, the sign of zero included."""
+    return direction[0] * point[0] + direction[1] * point[1] + direction[2] * point[2]
+
+
+@compilable
+def point_of(plane: Directions, point: Vector) -> tuple[float, float]:
+    """Abscissa and ordinate of a point."""
+    return (along(point, plane[0]), along(point, plane[1]))
+
+
+@compilable
+def world(plane: Directions, point: tuple[float, float], height: float) -> Vector:
+    """The point of X, Y and Z that a plane sees at an abscissa, an ordinate and a height."""
+    a, o, n = plane
+    return (
+        a[0] * point[0] + o[0] * point[1] + n[0] * height,
+        a[1] * point[0] + o[1] * point[1] + n[1] * height,
+        a[2] * point[0] + o[2] * point[1] + n[2] * height,
+    )
+
+
+@compilable
+def put_point(
+    plane: Directions, point: tuple[float, float], height: float, target: FloatArray
+) -> None:
+    """Put that point into the first places of a column."""
+    target[0], target[1], target[2] = world(plane, point, height)
 
 
 class Local(NamedTuple):
@@ -40,28 +81,20 @@ class Plane:
         object.__setattr__(self, "axes", columns)
 
     @property
-    def directions(self) -> tuple[Vector, Vector, Vector]:
+    def directions(self) -> Directions:
         """Abscissa, ordinate and normal."""
         return (self.abscissa, self.ordinate, self.normal)
 
     def local(self, point: Vector | list[float]) -> Local:
         """A point of X, Y, Z (further axes are ignored) seen from the plane."""
-        x, y, z = point[0], point[1], point[2]
-        a, o, n = self.abscissa, self.ordinate, self.normal
+        place = (point[0], point[1], point[2])
         return Local(
-            a[0] * x + a[1] * y + a[2] * z,
-            o[0] * x + o[1] * y + o[2] * z,
-            n[0] * x + n[1] * y + n[2] * z,
+            along(place, self.abscissa), along(place, self.ordinate), along(place, self.normal)
         )
 
     def world(self, abscissa: float, ordinate: float, height: float) -> Vector:
         """The inverse of ``local``."""
-        a, o, n = self.abscissa, self.ordinate, self.normal
-        return (
-            a[0] * abscissa + o[0] * ordinate + n[0] * height,
-            a[1] * abscissa + o[1] * ordinate + n[1] * height,
-            a[2] * abscissa + o[2] * ordinate + n[2] * height,
-        )
+        return world(self.directions, (abscissa, ordinate), height)
 
 
 def _column(direction: Vector) -> int:

@@ -31,7 +31,7 @@ def select_offset(control: Control, name: str, word: Word | None) -> None:
             word,
             hint=f"write it under [offsets.{name}]; the job has: {known}",
         )
-    _shift_by(control, values or {})
+    shift_by(control, values or {})
 
 
 def cancel_offset(control: Control) -> None:
@@ -40,17 +40,27 @@ def cancel_offset(control: Control) -> None:
     Raises:
         ProgramError: Nobody said where machine zero is.
     """
+    shift_by(control, machine_zero(control, "G53"))
+
+
+def machine_zero(control: Control, code: str) -> Mapping[str, float]:
+    """Part coordinates of machine zero by axis [mm or deg], for a code that counts from there.
+
+    Raises:
+        ProgramError: Nobody said where it is.
+    """
     zero = control.settings.machine_zero
     if zero is None:
         control.fail(
             "no-machine-zero",
-            "G53 counts from machine zero, and the job does not say where that lies",
+            f"{code} counts from machine zero, and the job does not say where that lies",
             hint="write part_zero with its Z into the job file",
         )
-    _shift_by(control, zero)
+    return zero
 
 
-def _shift_by(control: Control, values: Mapping[str, float]) -> None:
+def shift_by(control: Control, values: Mapping[str, float]) -> None:
+    """Put a work offset by its values into force, 0 for axes that it leaves out [mm or deg]."""
     names = control.settings.axes.names
     control.frame.set_shift("offset", [values.get(name, 0.0) for name in names])
     control.frame.set_shift("preset", [0.0] * len(names))

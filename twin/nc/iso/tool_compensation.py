@@ -63,8 +63,7 @@ def compensate(control: Control, side: float, radius: float) -> None:
     plane = control.part_plane()
     control.path.start_compensation(
         plane,
-        side * control.frame.handedness,
-        radius,
+        side * control.frame.handedness * radius,
         square=control.modal.square_corners,
         indirect=control.modal.indirect_leads,
     )

@@ -4,20 +4,25 @@ The stages, in order: splines through points, blends at corners, tool radius com
 out, additional axes that go evenly. Each is there only while a program asks for it, and holds few moves.
 """
 
-import math
 from collections.abc import Callable
 
 from twin.nc.canonical import Axes, Chunk, Motion
-from twin.nc.geometry.planes import PLANE_NAMES, Plane
+from twin.nc.geometry.planes import Plane
 from twin.nc.path.blends import Blend
-from twin.nc.path.compensation import Compensation, Refuse, Warn
-from twin.nc.path.compensation_state import CompensationResult, CompensationState, Stage
-from twin.nc.path.contour_registers import Row
+from twin.nc.path.compensation.contour import (
+    LEADING_OUT,
+    MOVED,
+    MOVED_EVENTS,
+    MOVED_ROWS,
+    OFF,
+    Contour,
+)
+from twin.nc.path.compensation.stage import Compensation, Refuse, Warn
 from twin.nc.path.event_columns import EventRows
-from twin.nc.path.leads import LeadOut, lead_out
 from twin.nc.path.loops import Loops
 from twin.nc.path.move_columns import MoveColumns, Segment
 from twin.nc.path.rounding import Rounding
+from twin.nc.path.rows import Row
 from twin.nc.path.splines import Spline
 from twin.nc.path.synchronous_axes import MOST_MOVES, SynchronousAxes
 
@@ -32,12 +37,10 @@ class Path:
     def __init__(self, axes: Axes, start: list[float], refuse: Refuse, warn: Warn) -> None:
         self._columns = MoveColumns(axes)
         self._refuse = refuse
-        self._warn = warn
         self._before: Segment | None = None
         self._spline: Spline | None = None
         self._rounding: Rounding | None = None
-        self._compensation: Compensation | None = None
-        self._leading_out: LeadOut | None = None
+        self._compensation = Compensation(len(axes), self._emit, refuse, warn)
         self._loops: Loops | None = None
         self._synchronous: SynchronousAxes | None = None
         self.position = start
@@ -66,63 +69,50 @@ class Path:
         self._before = move
         self._round(move)
 
-    def add_rows(self, moves: Row, events: EventRows, result: CompensationResult) -> None:
-        """Moves as columns: of a path that was handed over, as compensation has let them go.
+    def begin_rows(self) -> Contour | None:
+        """A run of rows begins where the path has come to.
+
+        Returns:
+            Compensation, which the run goes on with; None where another stage holds or changes moves,
+            or events wait for a move's end.
+        """
+        if self._spline or self._rounding or self._loops or self._synchronous:
+            return None
+        if self._compensation.holds_events:
+            return None
+        contour = self._compensation.contour
+        contour.position[:] = self.position
+        contour.counts[[MOVED, MOVED_ROWS, MOVED_EVENTS]] = 0
+        return contour
+
+    def add_rows(self, moves: Row, events: EventRows) -> Segment | None:
+        """What a run of rows has made, as compensation has let it go.
 
         Args:
             moves: Moves that are driven.
-            events: Those between them; ``before`` counts from the first of them.
-            result: How far compensation has come.
+            events: Those between them, ``before`` counted from the first of them; then those that wait
+                for the end of the held move.
+
+        Returns:
+            The run's last programmed move, or None.
         """
-        self._columns.add_event_rows(events)
-        if len(moves.codes):
+        made, placed = len(moves.codes), int((events.before >= 0).sum())
+        self._columns.add_event_rows(events.part(0, placed))
+        if made:
             self._columns.add_rows(*moves)
             self.position = moves.positions[-1, 1].tolist()
-        self._resume(result)
-
-    @property
-    def transferable(self) -> bool:
-        """No stage but compensation holds or changes moves, and nothing waits for a move's end."""
-        if self._spline or self._rounding or self._loops or self._synchronous:
-            return False
-        compensation, leading = self._compensation, self._leading_out
-        if compensation is not None:
-            return not compensation.waits and compensation.plane.name in PLANE_NAMES
-        return leading is None or leading.plane.name in PLANE_NAMES
-
-    @property
-    def compensation_state(self) -> CompensationState | None:
-        """How far compensation has come, or None."""
-        if self._compensation is not None:
-            return self._compensation.state
-        return None if self._leading_out is None else self._leading_out.state
-
-    def _resume(self, result: CompensationResult) -> None:
-        """Compensation has result on by itself."""
-        if result.came:
-            self._before = result.before
-        self._compensation = self._leading_out = None
-        state = result.state
-        if state is None:
-            return
-        if state.stage is Stage.LEADING_OUT:
-            assert state.contour is not None
-            self._leading_out = LeadOut(
-                state.plane, state.contour, state.signed_offset, state.indirect
-            )
-            return
-        side, radius = math.copysign(1.0, state.signed_offset), abs(state.signed_offset)
-        self.start_compensation(
-            state.plane, side, radius, square=state.square, indirect=state.indirect
-        )
-        compensation = self._compensation
-        assert compensation is not None
-        compensation.resume(state)
-        for each in result.waiting:
-            if isinstance(each, Segment):
-                compensation.wait(each)
-            else:
-                compensation.event(lambda event=each: self._columns.add_event(event))
+        contour = self._compensation.contour
+        latest = contour.latest.segment if contour.counts[MOVED] else None
+        event_behind = len(events) > contour.counts[MOVED_EVENTS]
+        if made > contour.counts[MOVED_ROWS]:
+            latest = Row(*(column[-1] for column in moves)).segment
+            event_behind = placed > 0 and events.before[placed - 1] == made
+        if latest is not None or len(events):
+            self._before = None if event_behind else latest
+        waiting = events.part(placed, len(events))
+        for place, event in zip(waiting.before.tolist(), waiting, strict=True):
+            self._compensation.hold_event(lambda event=event: self._columns.add_event(event), place)
+        return latest
 
     def add_point(self, move: Segment, *, flat: bool) -> None:
         """The straight way to the next point of a spline; ``flat``: its height goes linearly."""
@@ -192,66 +182,36 @@ class Path:
     # --- compensation
 
     def _compensate(self, move: Segment) -> None:
-        if self._compensation is not None:
-            self._compensation.add(move)
-            return
-        if self._leading_out is not None:
-            moves, leads = lead_out(
-                move, self._leading_out, self.position, self._refuse, self._warn
-            )
-            if leads:
-                self._leading_out = None
-            for each in moves:
-                self._emit(each)
-            return
-        self._emit(move)
+        if self._compensation.stage == OFF:
+            self._emit(move)
+        else:
+            self._compensation.add(move, self.position)
 
     def _happen(self, happen: Callable[[MoveColumns], None]) -> None:
-        if self._compensation is None:
-            self._record(happen)
-        else:
-            self._compensation.event(lambda: self._record(happen))
+        self._compensation.event(lambda: self._record(happen))
 
     @property
     def leading_out(self) -> bool:
         """Compensation has ended, and no line has led out yet."""
-        return self._leading_out is not None
+        return self._compensation.stage == LEADING_OUT
 
     @property
     def compensating(self) -> bool:
         """Compensation is in force."""
-        return self._compensation is not None
+        return self._compensation.in_force
 
     def start_compensation(
-        self, plane: Plane, side: float, radius: float, *, square: bool, indirect: bool
+        self, plane: Plane, signed_offset: float, *, square: bool, indirect: bool
     ) -> None:
-        """Compensate from the next move on.
-
-        Args:
-            plane: Working plane in part coordinates.
-            side: +1 left of the contour, -1 right of it.
-            radius: Of the tool [mm].
-            square: Outside corners between lines are extended as far as 90°.
-            indirect: Leads go around the contour's first and last point.
-        """
+        """Compensate from the next move on; as ``Compensation.begin``."""
         self._flush()
-        self._compensation = Compensation(
-            plane,
-            side,
-            radius,
-            self._emit,
-            self._refuse,
-            self._warn,
-            square=square,
-            indirect=indirect,
-        )
+        self._compensation.begin(plane, signed_offset, square=square, indirect=indirect)
 
     def end_compensation(self) -> None:
         """The next line leads out."""
-        if self._compensation is not None:
+        if self._compensation.in_force:
             self._flush()
-            self._leading_out = self._compensation.finish()
-            self._compensation = None
+            self._compensation.end()
 
     # --- loops
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from twin.nc.canonical import Motion
 from twin.nc.path.blends import Blend, NoBlendError, blend_corner
-from twin.nc.path.compensation import Refuse
+from twin.nc.path.compensation.stage import Refuse
 from twin.nc.path.move_columns import Segment
 
 

@@ -104,23 +104,3 @@ def line_between(move: Segment, start: list[float], end: list[float]) -> Segment
         normal=(math.nan, math.nan, math.nan),
         sweep=0.0,
     )
-
-
-def level_arc(move: Segment, plane: Plane, arc: Element, start: list[float]) -> Segment:
-    """An arc at one height with all else of a move; further axes stand still.
-
-    Args:
-        move: Whose line, feed and the like it takes.
-        plane: Of the arc.
-        arc: In the plane.
-        start: Where it begins, shape (k,).
-    """
-    height = plane.local(start).height
-    end = [*plane.world(*arc.end, height), *start[3:]]
-    assert arc.center is not None
-    return dataclasses.replace(
-        line_between(move, start, end),
-        center=plane.world(*arc.center, height),
-        normal=plane.normal,
-        sweep=arc.sweep,
-    )

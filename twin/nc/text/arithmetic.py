@@ -6,10 +6,12 @@ computes the same bits. Where a value is undefined Python raises ``ArithmeticErr
 """
 
 import math
+from collections.abc import Callable
+from typing import cast
 
 import numpy as np
 
-from twin.compilation.compilable import compilable, compiled_as
+from twin.compilation.compilable import compilable, compilable_as
 
 
 @compilable
@@ -223,7 +225,9 @@ def chosen(choice: float, no: float, yes: float) -> float:
     return yes if choice != 0.0 else no
 
 
-@compiled_as(math.fmod)
 def _remainder(a: float, b: float) -> float:
     """NumPy's remainder is as exact, and warns of a division by zero."""
     return np.fmod(a, b) if b != 0.0 else math.nan
+
+
+compilable_as(cast("Callable[..., float]", _remainder))(math.fmod)

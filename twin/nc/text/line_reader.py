@@ -2,6 +2,7 @@
 
 import re
 import string
+import unicodedata
 from typing import NoReturn
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
@@ -16,6 +17,7 @@ LARGEST_LABEL = 4_294_967_295
 _STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
 _GARBLED = re.compile(r"[-+.0-9]{1,20}")
 """What looks like a number and was not read as one."""
+_LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
 _BLANKS = re.compile(r"[ \t]*")
@@ -98,7 +100,7 @@ class LineReader:
                 not comment.whole_line or not self._line[: self._at].strip()
             ):
                 return self._comment(comment.opening, comment.closing)
-        if self._block_skip() or self._named_label():
+        if self._block_skip() or self._named_label() or self._label_colon():
             return True
         if not self._computed_word():
             self._refuse(self._at)
@@ -132,6 +134,14 @@ class LineReader:
         if self._line[self._at] != "/" or self._words or self._number != NO_BLOCK_NUMBER:
             return False
         self._skippable = True
+        self._at += 1
+        return True
+
+    def _label_colon(self) -> bool:
+        """``N20:``, which some write where the number is the target of a jump."""
+        number = self._number != NO_BLOCK_NUMBER and not self._words
+        if not self._syntax.named_labels or not number or self._line[self._at] != ":":
+            return False
         self._at += 1
         return True
 
@@ -190,11 +200,13 @@ class LineReader:
         if reader is None or match is None:
             return False
         begin = match.start(1)
+        self._refuse_late_skip(match)
         try:
             expression, end = reader.read(self._line, match.end())
         except ExpressionError as error:
             if self._prose():
                 return True
+            self._refuse_code()
             self._refuse_value(begin, error)
         name = self._grammar.name(match[1])
         if name == "N":
@@ -204,6 +216,30 @@ class LineReader:
         self._at = suffix.end()
         self._words.append(Word(name, expression, begin, self._at - begin, bool(suffix[1])))
         return True
+
+    def _refuse_late_skip(self, address: re.Match[str]) -> None:
+        """``N20 /X1``: the mark of block skip stands behind the number.
+
+        Raises:
+            ProgramError: It does.
+        """
+        late = _LATE_SKIP.match(self._line, address.start(1))
+        if late is not None:
+            message = f"the / of a block that can be skipped must begin its line, before {late[1]}"
+            self._fail("label", message, late.end() - 1, hint=f"write /{late[1]}")
+
+    def _refuse_code(self) -> None:
+        """Words without values may belong to a code that the dialect refuses anyway.
+
+        Raises:
+            ProgramError: They do.
+        """
+        for word in self._words:
+            if word.address == "G" and isinstance(word.value, float):
+                refusal = self._grammar.language.refusal(word.value)
+                if refusal is not None:
+                    message = f"{word.text} {refusal}"
+                    self._fail("unsupported-g", message, word.column, width=word.width)
 
     def _refuse_value(self, begin: int, error: ExpressionError) -> NoReturn:
         name = _NAME.match(self._line, begin)
@@ -263,7 +299,13 @@ class LineReader:
                 "unknown-statement", message, at, width=len(statement[0]), hint=f"known: {known}"
             )
         if address is not None:
+            self._refuse_code()
             self._refuse_missing_value(address)
+        if not character.isascii():
+            name = unicodedata.name(character, "no character").lower()
+            message = f"U+{ord(character):04X} ({name}) begins no word"
+            hint = "write a blank" if character.isspace() else None
+            self._fail("unreadable", message, at, hint=hint)
         message = f"'{character}' begins no word of {self._grammar.language.name}"
         self._fail("unreadable", message, at, hint=self._hint_for(character))
 

@@ -7,6 +7,8 @@ from twin.nc.text.source import Source
 
 _LONGEST_TEXT = 800
 """Characters of a message or a hint: a program may hold names of any length."""
+NOTICE = "passed-over"
+"""Code of what changes nothing of the path."""
 _MOST_WARNINGS = 1000
 """Warnings that are kept: a program that earns more has made its point."""
 
@@ -59,6 +61,22 @@ class Reporter:
         if code not in self._said:
             self._said.add(code)
             self.warn(code, message, column, width, hint)
+
+    def notice(self, of: str, message: str, column: int = 0, width: int = 1) -> None:
+        """Tell once of something that is passed over and changes nothing of the path.
+
+        It is no reason to refuse a program, also when warnings count as errors.
+
+        Args:
+            of: What is passed over.
+            message: Why nothing is lost.
+            column: First character in question, from 0.
+            width: How many characters.
+        """
+        if of not in self._said and len(self.warnings) < _MOST_WARNINGS:
+            self._said.add(of)
+            diagnostic = self._diagnostic("warning", NOTICE, message, column, width, None)
+            self.warnings.append(diagnostic)
 
     def has_said(self, code: str) -> bool:
         """Whether ``warn_once`` has given this warning."""

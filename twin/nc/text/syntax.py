@@ -74,6 +74,10 @@ class Language(Protocol):
         """Keywords of statements."""
         ...
 
+    def refusal(self, code: float) -> str | None:
+        """Why a G code that the control knows is refused, given its number; None: it is not."""
+        ...
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Mark:

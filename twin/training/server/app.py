@@ -23,8 +23,8 @@ from twin.training.scene.modes import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
 from twin.training.scene.phrases import translated
 from twin.training.scene.texts import LANGUAGES, Language
 from twin.training.scene.vocabulary import Words
-from twin.training.server.driver import Driver
-from twin.training.server.frames import Changes, StockFeed, panel_words, state_message
+from twin.training.server.driver import Driver, Look
+from twin.training.server.frames import Changes, StockFeed, as_texts, panel_words, state_message
 from twin.training.server.seats import Page, Seats
 from twin.web.files import ASSETS
 
@@ -61,6 +61,7 @@ class RoomApp:
         self.bytes_sent = 0
         self.messages = 0
         self._stock = StockFeed()
+        self._spoken: tuple[Look | None, dict[str, str]] = None, {}
         self._drawn = functools.cache(self._draw)
         inner = [
             Route("/", self._page),
@@ -208,10 +209,10 @@ class RoomApp:
             look = self._driver.look
             self._stock.note(self._driver.seen)
             patch, epoch, version = self._stock.patch(epoch, version)
-            words = changes.since_last(self._translated(panel_words(look)) | self.seats.words(page))
+            words = changes.since_last(self._words_of(look) | as_texts(self.seats.words(page)))
             messages: list[bytes | str] = [state_message(look, cutting=patch is not None)]
             if words:
-                messages.append(json.dumps(words, ensure_ascii=False))
+                messages.append(words)
             if patch is not None:
                 messages.append(patch)
             for message in messages:
@@ -220,6 +221,12 @@ class RoomApp:
                 await asyncio.wait_for(send(message), LONGEST_SEND_S)  # pyright: ignore[reportArgumentType]
             spent = asyncio.get_running_loop().time() - began
             await asyncio.sleep(max(0.001, 1.0 / PICTURES_PER_S - spent))
+
+    def _words_of(self, look: Look) -> dict[str, str]:
+        """What all pages show of a look, made once for all of them."""
+        if look is not self._spoken[0]:
+            self._spoken = look, as_texts(self._translated(panel_words(look)))
+        return self._spoken[1]
 
     @staticmethod
     def _translated(words: dict[str, Any]) -> dict[str, Any]:

@@ -70,21 +70,27 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def as_texts(words: dict[str, Any]) -> dict[str, str]:
+    """Words as JSON, each for itself."""
+    return {name: json.dumps(value, ensure_ascii=False) for name, value in words.items()}
+
+
 class Changes:
     """Which words a page has not been sent yet."""
 
     def __init__(self) -> None:
         self._sent: dict[str, str] = {}
 
-    def since_last(self, words: dict[str, Any]) -> dict[str, Any]:
-        """Those whose value has changed since the last call."""
-        found = {}
-        for name, value in words.items():
-            text = json.dumps(value)
-            if self._sent.get(name) != text:
-                self._sent[name] = text
-                found[name] = value
-        return found
+    def since_last(self, texts: dict[str, str]) -> str:
+        """Those that have changed since the last call as one JSON object; empty where none have.
+
+        Args:
+            texts: Each word's value as JSON.
+        """
+        found = {name: text for name, text in texts.items() if self._sent.get(name) != text}
+        self._sent |= found
+        inner = ",".join(f'"{name}":{text}' for name, text in found.items())
+        return f"{{{inner}}}" if found else ""
 
 
 class StockFeed:

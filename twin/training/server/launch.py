@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,6 +20,10 @@ from twin.web.server import LOOPBACK, WebServer
 
 CELLS_ACROSS = 400
 """Cells of the live stock along its shorter side, at least: a step of 0.2 mm can be seen."""
+
+
+TURNS_S = 0.0005
+"""How long a thread keeps the interpreter while another waits for it [s]: a press must not wait."""
 
 
 class OpenRoom:
@@ -90,9 +95,12 @@ def open_room(
         role: f"{server.origin}/{role}/#{token}" for role, token in doorkeeper.tokens.items()
     }
     server.start(Guard(app.asgi, doorkeeper, local=server.local))
+    turns_s = sys.getswitchinterval()
+    sys.setswitchinterval(TURNS_S)
     try:
         yield OpenRoom(driver, app, addresses, writer.folder)
     finally:
+        sys.setswitchinterval(turns_s)
         server.stop()
         writer.close()
 

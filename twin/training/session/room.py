@@ -200,7 +200,12 @@ class Room:
         run = self.run
         rapid = np.array([run is not None and run.rapid(int(move)) for move in moves], np.bool_)
         standing = np.full(len(part), not self.spindle.turns)
-        alarm = self.work.cut(tips, rapid, standing)
+        # Only what a feed with a turning spindle does to the stock may be seen a little later.
+        at_once = self.moving and bool(rapid.any() or standing.any())
+        self._halt(self.work.cut(tips, rapid, standing, at_once=at_once))
+
+    def _halt(self, alarm: Alarm | None) -> None:
+        """Stop at a cut that must not be."""
         if alarm is not None:
             self.machine.raise_alarm(alarm.code, alarm.message)
 
@@ -243,6 +248,11 @@ class Room:
         """What comes when the present part of a program has come to its end."""
         run = self.run
         if run is None or self.waiting or not run.finished:
+            return
+        if self.work is not None and self.machine.alarm is None:
+            self._halt(self.work.catch_up())
+            self._latch(self.machine.alarm)
+        if self.run is None:
             return
         ending = run.ending
         if run.dropped or self.running == "jog" or ending in (None, "end"):

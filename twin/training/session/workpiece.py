@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from twin.columns import join
 from twin.cutting.cut import Cutter, Rectangle, union
 from twin.cutting.height_map import BoolArray, HeightMap
 from twin.cutting.stock_contact import Head
@@ -14,6 +15,8 @@ from twin.recording.reader import Samples
 from twin.run.machining import stock_alarm
 from twin.toolpath.part_frame import PartFrame
 
+CUT_AT_ONCE = 30
+"""Samples of a feed that are cut together: most of what cutting costs is asked once for each call."""
 CONTACT_MM = 0.02
 """Distance at which the feeler lamp is lit [mm]: a strip of paper drags."""
 
@@ -50,6 +53,7 @@ class Workpiece:
         self._zero = zero
         self._head = head
         self._cutter = Cutter(stock, tool, part_frame, zero, halts=True, head=head)
+        self._uncut: list[tuple[Samples, BoolArray, BoolArray]] = []
         self.removed = 0.0
         self._changed: Rectangle = (0, 0, 0, 0)
 
@@ -60,24 +64,39 @@ class Workpiece:
 
     def mount(self, tool: ToolTable) -> None:
         """Go on with another tool."""
+        self._uncut = []
         before = self._cutter.map
         self._cutter = Cutter(
             self._stock, tool, self._frame, self._zero, halts=True, head=self._head
         )
         self._cutter.map = before
 
-    def cut(self, tips: Samples, rapid: BoolArray, standing: BoolArray) -> Alarm | None:
-        """Cut along samples of the tool's tip.
+    def cut(
+        self, tips: Samples, rapid: BoolArray, standing: BoolArray, *, at_once: bool
+    ) -> Alarm | None:
+        """Take samples of the tool's tip, and cut along them when there are enough.
 
         Args:
             tips: n samples, with positions as if the first tool were in the spindle.
             rapid: Which belong to rapids, shape (n,).
             standing: During which the spindle stands, shape (n,).
+            at_once: Whether to cut along all of them now.
 
         Returns:
             The alarm of a cut that must not be.
         """
-        removed = self._cutter.add(tips, rapid, standing)
+        self._uncut.append((tips, rapid, standing))
+        if not at_once and sum(len(one) for one, _, _ in self._uncut) < CUT_AT_ONCE:
+            return None
+        return self.catch_up()
+
+    def catch_up(self) -> Alarm | None:
+        """Cut along the samples that wait; the alarm of a cut that must not be."""
+        if not self._uncut:
+            return None
+        tips, rapid, standing = zip(*self._uncut, strict=True)
+        self._uncut = []
+        removed = self._cutter.add(join(tips), np.concatenate(rapid), np.concatenate(standing))
         self.removed += removed
         if removed > 0.0:
             self._changed = union(self._changed, self._cutter.changed)

@@ -8,14 +8,13 @@ from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import Instruction
 from twin.nc.bytecode.frames import WORDS, Scratch
-from twin.nc.bytecode.registers import BAILOUT, CYCLE, Machine
+from twin.nc.bytecode.registers import BAILOUT, CYCLE, Machine, copy_state
 from twin.nc.bytecode.token_kinds import NUMBER
-from twin.nc.compiled.kernels.columns import copy_state
-from twin.nc.compiled.kernels.compensation import follow
 from twin.nc.compiled.kernels.cycle import NO_ROOM
 from twin.nc.compiled.kernels.effects import polar_target
 from twin.nc.compiled.kernels.words import execute_block
-from twin.nc.path.contour_registers import OFF, STAGE, Contour
+from twin.nc.path.compensation.contour import OFF, STAGE, Contour
+from twin.nc.path.compensation.follow import follow
 
 
 class BlockBegin(NamedTuple):

@@ -23,7 +23,6 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import Corner, FloatArray, Motion, Shape
-from twin.nc.compiled.kernels.columns import copy
 from twin.nc.compiled.kernels.effects import report
 from twin.nc.compiled.kernels.frame import turn_place
 from twin.nc.compiled.kernels.plane import move_length
@@ -32,6 +31,7 @@ from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
 from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
+from twin.nc.path.rows import copy
 
 NO_ROOM = -2
 """The rows are full."""

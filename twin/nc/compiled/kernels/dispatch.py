@@ -18,14 +18,12 @@ from twin.nc.bytecode.frames import (
     ExecutionState,
     Scratch,
 )
-from twin.nc.bytecode.registers import Machine
+from twin.nc.bytecode.registers import Machine, copy_state
 from twin.nc.compiled.kernels.block import BlockBegin, run_words
-from twin.nc.compiled.kernels.columns import copy_state
 from twin.nc.compiled.kernels.cycle import NO_ROOM
 from twin.nc.compiled.kernels.effects import BlockPlace, run_effect
 from twin.nc.compiled.kernels.expression import compute
-from twin.nc.compiled.kernels.leads import begin_compensation, end_compensation
-from twin.nc.compiled.kernels.lookahead import hold_events
+from twin.nc.compiled.kernels.frame import begin_compensation
 from twin.nc.compiled.kernels.program_counter import (
     arrive,
     count_loop,
@@ -35,7 +33,9 @@ from twin.nc.compiled.kernels.program_counter import (
     transfer,
 )
 from twin.nc.compiled.kernels.variables import undo_stores
-from twin.nc.path.contour_registers import OFF, STAGE
+from twin.nc.path.compensation import leads
+from twin.nc.path.compensation.contour import OFF, STAGE
+from twin.nc.path.compensation.lookahead import hold_events
 
 DONE = -1
 """The block was run."""
@@ -90,7 +90,7 @@ def dispatch_loop(
             if not begin_compensation(side, stack[top], machine.constants, state, contour):
                 break
         elif opcode == opcodes.END_COMPENSATION:
-            after = end_compensation(made, state.event_count[0], contour, machine.rows)
+            after = leads.end(made, state.event_count[0], contour, machine.rows)
             if after < 0:
                 break
             made = progress[MADE] = after  # not undone: to end it twice is to end it once

@@ -37,7 +37,6 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.canonical import FloatArray
-from twin.nc.compiled.kernels.columns import copy
 from twin.nc.compiled.kernels.frame import add_up, reframe, to_part, transform
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.geometry import arcs
@@ -52,6 +51,7 @@ from twin.nc.path.event_columns import (
     SPEED,
     TOOL,
 )
+from twin.nc.path.rows import copy
 
 _NO_EVENT = -1
 _PECKING = Cycle._fields.index("pecking")

@@ -24,6 +24,8 @@ from twin.nc.geometry import matrices, planes
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector
+from twin.nc.path.compensation import leads
+from twin.nc.path.compensation.contour import OFF, STAGE, Contour
 
 _ROTATION_SHIFT = SHIFTS.index("rotation")
 
@@ -118,24 +120,35 @@ def transform(constants: Constants, state: State) -> None:
 
 
 @compilable
-def transfer(state: State) -> float:
-    """-1 where the matrix mirrors, else 1."""
-    if state.registers[TURNED] == 0.0:
-        return 1.0
-    return matrices.handedness(matrix_of(state))
+def begin_compensation(
+    side: int, radius: float, constants: Constants, state: State, contour: Contour
+) -> bool:
+    """Compensate from the next move on: ``tool_compensation.compensate``; False where that refuses.
 
-
-@compilable
-def put_part_plane(plane: IntArray, state: State, target: FloatArray) -> None:
-    """Directions of the working plane as the part sees it: ``ControlMotion.part_plane``."""
-    abscissa, ordinate, normal = directions(plane)
+    Args:
+        side: +1 left of the contour, -1 right of it.
+        radius: Of the tool [mm].
+        constants: What stays.
+        state: Its plane, as the part sees it, is compensated.
+        contour: Is made to wait for the move that leads in.
+    """
+    if contour.counts[STAGE] != OFF or not radius >= 0.0:
+        return False
+    if radius == 0.0:
+        return True
+    abscissa, ordinate, normal = directions(constants.planes[int(state.modal[PLANE])])
+    signed_offset = side * radius
     if state.registers[TURNED] != 0.0:
-        normal = matrices.turned_unit(matrix_of(state), normal)
-        abscissa = matrices.turned_unit(matrix_of(state), abscissa)
+        matrix = matrix_of(state)
+        normal = matrices.turned_unit(matrix, normal)
+        abscissa = matrices.turned_unit(matrix, abscissa)
         ordinate = planes.cross(normal, abscissa)
-    put(abscissa, target[0])
-    put(ordinate, target[1])
-    put(normal, target[2])
+        signed_offset *= matrices.handedness(matrix)
+    put(abscissa, contour.plane[0])
+    put(ordinate, contour.plane[1])
+    put(normal, contour.plane[2])
+    leads.begin(contour, signed_offset, constants.square_corners, constants.indirect_leads)
+    return True
 
 
 @inlined

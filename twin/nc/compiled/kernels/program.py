@@ -42,7 +42,7 @@ from twin.nc.compiled.kernels.tokenizer import (
     line_end,
     read_words,
 )
-from twin.nc.path.contour_registers import OFF, ROOM, STAGE
+from twin.nc.path.compensation.contour import MOST_LET_GO, OFF, STAGE
 from twin.nc.text.lexer import LONGEST_LINE
 
 
@@ -93,7 +93,9 @@ def run_program(
         line = int(progress[LINE])
         if line >= lines:
             return ENDED
-        room = ROOM if contour.counts[STAGE] != OFF else 1
+        room = 1
+        if contour.counts[STAGE] != OFF:
+            room = len(contour.waiting.codes) + MOST_LET_GO
         if progress[MADE] + room > len(rows.codes) or events[0] + MOST_EVENTS > len(rows.events):
             return FULL
         row, words = int(np.int64(table.first[line])), 0

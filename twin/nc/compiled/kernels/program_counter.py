@@ -27,9 +27,8 @@ from twin.nc.bytecode.frames import (
     ExecutionState,
     VariableStore,
 )
-from twin.nc.bytecode.registers import BAILOUT, State
+from twin.nc.bytecode.registers import BAILOUT, State, copy_active_codes
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.compiled.kernels.columns import copy_active_codes
 from twin.nc.compiled.kernels.variables import own_value, store
 
 _PART_MASK = (1 << PART_BITS) - 1

@@ -7,7 +7,7 @@ from twin.nc.bytecode.registers import INCREMENTAL, UNIT, BlockTables, State
 from twin.nc.bytecode.token_kinds import AXIS
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.frame import directions
-from twin.nc.compiled.kernels.plane import place
+from twin.nc.geometry.planes import along, put_point
 
 
 class PlainBlock(NamedTuple):
@@ -79,5 +79,4 @@ def aim(plane: IntArray, block: PlainBlock, seen: int, state: State) -> None:
         y = height if across == 1 else y
         z = height if across == 2 else z
     axes = directions(plane)
-    height = axes[2][0] * x + axes[2][1] * y + axes[2][2] * z
-    place(axes, (abscissa, ordinate), height, state.target)
+    put_point(axes, (abscissa, ordinate), along((x, y, z), axes[2]), state.target)

@@ -39,7 +39,6 @@ from twin.nc.bytecode.token_kinds import (
 )
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.compiled.kernels.arc import emit_arc
-from twin.nc.compiled.kernels.columns import copy
 from twin.nc.compiled.kernels.cycle import drill
 from twin.nc.compiled.kernels.effects import is_whole, report
 from twin.nc.compiled.kernels.frame import turn_place
@@ -47,6 +46,7 @@ from twin.nc.compiled.kernels.plane import move_length
 from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path.event_columns import FUNCTION_ALONE
+from twin.nc.path.rows import copy
 from twin.nc.text.line_reader import LARGEST_LABEL
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)

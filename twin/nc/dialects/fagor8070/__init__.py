@@ -9,6 +9,7 @@ from twin.nc.dialects.fagor8070 import (
     corners,
     frames,
     memory,
+    offset_table,
     statements,
     subroutines,
     variables,
@@ -21,6 +22,7 @@ from twin.nc.dialects.fagor8070.codes import (
     compile_plain_dwell,
     plain_dwell,
 )
+from twin.nc.dialects.fagor8070.control_variables import LiveVariables
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import with_globals
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
@@ -40,11 +42,11 @@ FAGOR8070 = Dialect(
     syntax=Syntax(
         address=(
             r"G0*4(?=[ \t]+[0-9.])|G263[ \t]*=|G159[ \t]*=|R1[ \t]*="
-            r"|[XYZABCUVW]1?[ \t]*=|NR|[A-Z]"
+            r"|[XYZABCUVW]1?[ \t]*=|[DFIJKQRST][ \t]*=|NR|[A-Z]"
         ),
         comments=(Comment("(", ")"), Comment(";")),
         expressions=variables.EXPRESSIONS,
-        statement=variables.STATEMENT,
+        statement=statements.PATTERN,
         named_labels=True,
         incremental_suffix=True,
         aliases={
@@ -104,7 +106,7 @@ FAGOR8070 = Dialect(
         "D": frames.tool_offset,
         "H": auxiliary,
         "G04": plain_dwell,
-        "G159": frames.numbered_offset,
+        "G159": offset_table.numbered_offset,
         "G263": arcs.set_circle_radius,
     },
     word_compilers={
@@ -165,7 +167,7 @@ FAGOR8070 = Dialect(
     before_motion=frames.turn_in_commanded_direction,
     read_variable=variables.read_variable,
     is_local=variables.is_local,
-    live_variables=variables.LIVE,
+    live_variables=LiveVariables(),
     library=with_globals,
     prepare=_prepare,
     after_motion=subroutines.call_after_motion,

@@ -7,6 +7,7 @@ from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070 import flow, polar, subroutines
+from twin.nc.dialects.fagor8070.control_variables import is_live
 from twin.nc.dialects.fagor8070.subroutines import DEEPEST_CALL
 from twin.nc.dialects.fagor8070.variables import EXPRESSIONS, assignments
 from twin.nc.text.blocks import Block, Location, Statement
@@ -63,7 +64,10 @@ def _words(compiler: BlockCompiler, block: Block) -> None:
 
 
 def _assign(control: Control, statement: Statement, assembler: Assembler) -> None:
-    for each in assignments(control, statement):
+    every, rest = assignments(control, statement)
+    if rest is not None or any(is_live(each.name) for each in every):
+        raise UnsupportedError
+    for each in every:
         compute = EXPRESSIONS.operators[each.operator].compute if each.operator else None
         if each.index is not None:
             assembler.value(each.index)

@@ -11,8 +11,10 @@ from twin.nc.control.codes import Action, Compiler, GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode, ModalChanges
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
-from twin.nc.dialects.fagor8070.cycles import CYCLES
+from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
+from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.offset_table import compile_offset, offset_code
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
 from twin.nc.iso import base, fixed_cycles, offsets, tool_compensation
 from twin.nc.iso.tool_compensation import compile_compensation_by_tool, compile_end_of_compensation
@@ -79,6 +81,7 @@ def forget_polar_values(action: Action | None) -> Action:
     """Work offsets and presets: the last R and Q no longer hold."""
 
     def both(control: Control) -> None:
+        refuse_change(control)
         if action is not None:
             action(control)
         polar.forget_polar(control)
@@ -153,6 +156,19 @@ def _refused(meaning: str, reason: str, numbers: Mapping[int, None] | range) -> 
     return dict.fromkeys(numbers, code)
 
 
+def _passed_over(meaning: str, letters: str) -> GCode:
+    """A code whose words change nothing of the path here."""
+
+    def perform(control: Control) -> None:
+        word = control.block.words[0]
+        for letter in letters:
+            control.take(letter)
+        message = f"{word.text} does not change the path here: {meaning}"
+        control.report.notice(word.text, message, word.column, word.width)
+
+    return GCode(meaning=meaning, perform=perform, takes=letters, ground="manual")
+
+
 _PROBE = "the twin has no probe to touch with"
 _LEAD = "where its arc begins is not documented well enough; write the lead as an arc"
 _LIMITS = "the limits are the machine file's"
@@ -163,7 +179,6 @@ INSTEAD = {
     28: "write G53 G00 and the axes",
     43: "D1 brings the tool's length",
     49: "D0 ends the tool's length",
-    51: "a scale is G72 S",
     64: "G05 rounds corners, G50 keeps to the path",
     68: "a rotation is G73 Q",
     69: "a rotation ends by G73 alone",
@@ -233,13 +248,14 @@ CODES: dict[int, GCode] = {
     ),
     **_refused("tangential control", "the twin has no axis that turns the tool", range(45, 46)),
     50: _g("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
+    51: _passed_over("look-ahead of the CNC 8055: tolerance E and angle A", "AE"),
     53: _do("offsets cancelled", forget_polar_values(offsets.cancel_offset), group="offset"),
     **{
         number: _do(
             f"work offset G{number} of the job",
-            forget_polar_values(offsets.OFFSETS[number].action),
+            forget_polar_values(offset_code(number)),
             group="offset",
-            compiler=_and_forget_polar(offsets.OFFSETS[number].compiler),
+            compiler=_and_forget_polar(compile_offset(number)),
         )
         for number in range(54, 60)
     },
@@ -321,5 +337,7 @@ CODES: dict[int, GCode] = {
     262: _g("centre relative to the start", "centre", center_absolute=False),
     264: _g("arc centre not corrected", "centre correction", correct_center=False),
     265: _g("arc centre corrected", "centre correction", correct_center=True),
+    500: _passed_over("high-speed machining off", ""),
+    501: _passed_over("high-speed machining on: tolerance, acceleration, frequency", "AEJM"),
     266: GCode(meaning="feed override at 100 %", refused=_UNKNOWN, ground="manual"),
 }

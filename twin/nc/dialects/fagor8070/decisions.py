@@ -97,8 +97,8 @@ DECISIONS = (
     Decision(
         "Which path mills a pocket (G87, G88)?",
         "Each depth plunges at the centre and clears outwards along parallels of the wall, C apart "
-        "at most; the finishing pass runs once along the wall at the full depth; corners are as "
-        "round as the tool, and M and Q, which ask for others, are refused.",
+        "at most; the finishing pass runs once along the wall at the full depth; corners are M0 as "
+        "round as the tool, M1 rounded by Q, M2 cut off at the distance Q.",
         "The manual gives the pocket and its words, not the path.",
         example="pockets",
     ),
@@ -137,5 +137,38 @@ DECISIONS = (
         "D1 is the tool's own length and radius, D0 none; M06 brings D1.",
         "The job's tools have one offset each.",
         example="tool_offset",
+    ),
+    Decision(
+        "What does #MCS count from?",
+        "The axes' own zero: no offset, preset, tool length or transformation acts; polar coordinates "
+        "(E1305) and changes of these are refused while it is in force.",
+        "The quick reference calls it programming in machine coordinates.",
+        example="machine_coordinates",
+    ),
+    Decision(
+        "When does a value count that a program writes into the table of zero offsets?",
+        "When that offset is selected the next time; V.A.ORGT[1] is G54, values count from machine "
+        "zero.",
+        "Published post-processors write the table and select the offset behind it.",
+        example="offset_table_written",
+    ),
+    Decision(
+        "Which subroutine is #CALL L100?",
+        "L100; where there is none the one of %L 100.",
+        "A published post-processor writes the pair so.",
+        example="numbered_subroutine",
+    ),
+    Decision(
+        "What does #ROUNDPAR set?",
+        "Kinds 1 and 4 how far G05 may round corners; other kinds are refused.",
+        "They shape the curve, which the twin chooses itself.",
+        example="corner_of_roundpar",
+    ),
+    Decision(
+        "How does G84 tap with B?",
+        "In passes of B with the feed, back by H, or without it to the reference plane, with the "
+        "spindle reversed.",
+        "The tap stays in its thread; the family's rigid tapping with chip breaking does so.",
+        example="tapping_in_passes",
     ),
 )

@@ -4,15 +4,13 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.control import Control
+from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar, reset_polar_origin
 from twin.nc.geometry.planes import Plane, Vector, cross
-from twin.nc.iso.offsets import compile_programmed_shift, select_offset
+from twin.nc.iso.offsets import compile_programmed_shift
 from twin.nc.iso.tool_compensation import refuse_plane_change, set_length, tool_numbered
 from twin.nc.text.blocks import Word
-
-OFFSETS_BY_NUMBER = 20
-"""Work offsets that G159 can name; the first six are G54 to G59."""
 
 
 def change_plane(control: Control) -> None:
@@ -46,6 +44,7 @@ def any_plane(control: Control) -> None:
 
 def incremental_offset(control: Control) -> None:
     """G158 X Y: added to the work offset; without axes it ends."""
+    refuse_change(control)
     shift = [0.0] * len(control.settings.axes)
     for index, word in control.take_axis_words():
         shift[index] = control.axis_value(index, word)
@@ -54,21 +53,12 @@ def incremental_offset(control: Control) -> None:
     forget_polar(control)
 
 
-def numbered_offset(control: Control, word: Word) -> None:
-    """G159=2: the work offset by its number; 1 to 6 are G54 to G59."""
-    number = control.number(word)
-    if number != int(number) or not 1 <= number <= OFFSETS_BY_NUMBER:
-        control.fail("no-offset", f"there is no work offset {number:g}", word)
-    name = f"G{53 + int(number)}" if number <= 6 else f"G159={int(number)}"
-    select_offset(control, name, word)
-    forget_polar(control)
-
-
 # --- tools and the rotary axis
 
 
 def tool_offset(control: Control, word: Word) -> None:
     """D1: the tool's own length and radius; D0: none."""
+    refuse_change(control)
     number = control.number(word)
     if number not in (0.0, 1.0):
         message = f"the job gives every tool one offset, D1, not D{number:g}"
@@ -80,8 +70,10 @@ def tool_offset(control: Control, word: Word) -> None:
 
 
 def select_tool(control: Control, word: Word) -> None:
-    """T: the tool that M06 brings, known to the job."""
-    number = tool_numbered(control, word) if control.tools.table else int(control.number(word))
+    """T: the tool that M06 brings, known to the job; T0 leaves the spindle empty."""
+    number = int(control.number(word))
+    if control.tools.table and control.number(word) != 0.0:
+        number = tool_numbered(control, word)
     control.tools.selected = number
     control.function(f"T{number}", {})
 
@@ -120,11 +112,14 @@ def compile_increment(block: BlockWords, assembler: Assembler) -> None:
 
 
 def change_tool(control: Control) -> None:
-    """M06: the tool goes into the spindle with its offset D1."""
+    """M06: the tool goes into the spindle with its offset D1; T0 has none."""
+    refuse_change(control)
     control.tools.change()
     memory_of(control).offset_on = True
     tool = control.tools.data(control.tools.spindle)
-    if tool is not None:
+    if control.tools.spindle == 0 and 0 not in control.tools.table:
+        set_length(control, 0.0)
+    elif tool is not None:
         set_length(control, control.tools.longer(tool))
 
 

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from typing import NamedTuple
 
 from twin.nc.bytecode.registers import (
     OFFSET_ON,
@@ -18,10 +19,26 @@ from twin.nc.bytecode.registers import (
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.structure import Structure
 from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Vector
 from twin.nc.text.blocks import Statement
 
+OFFSETS_BY_NUMBER = 20
+"""Work offsets that G159 and the table can name; the first six are G54 to G59."""
+
 ModalCall = tuple[str, dict[str, float], Statement]
+
+
+class PartFrame(NamedTuple):
+    """The frame that #MCS has put aside.
+
+    Attributes:
+        shifts: Of every kind, shape (s, k) [mm or deg].
+        matrix: Mirror, scale and rotation.
+    """
+
+    shifts: list[list[float]]
+    matrix: Matrix
 
 
 @dataclasses.dataclass(slots=True)
@@ -45,6 +62,8 @@ class FagorMemory:
         scale: General scale factor.
         offset_on: D1 is in force, not D0.
         rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
+        part_frame: What #MCS has put aside while machine coordinates are in force, or None.
+        offsets: Work offsets that the program has written, by name and axis, as those of the job.
     """
 
     origin: Point = (0.0, 0.0)
@@ -63,6 +82,8 @@ class FagorMemory:
     scale: float = 1.0
     offset_on: bool = True
     rotation: tuple[float, Point] | None = None
+    part_frame: PartFrame | None = None
+    offsets: dict[str, dict[str, float]] = dataclasses.field(default_factory=dict)
 
 
 def memory_of(control: Control) -> FagorMemory:
@@ -72,12 +93,13 @@ def memory_of(control: Control) -> FagorMemory:
 
 
 def acts_on_plain_blocks(control: Control) -> bool:
-    """A radius in force, a modal call or module axes: plain blocks heed them."""
+    """A radius in force, a modal call, machine coordinates or module axes: plain blocks heed them."""
     memory = memory_of(control)
     return (
         memory.temporary
         or memory.modal_call is not None
         or memory.circle_radius is not None
+        or memory.part_frame is not None
         or control.settings.module_rotary
     )
 
@@ -114,3 +136,8 @@ def take_registers(control: Control, values: list[float]) -> None:
     memory.scale = values[SCALE]
     center = (values[ROTATION_ABSCISSA], values[ROTATION_ORDINATE])
     memory.rotation = None if math.isnan(values[ROTATION]) else (values[ROTATION], center)
+
+
+def offset_name(number: int) -> str:
+    """How the job calls a work offset by its number, from 1."""
+    return f"G{53 + number}" if number <= 6 else f"G159={number}"

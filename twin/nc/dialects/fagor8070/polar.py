@@ -184,6 +184,9 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
     if control.active.get("offset") == 53:
         message = "polar coordinates are not allowed while G53 is in force (E1530)"
         control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
+    if polar.part_frame is not None:
+        message = "polar coordinates are not allowed while #MCS is in force (E1305)"
+        control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
     radius, angle = current_polar(control)
     radius_word, angle_word = control.take("R"), control.take("Q")
     target = control.target()

@@ -1,12 +1,19 @@
 """Statements of the Fagor CNC 8070: those that are not flow, and the table of all."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070 import flow, subroutines
-from twin.nc.dialects.fagor8070.variables import assign, refuse
+from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER, REFUSED
+from twin.nc.dialects.fagor8070.machine_coordinates import machine_coordinates
+from twin.nc.dialects.fagor8070.transformations import set_scale
+from twin.nc.dialects.fagor8070.variables import VARIABLE_STATEMENT, assign, refuse
 from twin.nc.text.blocks import Location, Statement
+
+_ROUNDED = (1, 4)
+"""Kinds of #ROUNDPAR whose value is how far a rounded corner may lie from the programmed one."""
+_QUOTED = re.compile(r"[^\"]*\"([^\"]*)\".*")
 
 
 def dwell(control: Control, statement: Statement) -> None:
@@ -35,6 +42,96 @@ def stray_comment_end(control: Control, statement: Statement) -> None:
         ProgramError: Always.
     """
     refuse(control, statement, "open-comment", "#COMMENT BEGIN is missing")
+
+
+def scale(control: Control, statement: Statement) -> None:
+    """#SCALE[2]: lengths are multiplied; #SCALE alone or [1] ends it."""
+    text = statement.text.strip()
+    value = 1.0
+    if text:
+        (value,) = _values(control, statement, 1)
+    set_scale(control, value)
+
+
+def round_parameters(control: Control, statement: Statement) -> None:
+    """#ROUNDPAR[1, e]: how far G05 may round corners.
+
+    Decision: kinds 1 and 4 give the largest distance from the programmed path, as the machine
+    file's tolerance does; the others shape the curve, which the twin chooses itself.
+    """
+    values = _values(control, statement)
+    kind = values[0] if values else 0.0
+    if kind not in _ROUNDED or len(values) < 2 or values[1] <= 0.0:
+        kinds = " and ".join(map(str, _ROUNDED))
+        message = f"only the kinds {kinds} of #ROUNDPAR are simulated, with a distance above 0"
+        refuse(control, statement, "unsupported-statement", message, "write #ROUNDPAR[1,0.05]")
+    control.modal.corner_tolerance = values[1] * control.modal.unit
+
+
+def _values(control: Control, statement: Statement, count: int | None = None) -> list[float]:
+    """The values in the square brackets behind a keyword."""
+    text = statement.text.rstrip()
+    begin = len(text) - len(text.lstrip())
+    if not (text[begin : begin + 1] == "[" and text.endswith("]")):
+        message = f"{statement.keyword} needs its values in square brackets"
+        refuse(control, statement, "expression", message)
+    column = statement.text_column + begin + 1
+    found = control.expressions(text[begin + 1 : -1], column, count)
+    return [control.compute(each, column) for each in found]
+
+
+def warning(control: Control, statement: Statement) -> None:
+    """#WARNING["..."]: the program warns its operator."""
+    span = statement.column, len(statement.keyword)
+    control.report.warn("program-warning", f"the program warns: {_quoted(statement)}", *span)
+
+
+def error(control: Control, statement: Statement) -> None:
+    """#ERROR["..."]: the program stops itself.
+
+    Raises:
+        ProgramError: Always.
+    """
+    message = f"the program stops itself: {_quoted(statement)}"
+    refuse(control, statement, "program-error", message, "the program's own checks have failed")
+
+
+def _quoted(statement: Statement) -> str:
+    match = _QUOTED.fullmatch(statement.text)
+    return match[1] if match is not None else statement.text.strip() or "no reason is given"
+
+
+def pass_over(control: Control, statement: Statement) -> None:
+    """A statement that changes nothing of the path: told once."""
+    keyword = _words(statement)
+    if statement.text.strip().upper() != "OFF":
+        message = f"{keyword} does not change the path here: {PASSED_OVER[keyword]}"
+        control.report.notice(keyword, message, statement.column, len(statement.keyword))
+
+
+def end_only(control: Control, statement: Statement) -> None:
+    """A statement whose OFF alone can be followed, because nothing has begun."""
+    if statement.text.strip().upper() != "OFF":
+        _refuse_known(control, statement, ENDED_ONLY[_words(statement)])
+
+
+def refuse_known(control: Control, statement: Statement) -> None:
+    """A statement of the control that the twin does not follow.
+
+    Raises:
+        ProgramError: Always.
+    """
+    _refuse_known(control, statement, REFUSED[_words(statement)])
+
+
+def _refuse_known(control: Control, statement: Statement, reason: str) -> None:
+    message = f"{_words(statement)} is known to the control and not simulated: {reason}"
+    refuse(control, statement, "unsupported-statement", message)
+
+
+def _words(statement: Statement) -> str:
+    """The keyword with single blanks."""
+    return " ".join(statement.keyword.split())
 
 
 def warn_of_missing_end(control: Control) -> None:
@@ -74,10 +171,37 @@ STATEMENTS: dict[str, Callable[[Control, Statement], None]] = {
     "#RET": subroutines.return_statement,
     "#COMMENT BEGIN": skip_comment,
     "#COMMENT END": stray_comment_end,
+    "#MCS": machine_coordinates,
+    "#SCALE": scale,
+    "#ROUNDPAR": round_parameters,
+    "#WARNING": warning,
+    "#WARNINGSTOP": warning,
+    "#ERROR": error,
+    **dict.fromkeys(PASSED_OVER, pass_over),
+    **dict.fromkeys(ENDED_ONLY, end_only),
+    **dict.fromkeys(REFUSED, refuse_known),
 }
+
+
+def _pattern(keywords: Iterable[str]) -> str:
+    """A regular expression of what begins a statement, the longer keywords first."""
+    names = sorted((each[1:] for each in keywords if each[0] in "$#"), key=len, reverse=True)
+    of_kind = {
+        mark: "|".join(
+            re.escape(name).replace(r"\ ", r"[ \t]+") for name in names if mark + name in keywords
+        )
+        for mark in "$#"
+    }
+    return (
+        rf"%|\$(?:{of_kind['$']})\b|#(?:{of_kind['#']})\b"
+        rf"|LL(?=[ \t]+[A-Z_]\w*)|L(?=[ \t]+[A-Z_])|{VARIABLE_STATEMENT}"
+    )
+
+
+PATTERN = _pattern(STATEMENTS)
+"""What begins a statement."""
 
 
 def other_statement(control: Control, statement: Statement) -> None:
     """An assignment, or a comment's mark written with other blanks."""
-    words = " ".join(statement.keyword.split())
-    STATEMENTS.get(words, assign)(control, statement)
+    STATEMENTS.get(_words(statement), assign)(control, statement)

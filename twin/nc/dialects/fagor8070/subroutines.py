@@ -24,6 +24,8 @@ _RANGE = re.compile(
     re.IGNORECASE,
 )
 _ARGUMENT = re.compile(r"[ \t]*([A-Z])[ \t]*=?", re.IGNORECASE)
+_NUMBERED = re.compile(r"L([0-9]+)")
+"""Decision: ``#CALL L100`` calls ``%L 100`` where no subroutine is called L100, as post-processors write."""
 _NO_RANGE = "the range or the number of runs is none"
 _SUBROUTINE = re.compile(r"[ \t]*%[ \t]*L[ \t]+([A-Z_0-9]\w*)", re.IGNORECASE)
 
@@ -238,6 +240,8 @@ def _line_of(
     if table is None:
         table = {**memory.library, **memory.subroutines}
     line = table.get(name)
+    if line is None and (numbered := _NUMBERED.fullmatch(name)) is not None:
+        line = table.get(numbered[1])
     if line is None:
         known = f"subroutines here: {', '.join(sorted(table)) or 'none'}"
         if table is memory.subroutines:

@@ -5,10 +5,12 @@ from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Compiler
 from twin.nc.control.control import Control
+from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE, rotated, stretched
 from twin.nc.geometry.planes import Vector
+from twin.nc.text.blocks import Word
 
 
 def mirror_off(control: Control) -> None:
@@ -53,7 +55,11 @@ def _mirror(control: Control, index: int, sign: float) -> None:
 def scale(control: Control) -> None:
     """G72 S2: lengths are multiplied; G72 alone or S1 ends it."""
     word = control.take("S")
-    factor = 1.0 if word is None else control.number(word)
+    set_scale(control, 1.0 if word is None else control.number(word), word)
+
+
+def set_scale(control: Control, factor: float, word: Word | None = None) -> None:
+    """Multiply lengths by a factor, told the word that gives it."""
     if not SMALLEST_SCALE <= factor <= LARGEST_SCALE:
         control.fail("scale", "a scale lies between 0.001 and 1000", word)
     memory_of(control).scale = factor
@@ -79,6 +85,7 @@ def rotate(control: Control) -> None:
 
 def _update(control: Control) -> None:
     """Compose scale, then mirror, then rotation about its centre in the working plane."""
+    refuse_change(control)
     memory, frame = memory_of(control), control.frame
     if control.path.compensating:
         message = "mirror, scale and rotation cannot change while compensation is in force"

@@ -3,13 +3,12 @@
 import dataclasses
 import math
 import re
-from collections.abc import Iterator
 from typing import NoReturn
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.control_variables import is_live, read_live, write_live
 from twin.nc.text import arithmetic
-from twin.nc.text.blocks import Statement
+from twin.nc.text.blocks import Block, Statement
 from twin.nc.text.expressions import (
     ARITHMETIC,
     COMPARISON,
@@ -26,6 +25,9 @@ LOCAL_PARAMETERS = 26
 """P0 to P25 are local (MINLOCP, MAXLOCP); the letters A to Z of #PCALL set them."""
 _LOCAL = frozenset(f"P{number}" for number in range(LOCAL_PARAMETERS))
 
+
+_NAME = r"V\.[A-Z]+\.[A-Z_]\w*(?:\[[ \t]*P?[0-9]+[ \t]*\])?(?:\.[A-Z]\w*)*"
+"""A variable of the control; tables have their row in brackets."""
 
 EXPRESSIONS = ExpressionSyntax(
     operators={
@@ -60,24 +62,15 @@ EXPRESSIONS = ExpressionSyntax(
         "INV": FunctionOf(arithmetic.inverted_bits),
     },
     constants={},
-    variable=r"P[0-9]+|V\.[A-Z]\.[A-Z_][\w.]*",
+    variable=rf"P[0-9]+|{_NAME}",
     indexed=("P",),
     existence=("EXIST",),
     brackets="[]",
 )
 """Angles are degrees."""
 
-POLAR_ABSCISSA, POLAR_ORDINATE = "V.G.PORGF", "V.G.PORGS"
-LIVE = frozenset({POLAR_ABSCISSA, POLAR_ORDINATE})
-"""The polar origin."""
-
-STATEMENT = (
-    r"%|\$(?:GOTO|IF|ELSEIF|ELSE|ENDIF|SWITCH|CASE|DEFAULT|ENDSWITCH|FOR|ENDFOR|WHILE|ENDWHILE"
-    r"|DO|ENDDO|BREAK|CONTINUE)\b"
-    r"|#(?:RPT|TIME|CALL|PCALL|MCALL|MDOFF|RET|COMMENT[ \t]+BEGIN|COMMENT[ \t]+END)\b"
-    r"|LL(?=[ \t]+[A-Z_]\w*)|L(?=[ \t]+[A-Z_])"
-    r"|P[0-9]+(?=[ \t]*[-+*/]?=(?!=))|P(?=\[)|V\.[A-Z]\.[A-Z_][\w.]*(?=[ \t]*[-+*/]?=)"
-)
+VARIABLE_STATEMENT = rf"P[0-9]+(?=[ \t]*[-+*/]?=(?!=))|P(?=\[)|{_NAME}(?=[ \t]*[-+*/]?=)"
+"""What begins an assignment."""
 
 _SET = re.compile(r"[ \t]*([-+*/]?)=")
 _SEPARATOR = re.compile(r"[ \t,]*")
@@ -91,15 +84,12 @@ def refuse(
 
 
 def read_variable(control: Control, name: str, index: float | None) -> float:
-    """Value of ``P5``, ``P[...]``, ``V.P.name``, ``V.S.name`` or a known ``V.G`` variable."""
-    memory = memory_of(control)
+    """Value of ``P5``, ``P[...]``, ``V.P.name``, ``V.S.name`` or a variable of the control."""
     if name == "P" and index is not None:
         name = f"P{index:g}"
-    if name == POLAR_ABSCISSA:
-        return memory.origin[0]
-    if name == POLAR_ORDINATE:
-        return memory.origin[1]
-    value = control.variables.read(name)
+    value = read_live(control, name) if is_live(name) else None
+    if value is None:
+        value = control.variables.read(name)
     if value is not None:
         return value
     raise ExpressionError(
@@ -136,8 +126,16 @@ class Assignment:
     column: int
 
 
-def assignments(control: Control, statement: Statement) -> Iterator[Assignment]:
-    """Read ``P1 = 5``, ``P[P2] += 1``, ``V.P.depth = 3``; several on a line."""
+def assignments(control: Control, statement: Statement) -> tuple[list[Assignment], Block | None]:
+    """Read ``P1 = 5``, ``P[P2] += 1``, ``V.P.depth = 3``; several on a line.
+
+    Returns:
+        The assignments, and the words of a block that follow them on the line, if any.
+
+    Raises:
+        ProgramError: They cannot be read.
+    """
+    found: list[Assignment] = []
     name, text, at = statement.keyword.strip(), statement.text, 0
     begin = statement.text_column
     while True:
@@ -148,21 +146,32 @@ def assignments(control: Control, statement: Statement) -> Iterator[Assignment]:
         if match is None:
             refuse(control, statement, "assignment", "'=' is missing behind the name")
         value, end = _read(control, statement, match.end())
-        yield Assignment(name, index, begin + index_at, match[1], value, begin + match.end())
+        name = name.replace(" ", "").replace("\t", "").upper()
+        found.append(
+            Assignment(name, index, begin + index_at, match[1], value, begin + match.end())
+        )
         separator = _SEPARATOR.match(text, end)
         assert separator is not None
         at = separator.end()
         if at == len(text):
-            return
+            return found, None
         following = control.program_counter.lexer.expressions.variable_at(text, at)
-        if following is None and text[at : at + 1].upper() == "P":
+        if following is not None:
+            name, at = following[0], following.end()
+        elif text[at : at + 1].upper() == "P":
             name, at = "P", at + 1
-            continue
-        if following is None:
-            control.report.fail(
-                "assignment", "only further assignments can follow", statement.text_column + at
-            )
-        name, at = following[0].upper(), following.end()
+        elif text[at : at + 1].upper() == "G":
+            return found, _rest(control, begin + at, text[at:])
+        else:
+            message = "only further assignments can follow"
+            control.report.fail("assignment", message, begin + at)
+
+
+def _rest(control: Control, column: int, text: str) -> Block:
+    """The block whose words stand behind assignments."""
+    here = control.block
+    (block,) = control.program_counter.lexer.blocks(" " * column + text, here.line)
+    return block._replace(number=here.number)
 
 
 def _read(
@@ -178,7 +187,8 @@ def _read(
 
 def assign(control: Control, statement: Statement) -> None:
     """Give variables their values, one after the other."""
-    for each in assignments(control, statement):
+    every, rest = assignments(control, statement)
+    for each in every:
         name = each.name
         if each.index is not None:
             index = control.compute(each.index, each.index_column)
@@ -190,7 +200,23 @@ def assign(control: Control, statement: Statement) -> None:
         if each.operator:
             old = _old_value(control, statement, name)
             value = control.compute(_combined(old, each.operator, value), each.column)
+        _write(control, statement, name, value)
+    if rest is not None:
+        control.run(rest)
+
+
+def _write(control: Control, statement: Statement, name: str, value: float) -> None:
+    if not is_live(name):
         control.variables.write(name, value)
+        return
+    try:
+        written = write_live(control, name, value)
+    except ExpressionError as error:
+        refuse(control, statement, error.code, str(error), error.hint)
+    if not written:
+        message = f"{name} belongs to the control, and the twin does not simulate it"
+        hint = "programs write V.P and V.S variables and the offsets V.A.ORGT[1].X"
+        refuse(control, statement, "control-variable", message, hint)
 
 
 def _combined(old: float, operator: str, value: float) -> Expression:

@@ -1,0 +1,2 @@
+G0 X1
+#ERROR["no blank in the vise"]

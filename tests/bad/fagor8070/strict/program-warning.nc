@@ -1,0 +1,3 @@
+G0 X1
+#WARNING["clamp the part"]
+M30

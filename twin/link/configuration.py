@@ -1,0 +1,111 @@
+"""LinuxCNC's configuration of a machine: INI, HAL, tools and offsets, from ``machine.toml``."""
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+from twin.errors import ConfigError
+from twin.files.atomic import write_text
+from twin.job.job_file import JobFile
+from twin.link.component import templates
+from twin.link.packet import JOINTS
+from twin.machine.description.config import Machine
+from twin.nc.canonical import FloatArray
+
+LETTERS = "XYZABCUVW"
+"""The axes that LinuxCNC knows, in the order of its offsets."""
+NO_LIMIT = 1e9
+"""What stands where a machine has no limit [mm or deg]."""
+_FIRST_OFFSET = 5221
+"""LinuxCNC's parameter of G54's first axis."""
+_MICROSECONDS = 1e6
+_NANOSECONDS = 1e9
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Settings:
+    """What a configuration says beside the machine.
+
+    Attributes:
+        display: The command line of LinuxCNC's screen.
+        port: UDP port of the twin.
+        following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        job: Its tools go into the tool table.
+    """
+
+    display: str
+    port: int
+    following_error_limit: float | None
+    part_zero: FloatArray
+    job: JobFile
+
+
+def write_configuration(folder: Path, machine: Machine, settings: Settings) -> Path:
+    """Write all that LinuxCNC reads.
+
+    Args:
+        folder: Where.
+        machine: What it drives; the servo period is the machine's.
+        settings: The rest.
+
+    Returns:
+        The INI file.
+
+    Raises:
+        ConfigError: LinuxCNC cannot drive this machine.
+    """
+    _require_axes(machine)
+    content: dict[str, Any] = {
+        "name": machine.file.name,
+        "folder": folder,
+        "display": settings.display,
+        "port": settings.port,
+        "period_ns": round(machine.file.servo_period_s * _NANOSECONDS),
+        "axes": [_axis(machine, name, settings) for name in machine.axes.names],
+        "coordinates": "".join(machine.axes.names),
+        "path": machine.file.path,
+        "offsets": _offsets(machine, settings.part_zero),
+        "tools": settings.job.tools,
+    }
+    for suffix in ("ini", "hal", "tbl", "var"):
+        text = templates().get_template(f"machine.{suffix}.j2").render(content)
+        write_text(folder / f"linuxcnc.{suffix}", text)
+    return folder / "linuxcnc.ini"
+
+
+def _axis(machine: Machine, name: str, settings: Settings) -> dict[str, Any]:
+    axis = machine.axis(name)
+    lowest, highest = axis.travel or (-NO_LIMIT, NO_LIMIT)
+    limit = settings.following_error_limit or axis.following_error_limit or NO_LIMIT
+    return {
+        "name": name,
+        "kind": "LINEAR" if axis.kind == "linear" else "ANGULAR",
+        "velocity": axis.velocity,
+        "acceleration": axis.acceleration,
+        "lowest": lowest,
+        "highest": highest,
+        "following_error_limit": limit,
+    }
+
+
+def _offsets(machine: Machine, part_zero: FloatArray) -> list[tuple[int, float]]:
+    zero = machine.axes.named(part_zero)
+    return [
+        (_FIRST_OFFSET + number, zero.get(letter, 0.0)) for number, letter in enumerate(LETTERS)
+    ]
+
+
+def _require_axes(machine: Machine) -> None:
+    strange = [name for name in machine.axes.names if name not in LETTERS]
+    if strange:
+        raise ConfigError(f"LinuxCNC has no axis {strange[0]}: it knows {', '.join(LETTERS)}")
+    wrong = [
+        name
+        for name in machine.axes.names
+        if (machine.axis(name).kind == "rotary") != (name in "ABC")
+    ]
+    if wrong:
+        raise ConfigError(f"LinuxCNC takes A, B and C for rotary axes and no other: {wrong[0]}")
+    if len(machine.axes) > JOINTS:
+        raise ConfigError(f"LinuxCNC can be linked to {JOINTS} axes at most")

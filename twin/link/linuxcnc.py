@@ -1,0 +1,143 @@
+"""LinuxCNC as a process: found, started, ended, and nothing left behind."""
+
+import contextlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from twin.errors import UsageError
+
+LOCK = Path("/tmp/linuxcnc.lock")  # noqa: S108 - LinuxCNC's own
+"""Stands while a LinuxCNC runs on this computer; there can be one."""
+PACKAGE = "linuxcnc-uspace"
+LOG_NAME = "linuxcnc.log"
+OPERATOR = Path(__file__).with_name("headless_screen.py")
+_UNPRIVILEGED = "nobody"
+_END_TIMEOUT_S = 30.0
+
+
+class Event(NamedTuple):
+    """A line of the operator's log."""
+
+    event: str
+    text: str
+
+
+class LinuxCnc:
+    """A running LinuxCNC.
+
+    Attributes:
+        folder: Of its configuration.
+        log: What it printed.
+    """
+
+    def __init__(self, process: subprocess.Popen[bytes], folder: Path, log: Path) -> None:
+        self._process = process
+        self.folder = folder
+        self.log = log
+
+    def goes_on(self) -> bool:
+        """Whether it is still there."""
+        return self._process.poll() is None
+
+    def events(self) -> list[Event]:
+        """What its operator had to say so far."""
+        path = operator_log(self.folder)
+        lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
+        return [Event(**json.loads(line)) for line in lines]
+
+    def wait(self) -> None:
+        """Wait until it has ended by itself; it is ended where it does not."""
+        try:
+            self._process.wait(_END_TIMEOUT_S)
+        except subprocess.TimeoutExpired:
+            self.end()
+
+    def end(self) -> None:
+        """End it, and all that it started."""
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            if not self.goes_on():
+                break
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self._process.pid, number)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(_END_TIMEOUT_S)
+
+
+def require_linuxcnc() -> Path:
+    """LinuxCNC's start script.
+
+    Raises:
+        UsageError: It is not installed, or one runs already.
+    """
+    found = shutil.which("linuxcnc")
+    if found is None:
+        raise UsageError(f"LinuxCNC is not installed: Debian has it as {PACKAGE}")
+    if LOCK.exists():
+        raise UsageError(
+            f"a LinuxCNC runs on this computer, or was killed: end it, say halrun -U and remove {LOCK}"
+        )
+    return Path(found)
+
+
+@contextlib.contextmanager
+def running(start: Path, ini: Path, log: Path) -> Iterator[LinuxCnc]:
+    """Start LinuxCNC; it is ended with the block.
+
+    Args:
+        start: Its start script.
+        ini: The configuration, in a folder of its own.
+        log: Where what it prints goes.
+
+    Raises:
+        UsageError: It refuses to run as root and the unprivileged user cannot read the folder.
+    """
+    folder = ini.parent
+    user = _as_unprivileged(folder) if os.geteuid() == 0 else []
+    # Its sockets and its logs go where its user may write.
+    at_home = [*user, "env", f"HOME={folder}"]
+    with log.open("wb") as output:
+        process = subprocess.Popen(  # noqa: S603 - names no user has a hand in
+            [*at_home, str(start), "-r", str(ini)],
+            stdin=subprocess.DEVNULL, stdout=output, stderr=output, start_new_session=True,
+        )  # fmt: skip
+        linuxcnc = LinuxCnc(process, folder, log)
+        try:
+            yield linuxcnc
+        finally:
+            linuxcnc.end()
+            _tidy_up(at_home)
+
+
+def operator_log(folder: Path) -> Path:
+    """Where the operator writes what happened."""
+    return folder / "operator.jsonl"
+
+
+def _as_unprivileged(folder: Path) -> list[str]:
+    """LinuxCNC refuses to run as root: what to put before its command."""
+    for path in (folder, *folder.iterdir()):
+        shutil.chown(path, _UNPRIVILEGED)
+    prefix = ["runuser", "-u", _UNPRIVILEGED, "--"]
+    if subprocess.run([*prefix, "test", "-w", str(folder)], check=False).returncode:  # noqa: S603
+        raise UsageError(
+            f"LinuxCNC does not run as root, and {_UNPRIVILEGED} cannot enter {folder}: run "
+            "twin link as another user, or give --out a folder that everybody may enter"
+        )
+    return prefix
+
+
+def _tidy_up(at_home: list[str]) -> None:
+    """Take away what a LinuxCNC leaves that was not ended in peace."""
+    if not LOCK.exists():
+        return
+    with contextlib.suppress(subprocess.TimeoutExpired, FileNotFoundError):
+        subprocess.run(  # noqa: S603 - names no user has a hand in
+            [*at_home, "halrun", "-U"], capture_output=True, check=False, timeout=_END_TIMEOUT_S
+        )
+    LOCK.unlink(missing_ok=True)

@@ -1,0 +1,239 @@
+"""The twin under a control that asks for a position every servo period and waits for the answer.
+
+Time stands still while nobody asks, so that a stall on either side delays both and is none of the
+machine's. The drives are told no more than the positions: velocity and acceleration are backward
+differences of them. Commands are rounded as a recording rounds them before they are used, so that
+a recording, played back, gives the joints of the run bit for bit.
+"""
+
+import dataclasses
+import enum
+import socket
+from collections.abc import Callable, Iterator
+from typing import Self
+
+import numpy as np
+
+from twin.link.commands import Commands
+from twin.link.packet import (
+    ANSWER_LAYOUT,
+    ANSWER_STATES,
+    JOINTS,
+    REASON_BYTES,
+    REQUEST_LAYOUT,
+    REQUEST_STATES,
+    Answer,
+    Request,
+    read_request,
+    write_answer,
+)
+from twin.link.place import Places
+from twin.link.sample_log import SampleLog
+from twin.machine.simulation.live import LiveMachine
+from twin.machine.watching.alarms import Alarm, AlarmStandsError, NearMiss
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.nc.canonical import FloatArray
+from twin.recording.form import Samples
+
+TICKS_PER_CHUNK = 500
+"""Samples that are handed on at once."""
+SETTLING_S = 0.25
+"""How long the end of a program is kept after its last motion [s]."""
+_WAKE_S = 0.2
+"""How often the twin looks around while nobody asks [s]."""
+_LOOPBACK = "127.0.0.1"
+
+
+class _Phase(enum.Enum):
+    BEFORE = enum.auto()
+    RUNNING = enum.auto()
+    OVER = enum.auto()
+
+
+class LockstepMotion:
+    """A machine that a control commands; iterate it for the samples of the control's program.
+
+    The samples begin with the program, at rest at its start, and end a moment after its last
+    motion, or with an alarm. The control is answered until it leaves.
+
+    Attributes:
+        alarm: What stopped the machine, None while nothing did.
+        port: UDP port on this computer at which the twin answers.
+        answered: How many questions were answered.
+        goes_on: Asked while nothing comes: whether the control is still there.
+        last_word: Asked when the control has left: the alarm that it raised itself, told when [s]
+            and in which line the samples ended.
+    """
+
+    def __init__(self, live: LiveMachine, places: Places, part_zero: FloatArray) -> None:
+        """Listen.
+
+        Args:
+            live: The machine, at rest where the program starts.
+            places: Of the program's moves.
+            part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+
+        Raises:
+            OSError: There is no port.
+        """
+        self.alarm: Alarm | None = None
+        self.answered = 0
+        self.goes_on: Callable[[], bool] = lambda: True
+        self.last_word: Callable[[float, int], Alarm | None] = lambda _time, _line: None
+        self._live = live
+        self._places = places
+        self._part_zero = part_zero
+        self._period = live.machine.file.servo_period_s
+        self._settled = round(SETTLING_S / self._period)
+        self._count = len(live.machine.axes)
+        self._no_joints = [0.0] * (JOINTS - self._count)
+        self._everyone = (1 << self._count) - 1
+        self._commands = Commands(self._period, live.position)
+        self._phase = _Phase.BEFORE
+        self._enabled, self._left = False, False
+        self._log = SampleLog(self._count)
+        self._line = self._control_line = 0
+        self._reason, self._reason_number = b"", 0
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.bind((_LOOPBACK, 0))
+        self._socket.settimeout(_WAKE_S)
+        self.port = int(self._socket.getsockname()[1])
+
+    def __enter__(self) -> Self:
+        """Listen until the block ends."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Answer nobody any more."""
+        self._socket.close()
+
+    @property
+    def near_miss(self) -> NearMiss | None:
+        """The closest that the tool's side and the part's came without touching."""
+        collided = self.alarm is not None and self.alarm.code == "collision"
+        return None if collided else self._live.near_miss
+
+    def __iter__(self) -> Iterator[Samples]:
+        """Yield chunks of samples until the control has left."""
+        question, answer = bytearray(REQUEST_LAYOUT.size + 1), bytearray(ANSWER_LAYOUT.size)
+        view = memoryview(question)
+        while not self._left:
+            try:
+                size, sender = self._socket.recvfrom_into(question)
+            except TimeoutError:
+                if not self.goes_on():
+                    break
+                continue
+            request = read_request(view[:size])
+            if request is None:
+                continue
+            self._hear(request)
+            write_answer(self._answer(), request.sequence, answer)
+            self._socket.sendto(answer, sender)
+            self.answered += 1
+            if len(self._log) >= TICKS_PER_CHUNK and not self._log.standing:
+                yield self._handed_on(len(self._log))
+        if kept := len(self._log) - max(0, self._log.standing - self._settled):
+            yield self._handed_on(kept)
+        if self.alarm is None:
+            self.alarm = self.last_word(self._log.ticks * self._period, self._line)
+
+    def stop(self, alarm: Alarm) -> None:
+        """Stop for a reason from outside, such as the stock."""
+        self._live.raise_alarm(alarm.code, alarm.message, axis=alarm.axis)
+        self._tell(alarm)
+
+    def _hear(self, request: Request) -> None:
+        """Go one servo period on as the control asks."""
+        self._left = bool(request.state & REQUEST_STATES["leaving"])
+        position = np.array(request.command[: self._count])
+        wanted = request.amplifiers & self._everyone == self._everyone
+        wanted = wanted and bool(request.state & REQUEST_STATES["may_run"])
+        if self._live.alarm is not None and request.state & REQUEST_STATES["reset"]:
+            self._clear()
+        if self._live.alarm is not None or not wanted:
+            self._enabled = False
+            if self._phase is _Phase.RUNNING:
+                self._end_program()
+            self._live.brake(1)
+        elif not self._enabled:
+            self._enabled = self._clear()
+            self._commands.rest_at(position)
+        else:
+            self._follow(position, request)
+
+    def _clear(self) -> bool:
+        """Switch the drives on where the axes stand; returns whether they stand."""
+        try:
+            self._live.clear()
+        except AlarmStandsError:
+            return False
+        self._reason = b""
+        return True
+
+    def _follow(self, position: FloatArray, request: Request) -> None:
+        commands = self._commands
+        if self._phase is _Phase.BEFORE and request.motion > 0 and request.line > 0:
+            # As every run it begins at rest, so that it can be played back bit for bit.
+            self._log.add(self._live.stand_at(commands.position), 0)
+            self._phase = _Phase.RUNNING
+        running = self._phase is _Phase.RUNNING
+        self._line = self._places.source_line(request.line) if running else 0
+        samples = self._step_to(position)
+        if running:
+            self._log.add(samples, request.line)
+            self._control_line = request.line
+        if self._live.alarm is not None:
+            self._tell(self._live.alarm)
+            if running:
+                self.alarm, self._phase = self._live.alarm, _Phase.OVER
+
+    def _end_program(self) -> None:
+        """The drives were switched off; what stood by then is held until it has come to rest."""
+        self._phase = _Phase.OVER
+        if not self._log.standing or self._live.alarm is not None:
+            return
+        for _ in range(self._settled - self._log.standing):
+            self._log.add(self._step_to(self._commands.position), self._control_line)
+            if self._live.alarm is not None:
+                self.alarm = self._live.alarm
+                return
+
+    def _step_to(self, position: FloatArray) -> Samples:
+        """One servo period towards a commanded position."""
+        commands = self._commands
+        commands.go_to(position)
+        setpoint = Setpoints(
+            np.array([self._log.ticks * self._period]),
+            np.array([self._line]),
+            np.array([-1]),
+            np.zeros(1),
+            commands.position[None],
+            commands.velocity[None],
+            commands.acceleration[None],
+        )
+        return self._live.follow(setpoint)
+
+    def _tell(self, alarm: Alarm) -> None:
+        self._reason = str(alarm).encode()[: REASON_BYTES - 1]
+        self._reason_number += 1
+
+    def _answer(self) -> Answer:
+        alarm = self._live.alarm
+        feedback = [*self._live.position.tolist(), *self._no_joints]
+        if alarm is None:
+            state, faults = ANSWER_STATES["may_run"], 0
+        else:
+            names = self._live.machine.axes.names
+            axis = names.index(alarm.axis) if alarm.axis in names else None
+            state, faults = 0, self._everyone if axis is None else 1 << axis
+        return Answer(state, faults, self._reason_number, self._reason, feedback)
+
+    def _handed_on(self, count: int) -> Samples:
+        """The first samples that nobody has yet, with their places in the program."""
+        samples, line = self._log.take(count)
+        setpoint = samples.setpoint
+        move, fraction = self._places.find(line, setpoint.position - self._part_zero)
+        return dataclasses.replace(
+            samples, setpoint=dataclasses.replace(setpoint, move=move, fraction=fraction)
+        )

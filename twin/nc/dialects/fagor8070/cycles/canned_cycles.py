@@ -1,0 +1,162 @@
+"""Canned cycles of the Fagor CNC 8070.
+
+Z names the reference plane, I the depth: absolute with G90, from the reference plane with G91; D is
+the distance from the reference plane to the surface of the part. Every block that names a point of
+the plane runs the cycle there, until G80 or another motion code; with G98 the tool goes back to the
+height at which the cycle was called, with G99 to the reference plane.
+
+Decisions, since the manuals are only partly known: K is a dwell at the bottom [s]. In G83, I is the
+depth of one peck and J their number. In G82, B is the first peck, R the factor of each next one, L
+the least; after each the tool lifts by H, after every J of them (or where H is missing) to the
+reference plane, and returns with rapid to C, 1 mm, above where it was.
+"""
+
+import dataclasses
+from collections.abc import Mapping
+
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import GCode, Ground, Interpolation
+from twin.nc.control.control import Control
+from twin.nc.control.interpolation import CycleRule
+from twin.nc.dialects.fagor8070.cycles.pockets import call_pocket, mill_pocket
+from twin.nc.dialects.fagor8070.cycles.tapping import tapping_code
+from twin.nc.dialects.fagor8070.polar import take_goal
+from twin.nc.iso.drilling import cycle_code
+from twin.nc.path.drilling_cycle import (
+    BOTTOM,
+    CHIP_CLEARANCE,
+    CLEARANCE,
+    COUNT,
+    DWELL,
+    EVERY,
+    FACTOR,
+    LEAST,
+    LIFT,
+    PECK,
+    REFERENCE,
+    SURFACE,
+    Cycle,
+    Pecking,
+    Retract,
+)
+
+_CLEARANCE = 1.0
+"""G82: C where it is missing [mm]."""
+
+
+def _drilling(
+    number: int,
+    meaning: str,
+    words: Mapping[str, int],
+    *,
+    needed: int = 0,
+    pecking: Pecking = Pecking.NONE,
+    clearance: float = CHIP_CLEARANCE,
+    retract: Retract = Retract.RAPID,
+    ground: Ground = "decision",
+    options: Mapping[str, tuple[float, ...]] | None = None,
+) -> GCode:
+    """A cycle that drills, by its words besides Z and I; ``options`` change nothing of its path."""
+    cycle = Cycle(
+        lasting=False,
+        across=REFERENCE,
+        needed=1 << BOTTOM | needed,
+        pecking=pecking,
+        clearance=clearance,
+        retract=retract,
+    )
+    rule = CycleRule(f"G{number}", cycle, {**words, "I": BOTTOM})
+    meaning = f"{meaning}: Z I {' '.join(words)}"
+    code = cycle_code(rule, meaning, _hole, ground)
+    return code if options is None else _with_options(code, options)
+
+
+def _hole(control: Control) -> list[float]:
+    return take_goal(control, arc=False).target
+
+
+def _with_options(code: GCode, options: Mapping[str, tuple[float, ...]]) -> GCode:
+    """The same cycle with words of which some values are known that change nothing of its path."""
+
+    def call(control: Control) -> None:
+        for letter, known in options.items():
+            word = control.take(letter)
+            if word is not None and control.number(word) not in known:
+                values = " or ".join(f"{letter}{value:g}" for value in known)
+                control.fail("unsupported-word", f"only {values} is followed here", word)
+        assert code.action is not None
+        code.action(control)
+
+    def write(block: BlockWords, assembler: Assembler) -> None:
+        if any(block.take(letter) is not None for letter in options):
+            raise UnsupportedError
+        assert code.compiler is not None
+        code.compiler(block, assembler)
+
+    return dataclasses.replace(code, action=call, compiler=write)
+
+
+def _pocket(
+    number: int, meaning: str, words: str, lengths: str, *, circular: bool = False
+) -> GCode:
+    """A cycle that mills, by its words besides Z and I; ``lengths`` are those that count lengths."""
+    name = f"G{number}"
+    mill = Interpolation(lambda control: mill_pocket(control, name, circular=circular))
+    return GCode(
+        meaning=f"{meaning}: Z I {' '.join(words)}",
+        group="cycle",
+        sets={"cycle": mill},
+        action=lambda control: call_pocket(control, words, lengths),
+        takes="" if circular else "M",
+        ground="manual",
+    )
+
+
+_DWELL = {"K": DWELL}
+_SPINDLE = {"A": (0.0,)}
+"""A: what the spindle does on the way back; 0 as without it."""
+_RIGID = {"R": (0.0, 1.0), "J": (1.0,)}
+"""R: 0 with a tapping chuck, 1 rigid: one path. J: how much faster the way back is."""
+
+CYCLES = {
+    80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, ground="manual"),
+    81: _drilling(81, "drilling", _DWELL, ground="manual", options=_SPINDLE),
+    82: _drilling(
+        82,
+        "drilling in variable pecks",
+        {
+            "B": PECK,
+            "D": SURFACE,
+            "R": FACTOR,
+            "L": LEAST,
+            "H": LIFT,
+            "J": EVERY,
+            "C": CLEARANCE,
+            "K": DWELL,
+        },
+        needed=1 << PECK,
+        pecking=Pecking.TO_BOTTOM,
+        clearance=_CLEARANCE,
+    ),
+    83: _drilling(
+        83,
+        "deep drilling in equal pecks",
+        {"J": COUNT, "D": SURFACE, "K": DWELL},
+        needed=1 << COUNT,
+        pecking=Pecking.COUNTED,
+    ),
+    84: tapping_code(_drilling(84, "tapping", _DWELL, retract=Retract.REVERSED, options=_RIGID)),
+    85: _drilling(
+        85, "reaming, back with the feed", _DWELL, retract=Retract.FEED, options=_SPINDLE
+    ),
+    86: _drilling(
+        86,
+        "boring, back with the spindle stopped",
+        _DWELL,
+        retract=Retract.STOPPED,
+        options=_SPINDLE,
+    ),
+    87: _pocket(87, "rectangular pocket", "DAJKBCLHVMQ", "DJKBCLHVQ"),
+    88: _pocket(88, "circular pocket", "DJBCLHV", "DJBCLHV", circular=True),
+}

@@ -1,0 +1,83 @@
+"""#MCS of the Fagor CNC 8070: moves that count from machine zero.
+
+``#MCS G0 Z0`` moves once, ``#MCS ON`` until ``#MCS OFF``. The coordinates are those of the axes: no
+work offset, preset, tool length, mirror, scale or rotation acts on them. Decisions: compensation
+must have ended, polar coordinates are refused (E1305), and what changes the frame must wait for
+#MCS OFF.
+"""
+
+from twin.nc.control.control import Control
+from twin.nc.dialects.fagor8070.memory import PartFrame, memory_of
+from twin.nc.dialects.fagor8070.polar import forget_polar
+from twin.nc.dialects.fagor8070.variables import refuse
+from twin.nc.geometry.frame import SHIFTS
+from twin.nc.geometry.matrices import IDENTITY
+from twin.nc.iso.offsets import machine_zero
+from twin.nc.text.blocks import Statement
+
+
+def refuse_change(control: Control) -> None:
+    """A change of the frame while machine coordinates are in force.
+
+    Raises:
+        ProgramError: They are.
+    """
+    if memory_of(control).part_frame is not None:
+        message = "offsets, tool and transformations cannot change while #MCS is in force"
+        control.fail("machine-coordinates", message, hint="end it by #MCS OFF first")
+
+
+def machine_coordinates(control: Control, statement: Statement) -> None:
+    """#MCS ON, #MCS OFF, or #MCS and the words of a move."""
+    text = statement.text.strip().upper()
+    if text == "ON":
+        _enter(control, statement)
+    elif text == "OFF":
+        if memory_of(control).part_frame is not None:
+            _leave(control)
+    else:
+        _move_once(control, statement)
+
+
+def _move_once(control: Control, statement: Statement) -> None:
+    line, block = control.block.line, control.block
+    blank = " " * statement.text_column
+    blocks = control.program_counter.lexer.blocks(blank + statement.text, line)
+    if len(blocks) != 1 or blocks[0].statement is not None:
+        hint = "write #MCS G0 Z0, or #MCS ON and #MCS OFF in blocks of their own"
+        refuse(control, statement, "machine-coordinates", "#MCS needs the words of a move", hint)
+    lasting = memory_of(control).part_frame is not None
+    if not lasting:
+        _enter(control, statement)
+    control.run(blocks[0]._replace(number=block.number))
+    if not lasting:
+        _leave(control)
+
+
+def _enter(control: Control, statement: Statement) -> None:
+    memory, frame = memory_of(control), control.frame
+    if memory.part_frame is not None:
+        return
+    if control.path.compensating:
+        message = "machine coordinates know no radius compensation"
+        hint = "end it by G40 before #MCS"
+        refuse(control, statement, "compensation-change", message, hint)
+    zero = machine_zero(control, "#MCS")
+    memory.part_frame = PartFrame(frame.shifts, frame.matrix)
+    names = control.settings.axes.names
+    nothing = [0.0] * len(names)
+    frame.set_shifts([nothing for _ in SHIFTS])
+    frame.set_shift("offset", [zero.get(name, 0.0) for name in names])
+    frame.set_matrix(IDENTITY)
+    control.reframed()
+    forget_polar(control)
+
+
+def _leave(control: Control) -> None:
+    memory = memory_of(control)
+    assert memory.part_frame is not None
+    control.frame.set_shifts(memory.part_frame.shifts)
+    control.frame.set_matrix(memory.part_frame.matrix)
+    memory.part_frame = None
+    control.reframed()
+    forget_polar(control)
