@@ -32,10 +32,13 @@ class Beside:
         self._process: subprocess.Popen[bytes] | None = None
         self._started = -_AGAIN_S
 
+    def is_own(self) -> bool:
+        """Whether it goes on, begun by this process."""
+        return self._process is not None and self._process.poll() is None
+
     def is_running(self) -> bool:
         """Whether it goes on, begun by this process or by another."""
-        own = self._process is not None and self._process.poll() is None
-        return own or _is_locked(writable_folder() / _LOCK)
+        return self.is_own() or _is_locked(writable_folder() / _LOCK)
 
     def start(self) -> None:
         """Begin, unless it goes on already or has only just ended."""

@@ -32,12 +32,12 @@ from twin.nc.bytecode.frames import (
     WORDS,
     ExecutionState,
     Scratch,
+    end_parts,
 )
 from twin.nc.bytecode.registers import MOST_EVENTS, MOST_WORDS, Machine
 from twin.nc.bytecode.token_kinds import UNSUPPORTED, ByteArray, LineTables
 from twin.nc.canonical import IntArray
 from twin.nc.compiled.kernels.dispatch import DONE, dispatch_loop
-from twin.nc.compiled.kernels.program_counter import end_parts
 from twin.nc.compiled.kernels.tokenizer import (
     line_end,
     read_words,

@@ -1,10 +1,10 @@
-"""Jumps, counted loops and calls of the compiled run, as ``control.program_counter`` has them."""
+"""Instructions that jump, count loops and call."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.compilable import compilable, inlined
+from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import PART_BITS, Instruction
 from twin.nc.bytecode.frames import (
@@ -26,38 +26,12 @@ from twin.nc.bytecode.frames import (
     RESTORES,
     ExecutionState,
     VariableStore,
+    go_to,
+    innermost,
 )
 from twin.nc.bytecode.registers import BAILOUT, State, copy_active_codes
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.variables import own_value, store
-
-_PART_MASK = (1 << PART_BITS) - 1
-
-
-@compilable
-def end_parts(progress: IntArray, calls: IntArray) -> None:
-    """Parts that end by place and have been passed run again, or go back to their caller."""
-    while progress[CALLS] > 0:
-        call = calls[progress[CALLS] - 1]
-        here = progress[LINE] << PART_BITS | progress[PART]
-        if call[LAST] == NO_LOCATION or here <= call[LAST]:
-            return
-        to = call[FIRST]
-        if call[AGAIN] > 0:
-            call[AGAIN] -= 1
-        else:
-            to = call[BACK]
-            progress[CALLS] -= 1
-            progress[DEPTH] -= call[OWNS_SCOPE]
-        progress[LINE], progress[PART] = to >> PART_BITS, to & _PART_MASK
-
-
-@compilable
-def innermost(calls: IntArray, called: int) -> int:
-    """How many parts are being run up to the innermost that a word ends; 0: there is none."""
-    while called > 0 and calls[called - 1, LAST] != NO_LOCATION:
-        called -= 1
-    return called
 
 
 class Transfer(NamedTuple):
@@ -104,7 +78,7 @@ def going_to(location: int, to: Transfer) -> Transfer:
 def arrive(to: Transfer, here: int, progress: IntArray) -> None:
     """The block at a location has ended: the program has come to where it leads."""
     progress[FURTHEST] = max(progress[FURTHEST], here)
-    progress[LINE], progress[PART] = to.going >> PART_BITS, to.going & _PART_MASK
+    go_to(to.going, progress)
     progress[DEPTH], progress[CALLS] = to.depth, to.called
     progress[BLOCKS] += 1
 
