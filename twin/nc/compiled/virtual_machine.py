@@ -134,8 +134,8 @@ class VirtualMachine:
         if why == TRAPPED:
             self._wait = 1 if worthwhile else self._pause
         self._pause = 1 if worthwhile or why != TRAPPED else min(2 * self._pause, _LONGEST_PAUSE)
-        if progress[BLOCKS] == 0 and progress[LINE] == begin:
-            return self.full
+        if progress[BLOCKS] == 0 and made == 0 and progress[LINE] == begin:
+            return self.full  # it has gone past no line, and let go no move that was held
         self._keep_saved_codes()
         self._give_back(state, rows.first(made))
         return True
