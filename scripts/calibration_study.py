@@ -19,7 +19,7 @@ from twin.calibrate.fit.stretch import stretches_of
 from twin.files.shipped import machine_file
 from twin.logs.column_map import AxisColumns, ColumnTable
 from twin.logs.machine_log import AxisLog
-from twin.machine.description.config import read_machine
+from twin.machine.description.config import AxisTable, read_machine
 from twin.nc.canonical import FloatArray
 
 RATES = (50, 100, 250, 500, 1000, 4000)
@@ -41,10 +41,15 @@ class Drawn:
     kind: str
 
 
+def _shipped_axis() -> AxisTable:
+    """X of mill4 without integral action: as many parameters as a log of some seconds tells."""
+    return read_machine(machine_file("mill4")).changed("X", reset_time_s=0.0).axis("X")
+
+
 def draw(random: np.random.Generator) -> Drawn:
     """Draw a machine, run it and log it."""
     mass = float(random.uniform(200.0, 1500.0))
-    base = of_base(read_machine(machine_file("mill4")).axis("X"), mass)
+    base = of_base(_shipped_axis(), mass)
     truth = dataclasses.replace(
         base,
         kv=float(random.uniform(2.0, 10.0)),
@@ -105,7 +110,7 @@ def fit(drawn: Drawn) -> AxisFit:
         )  # fmt: skip
         rate = _AVERAGED
     time = np.arange(len(axis.command)) / rate
-    base = of_base(read_machine(machine_file("mill4")).axis("X"), BASE_MASS)
+    base = of_base(_shipped_axis(), BASE_MASS)
     return fit_axis("linear", stretches_of(axis, time, 1.0 / rate, ((0, len(time)),)), base)
 
 

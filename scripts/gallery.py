@@ -5,6 +5,10 @@ repository.
 """
 
 import dataclasses
+import os
+import re
+import shutil
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -29,6 +33,9 @@ COLOURS = (256, 192, 128, 96, 64)
 
 PANEL = "training"
 """The picture of the operator's panel in a browser."""
+NOTEBOOK = "contour_error"
+"""What the first example of the tutorial for Python draws."""
+TUTORIAL = RENDERS.parent / "docs" / "tutorials" / "python.md"
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -83,6 +90,24 @@ def draw(picture: Picture, out: Path) -> None:
     shrink(out)
 
 
+def run_notebook(out: Path) -> None:
+    """Run the tutorial's first example as it stands, and keep its picture."""
+    found = re.search(
+        r"^```python\n(.*?)^```", TUTORIAL.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
+    )
+    if found is None:
+        raise SystemExit(f"{TUTORIAL}: has no example")
+    with tempfile.TemporaryDirectory() as folder:
+        # By a process of its own, whose working folder and figure are nobody else's.
+        subprocess.run(
+            [sys.executable, "-c", found[1]],
+            cwd=folder,
+            check=True,
+            env=os.environ | {"MPLBACKEND": "agg"},
+        )
+        shutil.copy(Path(folder) / out.name, out)
+
+
 def shrink(path: Path) -> None:
     """Take colours out of a PNG where it is too large, until it is small enough."""
     if path.stat().st_size <= LARGEST_BYTES:
@@ -100,7 +125,7 @@ def shrink(path: Path) -> None:
 
 def main() -> None:
     """Draw the pictures named on the command line, or all."""
-    known = [*PICTURES, PANEL]
+    known = [*PICTURES, PANEL, NOTEBOOK]
     names = sys.argv[1:] or known
     unknown = [name for name in names if name not in known]
     if unknown:
@@ -111,6 +136,8 @@ def main() -> None:
         if name == PANEL:
             take_panel(out)
             shrink(out)
+        elif name == NOTEBOOK:
+            run_notebook(out)
         else:
             draw(PICTURES[name], out)
         print(f"{out}: {out.stat().st_size / 1000:.0f} kB")

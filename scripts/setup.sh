@@ -18,7 +18,7 @@ _need_packages() {
 
 _has_library() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p | grep -q "$1"; }
 
-declare -A extra=([run]="" [dev]="[dev]")
+declare -A extra=([run]="" [docs]="[docs]" [dev]="[dev]")
 
 _find_python() {
     local candidate
@@ -39,7 +39,7 @@ compile_kernels() {
     .venv/bin/twin doctor --compile >/dev/null || true
 }
 
-# setup_environment [dev]: with the extra "dev", or with what a run needs alone.
+# setup_environment [dev|docs]: with that extra, or with what a run needs alone.
 setup_environment() {
     local python stamp wanted="${1:-run}"
     python=$(_find_python)
@@ -56,7 +56,7 @@ setup_environment() {
         # By the environment, so that the isolated build keeps to the same versions.
         PIP_CONSTRAINT="$PWD/constraints.txt" MILL_TWIN_KERNELS=0 .venv/bin/python -m pip install \
             --quiet --disable-pip-version-check --editable ".${extra[$wanted]}"
-        [ "$wanted" = dev ] || compile_kernels
+        [ "$wanted" != run ] || compile_kernels
         echo "$stamp" >".venv/stamp-$wanted"
     fi
     PATH="$PWD/.venv/bin:$PATH"

@@ -21,6 +21,7 @@ from twin.version import __version__
 app = typer.Typer(
     name="twin",
     help="A digital twin of a 4-axis mill: NC text in, a verdict, a part and a picture out.",
+    epilog=epilog("twin"),
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},

@@ -34,9 +34,9 @@ COLUMNS = AxisColumns(command=_ANY, actual=_ANY)
 
 
 def mill(**changes: float) -> Machine:
-    """``mill4`` with fields of X changed."""
+    """``mill4`` without integral action on X, and with fields of X changed."""
     machine = read_machine(machine_file("mill4"))
-    return machine.changed("X", **changes) if changes else machine
+    return machine.changed("X", **{"reset_time_s": 0.0} | changes)
 
 
 def strokes(seconds: float = 5.0, period: float = PERIOD) -> FloatArray:

@@ -76,8 +76,13 @@ def test_positions_alone_leave_mass_and_viscous_friction_open(forced: MachineLog
 
 
 def test_a_log_of_mill4_gives_mill4_back(twin: Twin, tmp_path: Path) -> None:
+    machine = tmp_path / "mill.toml"
+    machine.write_text('base = "mill4"\n[axes.X]\nreset_time_s = 0.0\n', encoding="utf-8")
     log = write_log(tmp_path / "own.csv", logged(mill()))
-    done = twin("calibrate", log, "--out", tmp_path / "again.toml", "--json", tmp_path / "a.json")
+    done = twin(
+        "calibrate", log, "--base", machine, "--out", tmp_path / "again.toml",
+        "--json", tmp_path / "a.json",
+    )  # fmt: skip
     assert done.code == 0, done.stderr
     again, base = read_machine(tmp_path / "again.toml").axis("X"), mill().axis("X")
     assert again.kv == pytest.approx(base.kv, rel=1e-4)

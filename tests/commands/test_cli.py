@@ -155,7 +155,7 @@ def test_a_defect_of_the_twin_ends_with_a_code_of_its_own(
     def defect() -> str:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("twin.nc.text.explain.overview", defect)
+    monkeypatch.setattr("twin.commands.explain.overview", defect)
     ended = twin("explain")
     assert ended.code == 70
     assert "ZeroDivisionError" in ended.stderr

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 from twin.cli import app
 from twin.errors import TwinError
 from twin.training.scene.scene_file import scene_names
-from twin.web.files import THREE
+from twin.web.server import THREE
 
 PATIENCE_S = 120.0
 

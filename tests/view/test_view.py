@@ -17,7 +17,7 @@ from twin.errors import UsageError
 from twin.run.replay import open_scene
 from twin.view.app import open_view
 from twin.view.recorded_run import RecordedRun
-from twin.web.files import THREE
+from twin.web.server import THREE
 
 PROGRAM = "%SQUARE\nN10 G90 G17 T1 S3000 M03\nN20 G00 X0 Y0 Z5\nN30 G01 Z-2 F600\nN40 X20 F2000\nN50 Y10\nN60 M30\n"
 JOB = """

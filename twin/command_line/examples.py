@@ -1,6 +1,8 @@
 """An example or two for each command, shown at the end of its help."""
 
 EXAMPLES = {
+    "twin": ("twin run mefi/helix --video", "twin init part.nc", "twin check programs"),
+    "machine": ("twin machine list", "twin machine show mill4"),
     "interpret": ("twin interpret part.nc", "twin interpret part.nc --format jsonl | head"),
     "plan": ("twin plan part.nc", "twin plan part.toml --format json"),
     "run": (
@@ -28,6 +30,15 @@ EXAMPLES = {
     "linuxcnc": ("twin link linuxcnc --machine mill4 --out out/helix --headless mefi/helix",),
     "dialects": ("twin dialects", "twin dialects fagor8070"),
     "explain": ("twin explain arc-radius",),
+    "view": ("twin view out/part/recording.h5", "twin view part.toml --port 8081"),
+    "serve": ("twin serve part.toml", "twin serve part.toml --port 5001 --speed 10"),
+    "machine list": ("twin machine list", "twin machine list --format json"),
+    "machine show": ("twin machine show mill4 --feed 3000", "twin machine show ./my_machine.toml"),
+    "machine check": ("twin machine check mill4", "twin machine check ./my_machine.toml"),
+    "machine circle": (
+        "twin machine circle --machine mill4 --radius 50 --feed 3000",
+        "twin machine circle --plane XYC --format json --plot circle.png",
+    ),
     "doctor": ("twin doctor", "twin doctor --compile"),
 }
 

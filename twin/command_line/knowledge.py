@@ -17,11 +17,11 @@ def dialects(
 
 def explain(
     code: Annotated[
-        str | None, typer.Argument(help="Code of a diagnostic.", show_default=False)
+        str | None, typer.Argument(help="Code of a message.", show_default=False)
     ] = None,
 ) -> None:
-    """Explain a diagnostic's code, with an example; without a code list them all."""
-    from twin.nc.text import explain as explanations
+    """Explain the code of an error, a warning or an alarm; without a code list them all."""
+    from twin.commands import explain as explanations
 
     typer.echo(explanations.overview() if code is None else explanations.explain(code))
 

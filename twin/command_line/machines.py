@@ -5,15 +5,17 @@ from typing import Annotated
 
 import typer
 
-from twin.command_line.options import (
-    FormatOption,
-    MachineArgument,
+from twin.command_line.examples import epilog
+from twin.command_line.options import FormatOption, MachineArgument
+
+machine_app = typer.Typer(
+    no_args_is_help=True,
+    help="Look at machines, check them, run circles.",
+    epilog=epilog("machine"),
 )
 
-machine_app = typer.Typer(no_args_is_help=True, help="Look at machines, check them, run circles.")
 
-
-@machine_app.command("list")
+@machine_app.command("list", epilog=epilog("machine list"))
 def machine_list(form: FormatOption = "text") -> None:
     """List the shipped machines."""
     from twin.commands.machine import print_machines
@@ -21,7 +23,7 @@ def machine_list(form: FormatOption = "text") -> None:
     print_machines(form)
 
 
-@machine_app.command("show")
+@machine_app.command("show", epilog=epilog("machine show"))
 def machine_show(
     name: MachineArgument,
     feed: Annotated[
@@ -35,7 +37,7 @@ def machine_show(
     print_machine(name, feed=feed, form=form)
 
 
-@machine_app.command("check")
+@machine_app.command("check", epilog=epilog("machine check"))
 def machine_check(name: MachineArgument) -> None:
     """Check a machine's folder: files, model, hold still at home, shake."""
     from twin.commands.machine import print_check
@@ -43,7 +45,7 @@ def machine_check(name: MachineArgument) -> None:
     raise typer.Exit(print_check(name))
 
 
-@machine_app.command("circle")
+@machine_app.command("circle", epilog=epilog("machine circle"))
 def machine_circle(
     machine: Annotated[str, typer.Option("--machine", help="Name or machine.toml.")] = "mill4",
     radius: Annotated[float, typer.Option("--radius", help="Of the circle (mm).")] = 50.0,

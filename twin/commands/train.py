@@ -9,7 +9,7 @@ import typer
 from twin.commands.interruption import let_interruption_stop
 from twin.errors import ExitCode, UsageError
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
-from twin.training.scene.texts import LANGUAGES, Language, in_language
+from twin.training.scene.vocabulary import LANGUAGES, Language, in_language
 
 
 def print_scenes(language: str | None) -> None:

@@ -17,6 +17,7 @@ class FixtureTable(Table):
     """
 
     name: str
+    """What messages call it; no two have the same."""
     size: tuple[Positive, Positive, Positive] | None = None
     """Box: along X, Y, Z [mm]."""
     diameter: Positive | None = None

@@ -14,6 +14,7 @@ from twin.files.stl import stl_extent
 from twin.files.toml import Data, Table, checked, load_toml
 from twin.job.fixture import FixtureTable
 from twin.job.layers import extended_layers, laid_over, layer_of, shared_layers
+from twin.job.machine_functions import MachineFunctions
 
 Positive = Annotated[float, Field(gt=0)]
 
@@ -26,6 +27,7 @@ class StockTable(Table):
     """The blank: ``box``, ``cylinder``, ``tube``, or the shape of an ``stl`` file."""
 
     shape: Literal["box", "cylinder", "tube", "stl"]
+    """Each shape has its own measures: size; diameter and height; these and bore; file."""
     size: tuple[Positive, Positive, Positive] | None = None
     """Box: along X, Y, Z [mm]."""
     diameter: Positive | None = None
@@ -87,7 +89,9 @@ class ToolTable(Table):
     """One tool of the job."""
 
     number: Annotated[int, Field(ge=0)]
+    """By which the program calls it."""
     kind: Literal["flat", "ball", "bull", "drill", "chamfer"] = "flat"
+    """Shape of its end: flat, round, flat with a round corner, or a point."""
     diameter: Positive = 10.0
     """Of the cutting edge [mm]."""
     length: Positive = 60.0
@@ -209,10 +213,12 @@ class VideoTable(Table):
     renderer: Literal["opengl", "filament"] = "opengl"
     """``filament`` is physically based: it needs a Vulkan driver and takes longer."""
     fps: Annotated[int, Field(ge=1, le=60)] = 25
+    """Frames per second."""
     size: tuple[Annotated[int, Field(ge=64, le=1920)], Annotated[int, Field(ge=64, le=1080)]] = (
         1280,
         720,
     )
+    """Width and height of a frame [pixels]."""
 
 
 class JobFile(Table):
@@ -248,6 +254,9 @@ class JobFile(Table):
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
     variables: dict[str, float] = Field(default_factory=dict)
     """Values of variables that the program reads but does not set, by their name in it."""
+    m_functions: MachineFunctions = Field(default_factory=dict)
+    """M codes of the machine's builder that the program holds, beside those of the machine file:
+    ``M10 = "clamp the table"``, with a time ``M22 = { meaning = "pallet", dwell = 4.0 }``."""
     block_skip: bool = False
     """Blocks that begin with a slash are left out."""
     step_limit: Annotated[int, Field(gt=0)] = 20_000

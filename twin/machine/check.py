@@ -147,7 +147,7 @@ def _gains(machine: Machine) -> list[str]:
     for name, loop in zip(machine.axes.names, loops, strict=True):
         axis, actuator = machine.axis(name), written.actuator(name)
         pairs = (
-            ("kp", 0.0 - float(actuator.biasprm[1]), loop.position_gain),
+            ("kp", 0.0 - float(actuator.biasprm[1]), loop.moved * loop.natural_frequency**2),
             ("kv", 0.0 - float(actuator.biasprm[2]), loop.velocity_gain),
             ("armature", float(written.joint(axis.joint).armature), reflected_inertia(axis)),
         )

@@ -67,7 +67,7 @@ def describe(machine: Machine, feed: float = 1000.0) -> MachineFacts:
     facts = []
     for name, loop in zip(machine.axes.names, loops, strict=True):
         axis = machine.axis(name)
-        trail = (1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv)
+        trail = (1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) + axis.command_filter_s
         facts.append(
             AxisFacts(
                 name=name,

@@ -13,7 +13,7 @@ from twin.files.shipped import machine_file, shipped_program
 from twin.job.job_file import Job, JobFile, read_job
 from twin.machine.description.config import Machine, read_machine
 from twin.nc.canonical import FloatArray
-from twin.nc.control.settings import ControlSettings, ToolData
+from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named, recognise
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import Source, read_source, source_from_text
@@ -166,6 +166,10 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         offsets=job.file.offsets,
         machine_zero=_machine_zero(job, machine),
         variables=job.file.variables,
+        m_functions={
+            int(code[1:]): MachineFunction(declared.meaning, declared.dwell)
+            for code, declared in {**control.m_functions, **job.file.m_functions}.items()
+        },
         recalculate_on_rapid=control.recalculate_on_rapid,
         module_rotary=control.module_rotary,
         block_skip=job.file.block_skip,

@@ -14,9 +14,8 @@ from starlette.staticfiles import StaticFiles
 
 from twin.view.recorded_run import RecordedRun
 from twin.web.doorkeeper import Doorkeeper
-from twin.web.files import ASSETS, require_three
-from twin.web.guard import Guard
-from twin.web.server import WebServer
+from twin.web.guard import ASSETS, Guard
+from twin.web.server import WebServer, require_three
 
 ROLE = "viewer"
 PAGE = Path(__file__).resolve().parent / "page"

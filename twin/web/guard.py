@@ -1,14 +1,16 @@
 """What stands before every page: hosts, origins and cookies are looked at, and headers are set."""
 
 import urllib.parse
+from pathlib import Path
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from twin.web.doorkeeper import Doorkeeper
-from twin.web.files import ASSETS
 
+ASSETS = Path(__file__).resolve().parent / "assets"
+"""Files of the entry and of the view."""
 LOCAL_NAMES = ("localhost", "127.0.0.1", "::1")
 
 HEADERS = {

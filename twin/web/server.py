@@ -15,8 +15,10 @@ from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from twin.errors import UsageError
-from twin.web.guard import LOCAL_NAMES
+from twin.web.guard import ASSETS, LOCAL_NAMES
 
+THREE = ASSETS / "three"
+"""The view's library: put there by ``scripts/fetch_three.py``, not committed."""
 LOOPBACK = "127.0.0.1"
 FIRST_PORT = 8080
 PORTS = 20
@@ -207,3 +209,16 @@ def _bound(host: str, port: int) -> socket.socket:
         return bound
     shown = f"port {port}" if port else f"ports {FIRST_PORT} to {FIRST_PORT + PORTS - 1}"
     raise UsageError(f"cannot listen on {host}, {shown}: {reason}")
+
+
+def require_three() -> None:
+    """Refuse to open a page without the view's library.
+
+    Raises:
+        UsageError: It is not there.
+    """
+    if not (THREE / "three.module.js").is_file():
+        raise UsageError(
+            "three.js is missing, which a checkout fetches when it is set up: "
+            "run scripts/setup.sh, or python scripts/fetch_three.py"
+        )

@@ -41,6 +41,40 @@ def test_matched_loops_lose_radius_and_stay_round(plane):
     assert result.circular_deviation_um < 0.01
 
 
+@pytest.mark.parametrize(
+    ("late", "meant"),
+    [
+        ({"command_filter_s": 0.01}, lambda s: 1.0 / (1.0 + 0.01 * s)),
+        (
+            {"velocity_filter_s": 0.002, "velocity_feedforward": 0.0},
+            lambda s: 62500.0 / (s**2 + 500.0 * s / (1.0 + 0.002 * s) + 62500.0),
+        ),
+        (
+            {"loop_delay_s": 0.001, "velocity_feedforward": 0.0},
+            lambda s: 62500.0 / (s**2 * np.exp(0.001 * s) + 500.0 * s + 62500.0),
+        ),
+    ],
+)
+def test_lags_of_the_drives_change_the_radius_as_their_transfer_functions(late, meant):
+    machine = shipped_machine(**PERFECT | {"acceleration_feedforward": 0.0} | late)
+    rate = 100.0 / 50.0
+    told = 0.0 if "velocity_feedforward" in late else 500.0
+    ideal = abs((62500.0 + told * 1j * rate) / ((1j * rate) ** 2 + 500.0 * 1j * rate + 62500.0))
+    factor = abs(meant(1j * rate)) * (ideal if told else 1.0)
+    result = circular_test(machine, 50.0, 6000.0)
+    assert result.mean_radius_error_um == pytest.approx(50e3 * (factor - 1.0), abs=0.02)
+    assert result.circular_deviation_um < 0.02
+
+
+def test_a_filter_of_one_axis_alone_gives_an_ellipse():
+    """A lag of T in Y alone: G(b) = v T to the first order, its long axis at 45° or 135°."""
+    late = 0.001
+    machine = changed(shipped_machine(**PERFECT), "Y", command_filter_s=late)
+    result = circular_test(machine, 50.0, 3000.0)
+    assert result.circular_deviation_um == pytest.approx(50.0 * late * UM_PER_MM, rel=0.01)
+    assert result.hysteresis_um == pytest.approx(50.0 * late * UM_PER_MM, rel=0.01)
+
+
 def test_mismatched_loops_give_an_ellipse_at_45_degrees():
     """Lags T and T + d turn the circle into an ellipse: G(b) = v d, long axis at 45° or 135°."""
     machine = changed(shipped_machine(), "Y", kv=7.5 * 0.98)

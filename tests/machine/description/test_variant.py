@@ -3,7 +3,7 @@ import re
 import numpy as np
 import pytest
 
-from tests.machine.machine_fixtures import circle, shipped_machine
+from tests.machine.machine_fixtures import circle
 from twin.errors import UsageError
 from twin.files.shipped import machine_file
 from twin.machine.description.config import read_machine
@@ -53,7 +53,7 @@ def test_a_fourth_axis_under_another_letter_and_a_fifth(tmp_path):
     text = text.replace('joint = "C"', 'joint = "B"').replace('axis = "C"', 'axis = "B"')
     machine = read_machine(write(tmp_path, text))
     assert machine.axes.names == ("X", "Y", "Z", "B")
-    assert build_spec(machine).compile().nu == 8
+    assert build_spec(machine).compile().nu == 12
 
 
 def test_a_joint_that_counts_the_other_way_is_turned_round_by_its_direction(tmp_path):
@@ -68,7 +68,8 @@ def test_a_joint_that_counts_the_other_way_is_turned_round_by_its_direction(tmp_
         write(tmp_path, text.replace('joint = "X"', 'joint = "X"\ndirection = -1'))
     )
     points = circle(20.0, 3000.0, 1.0)
-    (same,) = simulate(shipped_machine(), build_spec(shipped_machine()), [points])
+    shipped = read_machine(machine_file("mill4"))
+    (same,) = simulate(shipped, build_spec(shipped), [points])
     (other,) = simulate(turned, build_spec(turned), [points])
     assert np.array_equal(same.joint_position, other.joint_position)
     assert np.array_equal(same.drive_force, other.drive_force)
@@ -117,7 +118,7 @@ def test_wrong_machine_files_are_refused_with_what_is_wrong(tmp_path, text, mess
             "[axes.X]\ndry_friction = 9.0\n[axes.X.lugre]\nstiffness = 1e8\n",
             "axes.X.lugre.stiffness = 1e+08 swings faster",
         ),
-        ("servo_period_s = 0.02\n", "axes.X: with kv = 7.5 the motor reacts faster"),
+        ("[axes.X]\nkv = 1000.0\n", "axes.X: with kv = 1000 the motor reacts faster"),
     ],
 )
 def test_machines_that_cannot_be_simulated_are_refused_with_what_can(tmp_path, text, message):

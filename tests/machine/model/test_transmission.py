@@ -7,6 +7,7 @@ import pytest
 from tests.machine.machine_fixtures import PERIOD, circle, line, ramp_up, setpoints, shipped_machine
 from twin.errors import ConfigError
 from twin.machine.description.config import Machine
+from twin.machine.model.drives import integral_name
 from twin.machine.model.model import build_spec, drives, physics_model
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints
@@ -218,6 +219,27 @@ def test_integral_action_on_a_circle_agrees_with_its_closed_form():
     assert measured == pytest.approx(np.full(len(measured), expected), abs=5e-5)
 
 
+def test_what_a_drive_at_its_limit_cannot_do_does_not_pile_up():
+    """Pushed away for a second by a little more than it can hold, an axis comes back sooner."""
+    limit = 2000.0
+    machine = shipped_machine(
+        force_limit=limit, reset_time_s=0.02, following_error_limit=0.0, saturation_time_s=10.0
+    )
+    model = physics_model(machine, build_spec(machine))
+    still = line(0, 0.0, 4.0)
+    load = np.zeros((len(still), 4))
+    load[still.time < 1.0, 0] = 1.05 * limit
+    beyond = []
+    for limited in (True, False):
+        if not limited:
+            model.actuator_dynprm[model.actuator(integral_name("X")).id] = 0.0
+        (samples,) = simulate(machine, model, [still], load=lambda _: load)
+        assert samples.joint_position[:, 0].max() > 10.0
+        assert np.abs(samples.drive_force[:, 0]).max() == limit
+        beyond.append(-samples.joint_position[:, 0].min())
+    assert beyond[0] < 0.5 * beyond[1]
+
+
 def test_half_the_velocity_told_halves_the_lag():
     machine = shipped_machine(velocity_feedforward=0.5)
     samples = run(machine, line(0, 50.0, 1.0))
@@ -240,8 +262,8 @@ def test_a_drive_at_its_force_limit_pushes_no_harder():
 
 @pytest.mark.parametrize(
     "fields",
-    [{"kv": 40.0}, {"kv": 7.5, "backlash": 0.01, "motor_inertia": 1e-5, "screw_inertia": 0.0}],
+    [{"kv": 1000.0}, {"kv": 7.5, "backlash": 0.01, "motor_inertia": 1e-6, "screw_inertia": 0.0}],
 )
-def test_a_loop_faster_than_the_servo_period_is_refused_with_what_works(fields):
+def test_a_loop_faster_than_the_shortest_step_is_refused_with_what_works(fields):
     with pytest.raises(ConfigError, match=r"axes\.[XYZC]: with kv = .* works"):
         build_spec(shipped_machine(**fields))

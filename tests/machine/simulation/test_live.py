@@ -220,7 +220,7 @@ def test_a_dull_drive_trails_more():
         ("X", {"fricton": 3.0}, r"unknown key 'axes\.X\.fricton'"),
         ("X", {"dry_friction": -3.0}, r"'axes\.X\.dry_friction'"),
         ("X", {"joint": "Y"}, r"axes\.X\.joint cannot change while the machine runs"),
-        ("X", {"kv": 80.0}, r"kv up to .* works"),
+        ("X", {"kv": 2000.0}, r"kv up to .* works"),
     ],
 )
 def test_a_fault_that_makes_no_sense_changes_nothing(axis, fields, message):

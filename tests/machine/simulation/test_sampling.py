@@ -5,11 +5,12 @@ from hypothesis import strategies as st
 
 from tests.machine.machine_fixtures import PERIOD, circle, line, setpoints, shipped_machine
 from twin.machine.description.config import Machine
-from twin.machine.model.model import build_spec
+from twin.machine.model.model import build_spec, drives
 from twin.machine.simulation.sampling import held_acceleration, held_velocity, polyline_node
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.recording.reader import Samples
+from twin.units import MM
 
 PERFECT = {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0}
 F3000, F10000 = 3000.0, 10000.0
@@ -137,3 +138,23 @@ def test_on_a_constant_acceleration_the_lag_grows_as_its_closed_form_says():
     delay = 2 * axis.damping_ratio / frequency
     expected = rate * (time[-1] * delay - (delay**2 - 1 / frequency**2))
     assert lag == pytest.approx(expected, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {},
+        {"reset_time_s": 0.01},
+        {"velocity_feedforward": 1.0},
+        {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0},
+        {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0, "reset_time_s": 0.01},
+    ],
+)
+def test_the_recorded_force_is_what_accelerates_the_axis(told: dict[str, float]):
+    """Whatever the drive is told in advance, and although it holds it over a step."""
+    machine = shipped_machine(**told)
+    samples = run(machine, line(0, 400.0, 0.4))
+    moved = drives(machine, build_spec(machine).compile())[0].moved
+    needed = moved * np.gradient(samples.joint_velocity[:, 0], PERIOD) * MM
+    assert np.abs(needed).max() > 4000.0
+    assert np.abs(samples.drive_force[:, 0] - needed)[2:-2].max() < 20.0

@@ -171,7 +171,7 @@ def test_drilling_in_pecks_and_tapping() -> None:
 
 
 def test_feed_per_revolution() -> None:
-    assert good("G95 S200 G1 X1 F0.5", "gost").moves.feed.tolist() == [100.0]
+    assert good("G95 S200 M3 G1 X1 F0.5", "gost").moves.feed.tolist() == [100.0]
 
 
 def test_default_feeds_warn_once_and_strict_refuses() -> None:
@@ -492,7 +492,7 @@ def test_fagor_corners() -> None:
 
 
 def test_fagor_feed_modes() -> None:
-    moves = fagor("G93 F2 X10\nG94 F50 X20\nG95 S100 F0.2 X30").moves
+    moves = fagor("G93 F2 X10\nG94 F50 X20\nG95 S100 M3 F0.2 X30").moves
     assert moves.feed.tolist() == pytest.approx([300.0, 50.0, 20.0])
 
 

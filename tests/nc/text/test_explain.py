@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 
 from tests.nc.running import ROOT, run
-from twin.errors import UsageError
 from twin.nc.control.settings import ToolData
-from twin.nc.text.explain import explain, findings, overview
+from twin.nc.text.explain import findings
 
 _CODE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 _MAKERS = {"fail", "warn", "warn_once", "_warn", "_fail", "_refuse", "refuse", "ExpressionError"}
@@ -39,18 +38,3 @@ def test_the_example_earns_its_code(code: str) -> None:
     changes: dict[str, Any] = {"tools": {1: ToolData(5.0, 60.0)}, **finding.settings}
     outcome = run(text, finding.dialect, **changes)
     assert code in [*outcome.codes, outcome.error.code if outcome.error else None]
-
-
-def test_explain_shows_text_and_example() -> None:
-    text = explain("no-lead")
-    assert "Z1.05 G10" in text
-    assert "N5 G09 G02 X0 I100 F100" in text
-
-
-def test_an_unknown_code_names_the_nearest() -> None:
-    with pytest.raises(UsageError, match="no-lead"):
-        explain("nolead")
-
-
-def test_the_overview_names_every_code_once() -> None:
-    assert [line.split()[0] for line in overview().splitlines()] == sorted(findings())

@@ -1,6 +1,7 @@
 """The machine's sentences in the operator's language: all that it can say in a scene."""
 
 import ast
+import dataclasses
 import string
 from pathlib import Path
 
@@ -8,10 +9,13 @@ import pytest
 
 from twin import training
 from twin.files.toml import read_toml
+from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.text.explain import findings
 from twin.training.scene import phrases
-from twin.training.scene.phrases import PhrasesFile, translated
+from twin.training.scene.phrases import PhrasesFile, finding_in, translated
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
-from twin.training.scene.texts import LANGUAGES, Language
+from twin.training.scene.vocabulary import LANGUAGES, Language
+from twin.training.session.commands import WRONG
 from twin.training.session.script import play
 from twin.training.session.session import Session
 
@@ -19,6 +23,8 @@ ROOM = Path(training.__file__).parent / "session"
 SPEAKERS = ("actions.py", "room.py", "session.py", "tables.py")
 RAISED = ("UsageError", "TwinError", "AlarmStandsError")
 OTHERS: list[Language] = [lang for lang in LANGUAGES if lang != "en"]
+UNITS = ("mm", "deg", "N", "N m", "text")
+"""Words that are the same in several languages."""
 ALL = read_toml(phrases._FILE, PhrasesFile).phrases
 
 
@@ -52,7 +58,8 @@ def refusals() -> set[str]:
 @pytest.mark.parametrize("phrase", ALL, ids=lambda phrase: phrase["en"][:40])
 def test_a_sentence_is_told_in_every_language_with_its_figures(phrase):
     assert set(phrase) == set(LANGUAGES)
-    assert len({text.strip() for text in phrase.values()}) == len(LANGUAGES)
+    if phrase["en"] not in UNITS:
+        assert len({text.strip() for text in phrase.values()}) == len(LANGUAGES)
     for text in phrase.values():
         assert places(text) == places(phrase["en"])
     said = phrase["en"].format(**{name: f"{name}7" for name in places(phrase["en"])})
@@ -85,6 +92,31 @@ def test_every_alarm_of_a_scenes_scripts_is_translated(name, monkeypatch):
     for message in said:
         for language in OTHERS:
             assert translated(message, language) != message, message
+
+
+@pytest.mark.parametrize("kind", WRONG)
+def test_what_is_wrong_with_a_typed_value_is_translated(kind):
+    limits = dict.fromkeys(("gt", "ge", "le", "max_length"), 5)
+    message = f"reading: {WRONG[kind].format(**limits)}"
+    for language in OTHERS:
+        assert "5" in translated(message, language) or "5" not in message
+        assert translated(message, language).split(":")[0] != "reading"
+
+
+def test_whatever_the_interpreter_finds_is_told_in_every_language():
+    known = phrases._findings()
+    assert set(known) == set(findings())
+    for code, said in known.items():
+        assert set(said) == set(OTHERS), code
+        assert len(set(said.values())) == len(OTHERS), code
+
+
+def test_a_finding_names_the_words_in_question():
+    found = Diagnostic("error", "unknown-g", "G77 is unknown", "MDI", 1, 4, 3, "G0 G77 X1")
+    assert finding_in(found, "ru").startswith("«G77» - ")
+    assert finding_in(found, "en") == "unknown-g: G77 is unknown"
+    new = dataclasses.replace(found, code="never-heard-of")
+    assert finding_in(new, "cs") == "never-heard-of: G77 is unknown"
 
 
 def test_names_within_a_sentence_are_translated_and_unknown_ones_are_kept():

@@ -6,7 +6,7 @@ import pytest
 
 from twin.errors import ConfigError
 from twin.training.scene.scene_file import Scene, read_scene, scene_names, scene_path
-from twin.training.scene.texts import LANGUAGES
+from twin.training.scene.vocabulary import LANGUAGES
 from twin.training.session.script import ScriptError, play, rehearse
 from twin.training.session.session import Session
 

@@ -6,8 +6,7 @@ import pytest
 
 from twin.machine.watching.alarms import AlarmCode
 from twin.nc.dialects import DIALECTS
-from twin.training.scene.texts import LANGUAGES
-from twin.training.scene.vocabulary import Words, vocabulary
+from twin.training.scene.vocabulary import LANGUAGES, Words, vocabulary
 
 OWN_ALARMS = ("program", "external")
 

@@ -5,10 +5,13 @@ import time
 import numpy as np
 import pytest
 
+from twin.nc.control.executor import Executor
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import Words
 from twin.training.server.driver import HELD_S, Driver
+from twin.training.session import program_run
 from twin.training.session.log import Who
+from twin.training.session.program_run import BLOCKS_AT_REST, BLOCKS_FOR_PLANNER
 from twin.training.session.score import score_sheet
 from twin.training.session.session import Session
 
@@ -136,20 +139,55 @@ def test_a_tool_that_is_not_there_is_an_alarm(driver):
     assert (alarm.code, alarm.message) == ("program", "no tool 2")
 
 
-def test_a_program_that_loops_for_ever_keeps_neither_time_nor_the_emergency_stop_waiting(driver):
+@pytest.mark.parametrize(
+    ("before", "moves"), [("$GOTO N1", False), ("G1 X1 F3000", True), ("G0 X1\nG1 X2 F3000", True)]
+)
+def test_a_program_that_loops_for_ever_keeps_neither_time_nor_the_emergency_stop_waiting(
+    driver, monkeypatch, before, moves
+):
     session = driver.session
     for line in range(len(session.room.lines), 1, -1):
         ask(driver, "edit", line=line)
-    ask(driver, "edit", line=1, text="%LOOP\n$GOTO N1\nN1 $GOTO N2\nN2 $GOTO N1")
+    ask(driver, "edit", line=1, text=f"%LOOP\n{before}\nN1 $GOTO N2\nN2 $GOTO N1")
+    blocks, start = [], session.room.machine.position[0]
+    monkeypatch.setattr(program_run, "SLICES_AT_REST", 20)
+    monkeypatch.setattr(Executor, "run", counted(Executor.run, blocks))
     ask(driver, "cycle_start")
-    slowest = 0.0
-    for _ in range(40):
-        begin = time.perf_counter()
+    for slices in range(1, 100):
         driver._step(0.01)
-        slowest = max(slowest, time.perf_counter() - begin)
-    assert session.room.time_s == pytest.approx(0.4)
+        assert len(blocks) <= (slices + 1) * (BLOCKS_AT_REST + BLOCKS_FOR_PLANNER)
+    assert moves == (session.room.machine.position[0] != start)
+    assert session.room.time_s == pytest.approx(0.99)
+    assert session.room.running == "program"
     ask(driver, "emergency_stop")
     assert session.room.alarm is not None
+
+
+def counted(run, blocks: list):
+    def counting(control, block):
+        blocks.append(block)
+        return run(control, block)
+
+    return counting
+
+
+def test_axes_that_have_caught_up_with_a_computing_program_rest_and_go_on(driver, monkeypatch):
+    monkeypatch.setattr(program_run, "SLICES_AT_REST", 3)
+    room = driver.session.room
+    for line in range(len(room.lines), 1, -1):
+        ask(driver, "edit", line=line)
+    computing = "$FOR P1=0,2000,1\nP2=P1*2\n$ENDFOR"
+    ask(driver, "edit", line=1, text=f"%WAIT\nG91 G1 X1 F3000\n{computing}\nG1 X2\nM30")
+    ask(driver, "cycle_start")
+    start, at, stood = room.machine.position[0], 0.0, False
+    for _ in range(600):
+        run_for(driver, 0.01)
+        at = room.machine.position[0] - start
+        stood |= abs(at - 1.0) < 1e-3 and not room.moving
+    assert room.alarm is None
+    assert room.running == ""
+    assert stood
+    assert at == pytest.approx(3.0, abs=1e-3)
 
 
 def test_only_the_trainer_breaks_things_and_repair_takes_everything_back(driver):

@@ -9,6 +9,7 @@ import numpy as np
 
 from twin.cutting.patches import LEVELS
 from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.server.app import RoomApp
 from twin.training.server.driver import Driver
 from twin.training.server.frames import Changes, StockFeed, as_texts, panel_words, state_message
 from twin.training.server.launch import CELLS_ACROSS
@@ -66,6 +67,24 @@ def test_words_are_sent_when_they_change():
     driver._step(0.01)
     assert changes.since_last(as_texts(panel_words(driver.look))) == '{"mode":"jog"}'
     assert len(state_message(driver.look, cutting=False)) == 8 + 8 * (7 + 5 * 4)
+
+
+def test_a_typing_error_in_mdi_is_told_in_every_language():
+    driver = Driver(Session(read_scene(scene_path("gost_part_zero"))))
+    for command in (
+        {"do": "mode", "mode": "mdi"},
+        {"do": "mdi", "text": "G0 G77"},
+        {"do": "cycle_start"},
+    ):
+        driver.ask(command, "operator", 1)
+        driver._step(0.01)
+    driver._shown = -1.0
+    driver._step(0.2)
+    words = RoomApp._translated(panel_words(driver.look))
+    message = words["alarm"]["message"]
+    assert words["alarm"]["code"] == "program"
+    assert message["en"] == "unknown-g: G77 is unknown to gost"
+    assert [message[language].split(" - ")[0] for language in ("ru", "it", "cs")] == ["«G77»"] * 3
 
 
 def test_the_panel_is_asked_for_and_given():

@@ -10,7 +10,7 @@ from browsers import CHROMIUM
 from panel_player import Player, browser, open_page, play, served, without_view
 
 from twin.training.scene.scene_file import read_scene, scene_path
-from twin.web.files import THREE
+from twin.web.server import THREE
 
 pytestmark = [
     pytest.mark.skipif(

@@ -12,6 +12,7 @@ from twin.errors import ConfigError
 from twin.files.overrides import Change, changed
 from twin.files.toml import Data, Table, checked, read_toml
 from twin.job.fixture import FixtureTable
+from twin.job.machine_functions import MachineFunctions
 from twin.machine.description.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -21,6 +22,7 @@ Positive = Annotated[float, Field(gt=0, strict=True)]
 NonNegative = Annotated[float, Field(ge=0, strict=True)]
 Share = Annotated[float, Field(ge=0, le=1, strict=True)]
 Coordinate = Annotated[float, Field(strict=True)]
+Lateness = Annotated[float, Field(ge=0, le=0.1, strict=True)]
 ServoPeriod = Annotated[float, Field(ge=1e-4, le=0.02, strict=True)]
 
 
@@ -96,7 +98,15 @@ class AxisTable(Table):
     damping_ratio: Positive = 1.0
     """Of the position loop seen as a second-order system; 1 is the fastest that cannot overshoot."""
     reset_time_s: NonNegative = 0.0
-    """Integral action of the velocity loop: takes what friction and weight leave behind [s]; 0: none."""
+    """Integral action of the velocity loop: takes what friction, weight and cut leave behind [s];
+    0: none. With a ``force_limit`` it stops at what the drive can give."""
+    loop_delay_s: Lateness = 0.0
+    """Dead time from what the drive measures to the force that it gives [s]; 0: none."""
+    velocity_filter_s: Lateness = 0.0
+    """Time constant of the filter behind which the drive sees the axis's speed [s]; 0: none."""
+    command_filter_s: Lateness = 0.0
+    """Time constant of the filter that the setpoint passes before the drive sees it [s]; 0: none. The
+    axis trails by velocity times this besides what the loop leaves, whatever the feed-forward."""
     velocity_feedforward: Share = 0.0
     """Share of the setpoint velocity that the drive is told; 1 removes the lag."""
     acceleration_feedforward: Share = 0.0
@@ -178,13 +188,17 @@ class ControlTable(Table):
     """``gost``: G102 also relabels the start of G0 blocks."""
     module_rotary: bool = False
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
+    m_functions: MachineFunctions = Field(default_factory=dict)
+    """M codes of the machine's builder: ``M10 = "clamp the table"``."""
 
 
 class MachineFile(Table):
     """The whole machine file."""
 
     schema_: Literal[1] = Field(alias="schema")
+    """Version of this form."""
     name: str
+    """What results, reports and recordings call the machine."""
     model: str
     """MJCF file, relative to the machine file (to that of ``base``, where it comes from there)."""
     servo_period_s: ServoPeriod = 0.001

@@ -6,13 +6,8 @@ import numpy as np
 from twin.errors import ConfigError
 from twin.machine.description.config import Machine
 from twin.machine.description.measured_mass import set_measured_masses
-from twin.machine.model.drives import (
-    Drive,
-    feedforward_name,
-    integral_name,
-    reflected_inertia,
-    tune,
-)
+from twin.machine.model.drive_actuators import add_drives
+from twin.machine.model.drives import Drive, tune
 from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     FRAME_SIDE,
@@ -24,15 +19,8 @@ from twin.machine.model.tool_shape import (
     add_materials,
     add_tool,
 )
-from twin.machine.model.transmission import (
-    FASTEST,
-    FASTEST_SPRING,
-    add_friction_and_give,
-    add_inertia,
-    has_give,
-    swinging,
-)
-from twin.units import MM, to_si
+from twin.machine.model.transmission import add_inertia
+from twin.units import MM
 
 SPINDLE_NOSE = "spindle_nose"
 """Site on the head at the lower end of the spindle, on its axis."""
@@ -42,10 +30,6 @@ ROTARY_TABLE = "rotary_table"
 """Body that the part is clamped to."""
 
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
-
-
-_POSITION_INPUT = 1
-"""What MuJoCo calls ``input="pos"``."""
 
 
 def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec:
@@ -79,7 +63,8 @@ def _complete(spec: mujoco.MjSpec, machine: Machine, tool: ToolShape | None) -> 
     add_materials(spec)
     _set_clock(spec, machine)
     _set_inertia(spec, machine)
-    _set_drives(spec, machine)
+    _require_actuators(spec, machine)
+    add_drives(spec, machine, drives(machine, compiled(spec, machine)))
     _add_fixtures(spec, machine)
     flange = machine.file.spindle.flange_diameter
     add_tool(spec, tool or DefaultTool(holder=flange / 2.0), flange)
@@ -93,7 +78,10 @@ def _require(machine: Machine, what: str, name: str, known: list[str]) -> None:
 
 
 def _set_clock(spec: mujoco.MjSpec, machine: Machine) -> None:
-    """RK4 at the servo period: ``sampling`` says why, and its tests hold it to 0.1 µm."""
+    """RK4 at the servo period: ``sampling`` says why, and its tests hold it to 0.1 µm.
+
+    Drives that are faster than that make the step shorter (``drive_actuators``).
+    """
     spec.option.timestep = machine.file.servo_period_s
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_RK4
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
@@ -112,71 +100,10 @@ def _set_inertia(spec: mujoco.MjSpec, machine: Machine) -> None:
     set_measured_masses(spec, machine)
 
 
-def _set_drives(spec: mujoco.MjSpec, machine: Machine) -> None:
+def _require_actuators(spec: mujoco.MjSpec, machine: Machine) -> None:
     known = [actuator.name for actuator in spec.actuators]
     for name in machine.axes.names:
         _require(machine, "actuator", name, known)
-    found = drives(machine, compiled(spec, machine))
-    for name, drive in zip(machine.axes.names, found, strict=True):
-        axis = machine.axis(name)
-        _refuse_what_outruns_the_clock(machine, name, drive)
-        servo = spec.actuator(name)
-        servo.target = axis.joint
-        servo.trntype = mujoco.mjtTrn.mjTRN_JOINT
-        servo.set_to_intvelocity(kp=drive.position_gain, kv=drive.velocity_gain)
-        servo.actlimited = False
-        servo.forcelimited = False
-        feedforward = spec.add_actuator(
-            name=feedforward_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
-        )
-        feedforward.set_to_motor()
-        if drive.integral_gain:
-            integral = spec.add_actuator(
-                name=integral_name(name), target=axis.joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
-            )
-            integral.set_to_pid(kp=0.0, kv=0.0, ki=drive.integral_gain, ctrlspec=_POSITION_INPUT)
-        joint = spec.joint(axis.joint)
-        joint.actfrclimited = axis.force_limit > 0
-        joint.actfrcrange = np.array([-axis.force_limit, axis.force_limit])
-        add_friction_and_give(spec, axis, drive.moved, machine.file.servo_period_s)
-    if any(has_give(machine.axis(name)) for name in machine.axes.names):
-        for key in list(spec.keys):
-            spec.delete(key)
-
-
-def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) -> None:
-    """A loop or a spring that swings within a step cannot be simulated with it."""
-    axis = machine.axis(name)
-    period = machine.file.servo_period_s
-    felt = reflected_inertia(axis) if has_give(axis) else drive.moved
-    if not felt > 0.0:
-        raise ConfigError(
-            f"{machine.path}: axes.{name}: behind a backlash or spring the motor needs an inertia "
-            "of its own; give motor_inertia"
-        )
-    rate = drive.velocity_gain / felt * period
-    if rate > FASTEST:
-        reason = " behind the backlash or spring, where it moves no more than itself" * has_give(
-            axis
-        )
-        raise ConfigError(
-            f"{machine.path}: axes.{name}: with kv = {axis.kv:g} the motor{reason} reacts faster "
-            f"than the servo period; kv up to {axis.kv * FASTEST / rate:.3g} works"
-        )
-    springs = []
-    if axis.stiffness:
-        swings = swinging(axis, drive.moved)
-        springs.append(("stiffness", axis.stiffness, swings, FASTEST_SPRING, "0 is rigid"))
-    if axis.lugre is not None:
-        bristles = axis.lugre.stiffness
-        springs.append(("lugre.stiffness", bristles, drive.moved, FASTEST, "none is Coulomb"))
-    for key, stiffness, swings, fastest, otherwise in springs:
-        most = swings * (fastest / period) ** 2 * to_si(axis.kind)
-        if stiffness > most:
-            raise ConfigError(
-                f"{machine.path}: axes.{name}.{key} = {stiffness:g} swings faster than the servo "
-                f"period; up to {most:.3g} works, and {otherwise}"
-            )
 
 
 def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:

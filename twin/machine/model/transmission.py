@@ -48,6 +48,11 @@ def has_give(axis: AxisTable) -> bool:
     return axis.backlash > 0 or axis.stiffness > 0
 
 
+def felt(axis: AxisTable, moved: float) -> float:
+    """What the motor accelerates at once: itself alone where the transmission gives [kg or kg m²]."""
+    return reflected_inertia(axis) if has_give(axis) else moved
+
+
 def swinging(axis: AxisTable, moved: float) -> float:
     """What swings on the spring between motor and axis: both masses in series [kg or kg m²]."""
     reflected = reflected_inertia(axis)

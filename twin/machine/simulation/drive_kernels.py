@@ -17,11 +17,13 @@ class Drives(NamedTuple):
         period: The servo period [s].
         scale: SI units per mm or deg of each axis, as its joint turns or slides, shape (k,); so on.
         position_gain: Force per position.
-        velocity_gain: Force per velocity.
+        velocity_gain: Force per velocity, as far as none is late.
         integral_gain: Force per integral of the position's error; 0: the drive has no integrator.
         velocity_told: Force that is added in advance per commanded velocity.
         acceleration_told: Force that is added in advance per commanded acceleration.
         trail: How long an axis that the integrator has settled trails its setpoint [s].
+        speed_bulge: What the motor's speed is higher between samples than at them, on average, per
+            commanded acceleration [s]: the speed that it is told stands still over a step.
         limit: Of the force [N or N m].
         constant: Force from outside that never changes [N or N m].
         velocity_input: Control that tells the drive its velocity.
@@ -44,6 +46,7 @@ class Drives(NamedTuple):
     velocity_told: FloatArray
     acceleration_told: FloatArray
     trail: FloatArray
+    speed_bulge: FloatArray
     limit: FloatArray
     constant: FloatArray
     velocity_input: IntArray
@@ -107,6 +110,9 @@ def hold_controls(drives: Drives, past: Points, points: Points, width: int) -> F
             if drives.position_input[axis] >= 0:
                 meant = (node + before) / 2 - drives.trail[axis] * velocity
                 controls[row, drives.position_input[axis]] = meant * scale
+                # Within a step the axis passes under the held input, and the integral bulges by V h²/12.
+                bulge = h**2 / 12 * (velocity * scale)
+                controls[row, drives.force_input[axis]] -= drives.integral_gain[axis] * bulge
             before, speed_before = node, points.velocity[row, axis]
     return controls
 
@@ -140,7 +146,8 @@ def read_states(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The axes in states of the model.
 
-    The force is what the drives push with around the instants of the samples, within their limits.
+    The force is what the drives push with around the instants of the samples, on average over the
+    step, within their limits.
     It is taken from the setpoint itself: at a corner of the polyline that is drawn through it the
     push is off by kp h²/12 a for a part of the step.
 
@@ -161,13 +168,11 @@ def read_states(
             motor = states[row, drives.qpos[axis]] / scale
             speed = states[row, drives.qvel[axis]] / scale
             push = drives.position_gain[axis] * ((points.position[row, axis] - motor) * scale)
-            push -= drives.velocity_gain[axis] * speed * scale
+            bulge = drives.speed_bulge[axis] * points.acceleration[row, axis]
+            push -= drives.velocity_gain[axis] * (speed + bulge) * scale
             push += _told(drives, axis, points.velocity[row, axis], points.acceleration[row, axis])
             if drives.integral[axis] >= 0:
-                # Within a step the axis passes under the held input: the integral bulges by V h²/12.
-                bulge = drives.period**2 / 12 * (speed * scale)
-                left_behind = states[row, drives.integral[axis]] + bulge
-                push += drives.integral_gain[axis] * left_behind
+                push += drives.integral_gain[axis] * states[row, drives.integral[axis]]
             force[row, axis] = min(max(push * np.sign(scale), -limit), limit)
             if drives.give_qpos[axis] >= 0:
                 motor += states[row, drives.give_qpos[axis]] / scale

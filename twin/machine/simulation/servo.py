@@ -8,10 +8,10 @@ import numpy.typing as npt
 from mujoco.rollout import Rollout
 
 from twin.machine.description.config import Machine
-from twin.machine.model.drives import feedforward_name, integral_name
+from twin.machine.model.drives import Drive, feedforward_name, integral_name
 from twin.machine.model.model import drives
 from twin.machine.model.timers import switch_off_timers
-from twin.machine.model.transmission import give_name, has_give
+from twin.machine.model.transmission import felt, give_name, has_give
 from twin.machine.simulation.drive_kernels import (
     Drives,
     Points,
@@ -20,6 +20,7 @@ from twin.machine.simulation.drive_kernels import (
     hold_pushes,
     read_states,
 )
+from twin.machine.simulation.late_drives import LateDrives, Told, is_late
 from twin.machine.simulation.sampling import polyline_node
 from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
@@ -30,6 +31,8 @@ from twin.units import kv_per_second
 _STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
 _CONTROL = int(mujoco.mjtState.mjSTATE_CTRL)
 _PUSH = int(mujoco.mjtState.mjSTATE_QFRC_APPLIED)
+_PARTS = (slice(0, 1), slice(1, None))
+"""Of rows: what went before, and what follows."""
 _FEW = 8
 """Steps that are sooner made one by one than by calling ``mujoco.rollout``."""
 
@@ -45,6 +48,10 @@ class Stand:
     setpoint: FloatArray
     integral: FloatArray
     """Force of the drive's integrator; NaN where it has none."""
+    lagging: dict[str, float]
+    """Speed as each lag shows it, by the lag's name."""
+    trails: tuple[FloatArray, FloatArray]
+    """How far the filter of the command and half of the dead time are behind [mm or deg]."""
 
 
 class Servo:
@@ -87,13 +94,14 @@ class Servo:
         self._half_gap = model.tendon_lengthspring[walls, 1]
         self._scale = machine.joint_scale
         self._constant = np.array([axis.constant_force for axis in axes])
+        self._substeps = round(self._period / model.opt.timestep)
         everywhere = len(axes)
         joined = 1 + model.nq
         self._drives = Drives(
             period=self._period,
             scale=self._scale,
             position_gain=self._position_gain,
-            velocity_gain=np.array([loop.velocity_gain for loop in loops]),
+            velocity_gain=np.array([loop.damping_gain for loop in loops]),
             integral_gain=self._integral_gain,
             velocity_told=np.array(
                 [
@@ -110,6 +118,13 @@ class Servo:
             trail=np.array(
                 [(1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) for axis in axes]
             ),
+            speed_bulge=np.array(
+                [
+                    axis.velocity_feedforward * loop.velocity_gain / felt(axis, loop.moved)
+                    for axis, loop in zip(axes, loops, strict=True)
+                ]
+            )
+            * (self._period**2 / 12),
             limit=np.array([axis.force_limit or np.inf for axis in axes]),
             constant=self._constant,
             velocity_input=_numbers(everywhere, slice(None), model.actuator_ctrladr[servos]),
@@ -125,6 +140,7 @@ class Servo:
                 everywhere, self._integrates, joined + model.nv + self._integral_state
             ),
         )
+        self._late = _late_drives(machine, model, loops, self._drives)
         self._ctrl, self._pushed = self._data.ctrl, self._data.qfrc_applied
         self._warned = self._data.warning.number
         self._state = np.zeros(0)
@@ -153,25 +169,49 @@ class Servo:
         points = _points(chunk)
         if not all_finite(points):
             raise SimulationError("a setpoint is not a finite number")
+        begun: list[FloatArray] = []
+        past, ahead = points, points
         if self._chunk is None:
             self._begin(chunk)
-            after = None if load is None else load[1:]
-            first = Points(*(column[:1] for column in points))
-            rest = Points(*(column[1:] for column in points))
-            states = np.concatenate([self._state[None], self._roll(first, rest, after)])
+            begun = [self._state[None]]
+            past = Points(*(column[:1] for column in points))
+            ahead = Points(*(column[1:] for column in points))
+            load = None if load is None else load[1:]
         else:
-            states = self._roll(_points(self._chunk), points, load)
+            past = _points(self._chunk)
+        told = None if self._late is None else self._late.follow(past, ahead)
+        states = self._roll(past, ahead, told, load)
+        states = np.concatenate([*begun, states]) if begun else states
         self._chunk, self._states = chunk, states
-        return Samples(chunk, *read_states(self._drives, points, states))
+        return Samples(chunk, *self._read(points, told, states))
+
+    def _read(
+        self, points: Points, told: Told | None, states: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Position, velocity and force of the axes in states."""
+        if self._late is None or told is None:
+            return read_states(self._drives, points, states)
+        seen = Told(*(Points(*(column[-len(states) :] for column in part)) for part in told))
+        unlimited = self._drives._replace(limit=np.full(len(self._scale), np.inf))
+        position, velocity, force = read_states(unlimited, seen.points, states)
+        speed = states[:, self._drives.qvel] / self._scale
+        acts = states[:, 1 + self.model.nq + self.model.nv :]
+        force += np.sign(self._scale) * self._late.force(seen, speed, acts)
+        limit = self._drives.limit
+        return position, velocity, np.clip(force, -limit, limit)
 
     def begin_anew(self) -> None:
         """Forget all that was followed: the next chunk is the first of all."""
-        self._last = None
+        self._chunk = None
         self._warmstart = np.zeros((1, self.model.nv))
+        if self._late is not None:
+            self._late.come_to_rest()
 
     def go_back(self, row: int) -> None:
         """Take back what came after a row of the last chunk."""
         assert self._chunk is not None
+        if self._late is not None:
+            self._late.go_to(row - len(self._chunk))
         self._chunk = self._chunk[row : row + 1]
         self._state = self._states[row].copy()
         self._warm_up()
@@ -184,6 +224,9 @@ class Servo:
         mujoco.mj_forward(model, data)
         stand = data.qpos[self._qpos] + self._carry(self._load())
         data.act[self._setpoint_state] = stand
+        if self._late is not None:
+            self._late.come_to_rest()
+            data.act[[lag.state for lag in self._late.lags]] = 0.0
         mujoco.mj_getState(model, data, self._state, _STATE)
         still = np.zeros((1, len(stand)))
         self._chunk = dataclasses.replace(
@@ -205,6 +248,7 @@ class Servo:
         data.qpos[self._give_qpos] = give[self._gives]
         data.qvel[self._dof] = before.speed
         data.act[self._setpoint_state] = before.setpoint
+        self._take_over_lags(before)
         mujoco.mj_forward(self.model, data)
         self._carry(np.where(np.isnan(before.integral), self._load(), before.integral))
         self._state = np.zeros(mujoco.mj_stateSize(self.model, _STATE))
@@ -212,7 +256,19 @@ class Servo:
         self._chunk = other.last
         self._warm_up()
 
-    def stand(self) -> "Stand":
+    def _take_over_lags(self, before: Stand) -> None:
+        """Let lags go on where others have come to; a setpoint whose filter is gone jumps."""
+        filtered, _ = before.trails
+        if self._late is not None:
+            self._late.stand(before.trails)
+            filtered = filtered - self._late.trails[0]
+            for lag in self._late.lags:
+                speed = float(before.speed[lag.axis])
+                lagging = before.lagging.get(lag.name, speed)
+                self._data.act[lag.state] = lag.actuator.current(speed, lagging)
+        self._data.act[self._setpoint_state] += filtered * self._scale
+
+    def stand(self) -> Stand:
         """How the axes stand and move after the last chunk."""
         model, data = self.model, self._data
         mujoco.mj_setState(model, data, self._state, _STATE)
@@ -225,7 +281,16 @@ class Servo:
             self._integral_gain[self._integrates] * data.act[self._integral_state]
         )
         setpoint = data.act[self._setpoint_state].copy()
-        return Stand(data.qpos[self._qpos] + give, speed, give, setpoint, integral)
+        lagging: dict[str, float] = {}
+        trails = (np.zeros(len(self._qpos)), np.zeros(len(self._qpos)))
+        if self._late is not None:
+            trails = self._late.trails
+            for lag in self._late.lags:
+                shown = lag.actuator.lagging(speed[[lag.axis]], data.act[[lag.state]])
+                lagging[lag.name] = float(shown[0])
+        return Stand(
+            data.qpos[self._qpos] + give, speed, give, setpoint, integral, lagging, trails
+        )  # fmt: skip
 
     def _load(self) -> FloatArray:
         """What every axis carries as it stands, shape (k,) [N or N m]."""
@@ -269,18 +334,23 @@ class Servo:
         self._state = np.zeros(mujoco.mj_stateSize(model, _STATE))
         mujoco.mj_getState(model, data, self._state, _STATE)
 
-    def _roll(self, past: Points, points: Points, load: FloatArray | None) -> FloatArray:
+    def _roll(
+        self, past: Points, points: Points, told: Told | None, load: FloatArray | None
+    ) -> FloatArray:
         """Step from the last of some setpoints to others; the states there, shape (n, width)."""
         steps = len(points.position)
         if steps == 0:
             return np.zeros((0, len(self._state)))
         model, data = self.model, self._data
-        controls, held = hold_controls(self._drives, past, points, model.nu), _CONTROL
+        controls, held = self._controls(past, points, told), _CONTROL
         pushes = None
         if load is None and self._constant.any():
             load = np.zeros((steps, len(self._dof)))
         if load is not None:
             pushes, held = hold_pushes(self._drives, load, model.nv), _CONTROL | _PUSH
+        if self._substeps > 1:
+            controls = controls.repeat(self._substeps, axis=0)
+            pushes = None if pushes is None else pushes.repeat(self._substeps, axis=0)
         self._warned[:] = 0
         if steps <= _FEW:
             states = self._step_one_by_one(controls, pushes)
@@ -297,7 +367,16 @@ class Servo:
             self._refuse_warnings()
         self._state = states[-1].copy()
         self._warmstart = data.qacc_warmstart[None].copy()
-        return states
+        return states if self._substeps == 1 else states[self._substeps - 1 :: self._substeps]
+
+    def _controls(self, past: Points, points: Points, told: Told | None) -> FloatArray:
+        """Controls to hold on the way to each setpoint, shape (n, nu), SI."""
+        if self._late is None or told is None:
+            return hold_controls(self._drives, past, points, self.model.nu)
+        before, after = (Points(*(column[part] for column in told.points)) for part in _PARTS)
+        controls = hold_controls(self._drives, before, after, self.model.nu)
+        controls[:, self._drives.force_input] += self._late.held_force(told)
+        return controls
 
     def _step_one_by_one(self, controls: FloatArray, pushes: FloatArray | None) -> FloatArray:
         """What ``mujoco.rollout`` does, to the last bit."""
@@ -318,6 +397,19 @@ class Servo:
             mujoco.mjtWarning(int(code)).name for code in np.flatnonzero(self._warned)
         )
         raise SimulationError(f"MuJoCo warned during the simulation: {names}")
+
+
+def _late_drives(
+    machine: Machine, model: mujoco.MjModel, loops: tuple[Drive, ...], drives: Drives
+) -> LateDrives | None:
+    """What is late in the drives; None where nothing is."""
+    if not is_late(machine, loops):
+        return None
+    places = {
+        model.actuator(index).name: int(address)
+        for index, address in enumerate(model.actuator_actadr)
+    }
+    return LateDrives(machine, loops, drives, places, model.opt.timestep)
 
 
 def _points(setpoints: Setpoints) -> Points:

@@ -4,7 +4,7 @@ Nothing is said here of any dialect: a code, a letter or an interpolation that t
 not describe completely is not plain.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -74,11 +74,15 @@ class DecodeTables:
         token_kinds: What the letters of plain words are.
     """
 
-    def __init__(self, dialect: Dialect, settings: ControlSettings) -> None:
+    def __init__(
+        self, dialect: Dialect, settings: ControlSettings, interpreted: Iterable[int]
+    ) -> None:
+        """Make them; ``interpreted`` are M codes that only the interpreter tier may run."""
         self.groups = tuple(sorted({code.group for code in dialect.g.values()}))
         self._interpolations = _interpolations(dialect)
         self._places = {id(each): float(at) for at, each in enumerate(self._interpolations)}
         self._cycles = _cycles(dialect)
+        self._interpreted = [number for number in interpreted if number < CODES]
         self.token_kinds = _token_kinds(dialect, settings)
         self.lines = _line_tables(dialect, self.token_kinds)
         self.blocks = self._block_tables(dialect, settings)
@@ -141,7 +145,7 @@ class DecodeTables:
             group=group,
             cycle=cycle,
             cycles=_cycle_rows(self._cycles, self.token_kinds),
-            function=_functions(dialect),
+            function=_functions(dialect, self._interpreted),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
             mismatch=np.array([arc.mismatch for arc in arcs]),
@@ -204,14 +208,14 @@ def _cycle_rows(cycles: list[MotionMode | None], token_kinds: Mapping[str, int])
     return rows
 
 
-def _functions(dialect: Dialect) -> IntArray:
+def _functions(dialect: Dialect, interpreted: Iterable[int]) -> IntArray:
     """M codes that are only reported; a spindle's start carries its speed, and is not plain."""
     function = np.full(CODES, EARLY if dialect.any_m else UNSUPPORTED, np.int64)
     for number, code in dialect.m.items():
         only_told = code.action is None and not code.silent and not code.ends
         function[number] = (LATE if code.late else EARLY) if only_told else UNSUPPORTED
-    for start in SPINDLE_STARTS:
-        function[int(start[1:])] = UNSUPPORTED
+    for number in (*(int(start[1:]) for start in SPINDLE_STARTS), *interpreted):
+        function[number] = UNSUPPORTED
     return function
 
 

@@ -43,7 +43,6 @@ from twin.nc.bytecode.registers import (
     TURNED,
     Constants,
     Machine,
-    Rows,
     State,
 )
 from twin.nc.bytecode.token_kinds import UNSUPPORTED
@@ -59,7 +58,7 @@ from twin.nc.path.compensation.contour import Contour, new_contour
 from twin.nc.path.drilling_cycle import most_acts, no_values
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import CHUNK
-from twin.nc.path.rows import Row
+from twin.nc.path.rows import Row, Rows
 from twin.nc.text.lines import Page
 
 _PLANES = np.array([plane.axes for plane in PLANE_ORDER])
@@ -85,7 +84,9 @@ class VirtualMachine:
         self._kernels = kernels
         self._lines = control.program_counter.lines
         self._page = Page(0, b"")
-        self._tables = DecodeTables(control.dialect, control.settings)
+        self._tables = DecodeTables(
+            control.dialect, control.settings, control.interpreted_functions
+        )
         self._line_compiler = LineCompiler(control, self._tables, kernels)
         self._rows = Rows(
             np.zeros((CHUNK, 5), np.int64),
@@ -191,7 +192,9 @@ class VirtualMachine:
             and modal.correct_center
             and math.isnan(control.rapid_acceleration)
             and math.isnan(control.rapid_deceleration)
-            and not (control.axis_limits or control.axis_accelerations)
+            and not (
+                control.axis_limits or control.axis_accelerations or control.axis_decelerations
+            )
             and (disturbed is None or not disturbed(control))
         )
 

@@ -91,6 +91,8 @@ class BlockCompiler:
     def _code(self, word: Word) -> GCode | MCode:
         number, vocabulary = _number(word), self.vocabulary
         code = vocabulary.g.get(number) if word.address == "G" else vocabulary.m.get(number)
+        if word.address == "M" and number in self.control.interpreted_functions:
+            raise UnsupportedError
         if code is None and word.address == "M" and vocabulary.any_m and number >= 0:
             return MCode(meaning="machine function")
         if code is None:

@@ -86,6 +86,7 @@ class MCode:
         ends: Ends the program.
         action: What it does besides being reported as a function.
         silent: It is not reported.
+        dwell: How long the program waits for it [s].
         compiler: Compiles what ``action`` does; None: it has no compiled form.
         ground: On what the meaning rests.
     """
@@ -95,6 +96,7 @@ class MCode:
     late: bool = False
     ends: bool = False
     silent: bool = False
+    dwell: float = 0.0
     action: Action | None = None
     compiler: Compiler | None = None
     ground: Ground = "decision"

@@ -20,6 +20,10 @@ _SMALLEST_MOVE = 1e-9
 """A block that goes less far than this moves nothing [mm or deg]: far below any resolution."""
 
 
+_SPINDLE = {"M3": True, "M4": True, "M5": False}
+"""Whether the spindle turns behind these functions."""
+
+
 class Control(ControlWords):
     """One control, as the actions of codes see it; positions are programmed ones."""
 
@@ -89,11 +93,11 @@ class Control(ControlWords):
         if rapid:
             acceleration = _either(self.rapid_acceleration, acceleration)
             deceleration = _either(self.rapid_deceleration, deceleration)
-        if self.axis_limits or self.axis_accelerations:
+        if self.axis_limits or self.axis_accelerations or self.axis_decelerations:
             share = self._axis_shares(end, length, is_arc)
             feed = _limited(feed, self.axis_limits, share)
             acceleration = _limited(acceleration, self.axis_accelerations, share)
-            deceleration = _limited(deceleration, self.axis_accelerations, share)
+            deceleration = _limited(deceleration, self.axis_decelerations, share)
         self._last = Segment(
             motion=Motion.RAPID if rapid else Motion.FEED,
             line=self.block.line,
@@ -155,6 +159,9 @@ class Control(ControlWords):
             return feed * FEED_FACTORS[mode]
         if not self.spindle:
             self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
+        if not self.spindle_turns:
+            message = "a feed per revolution never moves while the spindle stands"
+            self.fail("feed-per-revolution", message, hint="start it by M3 or M4 before")
         return feed * self.spindle
 
     def _turns(self, end: list[float]) -> bool:
@@ -169,6 +176,8 @@ class Control(ControlWords):
 
     def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
         """Report a function at this place of the path."""
+        if word in _SPINDLE:
+            self.spindle_turns = _SPINDLE[word]
         line, given = self.block.line, dict(arguments)
         self.path.event(lambda columns: columns.function(line, word, given, at))
 

@@ -193,14 +193,18 @@ class Executor(Control):
     def _m_code(self, word: Word) -> MCode:
         number = integer_of(number_of(word))
         code = self.dialect.m.get(number)
+        if code is None and (declared := self.settings.m_functions.get(number)) is not None:
+            return MCode(meaning=declared.meaning, dwell=declared.dwell)
         if code is None and self.dialect.any_m and number >= 0:
             return MCode(meaning="machine function")
         if code is None:
+            known = ", ".join(f"M{number}" for number in sorted(self.dialect.m))
             self.fail(
                 "unknown-m",
                 f"{word.text} is unknown to {self.dialect.name}",
                 word,
-                hint=f"known: {', '.join(f'M{number}' for number in sorted(self.dialect.m))}",
+                hint=f"known: {known}; one of the machine's builder is declared in the job or the "
+                f'machine file: [m_functions] M{max(number, 0)} = "what it does"',
             )
         return code
 
@@ -248,6 +252,8 @@ class Executor(Control):
             return
         arguments = self.take_function_arguments(word)
         self.function(f"M{integer_of(number_of(word))}", arguments)
+        if code.dwell > 0.0:
+            self.dwell(code.dwell)
         if code.ends:
             self.ended = True
 

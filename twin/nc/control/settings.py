@@ -19,6 +19,19 @@ class ToolData:
     length: float
 
 
+@dataclasses.dataclass(frozen=True, slots=True)
+class MachineFunction:
+    """An M code that the machine's builder has made.
+
+    Attributes:
+        meaning: For people.
+        dwell: How long the program waits for it [s].
+    """
+
+    meaning: str
+    dwell: float = 0.0
+
+
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class ControlSettings:
     """The control's configuration for one run of a program."""
@@ -55,6 +68,9 @@ class ControlSettings:
 
     variables: Mapping[str, float] = dataclasses.field(default_factory=dict)
     """Values of variables that the program reads but does not set, by their name in it."""
+
+    m_functions: Mapping[int, MachineFunction] = dataclasses.field(default_factory=dict)
+    """M codes by number that the dialect does not know and the machine's builder has made."""
 
     module_rotary: bool = False
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""

@@ -21,6 +21,13 @@ Decision: three G91 moves of 120° must count as 360, whatever binary fractions 
 """
 
 
+_FOREIGN_COMMAND = re.compile(
+    rb"\((?:UAO|UOT|UIO|MIR|ROT|SCF|RPT|ERP|CLS|EPP|GTO|BNC|DLY|DIS|RQO|RQU|URT|ASS|DPT|UVC|UPR)"
+    rb"(?:,[^()]*)?\)"
+)
+"""Commands of that family: a word of three letters in brackets, often with values behind it."""
+
+
 @dataclasses.dataclass(slots=True)
 class Periods:
     """The axes whose start point is recalculated, and their periods [deg]."""
@@ -31,6 +38,24 @@ class Periods:
 def _periods(control: Control) -> Periods:
     assert isinstance(control.memory, Periods)
     return control.memory
+
+
+def warn_of_foreign_commands(control: Control) -> None:
+    """Bracket comments that a neighbouring family of controls would run: (RPT,3), (UAO,1)."""
+    lines = control.program_counter.lines
+    if not lines.any_holds(_FOREIGN_COMMAND):
+        return
+    for number, line in enumerate(lines, 1):
+        match = _FOREIGN_COMMAND.search(line.encode("ascii", "replace"))
+        if match is not None:
+            control.report.line = number
+            control.report.warn(
+                "foreign-command",
+                f"{match[0].decode()} is a comment here and a command of the NC-200 family",
+                match.start(),
+                len(match[0]),
+                hint="if the program is meant for that control, nothing here runs it",
+            )
 
 
 def switch_recalculation(control: Control) -> None:
@@ -185,5 +210,6 @@ GOST = Dialect(
     ),
     memory=Periods,
     before_motion=recalculate_start,
+    prepare=warn_of_foreign_commands,
     disturbed=lambda control: bool(_periods(control).by_axis),
 )

@@ -5,8 +5,10 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from twin.compilation.compilable import compilable
-from twin.nc.canonical import FloatArray
 
 Vector = tuple[float, float, float]
 Directions = tuple[Vector, Vector, Vector]
@@ -14,7 +16,7 @@ Directions = tuple[Vector, Vector, Vector]
 
 
 @compilable
-def vector_of(column: Sequence[float] | FloatArray) -> Vector:
+def vector_of(column: Sequence[float] | npt.NDArray[np.float64]) -> Vector:
     """The first three of a column's numbers."""
     return (float(column[0]), float(column[1]), float(column[2]))
 
@@ -44,7 +46,7 @@ def world(plane: Directions, point: tuple[float, float], height: float) -> Vecto
 
 @compilable
 def put_point(
-    plane: Directions, point: tuple[float, float], height: float, target: FloatArray
+    plane: Directions, point: tuple[float, float], height: float, target: npt.NDArray[np.float64]
 ) -> None:
     """Put that point into the first places of a column."""
     target[0], target[1], target[2] = world(plane, point, height)

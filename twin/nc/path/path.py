@@ -15,6 +15,7 @@ from twin.nc.path.compensation.contour import (
     MOVED_EVENTS,
     MOVED_ROWS,
     OFF,
+    STARTED,
     Contour,
 )
 from twin.nc.path.compensation.stage import Compensation, Refuse, Warn
@@ -199,6 +200,11 @@ class Path:
     def compensating(self) -> bool:
         """Compensation is in force."""
         return self._compensation.in_force
+
+    @property
+    def compensation_has_moved(self) -> bool:
+        """Compensation is in force and a move of its contour has come."""
+        return self.compensating and self._compensation.stage != STARTED
 
     def start_compensation(
         self, plane: Plane, signed_offset: float, *, square: bool, indirect: bool

@@ -32,9 +32,11 @@ class FaultTable(Table):
     """
 
     kind: FaultKind
+    """What is broken."""
     axis: str = ""
     """The axis that has it; an alarm has none."""
     value: Annotated[float, Field(ge=-1e6, le=1e6)] = 0.0
+    """How much, in the unit of its kind."""
 
     @pydantic.model_validator(mode="after")
     def _fits(self) -> "FaultTable":

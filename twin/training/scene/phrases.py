@@ -1,7 +1,8 @@
 """The machine's own sentences in the operator's language.
 
 The rooms to the left speak English, with numbers in their sentences. Here a sentence is known again
-by its form. One that nobody has translated is shown as the control says it.
+by its form, and what the interpreter finds by its code. What nobody has translated is shown as the
+control says it.
 """
 
 import functools
@@ -9,9 +10,11 @@ import re
 from pathlib import Path
 
 from twin.files.toml import Table, read_toml
-from twin.training.scene.texts import Language, Text
+from twin.nc.text.diagnostics import Diagnostic
+from twin.training.scene.vocabulary import Language, Text, vocabulary
 
-_FILE = Path(__file__).resolve().parent / "vocabularies" / "phrases.toml"
+_FOLDER = Path(__file__).resolve().parent / "vocabularies"
+_FILE = _FOLDER / "phrases.toml"
 _PLACE = re.compile(r"\{(\w+)\}")
 
 
@@ -19,6 +22,17 @@ class PhrasesFile(Table):
     """The file of sentences."""
 
     phrases: list[Text]
+
+
+def _part(name: str, part: str, language: Language) -> str:
+    alarms = vocabulary(language).alarms
+    return alarms[part].name if name == "code" and part in alarms else translated(part, language)
+
+
+class FindingsFile(Table):
+    """The file of what the interpreter finds, by code."""
+
+    findings: dict[str, Text]
 
 
 def translated(message: str, language: Language) -> str:
@@ -33,9 +47,29 @@ def translated(message: str, language: Language) -> str:
     for form, phrase in _forms():
         found = form.fullmatch(message)
         if found is not None:
-            parts = {name: translated(part, language) for name, part in found.groupdict().items()}
+            parts = {name: _part(name, part, language) for name, part in found.groupdict().items()}
             return phrase[language].format(**parts)
     return message
+
+
+def finding_in(finding: Diagnostic, language: Language) -> str:
+    """What the interpreter found, in a language: the words in question, and what is wrong with them.
+
+    Args:
+        finding: What it found.
+        language: Wanted.
+    """
+    said = _findings().get(finding.code, {}).get(language)
+    if said is None:
+        return f"{finding.code}: {finding.message}"
+    begin = finding.column - 1
+    words = finding.source[begin : begin + finding.width].strip()
+    return f"«{words}» - {said}" if words else said
+
+
+@functools.cache
+def _findings() -> dict[str, Text]:
+    return read_toml(_FOLDER / "findings.toml", FindingsFile).findings
 
 
 @functools.cache

@@ -4,7 +4,7 @@ A scene is one TOML file in a folder of its own or of several; what it names lie
 """
 
 import dataclasses
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import pydantic
@@ -14,10 +14,20 @@ from twin.errors import ConfigError, UsageError
 from twin.files.toml import Table, read_toml
 from twin.job.job_file import Job, JobFile
 from twin.run.preparation import Preparation, prepare_job
+from twin.training.scene.confinement import Confinement, leaves_folder
 from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.modes import Mode
 from twin.training.scene.tasks import TaskTable
-from twin.training.scene.texts import Language, Text
+from twin.training.scene.vocabulary import Language, Text
+
+Mode = Literal["auto", "single", "jog", "mdi"]
+"""Automatic, single block, manual jog, manual data input."""
+
+MODES: tuple[Mode, ...] = ("auto", "single", "jog", "mdi")
+
+FEED_OVERRIDES = (0, 120)
+"""Ends of the feed override dial [%]."""
+RAPID_OVERRIDES = (0, 100)
+"""Ends of the rapid override dial [%]."""
 
 _SHIPPED = Path(__file__).resolve().parent.parent / "scenes"
 
@@ -26,6 +36,7 @@ class StartTable(Table):
     """How the machine and its control are found."""
 
     mode: Mode = "auto"
+    """Automatic, single block, jog, or a line typed in."""
     position: dict[str, float] = Field(default_factory=dict)
     """Where the axes stand, machine coordinates [mm or deg]; none: as the job's start says."""
     zero_error: dict[str, float] = Field(default_factory=dict)
@@ -34,8 +45,10 @@ class StartTable(Table):
     """How much longer the tool table has the tool in the spindle than it is [mm]."""
     spindle: bool = False
     """Whether the spindle turns already."""
-    feed_override: Annotated[int, Field(ge=0, le=120)] = 100
-    rapid_override: Annotated[int, Field(ge=0, le=100)] = 100
+    feed_override: Annotated[int, Field(ge=FEED_OVERRIDES[0], le=FEED_OVERRIDES[1])] = 100
+    """Of programmed feeds [%]."""
+    rapid_override: Annotated[int, Field(ge=RAPID_OVERRIDES[0], le=RAPID_OVERRIDES[1])] = 100
+    """Of rapids [%]."""
     alarm: str = ""
     """An alarm that stands when the operator comes: ``hard-limit`` for an axis on its switch."""
 
@@ -55,6 +68,7 @@ class StepTable(Table):
     do: str | None = None
     """A command; its arguments stand in ``give``."""
     give: dict[str, Any] = Field(default_factory=dict)
+    """Arguments of the command, such as ``{ axis = "X", direction = 1, step = 10.0 }``."""
     wait: Literal["rest", "alarm", "moving", "line", "end", "seconds", "contact"] | None = None
     """``rest``: the axes stand; ``end``: the program has ended; ``line``: that line runs;
     ``contact``: the feeler lamp is lit."""
@@ -76,8 +90,11 @@ class SceneFile(Table):
     """A scene file."""
 
     schema_: Literal[1] = Field(alias="schema")
+    """Version of this form."""
     title: Text
+    """What the list of scenes and the page call it."""
     story: Text
+    """What the operator is told first."""
     language: Language = "en"
     """What labels, messages and texts are in, unless ``--language`` says otherwise."""
     job: JobFile
@@ -87,6 +104,7 @@ class SceneFile(Table):
     """What is broken from the start."""
     tasks: Annotated[tuple[TaskTable, ...], Field(min_length=1)]
     hints: tuple[Text, ...] = ()
+    """Given one after the other when the operator asks for one."""
     hint_cost: Annotated[int, Field(ge=0)] = 1
     """Points that a hint costs."""
     time_limit_s: Annotated[float, Field(gt=0)] = 1800.0
@@ -104,8 +122,7 @@ class SceneFile(Table):
     def _stay_in_folder(cls, job: JobFile) -> JobFile:
         named = [job.program, job.machine, (job.stock and job.stock.file) or ""]
         for name in named:
-            path = PurePosixPath(name)
-            if path.is_absolute() or ".." in path.parts or "\\" in name:
+            if leaves_folder(name):
                 raise ValueError(f"'{name}' leaves the scene's folder")
         return job
 
@@ -162,7 +179,9 @@ def read_scene(path: Path) -> Scene:
     """
     file = read_toml(path, SceneFile)
     folder = path.resolve().parent
-    _require_inside(folder, path, file)
+    Confinement(path).require(file.job)
+    if not (folder / file.job.program).is_file():
+        raise ConfigError(f"{path}: no NC program '{file.job.program}' beside it")
     scene = Scene(path.stem, file, prepare_job(Job(folder, file.job)))
     axes = scene.preparation.machine.axes.names
     named = [*file.start.position, *file.start.zero_error, *(f.axis for f in file.faults if f.axis)]
@@ -172,12 +191,3 @@ def read_scene(path: Path) -> Scene:
         if axis not in axes:
             raise ConfigError(f"{path}: no axis '{axis}': the machine has {', '.join(axes)}")
     return scene
-
-
-def _require_inside(folder: Path, path: Path, file: SceneFile) -> None:
-    """Refuse links that lead out of the scene's folder."""
-    for name in (file.job.program, (file.job.stock and file.job.stock.file) or ""):
-        if name and not (folder / name).resolve().is_relative_to(folder):
-            raise ConfigError(f"{path}: '{name}' leads out of the scene's folder")
-    if not (folder / file.job.program).is_file():
-        raise ConfigError(f"{path}: no NC program '{file.job.program}' beside it")

@@ -10,7 +10,7 @@ import pydantic
 from pydantic import Field
 
 from twin.files.toml import Table
-from twin.training.scene.texts import Text
+from twin.training.scene.vocabulary import Text
 
 
 class ReachedTable(Table):
@@ -28,15 +28,18 @@ class StayedTable(Table):
     """An axis never leaves a range."""
 
     axis: str
+    """Its name."""
     low: float
-    """[mm or deg], from the part's true zero."""
+    """Least place of the tip [mm or deg], from the part's true zero."""
     high: float
+    """Greatest [mm or deg]."""
 
 
 class ZeroTable(Table):
     """The control's part zero is where the part's is."""
 
     axes: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Which of them."""
     tolerance: Annotated[float, Field(gt=0)] = 0.05
     """[mm or deg]."""
 
@@ -45,7 +48,9 @@ class QuestionTable(Table):
     """Something that is to be found out."""
 
     choices: Annotated[tuple[str, ...], Field(min_length=2)]
+    """What may be answered."""
     right: str
+    """The answer that is right."""
 
     @pydantic.model_validator(mode="after")
     def _has_right(self) -> "QuestionTable":
@@ -58,7 +63,9 @@ class TaskTable(Table):
     """One task: a text, points, and exactly one condition."""
 
     text: Text
+    """What is to be done, for the operator."""
     points: Annotated[int, Field(ge=1)] = 1
+    """What it is worth."""
     reached: ReachedTable | None = None
     stayed: StayedTable | None = None
     """Holds to the end."""

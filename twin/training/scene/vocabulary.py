@@ -1,11 +1,22 @@
-"""What the panel says: labels and alarms by language, with the words that one control has alone."""
+"""What the panel says: labels and alarms by language, with the words that one control has alone.
+
+Scenes carry texts in the same languages.
+"""
 
 import functools
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
 
 from twin.files.toml import Table, read_toml
-from twin.training.scene.texts import Language
+
+Language = Literal["en", "ru", "it", "cs"]
+
+LANGUAGES: tuple[Language, ...] = ("en", "ru", "it", "cs")
+
+Text = Annotated[dict[Language, str], Field(min_length=1)]
+"""A text by language; where one is missing, English stands in, else whichever there is."""
 
 _FOLDER = Path(__file__).resolve().parent / "vocabularies"
 
@@ -62,3 +73,8 @@ def vocabulary(language: Language) -> VocabularyFile:
         ConfigError: The file is damaged.
     """
     return read_toml(_FOLDER / f"{language}.toml", VocabularyFile)
+
+
+def in_language(text: dict[Language, str], language: Language) -> str:
+    """A text in a language, or in the nearest that there is."""
+    return text.get(language) or text.get("en") or next(iter(text.values()))

@@ -17,16 +17,16 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from twin.cutting.patches import grid_of
 from twin.nc.iso.base import jog_block
+from twin.nc.text.diagnostics import Diagnostic
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.scene.fault_table import FAULT_DEFAULTS
-from twin.training.scene.modes import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
-from twin.training.scene.phrases import translated
-from twin.training.scene.texts import LANGUAGES, Language
-from twin.training.scene.vocabulary import Words
+from twin.training.scene.phrases import finding_in, translated
+from twin.training.scene.scene_file import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
+from twin.training.scene.vocabulary import LANGUAGES, Language, Words
 from twin.training.server.driver import Driver, Look
 from twin.training.server.frames import Changes, StockFeed, as_texts, panel_words, state_message
 from twin.training.server.seats import Page, Seats
-from twin.web.files import ASSETS
+from twin.web.guard import ASSETS
 
 ROLES = ("operator", "trainer", "watcher")
 PAGE = Path(__file__).resolve().parent.parent / "page"
@@ -233,7 +233,12 @@ class RoomApp:
         """The machine's sentences in every language, so that each page can choose its own."""
         alarm = words["alarm"]
         if alarm is not None:
-            words["alarm"] = alarm | {"message": _in_all(alarm["message"])}
+            found = alarm.pop("finding")
+            alarm["message"] = (
+                {language: finding_in(Diagnostic(**found), language) for language in LANGUAGES}
+                if found
+                else _in_all(alarm["message"])
+            )
         words["refusal"] = words["refusal"] and _in_all(words["refusal"])
         return words
 

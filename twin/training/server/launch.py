@@ -7,16 +7,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from twin.training.scene.scene_file import Scene
-from twin.training.scene.texts import Language
-from twin.training.scene.vocabulary import Words
+from twin.training.scene.vocabulary import Language, Words
 from twin.training.server.app import ROLES, RoomApp
 from twin.training.server.driver import Driver
 from twin.training.session.score import SheetWriter
 from twin.training.session.session import Session
 from twin.web.doorkeeper import Doorkeeper
-from twin.web.files import require_three
 from twin.web.guard import Guard
-from twin.web.server import LOOPBACK, WebServer
+from twin.web.server import LOOPBACK, WebServer, require_three
 
 CELLS_ACROSS = 400
 """Cells of the live stock along its shorter side, at least: a step of 0.2 mm can be seen."""

@@ -12,7 +12,7 @@ from pydantic import Field
 from twin.errors import UsageError
 from twin.files.toml import Table
 from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.modes import FEED_OVERRIDES, RAPID_OVERRIDES, Mode
+from twin.training.scene.scene_file import FEED_OVERRIDES, RAPID_OVERRIDES, Mode
 
 SPINDLE_SPEEDS = (1.0, 20000.0)
 """Ends of what the spindle turns [1/min]."""
@@ -218,6 +218,15 @@ Command = (
 TRAINERS = (Inject, Repair, Freeze, Unfreeze, Rewind, StartReplay, EndReplay)
 """Commands that are a trainer's alone."""
 
+WRONG = {
+    "float_type": "here belongs a number",
+    "greater_than": "the value must be above {gt:g}",
+    "greater_than_equal": "the value begins at {ge:g}",
+    "less_than_equal": "the value ends at {le:g}",
+    "string_too_long": "there is room for {max_length} characters",
+}
+"""What is wrong with a value that somebody typed, by pydantic's name of the kind of error."""
+
 _ADAPTER: pydantic.TypeAdapter[Command] = pydantic.TypeAdapter(
     Annotated[Command, Field(discriminator="do")]
 )
@@ -236,6 +245,9 @@ def command_from(data: Any) -> Command:
         return _ADAPTER.validate_python(data)
     except pydantic.ValidationError as error:
         detail = error.errors()[0]
+        if detail["type"] in WRONG:
+            said = WRONG[detail["type"]].format(**detail.get("ctx", {}))
+            raise UsageError(f"{detail['loc'][-1]}: {said}") from error
         where = ".".join(str(part) for part in detail["loc"])
         message = detail["msg"].removeprefix("Value error, ")
         raise UsageError(f"no such command: {where + ': ' if where else ''}{message}") from error

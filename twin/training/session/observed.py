@@ -1,16 +1,38 @@
 """What the judge and the faults see of a room, so that they depend on no room."""
 
+import dataclasses
 from typing import Protocol
 
 from twin.machine.simulation.live import LiveMachine
+from twin.nc.text.diagnostics import Diagnostic
 from twin.recording.reader import Samples
 from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.modes import Mode
-from twin.training.scene.scene_file import Scene
-from twin.training.session.notice import Notice
+from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.program_run import ProgramRun
 from twin.training.session.tables import Tables
 from twin.training.session.workpiece import Workpiece
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Notice:
+    """An alarm.
+
+    Attributes:
+        code: Stable, searchable name of its kind: those of ``twin.machine.watching.alarms``, and
+            ``program`` (the interpreter refused a block), ``external`` (a safety circuit).
+        message: What happened, with numbers.
+        axis: Name of the axis, or empty.
+        line: Source line of the program, 0 where none.
+        time_s: When, in machine time [s].
+        finding: What the interpreter found, where that is the cause.
+    """
+
+    code: str
+    message: str
+    axis: str
+    line: int
+    time_s: float
+    finding: Diagnostic | None = None
 
 
 class Observed(Protocol):

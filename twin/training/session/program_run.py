@@ -4,7 +4,7 @@ The program is interpreted block by block. It is cut into parts where an operato
 has to do something before the axes go on: a program stop, a tool change, an error. The axes rest at
 such places anyway, so that each part can be planned on its own. It is interpreted ahead of the
 axes, a bounded number of blocks in each slice of time, so that a program that loops for ever keeps
-nobody waiting. All that was asked of a run is noted, so that it can be copied at any moment.
+nobody waiting: where the axes have caught up with it, they come to rest until there are moves. All that was asked of a run is noted, so that it can be copied at any moment.
 """
 
 import bisect
@@ -27,7 +27,7 @@ from twin.nc.control.executor import Executor
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import PROGRAM_STOPS, TOOL_CHANGE
 from twin.nc.text.blocks import Block
-from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
 
 MOVES_AT_ONCE = 256
@@ -36,8 +36,10 @@ CHUNKS_AHEAD = 4
 """Groups of so many moves that are interpreted ahead of the planner."""
 BLOCKS_AT_REST, BLOCKS_IN_MOTION = 200, 50
 """Blocks that are interpreted in one slice of time, before the axes move and while they do."""
-BLOCKS_WITHOUT_MOVE = 3000
-"""Blocks without a move after which a run gives up whose axes wait for the next one."""
+BLOCKS_FOR_PLANNER = 400
+"""Blocks more that are interpreted in one slice where the planner has caught up."""
+SLICES_AT_REST = 100
+"""Slices after which the axes begin with what moves there are."""
 
 MADE_AGAIN_AT_ONCE = 100
 """Slices that a copied run is planned by when it is made again."""
@@ -45,7 +47,7 @@ MADE_AGAIN_AT_ONCE = 100
 LARGEST_OVERRIDE = 1.2
 """Factor at the end of the feed override dial."""
 
-Ending = Literal["end", "stop", "tool", "soft-limit", "program"]
+Ending = Literal["end", "stop", "tool", "wait", "soft-limit", "program"]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -71,6 +73,7 @@ class ProgramRun:
     Attributes:
         ending: Why the present part ends; known once it has been interpreted to its end.
         message: What there is to say of an ending by error.
+        finding: What the interpreter found, where that is the error.
         tool: The tool that a tool change asks for.
         dropped: An operator has given up the rest.
     """
@@ -107,6 +110,7 @@ class ProgramRun:
         self.ending: Ending | None = None
         self.ending_line = 0
         self.message = ""
+        self.finding: Diagnostic | None = None
         self.tool: int | None = self._control.tools.spindle
         self._begin = np.zeros(0), np.zeros(0)
         self._forget()
@@ -191,8 +195,12 @@ class ProgramRun:
     def _look_ahead(self) -> None:
         """Interpret some blocks more; the axes can go once there are moves."""
         most = BLOCKS_AT_REST if self._motion is None else BLOCKS_IN_MOTION
+        self._left = BLOCKS_FOR_PLANNER
         if self.ending is None and len(self._waiting) < CHUNKS_AHEAD:
             self._interpret(most)
+        self._looks += 1
+        if self._motion is None and self._looks > SLICES_AT_REST and len(self._control.path):
+            self._finish_chunk(self._control.path.take())
         if self._motion is None and self._waiting:
             start, zero = self._begin
             self._motion = LiveMotion(
@@ -206,6 +214,7 @@ class ProgramRun:
 
     def _forget(self) -> None:
         self._motion: LiveMotion | None = None
+        self._looks = self._left = 0
         self._waiting: deque[Chunk] = deque()
         self._count = 0
         self._marks: list[int] = []
@@ -215,15 +224,15 @@ class ProgramRun:
         self._firsts: list[int] = []
 
     def _chunks(self) -> Iterator[Chunk]:
-        """What the planner pulls; where it is quicker than the interpreter, it waits a little."""
+        """What the planner pulls; where it is quicker than the interpreter, the part ends there."""
         while True:
             if not self._waiting and self.ending is None:
-                self._interpret(BLOCKS_WITHOUT_MOVE)
+                self._interpret(min(BLOCKS_IN_MOTION, self._left))
+                self._left -= BLOCKS_IN_MOTION
             if not self._waiting and self.ending is None:
                 self._finish_chunk(self._control.path.take())
-                if not len(self._waiting[-1].moves):
-                    self.ending = "program"
-                    self.message = f"endless-program: {BLOCKS_WITHOUT_MOVE} blocks without a move"
+                if not len(self._waiting[-1].moves) and self.ending is None:
+                    self.ending = "wait"
             if not self._waiting:
                 return
             yield self._waiting.popleft()
@@ -246,11 +255,14 @@ class ProgramRun:
                 self._look_for_stop(block)
                 enough = len(control.path) >= MOVES_AT_ONCE
         except ProgramError as error:
-            diagnostic = error.diagnostic
-            self.ending, self.message = "program", f"{diagnostic.code}: {diagnostic.message}"
-            self.ending_line = diagnostic.line
+            self._end_by(error.diagnostic)
         if enough or self.ending is not None:
             self._finish_chunk(control.path.take())
+
+    def _end_by(self, finding: Diagnostic) -> None:
+        """The program is wrong."""
+        self.ending, self.finding = "program", finding
+        self.message, self.ending_line = f"{finding.code}: {finding.message}", finding.line
 
     def _finish_chunk(self, chunk: Chunk) -> None:
         """Hand moves on to the planner, up to the first one that would leave the travel."""

@@ -19,15 +19,15 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
 from twin.nc.control.settings import ToolData
 from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS, SpindleState
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
 from twin.recording.reader import Samples
 from twin.run.placement import part_zero, start_position
 from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.modes import Mode
-from twin.training.scene.scene_file import Scene
+from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.faults import inject
 from twin.training.session.judge import Judge
-from twin.training.session.notice import Notice
+from twin.training.session.observed import Notice
 from twin.training.session.program_run import ProgramRun
 from twin.training.session.tables import Tables
 from twin.training.session.workpiece import Workpiece
@@ -236,10 +236,18 @@ class Room:
         if alarm is not None and self.alarm is None:
             self.raise_alarm(alarm.code, alarm.message, axis=alarm.axis, line=alarm.line)
 
-    def raise_alarm(self, code: str, message: str, *, axis: str = "", line: int = 0) -> None:
+    def raise_alarm(
+        self,
+        code: str,
+        message: str,
+        *,
+        axis: str = "",
+        line: int = 0,
+        finding: Diagnostic | None = None,
+    ) -> None:
         """The control stops everything and says why; the first alarm counts."""
         if self.alarm is None:
-            self.alarm = Notice(code, message, axis, line, self.time_s)
+            self.alarm = Notice(code, message, axis, line, self.time_s, finding)
             self.judge.note_alarm(code)
         self.drop_run()
         self.spindle = self.spindle.stopped()
@@ -259,13 +267,15 @@ class Room:
             if self.running == "program" and not run.dropped:
                 self.judge.note_end(self)
             self.drop_run()
+        elif ending == "wait":
+            self.go_on()
         elif ending == "stop":
             self.waiting = True
         elif ending == "tool":
             self._change_tool(run)
         else:
             assert ending is not None
-            self.raise_alarm(ending, run.message, line=run.ending_line)
+            self.raise_alarm(ending, run.message, line=run.ending_line, finding=run.finding)
 
     def _change_tool(self, run: ProgramRun) -> None:
         try:
@@ -297,6 +307,10 @@ class Room:
             )
             run.begin(self.standing_setpoint, self.tables.program_zero)
             self.run, self.running, self.waiting = run, what, False
+        except ProgramError as error:
+            found = error.diagnostic
+            message = f"{found.code}: {found.message}"
+            self.raise_alarm("program", message, line=found.line, finding=found)
         except TwinError as error:
             self.raise_alarm("program", str(error))
 

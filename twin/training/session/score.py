@@ -9,8 +9,7 @@ from typing import Any
 import jinja2
 
 from twin.files.atomic import write_text
-from twin.training.scene.texts import in_language
-from twin.training.scene.vocabulary import Words
+from twin.training.scene.vocabulary import Words, in_language
 from twin.training.session.session import Session
 from twin.version import __version__
 

@@ -7,9 +7,9 @@ import numpy as np
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
 from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.modes import Mode
+from twin.training.scene.scene_file import Mode
 from twin.training.session.judge import Verdict
-from twin.training.session.notice import Notice
+from twin.training.session.observed import Notice
 from twin.training.session.program_run import ModalState
 from twin.training.session.room import Room
 from twin.units import SECONDS_PER_MINUTE

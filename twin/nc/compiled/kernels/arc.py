@@ -13,7 +13,6 @@ from twin.nc.bytecode.registers import (
     UNIT,
     BlockTables,
     Constants,
-    Rows,
     State,
 )
 from twin.nc.bytecode.token_kinds import AXIS, CENTER, RADIUS
@@ -22,6 +21,7 @@ from twin.nc.compiled.kernels.plane import SHORTEST
 from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import Point
+from twin.nc.path.rows import Rows
 
 
 @inlined

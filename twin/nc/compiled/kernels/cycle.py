@@ -18,7 +18,6 @@ from twin.nc.bytecode.registers import (
     UNIT,
     BlockTables,
     Constants,
-    Rows,
     State,
 )
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
@@ -31,7 +30,7 @@ from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
 from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
-from twin.nc.path.rows import copy
+from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
 """The rows are full."""

@@ -33,7 +33,6 @@ from twin.nc.bytecode.registers import (
     UNIT,
     Constants,
     Machine,
-    Rows,
     State,
 )
 from twin.nc.canonical import FloatArray
@@ -51,7 +50,7 @@ from twin.nc.path.event_columns import (
     SPEED,
     TOOL,
 )
-from twin.nc.path.rows import copy
+from twin.nc.path.rows import Rows, copy
 
 _NO_EVENT = -1
 _PECKING = Cycle._fields.index("pecking")

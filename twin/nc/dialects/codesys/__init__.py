@@ -44,7 +44,7 @@ CODESYS = Dialect(
     motion_words=frozenset(f"XYZ{ADDITIONAL}IJKRT"),
     function_letters="KLO",
     references="O",
-    signed=("E", "EF"),
+    signed=("E", "EF", *(f"E{letter}" for letter in f"XYZ{ADDITIONAL}")),
     series="HOL",
     words={
         "F": base.set_feed,
@@ -57,13 +57,11 @@ CODESYS = Dialect(
         "S": words.refuse_profile,
         "L!": words.pass_label,
         **{f"P{letter}": words.set_period(letter) for letter in ADDITIONAL},
+        **{f"F{letter}": words.axis_velocity(letter) for letter in f"XYZ{ADDITIONAL}"},
         **{
-            f"F{letter}": words.axis_limit(letter, acceleration=False)
+            f"E{letter}{sign}": words.axis_acceleration(letter)
             for letter in f"XYZ{ADDITIONAL}"
-        },
-        **{
-            f"E{letter}": words.axis_limit(letter, acceleration=True)
-            for letter in f"XYZ{ADDITIONAL}"
+            for sign in ("", "-")
         },
     },
     statements={
@@ -105,7 +103,8 @@ CODESYS = Dialect(
             (f"F{each}" for each in f"XYZ{ADDITIONAL}"), "largest velocity of the axis"
         ),
         **dict.fromkeys(
-            (f"E{each}" for each in f"XYZ{ADDITIONAL}"), "largest acceleration of the axis"
+            (f"E{each}{sign}" for each in f"XYZ{ADDITIONAL}" for sign in ("", "-")),
+            "largest acceleration of the axis; below 0 its largest deceleration",
         ),
     },
     units="mm, degrees; F in units per second, E in units per second squared",
@@ -114,12 +113,14 @@ CODESYS = Dialect(
         Mark(r"^[^\"$;\[]*\bN[ \t]*\d+\b[^\"$;\[]*\bN[ \t]*\d+\b", "several N blocks on one line"),
         Mark(r"\bG0?[23]\b.*[IJK].*\bT[ \t]*\d", "an arc with the opening angle T"),
         Mark(r"\bG0?4[ \t]*T", "G4 T"),
-        Mark(r"\bE[ \t]*[-+]?\d", "E, the acceleration"),
+        Mark(r"^(?!.*\bG5(?:1[ \t]*A|01)).*\bE[ \t]*[-+]?\d", "E, the acceleration"),
         Mark(r"\$[A-Z_]\w*\$", "$variable$"),
         Mark(r"\bLET[ \t]+#|\bSUBPROGRAM\b", "LET, SUBPROGRAM"),
         Mark(r"\bG20[ \t]+L|\bL[?!][ \t]*\d", "G20 L, L?, L!"),
         Mark(r"\bG5[12][ \t]*D|\bG1[56]\b|\bG3[67]\b.*\bD", "G51 D, G52 D, G15, G16, G36 D"),
         Mark(r"\b(?:FF|P[ABC])[ \t]*\d", "FF, PA, PB, PC"),
+        Mark(r"\bG0?[89]\b.*\bK[ \t]*-?[\d.]+.*\bR[ \t]*[01]?\.\d", "an ellipse: G8 K R0.5"),
+        Mark(r"\bG7[01][ \t]+L[ \t]*\d", "G71 L6"),
         Mark(r"\bH[ \t]*-?\d+[ \t]*[OL][ \t]*-?[\d.]", "a switch point H with O or L"),
         Mark(r"[XYZ][^ \t;$\"]*\b(?:SIN|COS|SQRT|PI)\b(?!\[)", "functions with round brackets"),
     ),
@@ -132,7 +133,7 @@ CODESYS = Dialect(
     rapid_feed=words.own_rapid_feed,
     library=subprograms.with_files,
     compile_block=block_compiler.compile_block,
-    disturbed=lambda control: bool(program.variables(control).periods),
+    disturbed=program.acts_on_plain_blocks,
     registers=program.registers,
     take_registers=program.take_registers,
 )

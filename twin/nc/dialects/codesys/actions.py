@@ -7,10 +7,11 @@ from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
+from twin.nc.control.interpolation import LineRule
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
 from twin.nc.iso.offsets import compile_programmed_shift
-from twin.nc.iso.tool_compensation import LEFT, RIGHT, compensate
+from twin.nc.iso.tool_compensation import LEFT, RIGHT, compensate, refuse_plane_change
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Word
 
@@ -56,6 +57,21 @@ def free_plane(control: Control) -> None:
     if not (i or j or k):
         control.fail("plane-normal", "G16 needs the plane's normal", control.code_word(16))
     control.modal.plane = plane_with_normal((i, j, k))
+    plane_changed(control)
+
+
+def plane_changed(control: Control) -> None:
+    """G15 to G19: compensation that has not moved yet acts in the new plane (ToolRadiusCorr, example 2).
+
+    Raises:
+        ProgramError: It has moved in another one.
+    """
+    memory = variables(control)
+    if control.path.compensation_has_moved:
+        refuse_plane_change(control)
+    if control.path.compensating:
+        control.path.end_compensation()
+        compensate(control, memory.tool_side, memory.tool_radius)
 
 
 def probe(control: Control) -> None:
@@ -83,6 +99,7 @@ def _compensate(control: Control, side: float) -> None:
     word = control.take("D")
     if word is not None:
         variables(control).tool_radius = control.length(word)
+    variables(control).tool_side = side
     compensate(control, side, variables(control).tool_radius)
 
 
@@ -167,17 +184,52 @@ def _numbered_axis(control: Control, word: Word) -> int:
 
 
 def length_vector(control: Control) -> None:
-    """G43 I J K: the tool's vector is added to every position; 0 0 0 is off."""
-    i, j, k = (control.length(control.take(letter)) for letter in "IJK")
-    shift = [i, j, k, *([0.0] * (len(control.settings.axes) - 3))]
-    control.frame.set_shift("length", shift)
+    """G43 I J K: the tool's vector is added to every position; 0 0 0 is off.
+
+    The next move leads into it or out of it: from where the axes stand to its end with the vector
+    (page of the preprocessor), also where it names another axis.
+    """
+    vector = [control.length(control.take(letter)) for letter in "IJK"]
+    if control.path.compensating:
+        message = "the tool's length cannot change while radius compensation is in force"
+        control.fail("compensation-change", message, hint="end it by G40 first")
+    memory, old = variables(control), control.frame.shift("length")
+    x, y, z = (
+        pending + new - before
+        for pending, new, before in zip(memory.length_ramp, vector, old[:3], strict=True)
+    )
+    memory.length_ramp = (x, y, z)
+    control.frame.set_shift("length", [*vector, *([0.0] * (len(control.settings.axes) - 3))])
+
+
+def lead_into_length(control: Control) -> None:
+    """A move goes to its end with the tool's vector, which has changed before it.
+
+    Raises:
+        ProgramError: It is an arc, whose radius the vector would change on the way.
+    """
+    memory = variables(control)
+    across = memory.length_ramp
+    memory.length_ramp = (0.0, 0.0, 0.0)
+    normal, mode = control.modal.plane.normal, control.modal.interpolation
+    height = sum(a * n for a, n in zip(across, normal, strict=True))
+    beside = max(abs(a - height * n) for a, n in zip(across, normal, strict=True))
+    if mode is not None and not isinstance(mode.rule, LineRule) and beside > 0.0:
+        message = "the tool's length is led into on the next move, which must be a straight one"
+        control.fail("length-ramp", message, hint="write G0 or G1 behind G43")
+
+
+def _reframed(control: Control) -> None:
+    """The frame has changed: see where it stands, a length that no move has led into apart."""
     control.reframed()
+    for axis, pending in enumerate(variables(control).length_ramp):
+        control.programmed[axis] += pending
 
 
 def reset_shift(control: Control) -> None:
     """G53: decoder and machine coordinates coincide."""
     control.frame.set_shift("offset", [0.0] * len(control.settings.axes))
-    control.reframed()
+    _reframed(control)
 
 
 def shift_absolutely(control: Control) -> None:
@@ -194,7 +246,7 @@ def _shift(control: Control, shift: list[float]) -> None:
     for index, word in control.take_axis_words():
         shift[index] += control.axis_value(index, word)
     control.frame.set_shift("offset", shift)
-    control.reframed()
+    _reframed(control)
 
 
 def set_reference(control: Control) -> None:

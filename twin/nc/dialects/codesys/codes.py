@@ -35,7 +35,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         meaning=meaning,
         group="plane",
         sets={"plane": plane},
-        action=tool_compensation.refuse_plane_change,
+        action=actions.plane_changed,
         compiler=base.compile_plane(plane),
         ground="manual",
     )
@@ -115,7 +115,7 @@ CODES: dict[int, GCode] = {
         ground="manual",
     ),
     43: GCode(
-        meaning="tool length vector I J K",
+        meaning="tool length vector I J K; the next move leads into it",
         group="length",
         action=actions.length_vector,
         ground="manual",

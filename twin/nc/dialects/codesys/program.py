@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 from twin.nc.bytecode.registers import RADIUS_GIVEN
 from twin.nc.control.control import Control
+from twin.nc.geometry.planes import Vector
 from twin.nc.path.blends import BlendKind
 from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Statement, Word
@@ -92,6 +93,8 @@ class Variables:
 
     Attributes:
         tool_radius: The last D of G41 or G42 [mm].
+        tool_side: Side of the last G41 or G42: 1 left, -1 right.
+        length_ramp: What G43 has changed and no move has led into yet [mm].
         smoothing: Distance from a corner at which its moves are cut [mm].
         smoothed_by: What takes the corners' place; None: nothing.
         rapid_feed: FF as programmed, 0 where it is not.
@@ -100,6 +103,8 @@ class Variables:
     """
 
     tool_radius: float = 0.0
+    tool_side: float = 0.0
+    length_ramp: Vector = (0.0, 0.0, 0.0)
     smoothing: float = 0.0
     smoothed_by: BlendKind | None = None
     rapid_feed: float = 0.0
@@ -111,6 +116,12 @@ def variables(control: Control) -> Variables:
     """The dialect's memory."""
     assert isinstance(control.memory, Variables)
     return control.memory
+
+
+def acts_on_plain_blocks(control: Control) -> bool:
+    """A period, or a length that the next move leads into: plain blocks heed them."""
+    memory = variables(control)
+    return bool(memory.periods) or any(memory.length_ramp)
 
 
 def read_variable(control: Control, name: str, _index: float | None) -> float:

@@ -4,6 +4,7 @@ import math
 
 from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
+from twin.nc.dialects.codesys.actions import lead_into_length
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.text.blocks import Word
 
@@ -53,6 +54,8 @@ def before_motion(control: Control, rapid: bool) -> None:
         control.rapid_feed = math.nan if feed is None else feed * 60.0
     _refuse_slopes(control)
     take_shortest_way(control)
+    if any(variables(control).length_ramp):
+        lead_into_length(control)
 
 
 def _refuse_slopes(control: Control) -> None:
@@ -79,21 +82,46 @@ def set_period(letter: str) -> WordAction:
     return action
 
 
-def axis_limit(letter: str, *, acceleration: bool) -> WordAction:
-    """FX, EX, ...: the largest velocity or acceleration of one axis; 0 takes it away."""
+def axis_velocity(letter: str) -> WordAction:
+    """FX, ...: the largest velocity of one axis; 0 takes it away."""
 
     def action(control: Control, word: Word) -> None:
-        index = control.axis_index.get(letter)
-        if index is None:
-            control.refuse_axis(word._replace(address=letter))
-        value = abs(control.number(word))
-        table = control.axis_accelerations if acceleration else control.axis_limits
+        index, value = _limited_axis(control, letter, word), abs(control.number(word))
+        control.axis_limits[index] = value * 60.0
         if value == 0.0:
-            table.pop(index, None)
-        else:
-            table[index] = value if acceleration else value * 60.0
+            del control.axis_limits[index]
 
     return action
+
+
+def axis_acceleration(letter: str) -> WordAction:
+    """EX10, EX-13: the largest acceleration and deceleration of one axis; 0 takes both away.
+
+    As with E, a value above 0 is the acceleration, one below 0 the deceleration (page of the
+    extended velocity checks). Decision: an acceleration alone is the deceleration too.
+    """
+
+    def action(control: Control, word: Word) -> None:
+        index, value = _limited_axis(control, letter, word), control.number(word)
+        both = control.axis_accelerations, control.axis_decelerations
+        if value == 0.0:
+            for table in both:
+                table.pop(index, None)
+        elif value < 0.0:
+            control.axis_decelerations[index] = -value
+        else:
+            control.axis_accelerations[index] = value
+            if f"{word.address}-" not in {each.address for each in control.words.values()}:
+                control.axis_decelerations[index] = value
+
+    return action
+
+
+def _limited_axis(control: Control, letter: str, word: Word) -> int:
+    index = control.axis_index.get(letter)
+    if index is None:
+        control.refuse_axis(word._replace(address=letter))
+    return index
 
 
 def refuse_profile(control: Control, word: Word) -> None:

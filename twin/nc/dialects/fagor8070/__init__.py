@@ -157,7 +157,12 @@ FAGOR8070 = Dialect(
         Mark(r"\bNR[ \t]*\d", "NR (a repeated block)"),
         Mark(r"^[^\"$]*;", "a comment after ;"),
         Mark(r"\$(?:IF|ELSE|ENDIF|WHILE|DO|ENDDO|FOR|SWITCH|GOTO)\b(?!\$)", "$IF, $WHILE, $GOTO"),
-        Mark(r"#(?:RPT|TIME|CALL|PCALL|MCALL|RET|COMMENT)\b", "#RPT, #CALL, #TIME"),
+        Mark(
+            r"#(?:RPT|TIME|CALL|PCALL|MCALL|RET|COMMENT|MCS|MSG|HSC|RTCP|CS|KIN|DGWZ|FLUSH|ROUNDPAR)\b",
+            "#RPT, #CALL, #TIME, #MCS, #MSG",
+        ),
+        Mark(r"\bG51[ \t]*A[\d.]+[ \t]*E|\bG50[01]\b", "G51 A E, G500, G501"),
+        Mark(r"\bV\.(?:A|G|TM|P|S)\.[A-Z]", "V.A.ORGT[1].X, V.P.name"),
         Mark(r"\bP\d+[ \t]*=", "P1= (a parameter)"),
         Mark(r"\b[XYZC]-?[\d.]+I(?![\d-])", "X20I (one word incremental)"),
         Mark(r"\b[XYZ]1[ \t]*=", "X1="),
