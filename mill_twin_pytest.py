@@ -106,8 +106,8 @@ class JobItem(pytest.Item):
             raise JobError(_told(outcome["findings"]))
 
     def _here(self) -> dict[str, Any]:
-        from twin.check.settings import CheckSettings
-        from twin.check.task import check_program
+        from twin.check.runner import check_program
+        from twin.check.task import CheckSettings
 
         option = self.config.getoption
         baseline = option("--twin-baseline")

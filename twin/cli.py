@@ -10,10 +10,9 @@ from twin.command_line.examples import epilog
 from twin.command_line.knowledge import dialects, doctor, explain
 from twin.command_line.links import link_app
 from twin.command_line.machines import machine_app
-from twin.command_line.monitoring import serve
 from twin.command_line.pictures import render
 from twin.command_line.programs import init, interpret, plan, run
-from twin.command_line.training import train, view
+from twin.command_line.servers import serve, train, view
 from twin.command_line.verdicts import check, compare, export, sweep
 from twin.errors import ExitCode, TwinError
 from twin.version import __version__

@@ -10,9 +10,8 @@ import pytest
 
 from twin.check.outcome import CheckOutcome
 from twin.check.program import file_of
-from twin.check.runner import check_all
-from twin.check.settings import CheckSettings
-from twin.check.task import check_program
+from twin.check.runner import check_all, check_program
+from twin.check.task import CheckSettings
 from twin.commands.check import CODE_QUALITY_FILE, check_and_print
 from twin.errors import ExitCode, UsageError
 from twin.job.job_file import Job, JobFile, read_job

@@ -8,10 +8,9 @@ from pathlib import Path
 import pytest
 
 from twin.check.outcome import CheckOutcome
-from twin.check.runner import run_tasks
-from twin.check.settings import CheckSettings
-from twin.check.task import check_variant
-from twin.check.variation import Variant, variants
+from twin.check.runner import check_variant, run_tasks
+from twin.check.task import CheckSettings, Variant
+from twin.check.variation import variants
 from twin.errors import ExitCode, UsageError
 from twin.files.overrides import changed
 from twin.run.preparation import prepare

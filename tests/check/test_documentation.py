@@ -12,8 +12,8 @@ import yaml
 from typer.main import get_command
 
 from tests.check.test_check_runs import PROGRAM, write_job
-from twin.check.settings import CheckSettings
-from twin.check.task import check_program
+from twin.check.runner import check_program
+from twin.check.task import CheckSettings
 from twin.cli import app
 from twin.commands.export import export_and_print
 from twin.files.toml import read_toml

@@ -6,8 +6,8 @@ import pytest
 
 from twin.check.expectation import held_to_expectation
 from twin.check.outcome import CheckOutcome, Finding
-from twin.check.settings import CheckSettings
-from twin.check.task import check_program
+from twin.check.runner import check_program
+from twin.check.task import CheckSettings
 from twin.errors import ExitCode
 from twin.files.shipped import resource_root
 from twin.job.job_file import read_job

@@ -11,6 +11,7 @@ def test_the_list_names_every_machine_with_its_axes(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[:5] for line in lines] == [
         ["mill4", "X", "Y", "Z", "C"],
+        ["mill4/as_built", "X", "Y", "Z", "C"],
         ["mill4/uncompensated", "X", "Y", "Z", "C"],
         ["mill4_light", "X", "Y", "Z", "C"],
     ]
@@ -53,7 +54,8 @@ def test_wrong_arguments_are_refused(tmp_path):
     with pytest.raises(UsageError, match="feed must be positive"):
         print_machine("mill4", feed=-1.0, form="text")
     with pytest.raises(
-        UsageError, match="shipped machines are mill4, mill4_light, mill4/uncompensated"
+        UsageError,
+        match="shipped machines are mill4, mill4_light, mill4/as_built, mill4/uncompensated",
     ):
         print_check("mill9")
     with pytest.raises(UsageError, match=r"no plot of kind '\.txt'"):

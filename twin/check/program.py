@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import re
 import time
 import traceback
 from collections.abc import Iterable, Iterator
@@ -11,13 +10,15 @@ from typing import Any
 
 from twin.check.expectation import expectation, held_to_expectation
 from twin.check.outcome import CheckOutcome, Finding
-from twin.check.settings import CheckSettings
-from twin.check.variation import Variant
+from twin.check.task import CheckSettings, Variant
 from twin.compare.baseline import compare_baseline, write_baseline
 from twin.compare.baseline_text import RunFigures
 from twin.compare.verdict import Reason
-from twin.errors import ExitCode, TwinError, UsageError
+from twin.errors import ConfigError, ExitCode, TwinError, UsageError
+from twin.files.toml import load_toml
+from twin.files.toml_lines import place_of_key
 from twin.job.job_file import Job
+from twin.job.layers import layers_of
 from twin.machine.watching.alarms import Alarm
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.run.messages import alarm_diagnostic, reason_text
@@ -72,7 +73,7 @@ def _run(variant: Variant, settings: CheckSettings) -> CheckOutcome:
     try:
         dry_run = run.dry_run()
         outcome = run.execute(dry_run, None, no_progress)
-    except ProgramError as error:
+    except (ProgramError, ConfigError) as error:
         if preparation.job.file.expect is not None:
             return _not_run(path, error)  # without moves there is nothing to store or to hold
         differing = _baseline_reasons(preparation, None, settings)
@@ -196,28 +197,12 @@ def _findings(preparation: Preparation, reasons: Iterable[Reason]) -> tuple[Find
 def _finding(preparation: Preparation, reason: Reason) -> Finding:
     job = preparation.job.path
     if reason.what == "baseline-job" and job is not None:
-        line = _line_of_key(job.read_text(encoding="utf-8"), reason.message.split()[0])
-        text = f"{job}:{line}: error {reason.what}: {reason.message}"
-        return Finding(reason.what, reason.message, str(job), line, text=text)
+        files = [layer.path for layer in layers_of(job, load_toml(job))]
+        file, line = place_of_key(files, reason.message.split()[0])
+        text = f"{file}:{line}: error {reason.what}: {reason.message}"
+        return Finding(reason.what, reason.message, str(file), line, text=text)
     program, text = str(preparation.job.program), reason_text(reason, preparation.source)
     return Finding(reason.what, reason.message, program, reason.line, text=text)
-
-
-def _line_of_key(text: str, key: str) -> int:
-    """The line of a TOML file that sets a key, or begins its table; 1 where it is set elsewhere."""
-    *tables, name = key.split(".")
-    wanted = [
-        rf"{re.escape(name)}\s*=",
-        *(rf"\[\[?\s*{re.escape(each)}\b" for each in tables[::-1]),
-    ]
-    if tables[:1] == ["tools"]:
-        wanted.insert(0, rf"number\s*=\s*{tables[1]}\b" if len(tables) > 1 else wanted[0])
-    lines = text.splitlines()
-    for pattern in wanted:
-        for number, line in enumerate(lines, 1):
-            if re.match(rf"\s*{pattern}", line):
-                return number
-    return 1
 
 
 def _alarm_finding(preparation: Preparation, alarm: Alarm) -> Finding:

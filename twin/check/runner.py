@@ -7,12 +7,29 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing.context import SpawnContext
 from multiprocessing.synchronize import Lock
+from pathlib import Path
 from typing import TypeVar
 
 from twin.check.outcome import CheckOutcome, died
+from twin.check.task import CheckSettings, Variant
 
 TaskT = TypeVar("TaskT")
 """A program or a variant of one."""
+
+
+def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
+    """Run a job or a program and say how it came out; what is wrong with it becomes a finding."""
+    return check_variant(Variant(path, ()), settings)
+
+
+def check_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
+    """Run a job with some values of it or of its machine changed, and say how it came out.
+
+    What runs programs is loaded by the process that runs one, and not by the one that hands them out.
+    """
+    from twin.check.program import run_variant
+
+    return run_variant(variant, settings)
 
 
 def check_all(

@@ -1,22 +1,44 @@
-"""What is sent to another process to be checked: a program or a variant, and how to check it.
+"""What is sent to another process to be checked: a program or a variant of it, and how to check it."""
 
-What runs programs is loaded by the process that runs one, and not by the one that hands them out.
-"""
-
+import dataclasses
 from pathlib import Path
 
-from twin.check.outcome import CheckOutcome
-from twin.check.settings import CheckSettings
-from twin.check.variation import Variant
+from twin.files.overrides import Change
 
 
-def check_program(path: Path, settings: CheckSettings) -> CheckOutcome:
-    """Run a job or a program and say how it came out; what is wrong with it becomes a finding."""
-    return check_variant(Variant(path, ()), settings)
+@dataclasses.dataclass(frozen=True, slots=True)
+class Variant:
+    """One run of a sweep.
+
+    Attributes:
+        path: The job or program.
+        changes: What is changed for it.
+    """
+
+    path: Path
+    changes: tuple[Change, ...]
+
+    def __str__(self) -> str:
+        changed = " ".join(f"{key}={value}" for key, value in self.changes)
+        return f"{self.path} {changed}".rstrip()
 
 
-def check_variant(variant: Variant, settings: CheckSettings) -> CheckOutcome:
-    """Run a job with some values of it or of its machine changed, and say how it came out."""
-    from twin.check.program import run_variant
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class CheckSettings:
+    """How programs are checked.
 
-    return run_variant(variant, settings)
+    Attributes:
+        machine: Overrides the jobs' machines.
+        dialect: Overrides the jobs' dialects.
+        strict: Warnings of the interpreter are errors.
+        baseline: Folder of the baselines that runs are held to, or None.
+        update_baseline: Store baselines there instead of holding runs to them.
+        reports: Folder for a report on every program that was run, or None.
+    """
+
+    machine: str | None = None
+    dialect: str | None = None
+    strict: bool = False
+    baseline: Path | None = None
+    update_baseline: bool = False
+    reports: Path | None = None

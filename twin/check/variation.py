@@ -1,6 +1,5 @@
 """Runs of one job with values changed: ``machine.axes.X.kv=20,30,40``."""
 
-import dataclasses
 import functools
 import itertools
 import tomllib
@@ -8,28 +7,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from twin.check.task import Variant
 from twin.errors import UsageError
-from twin.files.overrides import Change
 
 MOST_VARIANTS = 10_000
 """Combinations that one sweep may have; more is a slip of the pen."""
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Variant:
-    """One run of a sweep.
-
-    Attributes:
-        path: The job or program.
-        changes: What is changed for it.
-    """
-
-    path: Path
-    changes: tuple[Change, ...]
-
-    def __str__(self) -> str:
-        changed = " ".join(f"{key}={value}" for key, value in self.changes)
-        return f"{self.path} {changed}".rstrip()
 
 
 def variants(path: Path, vary: Sequence[str]) -> list[Variant]:

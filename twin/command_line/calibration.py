@@ -33,10 +33,10 @@ def calibrate(
     ] = None,
 ) -> None:
     """Fit a machine's drives to logs of a real one, and say what the logs do not tell."""
-    from twin.commands.calibrate import calibrate_and_print
+    from twin.commands.calibrate import Request, calibrate_and_print
 
-    code = calibrate_and_print(
-        logs or [], base=base, columns=columns, hold_out=hold_out or [], axes=axes, out=out,
+    request = Request(
+        logs=logs or [], base=base, columns=columns, hold_out=hold_out or [], axes=axes, out=out,
         json_file=json_file, report=report, require=require, programs=programs,
     )  # fmt: skip
-    raise typer.Exit(code)
+    raise typer.Exit(calibrate_and_print(request))

@@ -5,74 +5,83 @@ from typing import Annotated
 
 import typer
 
-from twin.command_line.options import (
-    DialectOption,
-    MachineOption,
-)
+from twin.command_line.options import DialectOption, MachineOption
+
+_Recording = Annotated[
+    Path,
+    typer.Argument(
+        metavar="RECORDING|JOB",
+        help="recording.h5; or a job file or NC program, which is run first.",
+        show_default=False,
+    ),
+]
+_Out = Annotated[Path | None, typer.Option("--out", help="Folder; default: the recording's.")]
+_Format = Annotated[str, typer.Option("--format", help="Of the film: mp4, gif or webp.")]
+_Film = Annotated[
+    bool, typer.Option("--film", help="Film although stills, --glb or --inspect are given.")
+]
+_At = Annotated[
+    list[float] | None, typer.Option("--at", help="Draw a still at this time (s); repeatable.")
+]
+_Line = Annotated[
+    list[int] | None,
+    typer.Option("--line", help="Draw a still at the end of this program line; repeatable."),
+]
+_Event = Annotated[
+    list[str] | None,
+    typer.Option("--event", help="Draw a still of end, worst, alarm, rapid or gouge."),
+]
+_Camera = Annotated[
+    list[str] | None,
+    typer.Option("--camera", help="One after the other; part and riding fit any machine."),
+]
+_Split = Annotated[bool, typer.Option("--split", help="All cameras at once.")]
+_Display = Annotated[
+    bool | None,
+    typer.Option("--display/--no-display", help="Program, axes and error over the picture."),
+]
+_Quality = Annotated[str | None, typer.Option("--quality", help="draft or final.")]
+_Renderer = Annotated[
+    str | None,
+    typer.Option("--renderer", help="opengl, or filament: physically based and slower."),
+]
+_Seconds = Annotated[float | None, typer.Option("--seconds", help="Length of the film (s).")]
+_Speed = Annotated[float | None, typer.Option("--speed", help="Times faster than in reality.")]
+_FramesPerSecond = Annotated[int | None, typer.Option("--fps", help="Frames per second.")]
+_Size = Annotated[str | None, typer.Option("--size", help="Such as 1280x720.")]
+_Glb = Annotated[bool, typer.Option("--glb", help="Write the part in colours, part.glb.")]
+_Inspect = Annotated[
+    str | None,
+    typer.Option(
+        "--inspect", help="Measure the part against an STL file, or the 'commanded' path."
+    ),
+]
+_Tolerance = Annotated[
+    float | None,
+    typer.Option("--tolerance", help="Exit 1 where the part is further off than this (µm)."),
+]
 
 
 def render(
-    recording: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RECORDING|JOB",
-            help="recording.h5; or a job file or NC program, which is run first.",
-            show_default=False,
-        ),
-    ],
-    out: Annotated[
-        Path | None, typer.Option("--out", help="Folder; default: the recording's.")
-    ] = None,
-    form: Annotated[str, typer.Option("--format", help="Of the film: mp4, gif or webp.")] = "mp4",
-    film: Annotated[
-        bool, typer.Option("--film", help="Film although stills, --glb or --inspect are given.")
-    ] = False,
-    at: Annotated[
-        list[float] | None, typer.Option("--at", help="Draw a still at this time (s); repeatable.")
-    ] = None,
-    line: Annotated[
-        list[int] | None,
-        typer.Option("--line", help="Draw a still at the end of this program line; repeatable."),
-    ] = None,
-    event: Annotated[
-        list[str] | None,
-        typer.Option("--event", help="Draw a still of end, worst, alarm, rapid or gouge."),
-    ] = None,
-    camera: Annotated[
-        list[str] | None,
-        typer.Option("--camera", help="One after the other; part and riding fit any machine."),
-    ] = None,
-    split: Annotated[bool, typer.Option("--split", help="All cameras at once.")] = False,
-    display: Annotated[
-        bool | None,
-        typer.Option("--display/--no-display", help="Program, axes and error over the picture."),
-    ] = None,
-    quality: Annotated[str | None, typer.Option("--quality", help="draft or final.")] = None,
-    renderer: Annotated[
-        str | None,
-        typer.Option("--renderer", help="opengl, or filament: physically based and slower."),
-    ] = None,
-    seconds: Annotated[
-        float | None, typer.Option("--seconds", help="Length of the film (s).")
-    ] = None,
-    speed: Annotated[
-        float | None, typer.Option("--speed", help="Times faster than in reality.")
-    ] = None,
-    fps: Annotated[int | None, typer.Option("--fps", help="Frames per second.")] = None,
-    size: Annotated[str | None, typer.Option("--size", help="Such as 1280x720.")] = None,
-    glb: Annotated[
-        bool, typer.Option("--glb", help="Write the part in colours, part.glb.")
-    ] = False,
-    inspect: Annotated[
-        str | None,
-        typer.Option(
-            "--inspect", help="Measure the part against an STL file, or the 'commanded' path."
-        ),
-    ] = None,
-    tolerance: Annotated[
-        float | None,
-        typer.Option("--tolerance", help="Exit 1 where the part is further off than this (µm)."),
-    ] = None,
+    recording: _Recording,
+    out: _Out = None,
+    form: _Format = "mp4",
+    film: _Film = False,
+    at: _At = None,
+    line: _Line = None,
+    event: _Event = None,
+    camera: _Camera = None,
+    split: _Split = False,
+    display: _Display = None,
+    quality: _Quality = None,
+    renderer: _Renderer = None,
+    seconds: _Seconds = None,
+    speed: _Speed = None,
+    fps: _FramesPerSecond = None,
+    size: _Size = None,
+    glb: _Glb = False,
+    inspect: _Inspect = None,
+    tolerance: _Tolerance = None,
     dialect: DialectOption = None,
     machine: MachineOption = None,
 ) -> None:

@@ -36,7 +36,7 @@ def check(
     strict: StrictOption = False,
 ) -> None:
     """Run many programs without pictures; one table, exit 1 if any falls short."""
-    from twin.check.settings import CheckSettings
+    from twin.check.task import CheckSettings
     from twin.commands.check import check_and_print
 
     settings = CheckSettings(
@@ -66,7 +66,7 @@ def sweep(
     strict: StrictOption = False,
 ) -> None:
     """Run a job for every combination of values; exit 1 if any falls short."""
-    from twin.check.settings import CheckSettings
+    from twin.check.task import CheckSettings
     from twin.commands.sweep import sweep_and_print
 
     code = sweep_and_print(

@@ -1,5 +1,6 @@
 """``twin calibrate LOG...``: a machine file, a report and figures from logs of a real machine."""
 
+import dataclasses
 import json
 import os
 from collections.abc import Sequence
@@ -21,22 +22,11 @@ if TYPE_CHECKING:
     from twin.calibrate.result import Calibration
 
 
-def calibrate_and_print(
-    logs: Sequence[Path],
-    *,
-    base: str,
-    columns: Path | None = None,
-    hold_out: Sequence[Path] = (),
-    axes: str | None = None,
-    out: Path | None = None,
-    json_file: Path | None = None,
-    report: Path | None = None,
-    require: float | None = None,
-    programs: Path | None = None,
-) -> ExitCode:
-    """Fit the base machine's drives to logs; write what was asked for and print the figures.
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What is to be fitted, and what is to be written.
 
-    Args:
+    Attributes:
         logs: Logs to fit.
         base: Machine that keeps what they do not determine.
         columns: Map of their columns; by default what their headings say.
@@ -47,6 +37,22 @@ def calibrate_and_print(
         report: Where the page goes.
         require: Largest share of the following error that may be left on held-out logs.
         programs: Folder for test programs to run on the real machine.
+    """
+
+    logs: Sequence[Path] = ()
+    base: str
+    columns: Path | None = None
+    hold_out: Sequence[Path] = ()
+    axes: str | None = None
+    out: Path | None = None
+    json_file: Path | None = None
+    report: Path | None = None
+    require: float | None = None
+    programs: Path | None = None
+
+
+def calibrate_and_print(request: Request) -> ExitCode:
+    """Fit the base machine's drives to logs; write what was asked for and print the figures.
 
     Returns:
         ``FAILED`` when ``require`` does not hold, else ``OK``.
@@ -55,41 +61,50 @@ def calibrate_and_print(
         UsageError: A log, the map or the command line is wrong.
         ConfigError: The base is wrong.
     """
-    machine = read_machine(machine_file(base))
-    if not logs and programs is None:
+    machine = read_machine(machine_file(request.base))
+    if not request.logs and request.programs is None:
         raise UsageError("nothing to do: give logs to fit, or --programs DIR")
-    if not logs and any((hold_out, out, json_file, report, require)):
+    if not request.logs and any(
+        (request.hold_out, request.out, request.json_file, request.report, request.require)
+    ):
         raise UsageError("--hold-out, --out, --json, --report and --require need logs to fit")
-    if require is not None and not hold_out:
+    if request.require is not None and not request.hold_out:
         raise UsageError("--require judges held-out logs: give --hold-out LOG")
-    if require is not None and not 0 < require < float("inf"):
-        raise UsageError(f"--require must be a positive share, not {require:g}")
-    if programs is not None:
-        _write_programs(machine_file(base), programs)
-    if not logs:
+    if request.require is not None and not 0 < request.require < float("inf"):
+        raise UsageError(f"--require must be a positive share, not {request.require:g}")
+    if request.programs is not None:
+        _write_programs(machine_file(request.base), request.programs)
+    if not request.logs:
         return ExitCode.OK
     _need_scipy()
     from twin.calibrate.calibrate import calibrate
     from twin.calibrate.machine_text import machine_text
 
-    meant = None if columns is None else read_column_map(columns)
+    meant = None if request.columns is None else read_column_map(request.columns)
 
     def read(paths: Sequence[Path]) -> list[MachineLog]:
         return [read_machine_log(path, meant, units_needed=True) for path in paths]
 
-    wanted = [name.strip().upper() for name in axes.split(",")] if axes else []
-    result = calibrate(machine, read(logs), read(hold_out), wanted)
-    if out is not None:
-        write_text(out, machine_text(result, base=_base_for(base, out), name=out.stem))
-    if json_file is not None:
-        write_text(json_file, json.dumps(result.as_contract(), indent=2, ensure_ascii=False) + "\n")
-    if report is not None:
+    wanted = [name.strip().upper() for name in request.axes.split(",")] if request.axes else []
+    result = calibrate(machine, read(request.logs), read(request.hold_out), wanted)
+    if request.out is not None:
+        write_text(
+            request.out,
+            machine_text(result, base=_base_for(request.base, request.out), name=request.out.stem),
+        )
+    if request.json_file is not None:
+        write_text(
+            request.json_file, json.dumps(result.as_contract(), indent=2, ensure_ascii=False) + "\n"
+        )
+    if request.report is not None:
         from twin.calibrate.report.page import calibration_page
 
-        write_text(report, calibration_page(result))
+        write_text(request.report, calibration_page(result))
     _print(result)
     judged = [figures for figures in result.logs if figures.role == "hold-out"]
-    failed = require is not None and any(figures.share > require for figures in judged)
+    failed = request.require is not None and any(
+        figures.share > request.require for figures in judged
+    )
     return ExitCode.FAILED if failed else ExitCode.OK
 
 

@@ -11,9 +11,8 @@ from rich.table import Table
 from twin.check import forms
 from twin.check.discovery import baselines_without_programs, find_programs, without_jobs
 from twin.check.outcome import CheckOutcome, Finding
-from twin.check.runner import run_tasks
-from twin.check.settings import CheckSettings
-from twin.check.task import check_program
+from twin.check.runner import check_program, run_tasks
+from twin.check.task import CheckSettings
 from twin.commands.console import table_console
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import STDOUT, require_folder, require_writable, write_text

@@ -90,8 +90,8 @@ def _interpret(programs: Path) -> None:
 
 
 def _run(job: Path) -> None:
-    from twin.check.settings import CheckSettings
-    from twin.check.task import check_program
+    from twin.check.runner import check_program
+    from twin.check.task import CheckSettings
 
     check_program(job, CheckSettings())
 

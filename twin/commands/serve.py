@@ -4,6 +4,7 @@ import socket
 import tempfile
 import threading
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -13,6 +14,10 @@ from twin.errors import ExitCode, UsageError
 from twin.run.preparation import prepare
 from twin.run.progress import shown_progress
 from twin.run.run import Run
+
+if TYPE_CHECKING:
+    from twin.serve.agent import Agent
+    from twin.serve.playback import Production
 
 FIRST_PORT, LAST_PORT = 5000, 5099
 """Where a free port is looked for when none is named; 5000 is what MTConnect agents use."""
@@ -43,9 +48,8 @@ def serve(
         TwinError: Something is wrong with the job; see each error's exit code.
     """
     try:
-        import uvicorn
-
-        from twin.serve.http_server import application
+        import starlette  # noqa: F401 - asked for before a job is simulated that nobody could serve
+        import uvicorn  # noqa: F401
     except ImportError as error:
         raise UsageError(
             f"twin serve needs {error.name}: pip install 'mill-twin[serve]'"
@@ -53,7 +57,7 @@ def serve(
     from twin.serve.agent import Agent
     from twin.serve.clock import Clock
     from twin.serve.device import device_of
-    from twin.serve.playback import Production, feed, ticks
+    from twin.serve.playback import Production
 
     listener = _listen(host, port)
     announce_compilation()
@@ -73,36 +77,45 @@ def serve(
             alarms=outcome.alarms,
         )
         device = device_of(preparation.machine.file.name, preparation.machine.axes)
-        agent = Agent(device, Clock(speed), _description(speed))
-        failures: list[Exception] = []
-
-        async def observe() -> None:
-            try:
-                await feed(agent, ticks(production))
-            except Exception as error:
-                failures.append(error)
-                raise
-            finally:
-                server.should_exit = True
-
-        # Answers that never end are cut off when the server ends.
-        config = uvicorn.Config(
-            application(agent, observe), log_level="error", timeout_graceful_shutdown=1
-        )
-        server = uvicorn.Server(config)
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
-        stop = threading.Event()
-        with let_interruption_stop(stop.set):
-            thread.start()
-            host, port = listener.getsockname()[:2]
-            typer.echo(f"http://{f'[{host}]' if ':' in host else host}:{port}/")
-            while thread.is_alive() and not stop.wait(_WAIT_S):
-                pass
-            server.should_exit = True
-            thread.join()
-        if failures:
-            raise failures[0]
+        _tell(Agent(device, Clock(speed), _description(speed)), production, listener)
     return ExitCode.OK
+
+
+def _tell(agent: "Agent", production: "Production", listener: socket.socket) -> None:
+    """Answer until somebody interrupts; what fails on the way is raised here."""
+    import uvicorn
+
+    from twin.serve.http_server import application
+    from twin.serve.playback import feed, ticks
+
+    failures: list[Exception] = []
+
+    async def observe() -> None:
+        try:
+            await feed(agent, ticks(production))
+        except Exception as error:
+            failures.append(error)
+            raise
+        finally:
+            server.should_exit = True
+
+    # Answers that never end are cut off when the server ends.
+    config = uvicorn.Config(
+        application(agent, observe), log_level="error", timeout_graceful_shutdown=1
+    )
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+    stop = threading.Event()
+    with let_interruption_stop(stop.set):
+        thread.start()
+        host, port = listener.getsockname()[:2]
+        typer.echo(f"http://{f'[{host}]' if ':' in host else host}:{port}/")
+        while thread.is_alive() and not stop.wait(_WAIT_S):
+            pass
+        server.should_exit = True
+        thread.join()
+    if failures:
+        raise failures[0]
 
 
 def _description(speed: float) -> str:

@@ -9,9 +9,8 @@ from rich.table import Table
 
 from twin.check import forms
 from twin.check.outcome import CheckOutcome
-from twin.check.runner import run_tasks
-from twin.check.settings import CheckSettings
-from twin.check.task import check_variant
+from twin.check.runner import check_variant, run_tasks
+from twin.check.task import CheckSettings
 from twin.check.variation import variants
 from twin.commands.console import table_console
 from twin.errors import ExitCode, UsageError

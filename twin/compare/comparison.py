@@ -16,6 +16,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray, IntArray, Moves, concatenate
 from twin.recording.reader import Samples
 from twin.toolpath.nearest import drop_moves, join_paths, path_columns
+from twin.toolpath.nearest_kernels import derivatives
 from twin.toolpath.part_frame import PartFrame
 from twin.units import MDEG_PER_DEGREE, UM_PER_MM
 
@@ -23,6 +24,8 @@ REACH_S = 0.5
 """A tool that is later than this has left the place on the path that it is held against [s]. The
 slowest position loop in use, 1 (m/min)/mm, lags by 0.06 s."""
 WORST_PLACES = 10
+DRIVES = "drives"
+"""What of a contour error is none of the geometry's."""
 _ROWS = 4096
 """Samples that are worked on at once: bounds how many arcs are open at a time."""
 
@@ -67,6 +70,7 @@ class Comparison:
         self._features = FeatureCollector()
         self._corners = CornerCollector()
         self._worst: dict[int, WorstPlace] = {}
+        self._shares: dict[str, float] = {}
 
     def expect(self, moves: Moves) -> None:
         """Announce the next moves of the program, in order, before their samples are added.
@@ -112,7 +116,8 @@ class Comparison:
         setpoint = samples.setpoint
         self._duration = float(setpoint.time[-1])
         self._add_tracking(samples)
-        point = np.ascontiguousarray(self._frame.position(samples.joint_position))
+        real = self._frame.real(samples.joint_position)
+        point = np.ascontiguousarray(self._frame.position(real))
         if int(setpoint.move.max()) >= self._first + len(self._moves):
             raise RecordingError(
                 f"a sample names move {setpoint.move.max()}, but the program has only "
@@ -124,7 +129,11 @@ class Comparison:
         else:
             distance, place, fraction = self._follow(samples, point)
         error = distance * UM_PER_MM
-        self._contour.add(error)
+        worst = self._contour.add(error)
+        if worst is not None and place is not None and self._frame.geometry:
+            self._shares = self._shares_of(
+                samples.joint_position[worst], point[worst], int(place[worst]), fraction[worst]
+            )
         line = setpoint.line if place is None else self._moves.line[place]
         rows = self._blocks.add(self._moves, place, line, error, setpoint.time)
         self._keep_worst(rows, setpoint)
@@ -137,6 +146,20 @@ class Comparison:
             )
             self._drop_passed()
         return error
+
+    def _shares_of(
+        self, joints: FloatArray, point: FloatArray, place: int, fraction: float
+    ) -> dict[str, float]:
+        """What each error of the geometry has of a contour error, along the error itself [µm]."""
+        away = point - np.array(derivatives(self._path, place, float(fraction))[:3])
+        size = float(np.linalg.norm(away))
+        if size == 0.0:
+            return {}
+        found = {
+            name: float(shift @ away) / size * UM_PER_MM + 0.0
+            for name, shift in self._frame.shares(joints).items()
+        }
+        return {DRIVES: size * UM_PER_MM - sum(found.values()), **found}
 
     def _add_tracking(self, samples: Samples) -> None:
         setpoint = samples.setpoint
@@ -222,6 +245,7 @@ class Comparison:
                 worst_line=worst[0].line if worst else 0,
                 worst_time_s=worst[0].time_s if worst else 0.0,
             ),
+            shares=self._shares,
             arcs=self._arcs.figures(),
             bidirectional=self._arcs.bidirectional(),
             worst=worst,

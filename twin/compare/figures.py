@@ -204,6 +204,8 @@ class Figures:
         features: Contour error of ``line`` and ``arc`` blocks; those that the program has.
         corners: Where the path turns sharply.
         bidirectional: Full circles that were run both ways, by line.
+        shares: What drives and every error of the geometry have of the greatest contour error, along
+            it [µm]; empty where the machine has no such errors.
     """
 
     samples: int
@@ -216,3 +218,4 @@ class Figures:
     features: Mapping[str, ContourFigures] = dataclasses.field(default_factory=dict)
     corners: CornerFigures = NO_CORNERS
     bidirectional: tuple[BidirectionalFigures, ...] = ()
+    shares: Mapping[str, float] = dataclasses.field(default_factory=dict)

@@ -84,6 +84,7 @@ def result(
         "tracking_um": _tracking(figures, "linear"),
         "tracking_mdeg": _tracking(figures, "rotary"),
         "contour_um": dataclasses.asdict(contour),
+        "contour_shares_um": dict(figures.shares),
         "features_um": {
             name: dataclasses.asdict(feature) for name, feature in figures.features.items()
         },

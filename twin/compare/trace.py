@@ -51,7 +51,7 @@ class Trace:
                 asked.time,
                 asked.line.astype(np.float64),
                 error_um,
-                self._frame.position(samples.joint_position) - self._origin,
+                self._frame.position(self._frame.real(samples.joint_position)) - self._origin,
                 samples.joint_position - self._part_zero,
                 asked.position - samples.joint_position,
                 asked.velocity,

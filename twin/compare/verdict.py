@@ -50,6 +50,7 @@ class Check:
         unit: Of both.
         line: Program line of the worst value; 0 where none applies.
         time_s: When [s].
+        note: What the value is made of, where that is known.
     """
 
     what: str
@@ -59,6 +60,7 @@ class Check:
     unit: str
     line: int
     time_s: float
+    note: str = ""
 
     @property
     def holds(self) -> bool:
@@ -73,7 +75,7 @@ class Check:
             digits += 1
         relation = "is within" if self.holds else "exceeds"
         value = f"{self.value:.{digits}f} {self.unit}"
-        return f"{self.figure} {value} {relation} {self.what} = {self.limit:g}"
+        return f"{self.figure} {value} {relation} {self.what} = {self.limit:g}{self.note}"
 
 
 _MOST_DIGITS = 9
@@ -173,7 +175,20 @@ def _contour_checks(figures: Figures, tolerance: ToleranceTable) -> Iterator[Che
         if len(rows):
             row = int(rows[blocks.max_um[rows].argmax()])
             place = int(blocks.line[row]), float(blocks.time_s[row])
-            yield Check(key, "contour error", float(blocks.max_um[row]), limit, "µm", *place)
+            value = float(blocks.max_um[row])
+            note = _shares_text(figures) if value == figures.contour.max else ""
+            yield Check(key, "contour error", value, limit, "µm", *place, note)
+
+
+def _shares_text(figures: Figures) -> str:
+    """The shares of the greatest contour error, greatest first, such as ``9.0 squareness XY``."""
+    ranked = sorted(figures.shares.items(), key=lambda share: -abs(share[1]))
+    told = [f"{value:.1f} {name}" for name, value in ranked if abs(value) >= _LEAST_SHARE]
+    return f" ({', '.join(told)})" if told else ""
+
+
+_LEAST_SHARE = 0.05
+"""What is smaller would be written as nothing [µm]."""
 
 
 def _corner_checks(figures: Figures, tolerance: ToleranceTable) -> Iterator[Check]:

@@ -163,12 +163,13 @@ class Cutter:
             return 0.0
         setpoint = samples.setpoint
         meant = self._part_frame.position(setpoint.position)
-        points = meant
+        points, joints = meant, samples.joint_position
         if self._along == "joints":
-            points = self._part_frame.position(samples.joint_position)
+            joints = self._part_frame.real(joints)
+            points = self._part_frame.position(joints)
         off = np.zeros(len(samples), np.bool_) if standing is None else standing
         lag = np.abs(meant - points).sum(axis=1)
-        turn = self._part_frame.direction(samples.joint_position)
+        turn = self._part_frame.direction(joints)
         way = _Way(points, turn, lag, setpoint.time, setpoint.line, rapid, off)
         for run, tool in self._plan.runs(setpoint.move):
             if self.halted is not None:

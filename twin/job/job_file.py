@@ -13,7 +13,7 @@ from twin.files.overrides import Change, changed
 from twin.files.stl import stl_extent
 from twin.files.toml import Data, Table, checked, load_toml
 from twin.job.fixture import FixtureTable
-from twin.job.layers import extended_layers, laid_over, layer_of, shared_layers
+from twin.job.layers import laid_over, layer_of, layers_of
 from twin.job.machine_functions import MachineFunctions
 
 Positive = Annotated[float, Field(gt=0)]
@@ -330,5 +330,5 @@ def _names(job: Path, program: Path) -> bool:
 
 
 def _layered(path: Path, data: Data, changes: Sequence[Change], job: Path | None) -> Job:
-    layers = [*extended_layers(path, changed(data, "job", changes)), *shared_layers(path.parent)]
+    layers = layers_of(path, changed(data, "job", changes))
     return Job(path.parent, checked(laid_over(layers), JobFile, partial(layer_of, layers)), job)

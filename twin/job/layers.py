@@ -79,6 +79,19 @@ def extended_layers(path: Path, data: Data) -> list[Layer]:
         data = load_toml(path)
 
 
+def layers_of(path: Path, data: Data) -> list[Layer]:
+    """A job and all that it takes settings from, the job itself first.
+
+    Args:
+        path: The job file.
+        data: Its content.
+
+    Raises:
+        ConfigError: A file is missing or wrong.
+    """
+    return [*extended_layers(path, data), *shared_layers(path.parent)]
+
+
 def laid_over(layers: list[Layer]) -> Data:
     """The content of all layers, the first over the others."""
     merged: Data = {}

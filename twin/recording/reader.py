@@ -31,6 +31,7 @@ from twin.recording.form import (
 from twin.recording.seal import is_sealed, seal_is_broken
 from twin.recording.trial import reading_ends
 from twin.recording.writer import PROGRAM_TEXT, RecordingWriter, record
+from twin.toolpath.machine_geometry import geometry_from_text
 from twin.toolpath.part_frame import PartFrame
 
 __all__ = [
@@ -151,6 +152,7 @@ def _read_header(file: h5py.File) -> RecordingHeader:
             rotary=axes.index(table_axis) if table_axis else None,
             center=tuple(values["table_center"]),
             turn_zero=values["table_zero"],
+            geometry=geometry_from_text(values.get("geometry", "")),
         ),
         program_text=_program_text(file),
         **{name: values[name] for name in TEXT_ATTRIBUTES},

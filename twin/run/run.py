@@ -1,6 +1,5 @@
 """The order of the rooms: text, moves, setpoints, samples, cut, figures, in chunks."""
 
-import dataclasses
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
@@ -77,9 +76,7 @@ class Run:
         self.preparation = preparation
         self.spec: mujoco.MjSpec = build_spec(machine, job.tools[0])
         self.part_zero = part_zero(job, machine, spindle_over_table_mm(machine))
-        rotary = machine.part_frame.rotary
-        turn_zero = 0.0 if rotary is None else float(self.part_zero[rotary])
-        self.part_frame: PartFrame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
+        self.part_frame: PartFrame = machine.part_frame.at(self.part_zero)
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
         self._planned_s = 0.0

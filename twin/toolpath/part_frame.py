@@ -9,6 +9,7 @@ import dataclasses
 import numpy as np
 
 from twin.nc.canonical import FloatArray
+from twin.toolpath.machine_geometry import NO_ERRORS, MachineGeometry
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -20,11 +21,44 @@ class PartFrame:
         center: Machine X and Y at which the tool stands over the axis of rotation [mm].
         turn_zero: Rotary machine value at which the part's frame is parallel to the machine's
             [deg]: the part zero of that axis, so that the part lies as its program describes it.
+        geometry: How far the machine is from straight and square.
     """
 
     rotary: int | None
     center: tuple[float, float]
     turn_zero: float = 0.0
+    geometry: MachineGeometry = NO_ERRORS
+
+    def at(self, part_zero: FloatArray) -> "PartFrame":
+        """The frame of a part whose program zero lies at machine coordinates, shape (k,)."""
+        turn = 0.0 if self.rotary is None else float(part_zero[self.rotary])
+        return dataclasses.replace(
+            self, turn_zero=turn, geometry=self.geometry.counted_from(part_zero)
+        )
+
+    def real(self, joints: FloatArray) -> FloatArray:
+        """Machine coordinates at which an ideal machine would have the tool where this one has it.
+
+        Args:
+            joints: Where the axes stand, shape (n, k) [mm or deg].
+        """
+        if not self.geometry:
+            return joints
+        return self.geometry.real(joints, self.rotary, self.center)
+
+    def shares(self, joints: FloatArray) -> dict[str, FloatArray]:
+        """What every error of the geometry adds to the tool point, seen from the part.
+
+        Args:
+            joints: Where the axes stand, shape (k,) [mm or deg].
+
+        Returns:
+            By name, shape (3,) [mm].
+        """
+        row = joints[None]
+        here = self.position(row)[0]
+        added = self.geometry.contributions(row, self.rotary, self.center)
+        return {name: self.position(row + shift)[0] - here for name, shift in added}
 
     def position(self, joints: FloatArray) -> FloatArray:
         """Where the tool point is, seen from the part.

@@ -61,10 +61,11 @@ class RecordedRun:
         """
         recording = self._scene.recording
         rows: list[list[Any]] = []
+        frame = recording.header.part_frame
         for samples in recording.chunks(self._every * 16384):
             chosen = slice(self._every - 1, None, self._every)
             tools, longer = self._tools(samples)
-            tips = recording.header.part_frame.position(samples.joint_position) - longer
+            tips = frame.position(frame.real(samples.joint_position)) - longer
             setpoint = samples.setpoint
             rows.append(
                 [column[chosen] for column in (setpoint.time, setpoint.line, tools, *tips.T)]

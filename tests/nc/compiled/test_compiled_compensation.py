@@ -111,3 +111,10 @@ def test_what_stands_within_a_contour_means_the_same(block: str) -> None:
     text = f"P1=0\nG90 G1 F100 X-20 Y-20\n$WHILE P1<50\nP1=P1+1\n{contour}\n$ENDWHILE\nM30"
     for skip in (True, False):
         assert_same(source_from_text(text), "fagor8070", dataclasses.replace(JOB, block_skip=skip))
+
+
+@pytest.mark.parametrize("plane", ["G17", "G18", "G19"])
+def test_a_plane_behind_g41_means_the_same_where_the_compiled_run_has_begun_it(plane: str) -> None:
+    text = f"G1 F100 X-20 Y-20 Z-20\nG41 D2\n{plane}\nX0 Y0 Z0\nX20\nZ20 Y20\nG40\nX0 Y0 Z0\n"
+    result = assert_same(source_from_text(text), "codesys", JOB)
+    assert len(result.moves) > 3

@@ -160,9 +160,13 @@ class CirclePath:
         Returns:
             Shape (n, 2) [mm].
         """
+        center = self._center()
         if self.plane != "XYC":
             first, second = self._columns()
-            return (joints - self._center())[:, [first, second]]
-        # The followed point is (radius, 0) of the part, which turns against the circle.
-        seen = self.machine.part_frame.position(joints)[:, :2] - np.array([self.radius, 0.0])
+            frame = self.machine.part_frame.at(center)
+            return (frame.real(joints) - center)[:, [first, second]]
+        # The followed point is (radius, 0) of the part, which turns against the circle. There, with
+        # the table at zero, its place was measured.
+        frame = self.machine.part_frame.at(center)
+        seen = frame.position(frame.real(joints))[:, :2] - np.array([self.radius, 0.0])
         return seen * np.array([1.0, -1.0])

@@ -13,6 +13,7 @@ from twin.files.overrides import Change, changed
 from twin.files.toml import Data, Table, checked, read_toml
 from twin.job.fixture import FixtureTable
 from twin.job.machine_functions import MachineFunctions
+from twin.machine.description.geometry import GeometryTable
 from twin.machine.description.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -210,6 +211,7 @@ class MachineFile(Table):
     spindle: SpindleTable = SpindleTable()
     fixtures: tuple[FixtureTable, ...] = ()
     collision: CollisionTable = CollisionTable()
+    geometry: GeometryTable = GeometryTable()
     control: ControlTable = ControlTable()
 
     @pydantic.model_validator(mode="after")
@@ -230,6 +232,7 @@ class MachineFile(Table):
             raise ValueError(f"table.axis '{self.table.axis}' is not an axis")
         if self.table is not None and self.axes[self.table.axis].kind != "rotary":
             raise ValueError(f"table.axis '{self.table.axis}' is not rotary")
+        self.geometry.of(self.ordered_axes(), None if self.table is None else self.table.axis)
         joints = [axis.joint for axis in self.axes.values()]
         fixtures = [fixture.name for fixture in self.fixtures]
         for what, names in (("joint", joints), ("fixture", fixtures)):
@@ -238,6 +241,11 @@ class MachineFile(Table):
                 raise ValueError(f"{what} '{twice[0]}' is named twice")
         return self
 
+    def ordered_axes(self) -> Axes:
+        """Names and kinds in the order of every column: X, Y, Z, then the others as written."""
+        names = (*SPATIAL_AXES, *(name for name in self.axes if name not in SPATIAL_AXES))
+        return Axes(names, tuple(self.axes[name].kind for name in names))
+
 
 class Machine:
     """A machine file that was read, with what other rooms need of it.
@@ -245,18 +253,19 @@ class Machine:
     Attributes:
         path: Where the machine file lies.
         file: Its checked content.
-        axes: Names and kinds in the order of every column: X, Y, Z, then the others as written.
+        axes: Names and kinds in the order of every column.
         part_frame: How the part turns under the tool.
     """
 
     def __init__(self, path: Path, file: MachineFile) -> None:
         self.path = path
         self.file = file
-        names = (*SPATIAL_AXES, *(name for name in file.axes if name not in SPATIAL_AXES))
-        self.axes = Axes(names, tuple(file.axes[name].kind for name in names))
+        self.axes = file.ordered_axes()
+        turning = None if file.table is None else file.table.axis
         self.part_frame = PartFrame(
-            rotary=None if file.table is None else self.axes.index(file.table.axis),
+            rotary=None if turning is None else self.axes.index(turning),
             center=(0.0, 0.0) if file.table is None else file.table.center,
+            geometry=file.geometry.of(self.axes, turning),
         )
 
     def with_fixtures(self, fixtures: tuple[FixtureTable, ...]) -> "Machine":

@@ -64,7 +64,7 @@ def _complete(spec: mujoco.MjSpec, machine: Machine, tool: ToolShape | None) -> 
     _set_clock(spec, machine)
     _set_inertia(spec, machine)
     _require_actuators(spec, machine)
-    add_drives(spec, machine, drives(machine, compiled(spec, machine)))
+    add_drives(spec, machine, drives(machine, compiled(_without(spec, VISUAL_GROUP), machine)))
     _add_fixtures(spec, machine)
     flange = machine.file.spindle.flange_diameter
     add_tool(spec, tool or DefaultTool(holder=flange / 2.0), flange)
@@ -207,21 +207,24 @@ _DISTANCE_ITERATIONS = 200
 
 
 def _without(spec: mujoco.MjSpec, *groups: int) -> mujoco.MjSpec:
+    """A copy whose compiled form lacks the geoms of some groups, and all that is only seen.
+
+    MuJoCo leaves out what collides with nothing; deleting geom by geom takes six times as long.
+    """
     lean = spec.copy()
-    for geom in list(lean.geoms):
+    for geom in lean.geoms:
         if geom.group in groups:
-            lean.delete(geom)
-    used = {geom.meshname for geom in lean.geoms}
-    unused = [mesh for mesh in lean.meshes if mesh.name not in used]
-    for unseen in [*unused, *lean.cameras, *lean.lights]:
+            geom.contype = geom.conaffinity = 0
+    for unseen in (*lean.cameras, *lean.lights):
         lean.delete(unseen)
+    lean.compiler.discardvisual = True
     lean.option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     return lean
 
 
 def spindle_over_table_mm(machine: Machine) -> float:
     """Height of the spindle nose over the work-holding surface with all axes at zero [mm]."""
-    model = compiled(build_spec(machine), machine)
+    model = physics_model(machine, build_spec(machine))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     nose, table = data.site(SPINDLE_NOSE).xpos, data.site(TABLE_TOP).xpos

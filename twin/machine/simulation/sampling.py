@@ -26,14 +26,20 @@ the loss of holding ((W h)²/24) undone, to the same order. The acceleration tha
 mean of the step, (v1 - v0)/h. ``tests/machine/test_sampling.py`` holds all of this to closed forms.
 """
 
+from typing import TypeVar
+
 from twin.compilation.kernel import array_kernel
+from twin.nc.canonical import FloatArray
+
+Value = TypeVar("Value", float, FloatArray)
+"""One axis, or several and their samples as an array."""
 
 _POLYLINE_LOSS = 1.0 / 12.0
 """Second-order loss of a signal drawn as a polyline, in units of (W h)²."""
 
 
 @array_kernel
-def polyline_node(position: float, acceleration: float, period_s: float) -> float:
+def polyline_node(position: Value, acceleration: Value, period_s: float) -> Value:
     """Where a drive's position setpoint stands at a sample; elementwise of arrays.
 
     Args:
@@ -45,12 +51,12 @@ def polyline_node(position: float, acceleration: float, period_s: float) -> floa
 
 
 @array_kernel
-def held_velocity(node: float, next_node: float, period_s: float) -> float:
+def held_velocity(node: Value, next_node: Value, period_s: float) -> Value:
     """The velocity that leads from one node to the next; elementwise of arrays."""
     return (next_node - node) / period_s
 
 
 @array_kernel
-def held_acceleration(velocity: float, next_velocity: float, period_s: float) -> float:
+def held_acceleration(velocity: Value, next_velocity: Value, period_s: float) -> Value:
     """The acceleration that belongs to the step between two setpoints; elementwise of arrays."""
     return (next_velocity - velocity) / period_s

@@ -84,9 +84,7 @@ class BlockTables(NamedTuple):
             shape (``CODES``,); ``UNSUPPORTED`` for codes that do more than that.
         kind: Kind of each interpolation, shape (i,).
         clockwise: Of arcs, shape (i,).
-        mismatch: How far start and end radius of an arc may differ, shape (i,) [mm].
-        mismatch_share: How far they may differ as a share of the larger one, shape (i,).
-        shift: How far its centre may be moved to fit, shape (i,) [mm].
+        bounds: How badly the centre of an arc may fit, as ``arcs.Bounds`` has it, shape (i, 4).
         signed_radius: A negative radius asks for the larger arc, else it is not plain, shape (i,).
         fits_radius: A centre found by its radius is fitted like a given one, shape (i,).
         linear: Which axes are linear, shape (k,).
@@ -100,9 +98,7 @@ class BlockTables(NamedTuple):
     function: IntArray
     kind: IntArray
     clockwise: npt.NDArray[np.bool_]
-    mismatch: FloatArray
-    mismatch_share: FloatArray
-    shift: FloatArray
+    bounds: FloatArray
     signed_radius: npt.NDArray[np.bool_]
     fits_radius: npt.NDArray[np.bool_]
     linear: npt.NDArray[np.bool_]

@@ -48,6 +48,7 @@ from twin.nc.control.interpolation import ArcRule, CycleRule, MotionMode
 from twin.nc.control.modal import FEED_FACTORS, FeedMode, Modal
 from twin.nc.control.settings import ControlSettings
 from twin.nc.functions import SPINDLE_STARTS
+from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.drilling_cycle import Cycle
 from twin.nc.text.syntax import Comment
@@ -62,6 +63,9 @@ _FIELDS: Mapping[str, int] = {
     "return_to_reference": TO_REFERENCE,
 }
 """The fields of ``Modal`` that plain codes may set, and their places."""
+
+
+_NO_ARC = ArcRule(clockwise=False, bounds=Bounds(0.0, 0.0, 0.0, 0.0))
 
 
 class DecodeTables:
@@ -138,7 +142,7 @@ class DecodeTables:
             if meant is not None:
                 field[number], value[number] = meant
         plain = [each.rule if each else None for each in self._interpolations]
-        arcs = [each if isinstance(each, ArcRule) else ArcRule(clockwise=False) for each in plain]
+        arcs = [each if isinstance(each, ArcRule) else _NO_ARC for each in plain]
         return BlockTables(
             field=field,
             value=value,
@@ -148,9 +152,7 @@ class DecodeTables:
             function=_functions(dialect, self._interpreted),
             kind=np.array([_kind(each) for each in self._interpolations]),
             clockwise=np.array([arc.clockwise for arc in arcs]),
-            mismatch=np.array([arc.mismatch for arc in arcs]),
-            mismatch_share=np.array([arc.mismatch_share for arc in arcs]),
-            shift=np.array([arc.shift for arc in arcs]),
+            bounds=np.array([arc.bounds for arc in arcs]),
             fits_radius=np.array([arc.fits_radius for arc in arcs]),
             signed_radius=np.array([arc.signed_radius for arc in arcs]),
             linear=np.array([kind == "linear" for kind in settings.axes.kinds]),

@@ -9,15 +9,12 @@ from twin.nc.control.modal import FEED_FACTORS, FeedMode
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.planes import Plane, Vector, cross
 from twin.nc.path.move_columns import NAN, Segment
+from twin.nc.path.moves import SMALLEST_MOVE, arc_length, feed_per_minute, line_length, only_turns
 from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
 
 LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
-
-
-_SMALLEST_MOVE = 1e-9
-"""A block that goes less far than this moves nothing [mm or deg]: far below any resolution."""
 
 
 _SPINDLE = {"M3": True, "M4": True, "M5": False}
@@ -73,15 +70,12 @@ class Control(ControlWords):
         sweep: float = 0.0,
         spline: tuple[bool] | None = None,
     ) -> None:
-        start, end = self.part, self.frame.to_part(target)
-        if center is not None:
-            length = _arc_length(start, end, center, normal, sweep)
+        end = self.frame.to_part(target)
+        if center is None:
+            length = line_length(self.part, end)
         else:
-            length = math.dist(start[:3], end[:3])
-            if length < _SMALLEST_MOVE:
-                end[:3] = start[:3]  # what a frame has rounded is no way
-                length = math.dist(start[3:], end[3:])
-        if length < _SMALLEST_MOVE:
+            length = arc_length(self.part, end, center, normal, sweep)
+        if length < SMALLEST_MOVE:
             self.programmed = target
             return
         modal = self.modal
@@ -102,7 +96,7 @@ class Control(ControlWords):
             motion=Motion.RAPID if rapid else Motion.FEED,
             line=self.block.line,
             block=self.block.number,
-            start=start,
+            start=self.part,
             end=end,
             display=target,
             feed=feed,
@@ -139,7 +133,7 @@ class Control(ControlWords):
         return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
-        turning = not is_arc and self._turns(end)
+        settings, mode = self.settings, self.modal.feed_mode
         if self.feed is None:
             self.report.warn_once(
                 "no-feed",
@@ -147,27 +141,30 @@ class Control(ControlWords):
                 *self._blamed(None),
                 hint="write F in the first block that needs it",
             )
-            settings = self.settings
-            return settings.default_rotary_feed if turning else settings.default_feed
-        mode = self.modal.feed_mode
-        if mode is FeedMode.SECONDS_PER_BLOCK:
+        elif mode is FeedMode.SECONDS_PER_BLOCK:
             return length / self.feed * 60.0
-        feed = self.feed if turning else self.feed * self.modal.unit
-        if mode is FeedMode.PER_MINUTE:
-            return feed
-        if mode in FEED_FACTORS:
-            return feed * FEED_FACTORS[mode]
+        factor = FEED_FACTORS.get(mode, self.spindle)
+        if self.feed is not None and mode not in FEED_FACTORS:
+            self._refuse_standing_spindle()
+        return feed_per_minute(
+            NAN if self.feed is None else self.feed,
+            not is_arc and only_turns(self.part, end, self.linear),
+            self.modal.unit,
+            factor or 1.0,
+            (settings.default_feed, settings.default_rotary_feed),
+        )
+
+    def _refuse_standing_spindle(self) -> None:
+        """A feed per revolution needs a spindle that turns.
+
+        Raises:
+            ProgramError: It does not.
+        """
         if not self.spindle:
             self.fail("feed-per-revolution", "a feed per revolution needs a spindle speed S")
         if not self.spindle_turns:
             message = "a feed per revolution never moves while the spindle stands"
             self.fail("feed-per-revolution", message, hint="start it by M3 or M4 before")
-        return feed * self.spindle
-
-    def _turns(self, end: list[float]) -> bool:
-        """Whether a move with this end moves no linear axis."""
-        part = self.part
-        return all(end[column] == part[column] for column in self.linear_columns)
 
     def dwell(self, seconds: float) -> None:
         """Wait."""
@@ -221,15 +218,6 @@ class Control(ControlWords):
     @abc.abstractmethod
     def place_switches(self, length: float) -> None:
         """Report the block's switch points, told the length of its move."""
-
-
-def _arc_length(
-    start: list[float], end: list[float], center: Vector, normal: Vector, sweep: float
-) -> float:
-    """What the feed of an arc counts, by the convention of ``canonical`` [mm]."""
-    radius = math.dist(start[:3], center)
-    advance = sum((end[i] - start[i]) * normal[i] for i in range(3))
-    return math.hypot(radius * math.radians(sweep), advance)
 
 
 def _limited(value: float, limits: Mapping[int, float], shares: list[float]) -> float:

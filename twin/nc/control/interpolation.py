@@ -1,9 +1,9 @@
 """How axis words become a move, as data: what the compiled tier must know of it."""
 
 import dataclasses
-import math
 from collections.abc import Mapping
 
+from twin.nc.geometry.arcs import Bounds
 from twin.nc.path.drilling_cycle import Cycle
 
 
@@ -16,21 +16,15 @@ class LineRule:
 class ArcRule:
     """A block of plain axis words with I, J, K of the plane or R is an arc.
 
-    Within these bounds nothing about it is doubtful: no error, no warning, no correction to report.
-
     Attributes:
         clockwise: Its sense.
-        mismatch: How far the distances of start and end from the centre may differ [mm].
-        mismatch_share: How far they may differ as a share of the larger one.
-        shift: How far the centre may be moved to fit [mm].
+        bounds: Beyond them the interpreter tier refuses or warns.
         signed_radius: A negative radius asks for the larger arc; else it is not plain.
         fits_radius: A centre found by its radius is fitted to both points like a given one.
     """
 
     clockwise: bool
-    mismatch: float = math.inf
-    mismatch_share: float = math.inf
-    shift: float = math.inf
+    bounds: Bounds
     signed_radius: bool = True
     fits_radius: bool = False
 

@@ -103,7 +103,6 @@ class ControlState:
         self.report = Reporter(source, strict=settings.strict)
         self.axis_index = {name: index for index, name in enumerate(settings.axes.names)}
         self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)
-        self.linear_columns = [index for index, linear in enumerate(self.linear) if linear]
         self.modal = Modal()
         self.active: dict[str, int] = {}
         self.memory = language.memory()

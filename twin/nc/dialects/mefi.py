@@ -11,7 +11,6 @@ from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision, Dialect
-from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso import base, shared_decisions
 from twin.nc.iso.circular import arc_rule, iso_arc_center, start_and_end
@@ -168,12 +167,10 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-def _arc_rule(*, clockwise: bool) -> ArcRule:
-    return dataclasses.replace(arc_rule(clockwise=clockwise), signed_radius=False)
-
-
-CLOCKWISE = Interpolation(clockwise_arc, rule=_arc_rule(clockwise=True))
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=_arc_rule(clockwise=False))
+CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True, signed_radius=False))
+COUNTER_CLOCKWISE = Interpolation(
+    counter_clockwise_arc, rule=arc_rule(clockwise=False, signed_radius=False)
+)
 
 DECISIONS = (
     Decision(
@@ -276,7 +273,7 @@ MEFI = Dialect(
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(
-        Mark(r'^[^;$]*"', 'a comment after "'),
+        Mark(r'^[^;$#]*"', 'a comment after "'),
         Mark(r"\bG73\b.*\bL[ \t]*\d|\bL[ \t]*\d+.*\bG73\b", "G73 with L"),
         Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
     ),

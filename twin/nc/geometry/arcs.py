@@ -1,10 +1,10 @@
 """Arc geometry in a plane: centres from radii, tangents and points, and signed sweeps.
 
-The compiled tier (``plain_kernels``) compiles most of these functions as they stand here: what they use
-must give the same bits either way, which ``math.hypot`` does not.
+What is ``compilable`` must give the same bits compiled, which ``math.hypot`` does not.
 """
 
 import math
+from typing import NamedTuple
 
 from twin.compilation.compilable import compilable
 
@@ -70,24 +70,71 @@ def sweep_between(start: Point, end: Point, center: Point, clockwise: bool) -> f
     return angle if angle > 0.0 else angle + TURN
 
 
-def center_by_radius(
-    start: Point, end: Point, radius: float, clockwise: bool, larger: bool
-) -> Point | None:
-    """Centre of the arc of a given radius [mm].
+(
+    FITS,
+    ON_CENTER,
+    UNEQUAL,
+    FAR_CENTER,
+    SAME_ENDS,
+    SHORT_RADIUS,
+    NEGATIVE_RADIUS,
+) = range(7)
+"""What is wrong with an arc: nothing; the centre lies on its start or end; these are not equally far
+from it; it would have to be moved far to be so; they are one point, which no radius tells a circle
+through; the radius does not reach from one to the other; it is below 0, where that means nothing."""
+
+
+class Bounds(NamedTuple):
+    """How badly a centre may fit start and end of an arc; of each limit and its share the larger counts.
+
+    Attributes:
+        mismatch: How far its distances from start and end may differ [mm].
+        mismatch_share: The same as a share of the larger distance.
+        shift: How far it may be moved to fit [mm].
+        shift_share: The same as a share of the larger distance.
+    """
+
+    mismatch: float
+    mismatch_share: float
+    shift: float
+    shift_share: float
+
+
+@compilable
+def fitted_center(start: Point, end: Point, given: Point, bounds: Bounds) -> tuple[int, Point]:
+    """What is wrong with a centre, and the nearest one that is as far from the start as from the end."""
+    near, far = distance(start, given), distance(end, given)
+    larger = max(near, far)
+    if min(near, far) < SAME_POINT:
+        return ON_CENTER, given
+    if abs(near - far) > max(bounds.mismatch, bounds.mismatch_share * larger):
+        return UNEQUAL, given
+    center = equidistant(start, end, given)
+    if distance(given, center) > max(bounds.shift, bounds.shift_share * larger):
+        return FAR_CENTER, center
+    return FITS, center
+
+
+@compilable
+def center_of_radius(
+    start: Point, end: Point, radius: float, clockwise: bool, signed: bool
+) -> tuple[int, Point]:
+    """What is wrong with the radius of an arc, and its centre.
 
     Args:
         start: First point.
-        end: Last point, not the same.
-        radius: Positive.
+        end: Last point.
+        radius: Negative for the arc beyond 180° of the two that fit [mm].
         clockwise: Sense of the arc.
-        larger: The arc beyond 180° of the two that fit.
-
-    Returns:
-        The centre; None where the radius is shorter than half the chord.
+        signed: A negative radius means that.
     """
-    if not reaches(start, end, radius):
-        return None
-    return center_at_radius(start, end, radius, clockwise, larger)
+    if distance(start, end) < SAME_POINT:
+        return SAME_ENDS, start
+    if radius < 0.0 and not signed:
+        return NEGATIVE_RADIUS, start
+    if radius == 0.0 or not reaches(start, end, abs(radius)):
+        return SHORT_RADIUS, start
+    return FITS, center_at_radius(start, end, abs(radius), clockwise, radius < 0.0)
 
 
 @compilable
@@ -101,7 +148,15 @@ def reaches(start: Point, end: Point, radius: float) -> bool:
 def center_at_radius(
     start: Point, end: Point, radius: float, clockwise: bool, larger: bool
 ) -> Point:
-    """As ``center_by_radius``, of a radius that reaches."""
+    """Centre of the arc of a radius that reaches.
+
+    Args:
+        start: First point.
+        end: Last point, not the same.
+        radius: Positive [mm].
+        clockwise: Sense of the arc.
+        larger: The arc beyond 180° of the two that fit.
+    """
     chord = distance(start, end)
     middle = ((start[0] + end[0]) / 2.0, (start[1] + end[1]) / 2.0)
     height = math.sqrt(max(0.0, radius * radius - chord * chord / 4.0))

@@ -1,33 +1,21 @@
 """Arc blocks: from end point and radius or centre to centre and sweep."""
 
 import dataclasses
+from typing import NoReturn
 
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
-from twin.nc.geometry.arcs import (
-    SAME_POINT,
-    Point,
-    center_by_radius,
-    distance,
-    equidistant,
-    sweep_between,
-)
+from twin.nc.geometry import arcs
+from twin.nc.geometry.arcs import Bounds, Point, distance, sweep_between
 from twin.nc.geometry.planes import Local, Vector
 from twin.nc.text.blocks import Word
 
-RADIUS_TOLERANCE = 0.01
-"""How far start and end radius of an arc may differ [mm].
+BOUNDS = Bounds(mismatch=0.01, mismatch_share=0.001, shift=0.1, shift_share=0.01)
+"""How badly a centre may fit.
 
-Decision: the Fagor 8070's default (CIRINERR) for every dialect that states none; programs rounded
-to 0.001 mm stay far below it.
-"""
-RADIUS_SHARE = 0.001
-"""How far they may differ as a share of the radius (the 8070's CIRINFACT, 0.1 %): the larger limit counts."""
-
-CENTER_SHIFT = 0.1
-"""How far a centre may be moved to fit both points [mm], or ten times ``RADIUS_SHARE``.
-
-Decision: nearly full circles magnify a small mismatch; beyond this the arc is not what was drawn.
+Decision: start and end radius differ by no more than the Fagor 8070 lets them (CIRINERR, CIRINFACT),
+for every dialect that states nothing; programs rounded to 0.001 mm stay far below that. Nearly full
+circles magnify a small mismatch: where the centre must be moved by more, the arc is not what was drawn.
 """
 
 
@@ -66,37 +54,10 @@ def fitted_center(
     Raises:
         ProgramError: They are farther from one circle than rounding explains.
     """
-    first, last = distance(start, center), distance(end, center)
-    if min(first, last) < SAME_POINT:
-        control.fail("arc-center", "the centre lies on the arc's start or end", word)
-    if abs(first - last) > max(RADIUS_TOLERANCE, RADIUS_SHARE * first):
-        control.fail(
-            "arc-center",
-            f"start and end are {first:.4f} and {last:.4f} mm from the centre",
-            word,
-            hint="give a centre that is as far from the start as from the end",
-        )
-    fitted = equidistant(start, end, center)
-    if distance(center, fitted) > max(CENTER_SHIFT, 10.0 * RADIUS_SHARE * first):
-        control.fail(
-            "arc-center",
-            f"the centre misses start and end by {abs(first - last):.4f} mm, "
-            "too much for two points so near each other",
-            word,
-            hint="end a full circle exactly where it starts",
-        )
+    finding, fitted = arcs.fitted_center(start, end, center, BOUNDS)
+    if finding != arcs.FITS:
+        refuse_arc(control, finding, word, distance(start, center), distance(end, center))
     return fitted
-
-
-def radius_center(
-    control: Control, start: Point, end: Point, word: Word, *, clockwise: bool
-) -> Point:
-    """Centre of an arc given by a radius word; a negative radius asks for the larger arc.
-
-    Raises:
-        ProgramError: The radius does not fit.
-    """
-    return center_of_radius(control, start, end, control.length(word), word, clockwise=clockwise)
 
 
 def center_of_radius(
@@ -108,24 +69,54 @@ def center_of_radius(
     *,
     clockwise: bool,
 ) -> Point:
-    """As ``radius_center``, for a radius that is in force [mm]."""
-    if distance(start, end) < SAME_POINT:
-        control.fail(
-            "arc-full-by-radius",
-            "start and end are the same point: a radius leaves the centre undefined",
-            word,
-            hint="write the centre (I, J, K) of a full circle",
-        )
-    center = center_by_radius(start, end, abs(value), clockwise=clockwise, larger=value < 0.0)
-    if center is None or value == 0.0:
-        half = distance(start, end) / 2.0
-        control.fail(
-            "arc-radius",
-            f"the end cannot be reached with radius {abs(value):g} mm",
-            word,
-            hint=f"half the distance is {half:.4f} mm: no smaller radius reaches",
-        )
+    """Centre of an arc given by a radius [mm]; a negative one asks for the larger arc.
+
+    Raises:
+        ProgramError: The radius does not fit.
+    """
+    finding, center = arcs.center_of_radius(start, end, value, clockwise, signed=True)
+    if finding != arcs.FITS:
+        refuse_arc(control, finding, word, abs(value), distance(start, end) / 2.0)
     return center
+
+
+_FINDINGS = {
+    arcs.ON_CENTER: ("arc-center", "the centre lies on the arc's start or end", None),
+    arcs.UNEQUAL: (
+        "arc-center",
+        "start and end are {0:.4f} and {1:.4f} mm from the centre",
+        "give a centre that is as far from the start as from the end",
+    ),
+    arcs.FAR_CENTER: (
+        "arc-center",
+        "the centre misses start and end by {2:.4f} mm, too much for two points so near each other",
+        "end a full circle exactly where it starts",
+    ),
+    arcs.SAME_ENDS: (
+        "arc-full-by-radius",
+        "start and end are the same point: a radius leaves the centre undefined",
+        "write the centre (I, J, K) of a full circle",
+    ),
+    arcs.SHORT_RADIUS: (
+        "arc-radius",
+        "the end cannot be reached with radius {0:g} mm",
+        "half the distance is {1:.4f} mm: no smaller radius reaches",
+    ),
+}
+"""Code, message and hint of what is wrong with an arc."""
+
+
+def refuse_arc(
+    control: Control, finding: int, word: Word | None, first: float = 0.0, second: float = 0.0
+) -> NoReturn:
+    """Say what is wrong: of a centre with its distances, of a radius with itself and half the chord.
+
+    Raises:
+        ProgramError: Always.
+    """
+    code, message, hint = _FINDINGS[finding]
+    measured = (first, second, abs(first - second))
+    control.fail(code, message.format(*measured), word, hint and hint.format(*measured))
 
 
 def sweep_arc(
@@ -170,7 +161,8 @@ def iso_arc_center(control: Control, target: list[float], *, clockwise: bool) ->
     if radius is not None:
         if centre.words:
             control.fail("arc-overdefined", "an arc has a centre or a radius", radius)
-        return radius_center(control, start[:2], end[:2], radius, clockwise=clockwise)
+        value = control.length(radius)
+        return center_of_radius(control, start[:2], end[:2], value, radius, clockwise=clockwise)
     if not centre.words:
         control.fail(
             "arc-without-center",
@@ -198,11 +190,8 @@ def _iso_arc(control: Control, *, clockwise: bool) -> None:
     sweep_arc(control, target, center, clockwise=clockwise)
 
 
-def arc_rule(*, clockwise: bool, fits_radius: bool = False) -> ArcRule:
-    """The bounds within which ``fitted_center`` has nothing to refuse."""
+def arc_rule(*, clockwise: bool, signed_radius: bool = True, fits_radius: bool = False) -> ArcRule:
+    """An arc by ISO 6983-1 or much like it."""
     return ArcRule(
-        clockwise=clockwise,
-        mismatch=RADIUS_TOLERANCE,
-        shift=CENTER_SHIFT,
-        fits_radius=fits_radius,
+        clockwise=clockwise, bounds=BOUNDS, signed_radius=signed_radius, fits_radius=fits_radius
     )

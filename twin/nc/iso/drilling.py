@@ -160,23 +160,16 @@ def drill(control: Control, hole: Hole, target: list[float]) -> None:
         target: Programmed position of the hole, shape (k,); its height is not used.
     """
     axis = control.modal.plane.axes[2]
-    over = list(target)
-    over[axis] = max(control.programmed[axis], hole.reference)
-    if over[axis] != control.programmed[axis]:
-        up = list(control.programmed)
-        up[axis] = over[axis]
-        control.line_to(up, rapid=True)
-    control.line_to(over, rapid=True)
     room = most_acts(hole.stops)
     acts, amounts = [0.0] * room, [0.0] * room
     turning = {} if control.spindle is None else {"S": control.spindle}
     turned = control.spindle_turns
-    for number in range(write_acts(hole, acts, amounts)):
+    for number in range(write_acts(hole, control.programmed[axis], acts, amounts)):
         act, amount = Act(int(acts[number])), amounts[number]
-        if act in (Act.RAPID, Act.FEED):
-            there = list(control.programmed)
+        if act in (Act.RAPID, Act.FEED, Act.ACROSS):
+            there = list(target if act is Act.ACROSS else control.programmed)
             there[axis] = amount
-            control.line_to(there, rapid=act is Act.RAPID)
+            control.line_to(there, rapid=act is not Act.FEED)
         elif act is Act.DWELL:
             control.dwell(amount)
         else:

@@ -73,7 +73,10 @@ class Pecking(enum.IntEnum):
 
 
 class Act(enum.IntEnum):
-    """What happens at a hole: moves to a height, a dwell, the spindle."""
+    """What happens at a hole: moves to a height, a dwell, the spindle.
+
+    The number of an M function is its own.
+    """
 
     RAPID = 0
     FEED = 1
@@ -81,6 +84,8 @@ class Act(enum.IntEnum):
     M3 = 3
     M4 = 4
     M5 = 5
+    ACROSS = 6
+    """Rapidly over the hole, at a height."""
 
 
 class Fault(enum.IntEnum):
@@ -102,6 +107,7 @@ _STRAIGHT, _COUNTED = int(Pecking.NONE), int(Pecking.COUNTED)
 _MISSING, _PLANE, _PECKS = int(Fault.MISSING), int(Fault.PLANE), int(Fault.PECKS)
 _MANY_PECKS, _DEPTH, _DWELL = int(Fault.MANY_PECKS), int(Fault.DEPTH), int(Fault.DWELL)
 _UP, _DOWN, _WAIT = float(Act.RAPID), float(Act.FEED), float(Act.DWELL)
+_ACROSS = float(Act.ACROSS)
 _M3, _M4, _M5 = float(Act.M3), float(Act.M4), float(Act.M5)
 
 
@@ -286,19 +292,23 @@ def count_stops(surface: float, bottom: float, peck: float, factor: float, least
 @compilable
 def most_acts(stops: int) -> int:
     """Room that ``write_acts`` needs."""
-    return 3 * stops + 7
+    return 3 * stops + 9
 
 
 @compilable
-def write_acts(hole: Hole, acts: Values, amounts: Values) -> int:
-    """Write what happens when the tool stands over the hole; how many acts there are.
+def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
+    """Write what happens at a hole; how many acts there are.
 
     Args:
         hole: The hole.
+        height: Where the tool stands [mm].
         acts: Filled with ``Act``.
         amounts: Filled with heights [mm] and seconds.
     """
-    acts[0], amounts[0], at = _UP, hole.reference, 1
+    over = max(height, hole.reference)
+    acts[0], amounts[0] = _UP, over
+    acts[1], amounts[1] = _ACROSS, over
+    acts[2], amounts[2], at = _UP, hole.reference, 3
     depth, peck = hole.surface, hole.peck
     for number in range(1, hole.stops + 1):
         depth -= peck

@@ -213,6 +213,10 @@ class Path:
         self._flush()
         self._compensation.begin(plane, signed_offset, square=square, indirect=indirect)
 
+    def compensate_in(self, plane: Plane) -> None:
+        """Compensation, which has not moved yet, acts in another plane."""
+        self._compensation.contour.plane[:] = plane.directions
+
     def end_compensation(self) -> None:
         """The next line leads out."""
         if self._compensation.in_force:

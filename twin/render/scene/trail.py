@@ -84,9 +84,9 @@ def trail_points(recording: Recording, summary: ProgramSummary) -> TrailPoints:
         summary: What is in the spindle when, and which moves are rapids.
     """
     parts = []
-    first = 0
+    first, frame = 0, recording.header.part_frame
     for chunk in recording.chunks():
-        position = recording.header.part_frame.position(chunk.joint_position)
+        position = frame.position(frame.real(chunk.joint_position))
         for run, tool in summary.tools.runs(chunk.setpoint.move):
             position[run, 2] -= summary.tools.longer(tool)
         sample = first + np.arange(len(chunk))

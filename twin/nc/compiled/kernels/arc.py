@@ -1,6 +1,6 @@
 """Arcs of plain blocks: ``circular`` for the case that nothing about the arc is doubtful.
 
-The geometry is that of ``arcs``, compiled as it stands there.
+What a centre or a radius means, and which fits, ``geometry.arcs`` says.
 """
 
 from twin.compilation.compilable import inlined
@@ -8,7 +8,6 @@ from twin.nc.bytecode.registers import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
     PLANE,
-    SCALE,
     TURNED,
     UNIT,
     BlockTables,
@@ -17,10 +16,11 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.bytecode.token_kinds import AXIS, CENTER, RADIUS
 from twin.nc.compiled.kernels.frame import turn_arc
-from twin.nc.compiled.kernels.plane import SHORTEST
 from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.geometry import arcs
-from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.arcs import Bounds, Point
+from twin.nc.geometry.planes import vector_of
+from twin.nc.path.moves import SMALLEST_MOVE, arc_length
 from twin.nc.path.rows import Rows
 
 
@@ -52,17 +52,15 @@ def emit_arc(
     display = rows.positions[row, 2]
     start = (state.programmed[first_axis], state.programmed[second_axis])
     end = (display[first_axis], display[second_axis])
-    found, fits, center = _center_of(block, (first_axis, second_axis, across), start, end, tables)
-    if not found:
+    clear, fits, center = _center_of(block, (first_axis, second_axis, across), start, end, tables)
+    if clear and fits:
+        b = tables.bounds[interpolation]
+        bounds = Bounds(float(b[0]), float(b[1]), float(b[2]), float(b[3]))
+        finding, center = arcs.fitted_center(start, end, center, bounds)
+        clear = finding == arcs.FITS
+    if not clear:
         return False
-    if fits:
-        fitted, center = _fitted(center, start, end, interpolation, tables)
-        if not fitted:
-            return False
     sweep = arcs.sweep_between(start, end, center, tables.clockwise[interpolation])
-    length = arcs.distance(start, center) * abs(sweep) * state.registers[SCALE]
-    if not length > SHORTEST * arcs.TURN:
-        return False
     value = rows.values[row]
     value[first_axis], value[second_axis] = center
     value[across] = state.programmed[across]
@@ -74,7 +72,10 @@ def emit_arc(
     else:
         for axis in range(3):
             value[axis] += state.total[axis]
-    return True
+    turned_center, normal = vector_of(value), vector_of(value[3:])
+    position = rows.positions[row]
+    length = arc_length(position[0], position[1], turned_center, normal, value[6])
+    return length >= SMALLEST_MOVE
 
 
 @inlined
@@ -92,33 +93,12 @@ def _center_of(
         in_plane = (1 << (AXIS + first_axis)) | (1 << (AXIS + second_axis))
         if has_first or has_second or not seen & in_plane:
             return False, False, start
-        radius = value_of(RADIUS, block) * unit
-        larger, clockwise = radius < 0.0, tables.clockwise[interpolation]
-        if larger and not tables.signed_radius[interpolation]:
-            return False, False, start
-        if radius == 0.0 or not arcs.reaches(start, end, abs(radius)):
-            return False, False, start
-        fits = tables.fits_radius[interpolation]
-        return True, fits, arcs.center_at_radius(start, end, abs(radius), clockwise, larger)
+        radius, signed = value_of(RADIUS, block) * unit, tables.signed_radius[interpolation]
+        clockwise = tables.clockwise[interpolation]
+        finding, center = arcs.center_of_radius(start, end, radius, clockwise, signed)
+        return finding == arcs.FITS, tables.fits_radius[interpolation], center
     first = value_of(CENTER + first_axis, block) * unit
     second = value_of(CENTER + second_axis, block) * unit
     if block.modal[CENTER_ABSOLUTE] != 0.0:
         return has_first and has_second, True, (first, second)
     return has_first or has_second, True, (start[0] + first, start[1] + second)
-
-
-@inlined
-def _fitted(
-    given: Point, start: Point, end: Point, interpolation: int, tables: BlockTables
-) -> tuple[bool, Point]:
-    """Whether a given centre is within the bounds of its interpolation, and the one that fits both ends."""
-    near, far = arcs.distance(start, given), arcs.distance(end, given)
-    gap, longer = abs(near - far), max(near, far)
-    if not (
-        min(near, far) >= arcs.SAME_POINT
-        and gap <= tables.mismatch[interpolation]
-        and gap <= tables.mismatch_share[interpolation] * longer
-    ):
-        return False, given
-    center = arcs.equidistant(start, end, given)
-    return arcs.distance(given, center) <= tables.shift[interpolation], center

@@ -24,12 +24,12 @@ from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import Corner, FloatArray, Motion, Shape
 from twin.nc.compiled.kernels.effects import report
 from twin.nc.compiled.kernels.frame import turn_place
-from twin.nc.compiled.kernels.plane import move_length
 from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
 from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
+from twin.nc.path.moves import line_length
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
@@ -38,6 +38,7 @@ _WORDS = len(Cycle._fields)
 MOST_STOPS = 500
 """Stops of a hole: its moves must fit into a chunk."""
 _UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
+_ACROSS = int(Act.ACROSS)
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
 _LINE = int(Shape.LINE)
 _STOP = int(Corner.EXACT_STOP)
@@ -157,7 +158,7 @@ def _emit_hole(
 ) -> int:
     """Go over the hole, drill it, return: ``drilling.drill``; the hole lies at ``constants.over``."""
     modal, feed = block.modal, block.feed
-    if row + drilling_cycle.most_acts(hole.stops) + 2 > len(rows.codes):
+    if row + drilling_cycle.most_acts(hole.stops) > len(rows.codes):
         return NO_ROOM
     if np.isnan(feed) and not constants.feed_may_lack:
         return UNSUPPORTED
@@ -169,15 +170,14 @@ def _emit_hole(
     copy(state.programmed, here)
     copy(state.part, part)
     copy(state.programmed, goal)
-    over = max(here[axis], hole.reference)
     acts, amounts, after = constants.hole[2], constants.hole[3], row
-    for step in range(-2, drilling_cycle.write_acts(hole, acts, amounts)):
-        act = _UP if step < 0 else int(acts[step])
-        if act <= _DOWN:
-            if step == -1:
+    for step in range(drilling_cycle.write_acts(hole, here[axis], acts, amounts)):
+        act = int(acts[step])
+        if act in (_UP, _DOWN, _ACROSS):
+            if act == _ACROSS:
                 copy(constants.over, goal)
-            goal[axis] = over if step < 0 else amounts[step]
-            travel = rapidly if act == _UP else feeding
+            goal[axis] = amounts[step]
+            travel = feeding if act == _DOWN else rapidly
             after = _go(goal, travel, constants, state, rows, after)
             if after == UNSUPPORTED:
                 return UNSUPPORTED
@@ -208,10 +208,10 @@ def _go(
         end = goal[axis] + state.total[axis]
         position[0, axis], position[1, axis], position[2, axis] = part[axis], end, goal[axis]
     turn_place(goal, state, position[1])
-    way = move_length(position)
+    way = line_length(position[0], position[1])
     copy(goal, here)
-    if way <= 0.0:
-        return row if way == 0.0 else UNSUPPORTED
+    if way == 0.0:
+        return row
     copy(position[1], part)
     value, code = rows.values[row], rows.codes[row]
     value[:6] = np.nan

@@ -19,7 +19,6 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.compiled.kernels.plane import one
 from twin.nc.geometry import matrices, planes
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.geometry.matrices import IDENTITY, Matrix
@@ -165,4 +164,8 @@ def directions(plane: IntArray) -> Matrix:
 
 @inlined
 def _along(axis: int) -> tuple[float, float, float]:
-    return (one(axis, 0), one(axis, 1), one(axis, 2))
+    return (
+        1.0 if axis == 0 else 0.0,
+        1.0 if axis == 1 else 0.0,
+        1.0 if axis == 2 else 0.0,
+    )

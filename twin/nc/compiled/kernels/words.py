@@ -24,7 +24,6 @@ from twin.nc.bytecode.registers import (
     RAPID_LINE,
     UNIT,
     BlockTables,
-    Constants,
     Machine,
     State,
 )
@@ -42,10 +41,10 @@ from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
 from twin.nc.compiled.kernels.effects import is_whole, report
 from twin.nc.compiled.kernels.frame import turn_place
-from twin.nc.compiled.kernels.plane import move_length
 from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path.event_columns import FUNCTION_ALONE
+from twin.nc.path.moves import feed_per_minute, line_length, only_turns
 from twin.nc.path.rows import copy
 from twin.nc.text.line_reader import LARGEST_LABEL
 
@@ -220,20 +219,20 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
         if not emit_arc(block, tables, constants, state, rows, row):
             return UNSUPPORTED
     else:
-        way = move_length(position)
-        if way <= 0.0:
-            return row if way == 0.0 else UNSUPPORTED
+        if line_length(position[0], position[1]) == 0.0:
+            return row
         rows.values[row, :6] = np.nan
         rows.values[row, 6] = 0.0
-    if kind == RAPID_LINE:
-        pace = constants.rapid_feed
-        if not np.isnan(constants.own_rapid_feed):
-            own = constants.own_rapid_feed
-            pace = (own if own != 0.0 else block.feed) * 60.0
-    elif np.isnan(block.feed) and not constants.feed_may_lack:
-        return UNSUPPORTED
-    else:
-        pace = _feed_per_minute(block, position, is_arc, tables, constants)
+    pace = constants.rapid_feed
+    own = constants.own_rapid_feed
+    if kind == RAPID_LINE and not np.isnan(own):
+        pace = (own if own != 0.0 else block.feed) * 60.0
+    elif kind != RAPID_LINE:
+        if np.isnan(block.feed) and not constants.feed_may_lack:
+            return UNSUPPORTED
+        turning = not is_arc and only_turns(position[0], position[1], tables.linear)
+        otherwise = (constants.default_feed, constants.default_rotary_feed)
+        pace = feed_per_minute(block.feed, turning, modal[UNIT], modal[FEED_FACTOR], otherwise)
     rows.values[row, 7] = pace
     copy(constants.last_values, rows.values[row, 8:])
     code = rows.codes[row]
@@ -242,22 +241,3 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     code[2], code[3] = block.line, block.number
     code[4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
     return row + 1
-
-
-@inlined
-def _feed_per_minute(
-    block: PlainBlock,
-    position: FloatArray,
-    is_arc: bool,
-    tables: BlockTables,
-    constants: Constants,
-) -> float:
-    """Feed of a move between two positions [mm/min or deg/min]."""
-    turning = not is_arc
-    for axis in range(position.shape[1]):
-        moves = position[0, axis] != position[1, axis]
-        turning = turning and not (moves and tables.linear[axis])
-    if np.isnan(block.feed):
-        return constants.default_rotary_feed if turning else constants.default_feed
-    feed = block.feed if turning else block.feed * block.modal[UNIT]
-    return feed * block.modal[FEED_FACTOR]

@@ -66,12 +66,10 @@ def plane_changed(control: Control) -> None:
     Raises:
         ProgramError: It has moved in another one.
     """
-    memory = variables(control)
     if control.path.compensation_has_moved:
         refuse_plane_change(control)
     if control.path.compensating:
-        control.path.end_compensation()
-        compensate(control, memory.tool_side, memory.tool_radius)
+        control.path.compensate_in(control.part_plane())
 
 
 def probe(control: Control) -> None:
@@ -99,7 +97,6 @@ def _compensate(control: Control, side: float) -> None:
     word = control.take("D")
     if word is not None:
         variables(control).tool_radius = control.length(word)
-    variables(control).tool_side = side
     compensate(control, side, variables(control).tool_radius)
 
 

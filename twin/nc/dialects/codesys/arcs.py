@@ -3,25 +3,17 @@
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
-from twin.nc.geometry.arcs import (
-    SAME_POINT,
-    Point,
-    center_by_radius,
-    distance,
-    equidistant,
-    turned,
-)
-from twin.nc.iso.circular import start_and_end, sweep_arc, take_center
+from twin.nc.geometry import arcs
+from twin.nc.geometry.arcs import SAME_POINT, Bounds, Point, distance, turned
+from twin.nc.iso.circular import refuse_arc, start_and_end, sweep_arc, take_center
 from twin.nc.text.blocks import Word
 
-CENTER_SHARE = 0.1
-"""Share by which start and end radius may differ before the arc becomes a line.
+BOUNDS = Bounds(mismatch=0.0, mismatch_share=0.1, shift=1e-3, shift_share=0.0)
+"""Beyond these an arc becomes a line, or its corrected centre earns a warning.
 
 The page allows the centre to deviate by 10 %. Decision: measured as |r_start - r_end| against the
 larger of both.
 """
-SHIFT_WARNING = 1e-3
-"""A centre that is corrected by more than this earns a warning [mm]."""
 
 LARGEST_OPENING = 1080.0
 """Largest opening angle: three turns, as the page says [deg]."""
@@ -45,22 +37,17 @@ def _radius_arc(control: Control, word: Word, *, clockwise: bool) -> None:
     start, end = start_and_end(control, target)
     if take_center(control).words:
         control.fail("arc-overdefined", "an arc has a centre or a radius", word)
-    if distance(start[:2], end[:2]) < SAME_POINT:
-        control.fail(
-            "arc-full-by-radius",
-            "start and end are the same point: a radius leaves the centre undefined",
-            word,
-            hint="write the centre (I, J, K) of a full circle",
-        )
     radius = abs(control.length(word))
-    center = center_by_radius(start[:2], end[:2], radius, clockwise=clockwise, larger=False)
-    if center is None:
+    finding, center = arcs.center_of_radius(start[:2], end[:2], radius, clockwise, signed=False)
+    if finding == arcs.SHORT_RADIUS:
         half = distance(start[:2], end[:2]) / 2.0
         message = (
             f"the radius is shorter than half the distance, {half:.4f}: a straight line instead"
         )
         _line_instead(control, target, message, word)
         return
+    if finding != arcs.FITS:
+        refuse_arc(control, finding, word)
     sweep_arc(control, target, center, clockwise=clockwise)
 
 
@@ -71,18 +58,17 @@ def _center_arc(control: Control, *, clockwise: bool) -> None:
     if center is None:
         _line_instead(control, target, "the arc has no centre and no radius: a straight line", None)
         return
-    first, last = distance(start[:2], center), distance(end[:2], center)
-    unequal = abs(first - last) > CENTER_SHARE * max(first, last)
-    if unequal or min(first, last) < SAME_POINT:
+    finding, fitted = arcs.fitted_center(start[:2], end[:2], center, BOUNDS)
+    if finding in (arcs.ON_CENTER, arcs.UNEQUAL):
+        first, last = distance(start[:2], center), distance(end[:2], center)
         message = (
             f"start and end are {first:.4f} and {last:.4f} from the centre, "
             "more than 10 % apart: a straight line instead"
         )
         _line_instead(control, target, message, word)
         return
-    fitted = equidistant(start[:2], end[:2], center)
-    moved = distance(center, fitted)
-    if moved > SHIFT_WARNING:
+    if finding == arcs.FAR_CENTER:
+        moved = distance(center, fitted)
         message = f"the centre is corrected by {moved:.4f} to fit start and end"
         control.warn("arc-center-corrected", message, word)
     sweep_arc(control, target, fitted, clockwise=clockwise)
@@ -150,14 +136,9 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-def _arc_rule(*, clockwise: bool) -> ArcRule:
-    return ArcRule(
-        clockwise=clockwise,
-        mismatch_share=CENTER_SHARE,
-        shift=SHIFT_WARNING,
-        signed_radius=False,
-    )
-
-
-CLOCKWISE = Interpolation(clockwise_arc, rule=_arc_rule(clockwise=True))
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=_arc_rule(clockwise=False))
+CLOCKWISE = Interpolation(
+    clockwise_arc, rule=ArcRule(clockwise=True, bounds=BOUNDS, signed_radius=False)
+)
+COUNTER_CLOCKWISE = Interpolation(
+    counter_clockwise_arc, rule=ArcRule(clockwise=False, bounds=BOUNDS, signed_radius=False)
+)

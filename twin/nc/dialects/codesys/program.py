@@ -93,7 +93,6 @@ class Variables:
 
     Attributes:
         tool_radius: The last D of G41 or G42 [mm].
-        tool_side: Side of the last G41 or G42: 1 left, -1 right.
         length_ramp: What G43 has changed and no move has led into yet [mm].
         smoothing: Distance from a corner at which its moves are cut [mm].
         smoothed_by: What takes the corners' place; None: nothing.
@@ -103,7 +102,6 @@ class Variables:
     """
 
     tool_radius: float = 0.0
-    tool_side: float = 0.0
     length_ramp: Vector = (0.0, 0.0, 0.0)
     smoothing: float = 0.0
     smoothed_by: BlendKind | None = None

@@ -26,7 +26,6 @@ from twin.nc.iso.circular import (
     arc_rule,
     center_of_radius,
     fitted_center,
-    radius_center,
     start_and_end,
     sweep_arc,
     take_center,
@@ -67,7 +66,8 @@ def _arc(control: Control, *, clockwise: bool) -> None:
     if circle is not None:
         if centre.words:
             control.fail("arc-overdefined", "an arc has a centre or a radius", circle)
-        center = radius_center(control, start[:2], end[:2], circle, clockwise=clockwise)
+        value = control.length(circle)
+        center = center_of_radius(control, start[:2], end[:2], value, circle, clockwise=clockwise)
     elif memory.circle_radius is not None and not centre.words and not goal.polar:
         center = center_of_radius(
             control, start[:2], end[:2], memory.circle_radius, None, clockwise=clockwise

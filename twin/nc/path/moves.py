@@ -1,0 +1,82 @@
+"""How far moves go, and how fast: for both tiers, by the convention of ``canonical``."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from twin.compilation.compilable import inlined
+from twin.nc.canonical import FloatArray
+from twin.nc.geometry.planes import Vector, along
+
+Position = list[float] | FloatArray
+
+SMALLEST_MOVE = 1e-9
+"""A move that goes less far than this goes nowhere [mm or deg]: far below any resolution."""
+
+
+@inlined
+def line_length(start: Position, end: Position) -> float:
+    """How far a straight move goes: in X, Y and Z, or where these rest in the other axes [mm or deg].
+
+    Args:
+        start: Shape (k,).
+        end: Shape (k,); what goes less far than ``SMALLEST_MOVE`` ends where it starts, since what a
+            frame has rounded is no way.
+
+    Returns:
+        0 where nothing moves.
+    """
+    x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+    way = math.sqrt(x * x + y * y + z * z)
+    if way < SMALLEST_MOVE:
+        end[0], end[1], end[2] = start[0], start[1], start[2]
+        way = 0.0
+        for axis in range(3, len(start)):
+            other = end[axis] - start[axis]
+            way += other * other
+        way = math.sqrt(way)
+        if way < SMALLEST_MOVE:
+            for axis in range(3, len(start)):
+                end[axis] = start[axis]
+            way = 0.0
+    return way
+
+
+@inlined
+def arc_length(
+    start: Position, end: Position, center: Vector, normal: Vector, sweep: float
+) -> float:
+    """What the feed counts of an arc or a helix in X, Y and Z [mm]; the sweep in degrees."""
+    x, y, z = start[0] - center[0], start[1] - center[1], start[2] - center[2]
+    around = math.sqrt(x * x + y * y + z * z) * math.radians(sweep)
+    advance = along((end[0] - start[0], end[1] - start[1], end[2] - start[2]), normal)
+    return math.sqrt(around * around + advance * advance)
+
+
+@inlined
+def only_turns(start: Position, end: Position, linear: Sequence[bool] | NDArray[np.bool_]) -> bool:
+    """Whether a straight move moves no linear axis: then F counts degrees."""
+    turning = True
+    for axis in range(len(start)):
+        turning = turning and (end[axis] == start[axis] or not linear[axis])
+    return turning
+
+
+@inlined
+def feed_per_minute(
+    feed: float, turning: bool, unit: float, factor: float, otherwise: tuple[float, float]
+) -> float:
+    """Feed of a move [mm/min or deg/min].
+
+    Args:
+        feed: F, or NaN where none is programmed.
+        turning: Only rotary axes move.
+        unit: Of programmed lengths [mm].
+        factor: By which F is multiplied to count per minute.
+        otherwise: Feed where none is programmed, of other moves and of such that only turn.
+    """
+    if math.isnan(feed):
+        return otherwise[1] if turning else otherwise[0]
+    return (feed if turning else feed * unit) * factor
