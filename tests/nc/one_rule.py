@@ -72,8 +72,8 @@ CHANGES = (
     ),
     Change(
         "geometry/curves",
-        "return (-y, x) if sweep > 0.0 else (y, -x)",
-        "return (-y, x) if sweep < 0.0 else (y, -x)",
+        "dx, dy = -y * by, x * by",
+        "dx, dy = y * by, -x * by",
         "fagor8070/rules/compensation",
     ),
     Change(
@@ -82,7 +82,7 @@ CHANGES = (
         "turn * signed_offset > 0.0",
         "fagor8070/rules/compensation",
     ),
-    Change("text/arithmetic", "return a * b\n", "return a * b * 1.5\n", "fagor8070/rules/flow"),
+    Change("text/arithmetic", "return a + b\n", "return a + b + 1.0\n", "fagor8070/rules/flow"),
     Change(
         "path/drilling_cycle", "CHIP_CLEARANCE = 0.5", "CHIP_CLEARANCE = 0.6", "gost/rules/drilling"
     ),
