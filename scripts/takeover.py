@@ -26,7 +26,7 @@ BEYOND = 100_000
 """Blocks that the compiled kernels run before it is enough."""
 _AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 _STEP_MM = 0.5
-_PROGRAM = "G1 F1000\nP1=0\n$WHILE P1<1E9\n{lines}$ENDWHILE\nM30"
+_PROGRAM = "G1 F1000\nP1=0\n$WHILE P1<999999999\n{lines}$ENDWHILE\nM30"
 _LINE = "P1=P1+1\nX[P1*.5]\n"
 
 
