@@ -2,8 +2,10 @@
 
 from collections.abc import Iterable
 
+import numpy as np
+import numpy.typing as npt
+
 from twin.compilation.compilable import compilable
-from twin.nc.canonical import FloatArray
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import (
     IDENTITY,
@@ -17,7 +19,7 @@ from twin.nc.geometry.matrices import (
 )
 from twin.nc.geometry.planes import Directions, Plane, Vector, cross
 
-Values = list[float] | FloatArray
+Values = list[float] | npt.NDArray[np.float64]
 
 SHIFTS = ("offset", "preset", "length", "increment", "rotation", "turns")
 """Every shift, in the order in which they are added."""
