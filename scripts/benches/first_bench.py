@@ -17,6 +17,21 @@ from benches.row import Row, processor_seconds
 from twin.files.shipped import resource_root
 
 LINES = 1000
+_FIRST_MOVES = """
+import sys
+from pathlib import Path
+from twin.nc.canonical import Axes
+from twin.nc.control.settings import ControlSettings
+from twin.nc.dialects import dialect_named
+from twin.nc.interpreter import Interpretation
+from twin.nc.text.source import read_source
+axes = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
+run = Interpretation(
+    read_source(Path(sys.argv[1])), dialect_named("gost"), ControlSettings(axes=axes)
+)
+assert len(next(iter(run.chunks())).moves) > 0
+"""
+_COMPILE = "from twin.nc.compile_all import compile_all; compile_all()"
 TEN = ("codesys", "fagor8070/omitted_words.toml", "fagor8070/full_circles.toml",
        "fagor8070/three_planes.toml", "mefi")  # fmt: skip
 """Ten small programs."""
@@ -44,7 +59,12 @@ def rows() -> Iterator[Row]:
             "check of ten programs, two workers": ["check", *ten, "--jobs", "2"],
             "rehearsal of a training scene": ["train", "mefi_lead", "--rehearse"],
         }
-        for number, (task, command) in enumerate(tasks.items()):
+        commands = {task: ["-m", "twin", *command] for task, command in tasks.items()}
+        twice = folder / "twice.nc"
+        twice.write_text(long.read_text() * 2)
+        commands[f"first moves of {2 * LINES} lines"] = ["-c", _FIRST_MOVES, str(twice)]
+        commands["whole compilation of the language"] = ["-c", _COMPILE]
+        for number, (task, command) in enumerate(commands.items()):
             kernels = folder / f"kernels{number}"
             cold = _seconds(command, kernels)
             yield Row("first", task, cold, "s", "with kernels", _seconds(command, kernels))
@@ -53,7 +73,7 @@ def rows() -> Iterator[Row]:
 def _seconds(command: list[str], kernels: Path) -> float:
     began = processor_seconds()
     subprocess.run(  # noqa: S603 (this project's own command)
-        [sys.executable, "-m", "twin", *command],
+        [sys.executable, *command],
         env=os.environ | {"NUMBA_CACHE_DIR": str(kernels)}, check=True, capture_output=True,
     )  # fmt: skip
     return processor_seconds() - began
