@@ -76,6 +76,40 @@ CHANGES = (
         "dx, dy = y * by, -x * by",
         "fagor8070/rules/compensation",
     ),
+    Change("geometry/planes", "_Z, _X, _Y)", "_X, _Z, _Y)", "gost/rules/planes_and_arcs"),
+    Change(
+        "geometry/lead_curves",
+        "return (abs(sweep) < 180.0,",
+        "return (abs(sweep) < 10.0,",
+        "fagor8070/codes/G139",
+    ),
+    Change(
+        "path/moves", "feed * unit) * factor", "feed * unit) * factor * 1.01", "codesys/codes/G01"
+    ),
+    Change(
+        "path/compensation/leads",
+        "element, part, element[2], rows",
+        "element, part, element[1], rows",
+        "codesys/codes/G41",
+    ),
+    Change(
+        "path/compensation/follow",
+        "if signed_offset < 0.0 else -abs(turn)",
+        "if signed_offset > 0.0 else -abs(turn)",
+        "gost/codes/G41",
+    ),
+    Change(
+        "path/compensation/lookahead",
+        "value[6] = part[4]",
+        "value[6] = before[4] + 1.0",
+        "codesys/decisions/smoothing_before_compensation",
+    ),
+    Change(
+        "path/compensation/gouge",
+        "            return True\n    return False\n\n\n@compilable\ndef _excused",
+        "            return True\n    return True\n\n\n@compilable\ndef _excused",
+        "codesys/codes/G40",
+    ),
     Change(
         "geometry/corners",
         "turn * signed_offset < 0.0",
