@@ -14,7 +14,7 @@ from twin.training.scene.scene_file import Scene, StepTable, read_scene, scene_p
 from twin.training.server.launch import OpenRoom, open_room
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, BrowserContext, Page
+    from playwright.sync_api import Browser, BrowserContext, Page, Playwright
 
 PATIENCE_S = 90.0
 STEPS = (10.0, 1.0, 0.1, 0.01)
@@ -37,16 +37,20 @@ def served(scene: Scene, out: Path | None = None) -> Iterator[OpenRoom]:
             thread.join(timeout=PATIENCE_S)
 
 
+def launch(playwright: "Playwright", name: str) -> "Browser":
+    """A headless browser: Chromium, or the Firefox of the system, led by WebDriver BiDi."""
+    if name == "firefox":
+        return playwright.firefox.launch(executable_path=FIREFOX, channel="moz-firefox")
+    return playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
+
+
 @contextlib.contextmanager
 def browser(name: str = "chromium") -> Iterator["Browser"]:
-    """A headless browser: Chromium, or the Firefox of the system, led by WebDriver BiDi."""
+    """A headless browser while it is used."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        if name == "firefox":
-            opened = playwright.firefox.launch(executable_path=FIREFOX, channel="moz-firefox")
-        else:
-            opened = playwright.chromium.launch(executable_path=CHROMIUM, args=QUIET)
+        opened = launch(playwright, name)
         yield opened
         opened.close()
 

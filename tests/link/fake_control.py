@@ -64,7 +64,7 @@ class FakeControl:
         command = [*row, *[0.0] * (JOINTS - len(row))]
         self._sequence += 1
         head = (MAGIC, VERSION, self._sequence, state, amplifiers, line, int(line > 0))
-        channel.send(REQUEST_LAYOUT.pack(*head, *command))
+        channel.send(REQUEST_LAYOUT.pack(*head, *command, *[0.0] * JOINTS))
         answer = ANSWER_LAYOUT.unpack(channel.recv(ANSWER_LAYOUT.size + 1))
         assert answer[2] == self._sequence
         reason = answer[-1].split(b"\0")[0].decode()

@@ -59,7 +59,7 @@ def test_the_words_are_linuxcncs():
         "G2 I-1 K0 P2 X-1 Y-1 Z0 C0 F600",
         "M2",
     ]
-    assert written.move_of_line.tolist() == [-1, -1, -1, 0, 0, 0, 1, 1, 1, 1, 2, 2]
+    assert written.line_of_move.tolist() == [3, 6, 10]
 
 
 def test_an_inclined_arc_is_refused():
@@ -112,9 +112,8 @@ def test_every_command_is_found_on_the_move_that_it_belongs_to():
         )
     )
     written = linuxcnc_program(program.chunks(), AXES)
-    first_line = np.array([written.move_of_line.tolist().index(move) for move in range(6)])
-    lines = np.where(setpoints.move < 0, 1, first_line[setpoints.move])
-    places = Places(program.moves, written.move_of_line)
+    lines = np.where(setpoints.move < 0, 1, written.line_of_move[setpoints.move])
+    places = Places(program.moves, written.line_of_move)
     found = [
         places.find(lines[at : at + 300], setpoints.position[at : at + 300])
         for at in range(0, len(lines), 300)
@@ -123,5 +122,31 @@ def test_every_command_is_found_on_the_move_that_it_belongs_to():
     share = np.concatenate([part[1] for part in found])
     assert np.array_equal(move, setpoints.move)
     assert np.abs(share - setpoints.fraction)[setpoints.move >= 0].max() < 1e-6
-    assert places.source_line(1) == 0
-    assert places.source_line(int(first_line[5])) == program.moves.line[5]
+    line = np.concatenate([part[2] for part in found])
+    expected = program.moves.line[np.maximum(setpoints.move, 0)]
+    assert np.array_equal(line, np.where(setpoints.move < 0, 0, expected))
+
+
+def test_moves_of_one_line_follow_one_another():
+    # A drilling cycle goes down and comes back up on its own way, all in one line.
+    program = (
+        Program(0.0, 0.0, 0.0, 0.0)
+        .line(10.0, 0.0, 0.0, 0.0)
+        .line(10.0, 0.0, -5.0, 0.0, feed=600.0)
+        .line(10.0, 0.0, 0.0, 0.0)
+        .line(10.0, 5.0, 0.0, 0.0, feed=600.0)
+    )
+    setpoints = join(
+        list(
+            plan(
+                program.chunks(), mill(), period_s=PERIOD, part_zero=np.zeros(4),
+                start=program.start,
+            )
+        )
+    )  # fmt: skip
+    places = Places(program.moves, np.full(4, 7))
+    move, share, _ = places.find(np.full(len(setpoints), 7), setpoints.position)
+    began = setpoints.move >= 0
+    assert np.mean(move[began] != setpoints.move[began]) < 0.05
+    assert np.abs(program.moves.end[3] - setpoints.position[-1]).max() < 1e-9
+    assert (move[-1], share[-1]) == (3, pytest.approx(1.0))

@@ -27,7 +27,7 @@ STANDING = 5
 
 
 def motion_of(machine: Machine) -> LockstepMotion:
-    places = Places(PROGRAM, np.array([-1, 0]))
+    places = Places(PROGRAM, np.array([1]))
     return LockstepMotion(LiveMachine(machine, position=START), places, np.zeros(4))
 
 
@@ -114,3 +114,20 @@ def test_a_control_that_was_killed_is_noticed():
     assert motion.alarm is not None
     assert motion.alarm.code == "control-stop"
     assert motion.alarm.time_s == pytest.approx(samples.setpoint.time[-1], abs=SETTLING_S)
+
+
+def test_a_session_keeps_what_comes_before_and_after_too():
+    machine = shipped_machine(following_error_limit=0.5)
+    live = LiveMachine(machine, position=START)
+    places = Places(PROGRAM[:0], np.zeros(0, np.int64))
+    with LockstepMotion(live, places, np.zeros(4), session=True) as motion:
+        control = FakeControl(motion)
+        control.start(commanded(200.0, 0.3))
+        samples = join(list(motion))
+        control.finish()
+    assert len(samples) == motion.answered
+    assert np.allclose(np.diff(samples.setpoint.time), PERIOD)
+    assert set(samples.setpoint.move.tolist()) == {-1}
+    assert set(samples.setpoint.line.tolist()) == {0, 1}
+    assert motion.alarm is not None
+    assert np.abs(samples.joint_velocity[-1]).max() < np.abs(samples.joint_velocity).max() / 2

@@ -15,13 +15,16 @@ link_app = typer.Typer(no_args_is_help=True, help="Let a real control drive the 
 def linuxcnc(
     out: Annotated[Path, typer.Option("--out", help="Folder for results and LinuxCNC's files.")],
     headless: Annotated[
-        Path,
+        Path | None,
         typer.Option("--headless", metavar="PROGRAM|JOB.toml", help="Run this and end."),
-    ],
+    ] = None,
     machine: MachineOption = None,
     period_us: Annotated[
         int, typer.Option("--period-us", min=100, max=20000, help="Servo period [µs].")
     ] = 1000,
+    display: Annotated[
+        str, typer.Option("--display", help="LinuxCNC's screen: axis, qtdragon, gmoccapy, ...")
+    ] = "axis",
     ferror: Annotated[
         float | None,
         typer.Option("--ferror", min=1e-6, help="LinuxCNC's FERROR; default: the machine's."),
@@ -32,7 +35,7 @@ def linuxcnc(
     from twin.commands.link import link_linuxcnc
 
     code = link_linuxcnc(
-        machine, out, headless,
-        period_us=period_us, dialect=dialect, following_error_limit=ferror,
+        out, headless, machine=machine, dialect=dialect, period_us=period_us, display=display,
+        following_error_limit=ferror,
     )  # fmt: skip
     raise typer.Exit(code)

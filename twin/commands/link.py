@@ -1,57 +1,130 @@
 """``twin link linuxcnc``: a real control drives the twin."""
 
+import os
 from pathlib import Path
 
 import typer
 
 from twin.commands.run import print_findings, summary
 from twin.compilation.announcement import announce_compilation
-from twin.errors import ExitCode
-from twin.run.preparation import prepare
+from twin.errors import ExitCode, UsageError
+from twin.files.atomic import write_text
+from twin.files.overrides import Change
+from twin.files.shipped import machine_file
+from twin.job.job_file import Job, read_job
+from twin.machine.description.config import read_machine
+from twin.machine.model.model import spindle_over_table_mm
+from twin.nc.dialects import recognise
+from twin.nc.text.source import read_source
+from twin.run.placement import part_zero, start_position
+from twin.run.preparation import Preparation, prepare, prepare_job
 from twin.run.progress import shown_progress
 from twin.run.results import RESULT_FILES, write_results
 from twin.run.run import Run
 from twin.run.run_folder import run_folder
 
 SECONDS_PER_US = 1e-6
+LINUXCNC_SUFFIX = ".ngc"
+"""Of programs in LinuxCNC's own language."""
+READ_PROGRAM = "program_as_read.nc"
+"""What LinuxCNC's interpreter makes of such a program."""
+SESSION = "session.nc"
+"""The program of a session at LinuxCNC's screen, which holds nothing: what moves is LinuxCNC's."""
 
 
 def link_linuxcnc(
-    machine: str | None,
     out: Path,
-    program: Path,
+    program: Path | None,
     *,
-    period_us: int,
+    machine: str | None,
     dialect: str | None,
+    period_us: int,
+    display: str,
     following_error_limit: float | None,
 ) -> ExitCode:
-    """Let LinuxCNC run a program on the twin, and judge it as any run.
+    """Let LinuxCNC work the twin, and judge what it did as any run.
 
     Args:
-        machine: Overrides the job's machine.
         out: Folder for the results.
-        program: NC program or job file.
-        period_us: Servo period of both [µs].
+        program: NC program or job file to run; None: LinuxCNC's screen opens.
+        machine: Overrides the job's machine.
         dialect: Overrides the job's dialect.
+        period_us: Servo period of both [µs].
+        display: Command of LinuxCNC's screen.
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
 
     Raises:
         TwinError: Something is wrong before the run could end; see each error's exit code.
     """
-    from twin.link.session import run_headless
+    from twin.link.session import Wish, run_on_twin
 
     announce_compilation()
-    period = ("machine.servo_period_s", period_us * SECONDS_PER_US)
-    run = Run(prepare(program, dialect=dialect, machine=machine, changes=[period]))
-    dry_run = run.dry_run()
+    changes: list[Change] = [("machine.servo_period_s", period_us * SECONDS_PER_US)]
+    own = None if dialect or program is None else _linuxcnc_program(program, changes)
     with run_folder(out, RESULT_FILES):
+        if program is None:
+            _require_screen(display)
+            write_text(out / SESSION, "M30\n")
+            preparation = prepare(out / SESSION, dialect="gost", machine=machine, changes=changes)
+        elif own is None:
+            preparation = prepare(program, dialect=dialect, machine=machine, changes=changes)
+        else:
+            preparation = _prepare_as_read(own, machine, out, changes)
+        run = Run(preparation)
+        dry_run = run.dry_run()
+        wish = Wish(
+            own_program=None if own is None else own.program,
+            display=display if program is None else None,
+            following_error_limit=following_error_limit,
+        )
         with shown_progress() as progress:
-            outcome = run_headless(
-                run, dry_run, out, progress,
-                following_error_limit=following_error_limit,
-                say=lambda text: typer.echo(text, err=True),
-            )  # fmt: skip
-        write_results(run, outcome, out)
+            outcome, figures = run_on_twin(
+                run, dry_run, out, progress, wish, lambda text: typer.echo(text, err=True)
+            )
+        write_results(run, outcome, out, {"link": figures})
     print_findings(run, outcome)
     typer.echo(summary(run, outcome, out))
     return outcome.verdict.exit_code
+
+
+def _require_screen(display: str) -> None:
+    if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise UsageError(
+            f"LinuxCNC's {display} needs a display, and there is none: "
+            "--headless PROGRAM runs a program without"
+        )
+
+
+def _linuxcnc_program(path: Path, changes: list[Change]) -> Job | None:
+    """The job of a program in LinuxCNC's own language; None for one of the twin's dialects.
+
+    A program that no dialect's own words stand in is LinuxCNC's.
+    """
+    if not path.is_file():
+        return None
+    job = read_job(path, changes)
+    if job.file.dialect is not None:
+        return None
+    if job.program.suffix != LINUXCNC_SUFFIX:
+        try:
+            recognise(read_source(job.program, None))
+        except UsageError:
+            return job
+        return None
+    return job
+
+
+def _prepare_as_read(
+    job: Job, machine: str | None, out: Path, changes: list[Change]
+) -> Preparation:
+    """Prepare a program of LinuxCNC's own language, as LinuxCNC's interpreter reads it."""
+    from twin.link.program_reading import DIALECT, read_program
+
+    found = machine_file(machine or job.file.machine, beside=None if machine else job.folder)
+    read = read_machine(found, changes)
+    zero = part_zero(job.file, read, spindle_over_table_mm(read))
+    start = start_position(job.file, read) + zero
+    path = (out / READ_PROGRAM).resolve()
+    write_text(path, read_program(job.program, read.axes, start, zero, job.file))
+    file = job.file.model_copy(update={"program": str(path), "dialect": DIALECT})
+    return prepare_job(Job(job.folder, file, job.path), machine=machine, changes=changes)

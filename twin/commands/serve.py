@@ -1,14 +1,19 @@
-"""``twin serve``: an MTConnect agent over a job that is run again and again."""
+"""``twin serve``: an MTConnect agent over a job that is run again and again, or a training room."""
 
+import contextlib
+import dataclasses
 import socket
 import tempfile
 import threading
+from collections.abc import Callable, Coroutine, Iterator
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from twin.commands.interruption import let_interruption_stop
+from twin.commands.train import require_extra
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, UsageError
 from twin.run.preparation import prepare
@@ -24,94 +29,186 @@ FIRST_PORT, LAST_PORT = 5000, 5099
 _WAIT_S = 0.2
 
 
-def serve(
-    path: Path,
-    *,
-    host: str,
-    port: int,
-    speed: float,
-    dialect: str | None,
-    machine: str | None,
-) -> ExitCode:
-    """Simulate a job once, then tell of it as if the machine made part after part.
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Source:
+    """What is told of, and where.
 
-    Args:
-        path: NC program or job file.
+    Attributes:
         host: Address to listen at.
         port: 0: the first free one from ``FIRST_PORT`` on.
         speed: Seconds of the twin for each second of the day.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
+    """
+
+    host: str
+    port: int
+    speed: float = 1.0
+    dialect: str | None = None
+    machine: str | None = None
+
+
+def serve_job(path: Path, source: Source) -> ExitCode:
+    """Simulate a job once, then tell of it as if the machine made part after part.
+
+    Args:
+        path: NC program or job file.
+        source: Where, and how fast.
 
     Raises:
         UsageError: The web server is not installed, or nobody can listen there.
         TwinError: Something is wrong with the job; see each error's exit code.
     """
-    try:
-        import starlette  # noqa: F401 - asked for before a job is simulated that nobody could serve
-        import uvicorn  # noqa: F401
-    except ImportError as error:
-        raise UsageError(
-            f"twin serve needs {error.name}: pip install 'mill-twin[serve]'"
-        ) from error
+    _require_server()
     from twin.serve.agent import Agent
     from twin.serve.clock import Clock
     from twin.serve.device import device_of
-    from twin.serve.playback import Production
+    from twin.serve.playback import feed, ticks
 
-    listener = _listen(host, port)
-    announce_compilation()
-    run = Run(prepare(path, dialect=dialect, machine=machine))
-    preparation = run.preparation
-    dry_run = run.dry_run()
-    with listener, tempfile.TemporaryDirectory() as folder:
-        with shown_progress() as progress:
-            outcome = run.execute(dry_run, Path(folder), progress)
-        recording = Path(folder) / "recording.h5"
-        production = Production(
-            machine=preparation.machine,
-            program=preparation.source.name,
-            source=preparation.source.lines,
-            summary=dry_run.summary,
-            recording=recording if recording.is_file() else None,
-            alarms=outcome.alarms,
-        )
-        device = device_of(preparation.machine.file.name, preparation.machine.axes)
-        _tell(Agent(device, Clock(speed), _description(speed)), production, listener)
+    with _listen(source.host, source.port) as listener, tempfile.TemporaryDirectory() as folder:
+        announce_compilation()
+        run = Run(prepare(path, dialect=source.dialect, machine=source.machine))
+        production = _produce(run, Path(folder))
+        machine = run.preparation.machine
+        device = device_of(machine.file.name, machine.axes)
+        agent = Agent(device, Clock(source.speed), _description(source.speed))
+        stop = threading.Event()
+        with (
+            _served(agent, lambda: feed(agent, ticks(production)), listener, stop),
+            let_interruption_stop(stop.set),
+        ):
+            typer.echo(_address(listener))
+            while not stop.wait(_WAIT_S):
+                pass
     return ExitCode.OK
 
 
-def _tell(agent: "Agent", production: "Production", listener: socket.socket) -> None:
-    """Answer until somebody interrupts; what fails on the way is raised here."""
+def serve_scene(name: str, source: Source) -> ExitCode:
+    """Open a training room, and tell monitors of its machine; they only read.
+
+    Args:
+        name: A shipped scene's name, or a scene file.
+        source: Where.
+
+    Raises:
+        UsageError: The web server is not installed, nobody can listen there, or a room was to run
+            faster than the day.
+        TwinError: The scene is wrong.
+    """
+    if source.speed != 1.0:
+        raise UsageError("--speed is for jobs: the clock of a training room is the day's")
+    _require_server()
+    require_extra()
+    from twin.serve.agent import Agent
+    from twin.serve.clock import Clock
+    from twin.serve.device import device_of
+    from twin.serve.room import RoomObserver, observe_room
+    from twin.training.scene.scene_file import read_scene, scene_path
+    from twin.training.server.launch import open_room
+
+    with _listen(source.host, source.port) as listener:
+        announce_compilation()
+        scene = read_scene(scene_path(name))
+        machine = scene.preparation.machine
+        device = device_of(machine.file.name, machine.axes)
+        agent = Agent(device, Clock(), f"The machine of the training scene {scene.name}")
+        observer = RoomObserver(scene.preparation.source.name)
+        with open_room(scene, out=Path("out") / "training") as room:
+            stop = threading.Event()
+
+            def leave() -> None:
+                stop.set()
+                room.stop()
+
+            def observe() -> Coroutine[Any, Any, None]:
+                return observe_room(agent, observer, lambda: room.driver.look.now)
+
+            with (
+                _served(agent, observe, listener, stop, room.stop),
+                let_interruption_stop(leave),
+            ):
+                typer.echo(_address(listener))
+                for role, address in room.addresses.items():
+                    typer.echo(f"{scene.name}, {role}: {address}", err=True)
+                room.serve()
+    return ExitCode.OK
+
+
+def _require_server() -> None:
+    """Refuse where the web server is missing.
+
+    Raises:
+        UsageError: It is.
+    """
+    missing = [name for name in ("starlette", "uvicorn") if find_spec(name) is None]
+    if missing:
+        raise UsageError(f"twin serve needs {missing[0]}: pip install 'mill-twin[serve]'")
+
+
+def _produce(run: Run, folder: Path) -> "Production":
+    """Run a job once and keep its recording in a folder."""
+    from twin.serve.playback import Production
+
+    dry_run = run.dry_run()
+    with shown_progress() as progress:
+        outcome = run.execute(dry_run, folder, progress)
+    recording = folder / "recording.h5"
+    return Production(
+        machine=run.preparation.machine,
+        program=run.preparation.source.name,
+        source=run.preparation.source.lines,
+        summary=dry_run.summary,
+        recording=recording if recording.is_file() else None,
+        alarms=outcome.alarms,
+    )
+
+
+@contextlib.contextmanager
+def _served(
+    agent: "Agent",
+    observe: Callable[[], Coroutine[Any, Any, None]],
+    listener: socket.socket,
+    stop: threading.Event,
+    failed: Callable[[], None] = lambda: None,
+) -> Iterator[None]:
+    """Answer clients on a thread of its own while the block runs.
+
+    Args:
+        agent: What answers.
+        observe: Lets it observe the machine until it is cancelled.
+        listener: Where clients come in.
+        stop: Set when the observation has come to an end by itself.
+        failed: Called then, too.
+
+    Raises:
+        Exception: Whatever ended the observation.
+    """
     import uvicorn
 
     from twin.serve.http_server import application
-    from twin.serve.playback import feed, ticks
 
     failures: list[Exception] = []
 
-    async def observe() -> None:
+    async def observed() -> None:
         try:
-            await feed(agent, ticks(production))
+            await observe()
         except Exception as error:
             failures.append(error)
             raise
         finally:
-            server.should_exit = True
+            stop.set()
+            failed()
 
     # Answers that never end are cut off when the server ends.
     config = uvicorn.Config(
-        application(agent, observe), log_level="error", timeout_graceful_shutdown=1
+        application(agent, observed), log_level="error", timeout_graceful_shutdown=1
     )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
-    stop = threading.Event()
-    with let_interruption_stop(stop.set):
-        thread.start()
-        host, port = listener.getsockname()[:2]
-        typer.echo(f"http://{f'[{host}]' if ':' in host else host}:{port}/")
-        while thread.is_alive() and not stop.wait(_WAIT_S):
-            pass
+    thread.start()
+    try:
+        yield
+    finally:
         server.should_exit = True
         thread.join()
     if failures:
@@ -121,6 +218,11 @@ def _tell(agent: "Agent", production: "Production", listener: socket.socket) -> 
 def _description(speed: float) -> str:
     faster = "" if speed == 1.0 else f"; its clock runs {speed:g} times as fast as the day"
     return f"A simulated machine that runs one job again and again{faster}"
+
+
+def _address(listener: socket.socket) -> str:
+    host, port = listener.getsockname()[:2]
+    return f"http://{f'[{host}]' if ':' in host else host}:{port}/"
 
 
 def _listen(host: str, port: int) -> socket.socket:

@@ -9,16 +9,12 @@ from twin.files.atomic import write_text
 from twin.job.job_file import JobFile
 from twin.link.component import templates
 from twin.link.packet import JOINTS
+from twin.link.tables import LETTERS, offsets_text, tools_text
 from twin.machine.description.config import Machine
 from twin.nc.canonical import FloatArray
 
-LETTERS = "XYZABCUVW"
-"""The axes that LinuxCNC knows, in the order of its offsets."""
 NO_LIMIT = 1e9
 """What stands where a machine has no limit [mm or deg]."""
-_FIRST_OFFSET = 5221
-"""LinuxCNC's parameter of G54's first axis."""
-_MICROSECONDS = 1e6
 _NANOSECONDS = 1e9
 
 
@@ -29,6 +25,7 @@ class Settings:
     Attributes:
         display: The command line of LinuxCNC's screen.
         port: UDP port of the twin.
+        programs: Folder in which LinuxCNC looks for programs and subprograms.
         following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         job: Its tools go into the tool table.
@@ -36,6 +33,7 @@ class Settings:
 
     display: str
     port: int
+    programs: Path
     following_error_limit: float | None
     part_zero: FloatArray
     job: JobFile
@@ -61,14 +59,15 @@ def write_configuration(folder: Path, machine: Machine, settings: Settings) -> P
         "folder": folder,
         "display": settings.display,
         "port": settings.port,
+        "programs": settings.programs,
         "period_ns": round(machine.file.servo_period_s * _NANOSECONDS),
         "axes": [_axis(machine, name, settings) for name in machine.axes.names],
         "coordinates": "".join(machine.axes.names),
         "path": machine.file.path,
-        "offsets": _offsets(machine, settings.part_zero),
-        "tools": settings.job.tools,
     }
-    for suffix in ("ini", "hal", "tbl", "var"):
+    write_text(folder / "linuxcnc.var", offsets_text(machine.axes, settings.part_zero))
+    write_text(folder / "linuxcnc.tbl", tools_text(settings.job))
+    for suffix in ("ini", "hal"):
         text = templates().get_template(f"machine.{suffix}.j2").render(content)
         write_text(folder / f"linuxcnc.{suffix}", text)
     return folder / "linuxcnc.ini"
@@ -87,13 +86,6 @@ def _axis(machine: Machine, name: str, settings: Settings) -> dict[str, Any]:
         "highest": highest,
         "following_error_limit": limit,
     }
-
-
-def _offsets(machine: Machine, part_zero: FloatArray) -> list[tuple[int, float]]:
-    zero = machine.axes.named(part_zero)
-    return [
-        (_FIRST_OFFSET + number, zero.get(letter, 0.0)) for number, letter in enumerate(LETTERS)
-    ]
 
 
 def _require_axes(machine: Machine) -> None:

@@ -15,10 +15,14 @@ from twin.errors import UsageError
 LOCK = Path("/tmp/linuxcnc.lock")  # noqa: S108 - LinuxCNC's own
 """Stands while a LinuxCNC runs on this computer; there can be one."""
 PACKAGE = "linuxcnc-uspace"
+_MESSAGES = Path("/usr/share/linuxcnc/linuxcnc.nml")
+"""Which shared memory LinuxCNC's parts speak through."""
 LOG_NAME = "linuxcnc.log"
 OPERATOR = Path(__file__).with_name("headless_screen.py")
 _UNPRIVILEGED = "nobody"
-_END_TIMEOUT_S = 30.0
+_LEAVING_TIMEOUT_S = 30.0
+"""How long LinuxCNC may take from its component's farewell to its end [s]."""
+_END_TIMEOUT_S = 10.0
 
 
 class Event(NamedTuple):
@@ -51,10 +55,10 @@ class LinuxCnc:
         lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
         return [Event(**json.loads(line)) for line in lines]
 
-    def wait(self) -> None:
+    def end_soon(self) -> None:
         """Wait until it has ended by itself; it is ended where it does not."""
         try:
-            self._process.wait(_END_TIMEOUT_S)
+            self._process.wait(_LEAVING_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self.end()
 
@@ -67,6 +71,9 @@ class LinuxCnc:
                 os.killpg(self._process.pid, number)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(_END_TIMEOUT_S)
+        for number in processes_at_home(self.folder):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
 
 
 def require_linuxcnc() -> Path:
@@ -101,6 +108,7 @@ def running(start: Path, ini: Path, log: Path) -> Iterator[LinuxCnc]:
     user = _as_unprivileged(folder) if os.geteuid() == 0 else []
     # Its sockets and its logs go where its user may write.
     at_home = [*user, "env", f"HOME={folder}"]
+    _forget_messages(at_home)
     with log.open("wb") as output:
         process = subprocess.Popen(  # noqa: S603 - names no user has a hand in
             [*at_home, str(start), "-r", str(ini)],
@@ -112,6 +120,17 @@ def running(start: Path, ini: Path, log: Path) -> Iterator[LinuxCnc]:
         finally:
             linuxcnc.end()
             _tidy_up(at_home)
+
+
+def processes_at_home(folder: Path) -> list[int]:
+    """Processes that a LinuxCNC started from a folder, which is their home; it leaves its session."""
+    home = f"HOME={folder}".encode()
+    found = []
+    for path in Path("/proc").glob("[0-9]*/environ"):
+        with contextlib.suppress(OSError):
+            if home in path.read_bytes().split(b"\0"):
+                found.append(int(path.parent.name))
+    return found
 
 
 def operator_log(folder: Path) -> Path:
@@ -133,11 +152,24 @@ def _as_unprivileged(folder: Path) -> list[str]:
 
 
 def _tidy_up(at_home: list[str]) -> None:
-    """Take away what a LinuxCNC leaves that was not ended in peace."""
-    if not LOCK.exists():
-        return
+    """Take away what a LinuxCNC leaves that was killed: its realtime part, its messages, its lock."""
+    if LOCK.exists():
+        _try([*at_home, "halrun", "-U"])
+    _forget_messages(at_home)
+    LOCK.unlink(missing_ok=True)
+
+
+def _forget_messages(at_home: list[str]) -> None:
+    """Remove the shared memory of LinuxCNC's messages: the next one would answer old ones."""
+    rows = _MESSAGES.read_text(encoding="utf-8").splitlines() if _MESSAGES.is_file() else []
+    for row in rows:
+        words = row.split()
+        if words[:1] == ["B"] and words[2:3] == ["SHMEM"]:
+            _try([*at_home, "ipcrm", "-M", words[9]])
+
+
+def _try(command: list[str]) -> None:
     with contextlib.suppress(subprocess.TimeoutExpired, FileNotFoundError):
         subprocess.run(  # noqa: S603 - names no user has a hand in
-            [*at_home, "halrun", "-U"], capture_output=True, check=False, timeout=_END_TIMEOUT_S
+            command, capture_output=True, check=False, timeout=_END_TIMEOUT_S
         )
-    LOCK.unlink(missing_ok=True)

@@ -26,12 +26,11 @@ class LinuxcncProgram(NamedTuple):
 
     Attributes:
         text: What it reads.
-        move_of_line: Number of the move that each line makes, by the line's number; -1 before the
-            first, and the last one's for lines that make none.
+        line_of_move: Line that each of the n moves stands in, shape (n,).
     """
 
     text: str
-    move_of_line: IntArray
+    line_of_move: IntArray
 
 
 def linuxcnc_program(chunks: Iterable[Chunk], axes: Axes) -> LinuxcncProgram:
@@ -60,8 +59,7 @@ class _Writer:
     def __init__(self, axes: Axes) -> None:
         self._axes = axes
         self._lines = ["G90 G21 G17 G94 G91.1 G40 G49 G80 G54"]
-        self._moves = [-1, -1]
-        self._count = 0
+        self._line_of_move: list[int] = []
         self._plane, self._corner = "G17", ""
 
     def move(self, moves: Moves, row: int) -> None:
@@ -79,8 +77,8 @@ class _Writer:
         ]
         if moves.motion[row] == Motion.FEED:
             words.append(f"F{_number(moves.feed[row])}")
-        self._count += 1
         self._line(" ".join(words))
+        self._line_of_move.append(len(self._lines))
 
     def event(self, event: Event) -> None:
         if isinstance(event, Dwell):
@@ -92,11 +90,11 @@ class _Writer:
 
     def finish(self) -> LinuxcncProgram:
         self._line("M2")
-        return LinuxcncProgram("\n".join(self._lines) + "\n", np.array(self._moves, np.int64))
+        text = "\n".join(self._lines) + "\n"
+        return LinuxcncProgram(text, np.array(self._line_of_move, np.int64))
 
     def _line(self, text: str) -> None:
         self._lines.append(text)
-        self._moves.append(self._count - 1)
 
     def _arc(self, moves: Moves, row: int) -> list[str]:
         normal = moves.normal[row]

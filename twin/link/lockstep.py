@@ -39,6 +39,8 @@ TICKS_PER_CHUNK = 500
 """Samples that are handed on at once."""
 SETTLING_S = 0.25
 """How long the end of a program is kept after its last motion [s]."""
+LONGEST_SILENCE_S = 15.0
+"""A control that has asked and then says nothing for so long is gone [s]."""
 _WAKE_S = 0.2
 """How often the twin looks around while nobody asks [s]."""
 _LOOPBACK = "127.0.0.1"
@@ -60,24 +62,31 @@ class LockstepMotion:
         alarm: What stopped the machine, None while nothing did.
         port: UDP port on this computer at which the twin answers.
         answered: How many questions were answered.
+        missed: How many questions never came, by their numbers.
+        greatest_disagreement: Largest difference between the following error that the control saw
+            and the one that is recorded for the same instant [mm or deg].
         goes_on: Asked while nothing comes: whether the control is still there.
         last_word: Asked when the control has left: the alarm that it raised itself, told when [s]
             and in which line the samples ended.
     """
 
-    def __init__(self, live: LiveMachine, places: Places, part_zero: FloatArray) -> None:
+    def __init__(
+        self, live: LiveMachine, places: Places, part_zero: FloatArray, *, session: bool = False
+    ) -> None:
         """Listen.
 
         Args:
             live: The machine, at rest where the program starts.
             places: Of the program's moves.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+            session: Keep everything from the first question to the last, and not one program.
 
         Raises:
             OSError: There is no port.
         """
         self.alarm: Alarm | None = None
-        self.answered = 0
+        self.answered, self.missed = 0, 0
+        self.greatest_disagreement = 0.0
         self.goes_on: Callable[[], bool] = lambda: True
         self.last_word: Callable[[float, int], Alarm | None] = lambda _time, _line: None
         self._live = live
@@ -89,10 +98,12 @@ class LockstepMotion:
         self._no_joints = [0.0] * (JOINTS - self._count)
         self._everyone = (1 << self._count) - 1
         self._commands = Commands(self._period, live.position)
-        self._phase = _Phase.BEFORE
+        self._session = session
+        self._phase = _Phase.RUNNING if session else _Phase.BEFORE
         self._enabled, self._left = False, False
-        self._log = SampleLog(self._count)
-        self._line = self._control_line = 0
+        self._log = SampleLog(self._count, self._period)
+        self._line = self._source_line = 0
+        self._sequence = 0
         self._reason, self._reason_number = b"", 0
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.bind((_LOOPBACK, 0))
@@ -117,13 +128,16 @@ class LockstepMotion:
         """Yield chunks of samples until the control has left."""
         question, answer = bytearray(REQUEST_LAYOUT.size + 1), bytearray(ANSWER_LAYOUT.size)
         view = memoryview(question)
+        silent_s = 0.0
         while not self._left:
             try:
                 size, sender = self._socket.recvfrom_into(question)
             except TimeoutError:
-                if not self.goes_on():
+                silent_s += _WAKE_S
+                if not self.goes_on() or (self.answered and silent_s > LONGEST_SILENCE_S):
                     break
                 continue
+            silent_s = 0.0
             request = read_request(view[:size])
             if request is None:
                 continue
@@ -131,12 +145,18 @@ class LockstepMotion:
             write_answer(self._answer(), request.sequence, answer)
             self._socket.sendto(answer, sender)
             self.answered += 1
-            if len(self._log) >= TICKS_PER_CHUNK and not self._log.standing:
+            if len(self._log) >= TICKS_PER_CHUNK and (self._session or not self._log.standing):
                 yield self._handed_on(len(self._log))
-        if kept := len(self._log) - max(0, self._log.standing - self._settled):
+        kept = len(self._log)
+        if not self._session:
+            kept -= max(0, self._log.standing - self._settled)
+        if kept:
             yield self._handed_on(kept)
+        self.alarm = self.alarm or self._live.alarm
         if self.alarm is None:
-            self.alarm = self.last_word(self._log.ticks * self._period, self._line)
+            self.alarm = self.last_word(self._log.ticks * self._period, self._source_line)
+        else:
+            self.alarm = dataclasses.replace(self.alarm, line=self._source_line)
 
     def stop(self, alarm: Alarm) -> None:
         """Stop for a reason from outside, such as the stock."""
@@ -146,21 +166,25 @@ class LockstepMotion:
     def _hear(self, request: Request) -> None:
         """Go one servo period on as the control asks."""
         self._left = bool(request.state & REQUEST_STATES["leaving"])
+        self.missed += max(0, request.sequence - self._sequence - 1) if self._sequence else 0
+        self._sequence = request.sequence
         position = np.array(request.command[: self._count])
         wanted = request.amplifiers & self._everyone == self._everyone
         wanted = wanted and bool(request.state & REQUEST_STATES["may_run"])
         if self._live.alarm is not None and request.state & REQUEST_STATES["reset"]:
             self._clear()
-        if self._live.alarm is not None or not wanted:
-            self._enabled = False
-            if self._phase is _Phase.RUNNING:
-                self._end_program()
-            self._live.brake(1)
-        elif not self._enabled:
+        self._enabled = self._enabled and wanted and self._live.alarm is None
+        if self._enabled:
+            self._follow(position, request)
+            return
+        if self._phase is _Phase.RUNNING and not self._session:
+            self._end_program()
+        if wanted and self._live.alarm is None:
             self._enabled = self._clear()
             self._commands.rest_at(position)
-        else:
-            self._follow(position, request)
+        samples = self._live.brake(1)
+        if self._session:
+            self._log.add(samples)
 
     def _clear(self) -> bool:
         """Switch the drives on where the axes stand; returns whether they stand."""
@@ -175,17 +199,22 @@ class LockstepMotion:
         commands = self._commands
         if self._phase is _Phase.BEFORE and request.motion > 0 and request.line > 0:
             # As every run it begins at rest, so that it can be played back bit for bit.
-            self._log.add(self._live.stand_at(commands.position), 0)
+            self._log.add(self._live.stand_at(commands.position))
             self._phase = _Phase.RUNNING
         running = self._phase is _Phase.RUNNING
-        self._line = self._places.source_line(request.line) if running else 0
+        if self._line:
+            lag = commands.position - self._live.position
+            seen = np.array(request.following_error[: self._count])
+            self.greatest_disagreement = max(
+                self.greatest_disagreement, float(np.abs(seen - lag).max())
+            )
+        self._line = request.line if running else 0
         samples = self._step_to(position)
         if running:
-            self._log.add(samples, request.line)
-            self._control_line = request.line
+            self._log.add(samples)
         if self._live.alarm is not None:
             self._tell(self._live.alarm)
-            if running:
+            if running and not self._session:
                 self.alarm, self._phase = self._live.alarm, _Phase.OVER
 
     def _end_program(self) -> None:
@@ -194,7 +223,7 @@ class LockstepMotion:
         if not self._log.standing or self._live.alarm is not None:
             return
         for _ in range(self._settled - self._log.standing):
-            self._log.add(self._step_to(self._commands.position), self._control_line)
+            self._log.add(self._step_to(self._commands.position))
             if self._live.alarm is not None:
                 self.alarm = self._live.alarm
                 return
@@ -231,9 +260,12 @@ class LockstepMotion:
 
     def _handed_on(self, count: int) -> Samples:
         """The first samples that nobody has yet, with their places in the program."""
-        samples, line = self._log.take(count)
+        samples = self._log.take(count)
         setpoint = samples.setpoint
-        move, fraction = self._places.find(line, setpoint.position - self._part_zero)
+        place = setpoint.position - self._part_zero
+        move, fraction, line = self._places.find(setpoint.line, place)
+        self._source_line = int(line[-1])
         return dataclasses.replace(
-            samples, setpoint=dataclasses.replace(setpoint, move=move, fraction=fraction)
+            samples,
+            setpoint=dataclasses.replace(setpoint, move=move, fraction=fraction, line=line),
         )

@@ -45,9 +45,11 @@ REQUEST = (
     Field("line", "i"),
     Field("motion", "i"),
     Field("command", "d", JOINTS),
+    Field("following_error", "d", JOINTS),
 )
 """From LinuxCNC: whether it may run, which amplifiers are on (a bit each), ``motion.program-line``,
-``motion.motion-type`` and the commanded positions of the joints [mm or deg]."""
+``motion.motion-type``, the commanded positions of the joints, and what LinuxCNC itself made of the
+last answer: their following errors of the period before [mm or deg]."""
 ANSWER = (
     *_HEAD,
     Field("state", "I"),
@@ -99,16 +101,19 @@ class Request(NamedTuple):
     line: int
     motion: int
     command: tuple[float, ...]
+    following_error: tuple[float, ...]
 
 
 def read_request(data: bytes | bytearray | memoryview) -> Request | None:
     """Read a request; None for what is none of this version."""
     if len(data) != REQUEST_LAYOUT.size:
         return None
-    magic, version, sequence, state, amplifiers, line, kind, *command = REQUEST_LAYOUT.unpack(data)
+    magic, version, sequence, state, amplifiers, line, kind, *rows = REQUEST_LAYOUT.unpack(data)
     if magic != MAGIC or version != VERSION:
         return None
-    return Request(sequence, state, amplifiers, line, kind, tuple(command))
+    return Request(
+        sequence, state, amplifiers, line, kind, tuple(rows[:JOINTS]), tuple(rows[JOINTS:])
+    )
 
 
 class Answer(NamedTuple):

@@ -1,60 +1,96 @@
 """Which move of the program a commanded position belongs to, and how far along it is.
 
-LinuxCNC says with each position the program line that it works on.
+LinuxCNC says with each position the program line that it works on. Where one line makes several
+moves (a drilling cycle, a loop), the next one begins when the last is done.
 """
 
 import numpy as np
 
 from twin.nc.canonical import FloatArray, IntArray, Moves, Shape
+from twin.toolpath.geometry import geometry
 
 _FULL_TURN = 360.0
+_DONE = 1.0 - 1e-4
+"""Share of a move's path from which the next one of the same line begins."""
+_NEARER = 1e-6
+"""How much nearer a position must be to the next move of the same line to belong to it [mm]."""
 
 
 class Places:
     """Finds the places of commanded positions, which come in order."""
 
-    def __init__(self, moves: Moves, move_of_line: IntArray) -> None:
+    def __init__(self, moves: Moves, control_line: IntArray) -> None:
         """Take a program.
 
         Args:
-            moves: All of it, part coordinates.
-            move_of_line: Number of the move that each line of LinuxCNC's program makes.
+            moves: All of it, n moves, part coordinates.
+            control_line: Line of LinuxCNC's program that each of them comes from, shape (n,).
         """
         self._moves = moves
-        self._move_of_line = move_of_line
+        self._control_line = control_line
         self._move, self._fraction = -1, 0.0
 
-    def source_line(self, line: int) -> int:
-        """Line of the twin's program that a line of LinuxCNC's comes from, 0 before the first."""
-        move = self._move_of_line[min(max(line, 0), len(self._move_of_line) - 1)]
-        return 0 if move < 0 else int(self._moves.line[move])
-
-    def find(self, line: IntArray, position: FloatArray) -> tuple[IntArray, FloatArray]:
-        """Move and fraction of the next positions.
+    def find(self, line: IntArray, position: FloatArray) -> tuple[IntArray, FloatArray, IntArray]:
+        """Move, fraction and source line of the next positions.
 
         Args:
             line: Of LinuxCNC's program, shape (n,).
             position: Commanded, part coordinates, shape (n, k) [mm or deg].
 
         Returns:
-            Number of the move, -1 before the first, and how much of its path lies behind, each of
-            shape (n,); neither ever goes back.
+            Number of the move, -1 before the first, how much of its path lies behind (neither ever
+            goes back), and line of the twin's program, each of shape (n,);
+            without moves, LinuxCNC's own line.
         """
-        number, share = np.zeros(len(line), np.int64), np.zeros(len(line))
-        last = len(self._move_of_line) - 1
-        named = self._move_of_line[np.clip(line, 0, last)]
-        begins = np.flatnonzero(np.diff(named, prepend=np.int64(-2)))
-        for first, end in zip(begins, [*begins[1:], len(line)], strict=True):
-            move = max(int(named[first]), self._move)
-            if move != self._move:
-                self._move, self._fraction = move, 0.0
-            if move >= 0:
-                found = _fractions(self._moves, move, position[first:end], self._fraction)
-                found = np.maximum.accumulate(np.append(self._fraction, found))[1:]
-                share[first:end] = found
-                self._fraction = float(found[-1])
-            number[first:end] = move
-        return number, share
+        number, share = np.full(len(line), self._move), np.zeros(len(line))
+        changes = np.flatnonzero(np.diff(line, prepend=np.int64(-1)))
+        for first, end in zip(changes, [*changes[1:], len(line)], strict=True):
+            self._go_to(int(line[first]))
+            self._along(position[first:end], number[first:end], share[first:end])
+        if not len(self._moves):
+            return number, share, line
+        return number, share, np.where(number < 0, 0, self._moves.line[np.maximum(number, 0)])
+
+    def _go_to(self, line: int) -> None:
+        """Go on to the next move that comes from a line of LinuxCNC's program, if there is one."""
+        here = self._move
+        if here >= 0 and self._control_line[here] == line:
+            return
+        ahead = np.flatnonzero(self._control_line[here + 1 :] == line)
+        if len(ahead):
+            self._move, self._fraction = here + 1 + int(ahead[0]), 0.0
+
+    def _along(self, position: FloatArray, number: IntArray, share: FloatArray) -> None:
+        """Positions of one line: along its moves, one after the other; writes the last two."""
+        while len(position) and self._move >= 0:
+            move = self._move
+            found = _fractions(self._moves, move, position, self._fraction)
+            found = np.maximum.accumulate(np.append(self._fraction, found))[1:]
+            done = len(found)
+            left = self._left(position, found) if self._goes_on() else np.zeros(0, np.int64)
+            if len(left):
+                done = int(left[0])
+            number[:done], share[:done] = move, found[:done]
+            if done:
+                self._fraction = float(found[done - 1])
+            if len(left):
+                self._move, self._fraction = move + 1, 0.0
+            position, number, share = position[done:], number[done:], share[done:]
+
+    def _left(self, position: FloatArray, share: FloatArray) -> IntArray:
+        """Which positions no longer belong to the move, but to the next one of the same line."""
+        both = geometry(self._moves[self._move : self._move + 2])
+        following = _fractions(self._moves, self._move + 1, position, 0.0)
+        row = np.zeros(len(position), np.int64)
+        here = np.linalg.norm(both.position(row, share) - position, axis=1)
+        there = np.linalg.norm(both.position(row + 1, following) - position, axis=1)
+        done = np.append(0.0, share)[:-1] >= _DONE
+        return np.flatnonzero(done | (there < here - _NEARER))
+
+    def _goes_on(self) -> bool:
+        """Whether the next move comes from the same line of LinuxCNC's program."""
+        lines, following = self._control_line, self._move + 1
+        return following < len(lines) and bool(lines[following] == lines[self._move])
 
 
 def _fractions(moves: Moves, move: int, position: FloatArray, before: float) -> FloatArray:

@@ -1,8 +1,9 @@
-"""LinuxCNC and the twin together: a program run by the one on the other."""
+"""LinuxCNC and the twin together: a program, or a session at LinuxCNC's screen."""
 
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 from twin.files.atomic import write_text
 from twin.link.component import install, module_folder
@@ -23,6 +24,7 @@ from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.nc.canonical import concatenate
 from twin.run.dry_run import DryRun
 from twin.run.outcome import Outcome
+from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.run import Run
 
@@ -32,61 +34,99 @@ PROGRAM_NAME = "program.ngc"
 _FOLLOWING_ERROR = re.compile(r"joint (\d+) following error", re.IGNORECASE)
 
 
-def run_headless(
+class Wish(NamedTuple):
+    """How LinuxCNC is to run.
+
+    Attributes:
+        own_program: The program as LinuxCNC reads it, where the prepared one was written down from
+            it; None: LinuxCNC is given the prepared program's moves.
+        display: Command of the screen from which somebody works LinuxCNC as he likes; None: the
+            program is run, and that is all.
+        following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
+    """
+
+    own_program: Path | None = None
+    display: str | None = None
+    following_error_limit: float | None = None
+
+
+def run_on_twin(
     run: Run,
     dry_run: DryRun,
     folder: Path,
     progress: Progress,
-    *,
-    following_error_limit: float | None = None,
+    wish: Wish,
     say: Callable[[str], None],
-) -> Outcome:
-    """Let LinuxCNC run a prepared program on the twin.
+) -> tuple[Outcome, dict[str, float]]:
+    """Let LinuxCNC work the twin.
 
     Args:
         run: The prepared job.
         dry_run: What its dry run found.
         folder: For the results; LinuxCNC's own files go into a folder in it.
         progress: Told how far the run is.
-        following_error_limit: LinuxCNC's own limit [mm or deg]; None: the machine's.
+        wish: How.
         say: Told what LinuxCNC says.
+
+    Returns:
+        What the run came to, and how the two got on: ``answered`` and ``missed`` servo periods, and
+        the largest difference between LinuxCNC's f-error and the recorded lag [mm or deg].
 
     Raises:
         UsageError: LinuxCNC or its component is not installed, or cannot drive this machine.
     """
     start = require_linuxcnc()
     preparation = run.preparation
-    machine, axes = preparation.machine, preparation.machine.axes
+    axes = preparation.machine.axes
     own = folder.resolve() / FOLDER_NAME
     own.mkdir(exist_ok=True)
     install(own, module_folder(start))
-    program = linuxcnc_program(preparation.interpretation().chunks(), axes)
-    write_text(own / PROGRAM_NAME, program.text)
-    moves = concatenate([chunk.moves for chunk in preparation.interpretation().chunks()], axes)
-    live = LiveMachine(machine, preparation.job.file.tools[0], preparation.start + run.part_zero)
-    places = Places(moves, program.move_of_line)
-    with LockstepMotion(live, places, run.part_zero) as motion:
-        display = (
+    tool, position = preparation.job.file.tools[0], preparation.start + run.part_zero
+    live = LiveMachine(preparation.machine, tool, position)
+    places = _write_program(preparation, own / PROGRAM_NAME, wish.own_program)
+    session = wish.display is not None
+    with LockstepMotion(live, places, run.part_zero, session=session) as motion:
+        display = wish.display or (
             f"{_executable_operator(own)} --program {own / PROGRAM_NAME} --joints {len(axes)} "
             f"--log {operator_log(own)}"
         )
         settings = Settings(
             display=display,
             port=motion.port,
-            following_error_limit=following_error_limit,
+            programs=(wish.own_program or preparation.job.program).resolve().parent,
+            following_error_limit=wish.following_error_limit,
             part_zero=run.part_zero,
             job=preparation.job.file,
         )
-        ini = write_configuration(own, machine, settings)
+        ini = write_configuration(own, preparation.machine, settings)
         with running(start, ini, folder / LOG_NAME) as linuxcnc:
             motion.goes_on = linuxcnc.goes_on
-            motion.last_word = _last_word(linuxcnc, axes.names)
+            if not session:
+                motion.last_word = _last_word(linuxcnc, axes.names)
             outcome = run.execute(dry_run, folder, progress, motion)
-            linuxcnc.wait()
+            linuxcnc.end_soon()
             for event in linuxcnc.events():
                 if event.text:
                     say(f"linuxcnc: {event.text}")
-    return outcome
+        figures = {
+            "answered": motion.answered,
+            "missed": motion.missed,
+            "f_error_difference": motion.greatest_disagreement,
+        }
+    return outcome, figures
+
+
+def _write_program(preparation: Preparation, path: Path, own_program: Path | None) -> Places:
+    """Write what LinuxCNC reads, and tell where its lines lie in the prepared program."""
+    axes = preparation.machine.axes
+    chunks = list(preparation.interpretation().chunks())
+    moves = concatenate([chunk.moves for chunk in chunks], axes)
+    if own_program is not None:
+        write_text(path, own_program.read_text(encoding="utf-8", errors="replace"))
+        return Places(moves, moves.block)
+    program = linuxcnc_program(chunks, axes)
+    write_text(path, program.text)
+    return Places(moves, program.line_of_move)
 
 
 def _executable_operator(folder: Path) -> Path:
@@ -101,7 +141,7 @@ def _last_word(linuxcnc: LinuxCnc, axes: tuple[str, ...]) -> Callable[[float, in
     """What LinuxCNC itself stopped for, asked when it has gone."""
 
     def alarm(time_s: float, line: int) -> Alarm | None:
-        linuxcnc.wait()
+        linuxcnc.end_soon()
         events = linuxcnc.events()
         if any(event.event == "finished" for event in events):
             return None

@@ -3,6 +3,7 @@
 import dataclasses
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from twin.compare.report.report import Report, write_report
@@ -29,15 +30,18 @@ The result, written last, is removed first: where it stands, everything that it 
 """
 
 
-def write_results(run: Run, outcome: Outcome, folder: Path) -> None:
+def write_results(
+    run: Run, outcome: Outcome, folder: Path, further: Mapping[str, Any] = MappingProxyType({})
+) -> None:
     """Write the verdict and every figure behind it, for programs and for people.
 
     Args:
         run: The run.
         outcome: What it came to.
         folder: Where the files go; stills that were drawn there are put on the page.
+        further: What ``result.json`` says besides.
     """
-    content = result_of(run, outcome)
+    content = {**result_of(run, outcome), **further}
     moments = [
         (f"Line {alarm.line}, {alarm.time_s:.3f} s: {alarm.message}", folder / ALARM_STILL_NAME)
         for alarm in outcome.alarms[:1]

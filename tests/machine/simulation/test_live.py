@@ -1,5 +1,7 @@
 """A machine in slices: the same motion, alarms that latch, faults that come while it moves."""
 
+import copy
+import dataclasses
 import doctest
 
 import numpy as np
@@ -246,3 +248,17 @@ def test_nothing_to_follow_is_nothing_done():
     still = np.zeros((0, 4))
     assert len(live.follow(setpoints(still, still, still))) == 0
     assert np.array_equal(live.position, np.zeros(4))
+
+
+def test_a_copy_moves_as_the_machine_does_a_few_periods_at_a_time():
+    live = LiveMachine(read_machine(machine_file("mill4")))
+    live.hold(20)
+    setpoint = live.setpoint
+    speed = setpoint.velocity.copy()
+    speed[0, 0] = 5.0
+    moved = dataclasses.replace(setpoint, time=setpoint.time + 0.001, velocity=speed)
+    live.follow(moved)
+    copied = copy.deepcopy(live)
+    for _ in range(5):
+        ours, theirs = live.hold(3), copied.hold(3)
+        assert np.array_equal(ours.joint_position, theirs.joint_position)

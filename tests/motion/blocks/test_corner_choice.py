@@ -22,7 +22,7 @@ def square(corner: Corner, feed: float, side: float = 50.0) -> Program:
     return program
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", [*range(24), 202, 886])
 def test_continuous_is_never_slower_than_stops(seed: int) -> None:
     times = []
     for corner in (Corner.CONTINUOUS, Corner.EXACT_STOP):
@@ -38,6 +38,32 @@ def test_more_tolerance_costs_no_time(feed: float) -> None:
     times = [duration(program, mill(corner_tolerance=wide)) for wide in TOLERANCES]
     assert all(after <= before * (1.0 + 1e-9) for before, after in itertools.pairwise(times))
     assert times[0] < duration(square(Corner.EXACT_STOP, feed), mill())
+
+
+def wave(corner: Corner, count: int) -> Program:
+    """Half circles of 1 mm that turn to and fro: the curvature steps, the tangent does not."""
+    program = Program()
+    program.corner = corner
+    for number in range(count):
+        program.arc(
+            (2.0 * number + 1.0, 0.0, 0.0), (0.0, 0.0, 1.0), -180.0 * (-1.0) ** number, feed=3e3
+        )
+    return program
+
+
+def test_a_chain_of_arcs_is_not_stopped_where_each_alone_would_be() -> None:
+    """A stop at one corner of a chain pays only if its neighbours stop too: the chain goes on."""
+    machine = mill(jerk=np.full(4, 4e4), corner_tolerance=0.05)
+    flowing = duration(wave(Corner.CONTINUOUS, 40), machine)
+    assert flowing < 0.8 * duration(wave(Corner.EXACT_STOP, 40), machine)
+
+
+def test_what_is_chosen_depends_only_on_what_lies_near() -> None:
+    """However much of a program follows, the moves before it are driven alike."""
+    machine = mill(corner_tolerance=0.05)
+    short, long = (run(wave(Corner.CONTINUOUS, count), machine) for count in (320, 340))
+    same = short.move < 40
+    assert np.array_equal(short.position[same], long.position[: len(short)][same])
 
 
 def test_moves_overlap_by_what_the_tolerance_allows() -> None:

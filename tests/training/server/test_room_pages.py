@@ -5,9 +5,10 @@ import json
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
-from browsers import CHROMIUM
-from panel_player import Player, browser, open_page, play, served, without_view
+from browsers import CHROMIUM, FIREFOX
+from panel_player import Player, launch, open_page, play, served, without_view
 
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.web.server import THREE
@@ -48,13 +49,35 @@ INSIDE = """() => [...document.querySelectorAll(
 
 
 @pytest.fixture(scope="module")
-def chromium():
-    with browser() as opened:
-        yield opened
+def leader():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        yield playwright
 
 
-def test_the_first_scene_is_solved_with_the_keys_of_the_page(chromium, tmp_path):
-    assert play(chromium, "fagor_first_steps", "solution", tmp_path).intended
+@pytest.fixture(scope="module")
+def chromium(leader):
+    opened = launch(leader, "chromium")
+    yield opened
+    opened.close()
+
+
+@pytest.fixture(scope="module", params=["chromium", "firefox"])
+def led(request, leader):
+    """Each of the browsers."""
+    if request.param == "firefox" and FIREFOX is None:
+        pytest.skip("no Firefox here; Debian has it in the package firefox-esr")
+    if request.param == "chromium":
+        yield request.getfixturevalue("chromium")
+        return
+    opened = launch(leader, request.param)
+    yield opened
+    opened.close()
+
+
+def test_the_first_scene_is_solved_with_the_keys_of_the_page(led, tmp_path):
+    assert play(led, "fagor_first_steps", "solution", tmp_path).intended
     sheet = json.loads(next(tmp_path.glob("*/score.json")).read_text(encoding="utf-8"))
     assert (sheet["points"], sheet["of"], sheet["handed_in"]) == (10, 10, True)
     assert sheet["actions"][0]["command"] == {"do": "cycle_start"}
@@ -71,8 +94,8 @@ def room(tmp_path):
 
 
 @pytest.fixture
-def context(chromium):
-    opened = chromium.new_context()
+def context(led):
+    opened = led.new_context()
     without_view(opened)
     yield opened
     opened.close()
@@ -169,6 +192,99 @@ def test_a_lost_page_stops_nothing_and_the_next_one_finds_it(room, context):
     again = Player(room, open_page(room, context))
     again.press("feed_hold", "feed_hold")
     again.until(lambda: again.machine.held, "the hold")
+
+
+FINGERS = """
+window.told = [];
+window.Worker = class { postMessage(said) { told.push(said); } };
+HTMLCanvasElement.prototype.transferControlToOffscreen = () => null;
+"""
+"""Notes what the view is told, in place of drawing it."""
+
+
+class Fingers:
+    """Fingers on a page's screen, by their numbers."""
+
+    def __init__(self, page) -> None:
+        self._session = page.context.new_cdp_session(page)
+        self._down: dict[int, tuple[float, float]] = {}
+
+    def _say(self, kind: str) -> None:
+        points = [{"id": i, "x": x, "y": y} for i, (x, y) in self._down.items()]
+        self._session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    def put(self, finger: int, x: float, y: float) -> None:
+        self._down[finger] = (x, y)
+        self._say("touchStart")
+
+    def move(self, **places: tuple[float, float]) -> None:
+        self._down |= {int(name[1:]): place for name, place in places.items()}
+        self._say("touchMove")
+
+    def end(self, kind: str) -> None:
+        self._down = {}
+        self._say(kind)
+
+
+@pytest.fixture
+def touched(chromium, room):
+    context = chromium.new_context(has_touch=True, viewport={"width": 1180, "height": 820})
+    context.add_init_script(FINGERS)
+    yield open_page(room, context)
+    context.close()
+
+
+def middle(page, selector: str) -> tuple[float, float]:
+    box = page.locator(selector).bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def test_fingers_turn_pinch_and_push_the_view(touched):
+    fingers = Fingers(touched)
+    x, y = middle(touched, "#canvas")
+
+    def told() -> list[dict]:
+        touched.wait_for_timeout(100)
+        found = touched.evaluate("() => told.splice(0).filter(([what]) => what === 'turn')")
+        return [what for _, what in found]
+
+    told()
+    fingers.put(1, x, y)
+    fingers.move(f1=(x + 40, y + 10))
+    (turned,) = told()
+    assert (turned["azimuth"], turned["elevation"]) == pytest.approx((0.32, 0.08))
+    fingers.put(2, x + 140, y + 10)
+    fingers.move(f1=(x - 10, y + 10))
+    (pinched,) = told()
+    assert pinched["zoom"] == pytest.approx(100 / 150, rel=0.01)
+    fingers.move(f1=(x - 10, y + 90), f2=(x + 140, y + 90))
+    pushed = told()
+    assert sum(each["pan"][1] for each in pushed) == pytest.approx(160 / 1600)
+    assert np.prod([each["zoom"] for each in pushed]) == pytest.approx(1.0, rel=0.01)
+    fingers.put(3, x, y)
+    fingers.move(f3=(x + 30, y))
+    assert told() == []
+
+
+@pytest.mark.parametrize("end", ["lifted", "cancelled", "second finger"])
+def test_a_jog_key_under_a_finger_stops_with_it(touched, room, end):
+    player = Player(room, touched)
+    machine = player.machine
+    player.press("mode_jog", "mode")
+    touched.click('[data-key="step held"]')
+    fingers = Fingers(touched)
+    fingers.put(1, *middle(touched, '[data-key="jog X+"]'))
+    player.until(lambda: machine.moving, "the jog")
+    if end == "second finger":
+        fingers.put(2, *middle(touched, '[data-key="jog Y+"]'))
+    else:
+        fingers.end("touchEnd" if end == "lifted" else "touchCancel")
+    player.until(lambda: machine.run is None and not machine.moving, "rest")
+    place = machine.machine.position[1]
+    touched.wait_for_timeout(200)
+    assert not machine.moving
+    assert machine.machine.position[1] == pytest.approx(place, abs=1e-4)
+    assert room.session.log[-1].command == {"do": "jog_stop"}
 
 
 def test_the_view_is_drawn(chromium, room):

@@ -11,6 +11,7 @@ from twin.errors import UsageError
 from twin.nc.functions import SpindleState
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session import checkpoints
+from twin.training.session import session as session_module
 from twin.training.session.commands import command_from
 from twin.training.session.log import relive
 from twin.training.session.room import Room
@@ -313,3 +314,28 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
         assert back.work.removed == removed
     assert np.array_equal(later[0], later[1])
     assert len(session.log) == 4
+
+
+def test_going_far_back_restores_a_checkpoint_without_living_it_again(session, monkeypatch):
+    monkeypatch.setattr(checkpoints, "DENSE", 2)
+    monkeypatch.setattr(checkpoints, "APART_S", 1.0)
+    monkeypatch.setattr(session_module, "LIVED_AGAIN_S", 0.5)
+    session = Session(session.scene)
+    for _ in range(48):
+        session.advance(10)
+    session.rewind(0.3)
+    assert session.room.time_s == pytest.approx(4.5)
+    session.rewind(0.8)
+    assert session.room.time_s == pytest.approx(3.0)
+
+
+def test_a_reset_in_the_midst_of_a_cut_is_no_cut_without_rotation(session):
+    do(session, "cycle_start")
+    while session.room.machine.setpoint.line[0] < 5 or not session.room.moving:
+        session.advance()
+    session.advance(20)
+    do(session, "reset")
+    session.advance(100)
+    assert session.room.alarm is None
+    assert not session.room.moving
+    assert not session.room.spindle.turns

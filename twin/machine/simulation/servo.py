@@ -1,5 +1,6 @@
 """The physics of a run: setpoints in, samples of the joints out, state in between."""
 
+import copy
 import dataclasses
 
 import mujoco
@@ -141,8 +142,7 @@ class Servo:
             ),
         )
         self._late = _late_drives(machine, model, loops, self._drives)
-        self._ctrl, self._pushed = self._data.ctrl, self._data.qfrc_applied
-        self._warned = self._data.warning.number
+        self._view_data()
         self._state = np.zeros(0)
         self._states = np.zeros((0, 0))
         self._chunk: Setpoints | None = None
@@ -233,6 +233,18 @@ class Servo:
             self.last, position=(stand / self._scale)[None], velocity=still, acceleration=still
         )
         self._warm_up()
+
+    def _view_data(self) -> None:
+        """Views of MuJoCo's arrays, which are slow to ask for."""
+        self._ctrl, self._pushed = self._data.ctrl, self._data.qfrc_applied
+        self._warned = self._data.warning.number
+
+    def __deepcopy__(self, memo: dict[int, object]) -> "Servo":
+        """A copy whose views are those of its own data."""
+        copied = memo[id(self)] = object.__new__(Servo)
+        copied.__dict__ = copy.deepcopy(self.__dict__, memo)
+        copied._view_data()
+        return copied
 
     def take_over(self, other: "Servo") -> None:
         """Go on where a servo of the same axes, tuned or built otherwise, has come to.

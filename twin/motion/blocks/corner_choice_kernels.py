@@ -2,8 +2,10 @@
 
 A rounding must be driven slowly where it is narrow. At a stop the next move may begin before the
 one before it has ended: both are then at most a tolerance away from the corner, so that the sum of
-the two is within it too. Each corner is judged as if the path stopped at the other ends of its two
-blocks: where these are passed faster, a stop costs more.
+the two is within it too. Of a chain of corners that leave a choice that way is taken which is the
+fastest as a whole. What is chosen at a corner must not depend on how far the program is known: at
+every ``ANCHOR``-th move the choice is made for itself, from the corners nearby, and the chains
+between are chosen to fit.
 """
 
 import math
@@ -15,8 +17,8 @@ from twin.compilation.kernel import array_arithmetic_kernel
 from twin.motion.blocks.blocks import BoolArray
 from twin.motion.blocks.corner_kernels import BESIDE_STOP, MAX_NEIGHBOURS, NARROWEST
 from twin.motion.limits import MachineLimits
-from twin.motion.ramp_kernels import RampLimits, brake_distance, travel_time
-from twin.nc.canonical import FloatArray
+from twin.motion.ramp_kernels import RampLimits, travel_time
+from twin.nc.canonical import FloatArray, IntArray
 from twin.toolpath.geometry_kernels import Curves
 
 CURVE_SHARE = 0.5
@@ -24,17 +26,15 @@ CURVE_SHARE = 0.5
 
 CERTAINTY = 0.15
 """Share of the time through a rounding by which it must be faster than the stop: the limits along
-its parts are a little stricter than those of the whole."""
-
-
-CERTAINTY_OF_ARCS = 1.0
-"""Share where one of the blocks is an arc, whose limits change along it."""
+its parts are a little stricter than those of the whole. Beside an arc they change the more, the more
+the limits of its axes differ: there it is taken as often as the one jerk goes into the other."""
 
 
 class BlockMotion(NamedTuple):
     """n blocks and what the program asks of them.
 
     Attributes:
+        move: Number of the move in the whole program, shape (n,).
         curves: Their geometry.
         length: In path parameter x, 0 for dwells, shape (n,).
         velocity: Highest v that is asked for, shape (n,).
@@ -44,6 +44,7 @@ class BlockMotion(NamedTuple):
         rotary_alone: Whether only rotary axes move, shape (n,).
     """
 
+    move: IntArray
     curves: Curves
     length: FloatArray
     velocity: FloatArray
@@ -73,6 +74,37 @@ class Corners(NamedTuple):
     further_tolerance: float
 
 
+FREE, PASSED, STOPPED = -1, 0, 1
+"""How a border is passed: to be chosen, without a stop, at rest."""
+
+ANCHOR = 16
+"""Moves between two corners whose choice is made for itself."""
+
+SEEN = 8
+"""Borders to either side that such a choice looks at."""
+
+
+class Ways(NamedTuple):
+    """How the borders before n blocks can be passed.
+
+    Attributes:
+        way: ``FREE``, ``PASSED`` or ``STOPPED``, shape (n,).
+        velocity: Without a stop, shape (n,).
+        away: How far from a stop the moves may overlap, shape (n,).
+        gain: How long they then do [s], shape (n,).
+        ramps: What each block allows, where a border beside it is free; shape (n, 4).
+        unevenness: How often the smallest jerk limit of an arc's axes goes into the largest; 1 for
+            lines; shape (n,).
+    """
+
+    way: IntArray
+    velocity: FloatArray
+    away: FloatArray
+    gain: FloatArray
+    ramps: FloatArray
+    unevenness: FloatArray
+
+
 @array_arithmetic_kernel
 def choose_stops(
     blocks: BlockMotion, corners: Corners, machine: MachineLimits
@@ -88,41 +120,158 @@ def choose_stops(
         Whether to stop, shape (n,); how far from there the moves may overlap, shape (n,).
     """
     count = len(blocks.length)
-    stops, overlap = np.zeros(count, np.bool_), np.zeros(count)
+    ways = _find_ways(blocks, corners, machine)
+    chosen, scratch = ways.way.copy(), ways.way.copy()
+    back = np.zeros((count, 2), np.int64)
+    for i in range(count):
+        if ways.way[i] == FREE and blocks.move[i] % ANCHOR == 0:
+            first, last = max(0, i - SEEN), min(count - 1, i + SEEN)
+            scratch[first : last + 1] = ways.way[first : last + 1]
+            _choose_between(blocks, corners, ways, first, last, scratch, back)
+            chosen[i] = scratch[i]
+    first = 0
     for i in range(1, count):
-        if not corners.rounded[i] or blocks.length[i] == 0.0 or blocks.length[i - 1] == 0.0:
+        if chosen[i] != FREE or i == count - 1:
+            if i > first + 1 or chosen[i] == FREE:
+                _choose_between(blocks, corners, ways, first, i, chosen, back)
+            first = i
+    stops = np.zeros(count, np.bool_)
+    for i in range(1, count):
+        stops[i] = corners.rounded[i] and chosen[i] == STOPPED
+        if not stops[i]:
+            ways.away[i] = 0.0
+    return stops, ways.away
+
+
+@array_arithmetic_kernel
+def _find_ways(blocks: BlockMotion, corners: Corners, machine: MachineLimits) -> Ways:
+    """The ways through each border, and what is needed to choose among them."""
+    count = len(blocks.length)
+    ways = Ways(
+        np.full(count, PASSED), np.full(count, math.inf), np.zeros(count), np.zeros(count),
+        np.zeros((count, 4)), np.ones(count),
+    )  # fmt: skip
+    for i in range(count):
+        if i == 0 or not corners.rounded[i]:
+            ways.way[i] = STOPPED
+            continue
+        if blocks.length[i] == 0.0 or blocks.length[i - 1] == 0.0:
             continue
         if not np.any(corners.tangent_step[i]) and not np.any(corners.curvature_step[i]):
             continue
-        width, passed = corners.width[i], 0.0
-        if width > 0.0:
-            passed = _rounding_velocity(corners, i, machine)
-            if passed >= min(blocks.velocity[i - 1], blocks.velocity[i]):
+        if corners.width[i] > 0.0:
+            ways.velocity[i] = _rounding_velocity(corners, i, machine)
+            if ways.velocity[i] >= min(blocks.velocity[i - 1], blocks.velocity[i]):
                 continue
         before = _block_limits(blocks, i - 1, machine)
         after = _block_limits(blocks, i, machine)
-        through = min(before.velocity, after.velocity)
-        if width > 0.0:
-            passed = min(through, passed)
-            if passed >= through or _never_faster(blocks, i, width, passed, before, after):
+        for block, limits in ((i - 1, before), (i, after)):
+            ways.ramps[block, :] = limits
+            ways.unevenness[block] = _unevenness(blocks, block, machine)
+        ways.away[i] = _overlap_distance(blocks, corners, i, before, after, machine)
+        lengths = blocks.length[i - 1], blocks.length[i]
+        ways.gain[i] = _overlap_time(ways.away[i], lengths[0], lengths[1], before, after)
+        if corners.width[i] == 0.0:
+            ways.way[i] = STOPPED
+        elif ways.velocity[i] < min(before.velocity, after.velocity):
+            ways.way[i] = FREE
+    return ways
+
+
+@array_arithmetic_kernel
+def _choose_between(
+    blocks: BlockMotion, corners: Corners, ways: Ways, first: int, last: int,
+    chosen: IntArray, back: IntArray,
+) -> None:  # fmt: skip
+    """Choose the fastest way through consecutive borders, in place.
+
+    Args:
+        blocks: The blocks.
+        corners: The borders before them.
+        ways: Of the borders.
+        first: The first border.
+        last: The last border.
+        chosen: How each is passed, where it is known; the others are written.
+        back: Scratch, shape (n, 2).
+    """
+    passed = 0.0 if chosen[first] != STOPPED else math.inf
+    stopped = -ways.gain[first] if chosen[first] != PASSED else math.inf
+    for i in range(first + 1, last + 1):
+        best = math.inf, math.inf
+        for way in (PASSED, STOPPED):
+            if chosen[i] == 1 - way:
                 continue
-            through = passed
-        away = _overlap_distance(blocks, corners, i, before, after, machine)
-        length, next_length = blocks.length[i - 1], blocks.length[i]
-        stopping = travel_time(length, 0.0, 0.0, before) - _overlap_time(
-            away, length, next_length, before, after
-        )
-        stopping += travel_time(next_length, 0.0, 0.0, after)
-        rounding = math.inf
-        if width > 0.0:
-            rounding = travel_time(length - width, 0.0, through, before)
-            rounding += travel_time(next_length - width, through, 0.0, after)
-            bent = blocks.curves.angle[i - 1] != 0.0 or blocks.curves.angle[i] != 0.0
-            certainty = CERTAINTY_OF_ARCS if bent else CERTAINTY
-            rounding += 2.0 * (1.0 + certainty) * width / through
-        if stopping < rounding:
-            stops[i], overlap[i] = True, away
-    return stops, overlap
+            least = math.inf
+            for before in (PASSED, STOPPED):
+                time = passed if before == PASSED else stopped
+                if time < math.inf:
+                    time += _time_of_block(blocks, corners, ways, i - 1, before, way)
+                    if time < least:
+                        least, back[i, way] = time, before
+            best = (least, best[1]) if way == PASSED else (best[0], least - ways.gain[i])
+        passed, stopped = best
+    if last + 1 == len(chosen):
+        passed += _time_of_block(blocks, corners, ways, last, PASSED, STOPPED)
+        stopped += _time_of_block(blocks, corners, ways, last, STOPPED, STOPPED)
+    way = STOPPED if stopped < passed else PASSED
+    for i in range(last, first - 1, -1):
+        chosen[i] = way
+        way = back[i, way]
+
+
+@array_arithmetic_kernel
+def _time_of_block(
+    blocks: BlockMotion, corners: Corners, ways: Ways, i: int, before: int, after: int
+) -> float:
+    """About how long a block takes that is entered and left in certain ways [s].
+
+    Where no border beside it is free, it does not matter: 0.
+    """
+    limits = RampLimits(ways.ramps[i, 0], ways.ramps[i, 1], ways.ramps[i, 2], ways.ramps[i, 3])
+    if limits.velocity == 0.0:
+        return 0.0
+    length = blocks.length[i]
+    slower = 1.0 + CERTAINTY * ways.unevenness[i]
+    u, width = _end_of_block(corners, ways, i, before, after, length)
+    v, next_width = _end_of_block(corners, ways, i + 1, after, before, length)
+    u, v = min(u, limits.velocity), min(v, limits.velocity)
+    rounded = width + next_width
+    if rounded > length:
+        # Roundings that reach over several blocks count where they are.
+        width, next_width, rounded = width * length / rounded, next_width * length / rounded, length
+    time = slower * (width / u if width > 0.0 else 0.0)
+    time += slower * (next_width / v if next_width > 0.0 else 0.0)
+    room = length - rounded
+    ramps = travel_time(room, u, v, limits)
+    if ramps == math.inf:
+        # Too short for the change: the slower end counts for both.
+        low = min(u, v)
+        ramps = travel_time(room, low, low, limits)
+    return time + ramps
+
+
+@array_arithmetic_kernel
+def _end_of_block(
+    corners: Corners, ways: Ways, border: int, way: int, other: int, length: float
+) -> tuple[float, float]:
+    """Velocity at an end of a block, and how far its rounding reaches.
+
+    Args:
+        corners: The borders.
+        ways: Of the borders.
+        border: At this end.
+        way: How it is passed.
+        other: How that at the other end is passed.
+        length: Of the block.
+    """
+    if way == STOPPED:
+        return 0.0, 0.0
+    speed, width = ways.velocity[border], corners.width[border]
+    if other == STOPPED and width > BESIDE_STOP * length:
+        # A rounding beside a stop is made narrower, and is driven more slowly.
+        narrower = BESIDE_STOP * length / width
+        width, speed = narrower * width, speed * np.cbrt(narrower * narrower)
+    return speed, width
 
 
 @array_arithmetic_kernel
@@ -170,9 +319,21 @@ def _block_limits(blocks: BlockMotion, i: int, machine: MachineLimits) -> RampLi
             velocity = min(velocity, machine.velocity[axis] / slope)
             acceleration = min(acceleration, machine.acceleration[axis] / slope)
             jerk = min(jerk, machine.jerk[axis] / slope)
+    if turn > 0.0:
+        jerk *= CURVE_SHARE
     speeding = min(acceleration, scale * blocks.acceleration[i])
     braking = min(acceleration, scale * blocks.deceleration[i])
     return RampLimits(velocity, speeding, braking, jerk)
+
+
+@array_arithmetic_kernel
+def _unevenness(blocks: BlockMotion, i: int, machine: MachineLimits) -> float:
+    """How often the smallest jerk limit of an arc's axes goes into the largest; 1 for lines."""
+    least, most = math.inf, 0.0
+    for axis in range(3):
+        if blocks.curves.cosine[i, axis] != 0.0 or blocks.curves.sine[i, axis] != 0.0:
+            least, most = min(least, machine.jerk[axis]), max(most, machine.jerk[axis])
+    return most / least if most > 0.0 else 1.0
 
 
 @array_arithmetic_kernel
@@ -194,18 +355,6 @@ def _rounding_velocity(corners: Corners, i: int, machine: MachineLimits) -> floa
     if bends > 0.0:
         velocity = min(velocity, math.sqrt(machine.path[0] / math.sqrt(bends)))
     return velocity
-
-
-@array_arithmetic_kernel
-def _never_faster(
-    blocks: BlockMotion, i: int, width: float, passed: float, before: RampLimits, after: RampLimits
-) -> bool:
-    """Whether a block is too short to be left, or entered, faster than the rounding is passed."""
-    room, next_room = blocks.length[i - 1] - width, blocks.length[i] - width
-    return (
-        brake_distance(passed, 0.0, before.acceleration, before.jerk) >= room
-        or brake_distance(passed, 0.0, after.deceleration, after.jerk) >= next_room
-    )
 
 
 @array_arithmetic_kernel

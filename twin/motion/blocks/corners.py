@@ -23,10 +23,10 @@ from twin.motion.blocks.corner_kernels import MAX_NEIGHBOURS, find_widths
 from twin.motion.limits import MotionLimits
 from twin.nc.canonical import Corner, FloatArray
 
-CONTEXT = 6 * MAX_NEIGHBOURS
+CONTEXT = 7 * MAX_NEIGHBOURS
 """Blocks on either side that the path along a block can depend on: roundings reach that far, stops
-narrow them from as far again, their widths depend on others' widths thrice as far, and those on the
-tolerances as far again."""
+narrow them from as far again and are chosen by what is as far beyond, their widths depend on others'
+widths thrice as far, and those on the tolerances as far again."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ def find_borders(blocks: Blocks, limits: MotionLimits, largest_override: float =
         wanted = blocks.feed * blocks.parameter_scale
         stops, overlap = choose_stops(
             BlockMotion(
-                shapes.curves(), blocks.length,
+                blocks.move, shapes.curves(), blocks.length,
                 wanted * np.where(blocks.rapid, 1.0, largest_override),
                 blocks.acceleration, blocks.deceleration, blocks.parameter_scale,
                 blocks.rotary_alone,

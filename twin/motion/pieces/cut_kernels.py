@@ -83,23 +83,26 @@ def cut_blocks(
 
 @array_kernel
 def place_pieces(
-    length: FloatArray, move: IntArray, entry: FloatArray, owner: IntArray, offset: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Where pieces lie in their moves, and how fast they may be entered.
+    length: FloatArray, move: IntArray, entry: FloatArray, overlap: FloatArray,
+    owner: IntArray, offset: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    """Where pieces lie in their moves, and how they may be entered.
 
     Args:
         length: Of all blocks, 0 for dwells, shape (n,).
         move: Of all blocks, -1 for dwells before the first, shape (n,).
         entry: Highest v at the borders before blocks, shape (n,).
+        overlap: How far from a stop there moves may overlap, shape (n,).
         owner: From ``cut_blocks``, shape (m,).
         offset: From ``cut_blocks``, shape (m,).
 
     Returns:
-        Path fraction per x, path fraction at the begin, highest v there; shape (m,) each. A dwell
-        stands at the end of the move before it.
+        Path fraction per x, path fraction at the begin, highest v there, overlap there; shape (m,)
+        each. A dwell stands at the end of the move before it.
     """
     count = len(owner)
     scale, begin, highest = np.zeros(count), np.zeros(count), np.full(count, math.inf)
+    overlapping = np.zeros(count)
     for piece in range(count):
         i = owner[piece]
         if length[i] > 0.0:
@@ -108,8 +111,8 @@ def place_pieces(
         elif move[i] >= 0:
             begin[piece] = 1.0
         if offset[piece] == 0.0:
-            highest[piece] = entry[i]
-    return scale, begin, highest
+            highest[piece], overlapping[piece] = entry[i], overlap[i]
+    return scale, begin, highest, overlapping
 
 
 @array_kernel

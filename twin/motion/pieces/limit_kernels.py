@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.kernel import array_arithmetic_kernel
+from twin.compilation.kernel import array_arithmetic_kernel, array_kernel, kernel
 from twin.motion.blocks.blocks import BoolArray
 from twin.motion.limits import MachineLimits
 from twin.motion.pieces.bound_kernels import DerivativeBounds
@@ -18,6 +18,10 @@ CENTRIPETAL_SHARE = 0.95
 CURVE_JERK_SHARE = 0.5
 """Of an axis's jerk that a curve may use at constant speed, and of what is then left again at constant
 acceleration."""
+
+
+CURVE_JERK_SHARES = ((1.0, CURVE_JERK_SHARE), (3.0, 0.8), (10.0, 0.9))
+"""By turns that the path goes round without a step: what of an axis's jerk a curve may use."""
 
 
 class BlockLimits(NamedTuple):
@@ -38,6 +42,55 @@ class BlockLimits(NamedTuple):
     rotary_alone: BoolArray
 
 
+@array_kernel
+def curve_shares(
+    tangent_step: FloatArray, curvature_step: FloatArray, entry: FloatArray, angle: FloatArray
+) -> FloatArray:
+    """Share of an axis's jerk that blocks may use at constant velocity.
+
+    The rest changes the velocity: the longer the path goes round, the less often that is.
+
+    Args:
+        tangent_step: At the border before each of n blocks, shape (n, k).
+        curvature_step: At the border before each, shape (n, k).
+        entry: Highest v there, shape (n,).
+        angle: Sweep of the blocks, 0 for lines, shape (n,) [rad].
+
+    Returns:
+        Shape (n,).
+    """
+    count = len(angle)
+    shares = np.full(count, CURVE_JERK_SHARE)
+    first, turned = 0, 0.0
+    for i in range(count + 1):
+        steps = i == count or entry[i] < math.inf
+        if not steps:
+            for axis in range(tangent_step.shape[1]):
+                steps |= tangent_step[i, axis] != 0.0 or curvature_step[i, axis] != 0.0
+        if steps:
+            if turned > 0.0:
+                share = _share_of_turns(turned / (2.0 * math.pi))
+                for other in range(first, i):
+                    if angle[other] != 0.0:
+                        shares[other] = share
+            first, turned = i, 0.0
+        if i < count:
+            turned += abs(angle[i])
+    return shares
+
+
+@kernel
+def _share_of_turns(turns: float) -> float:
+    """The entry of ``CURVE_JERK_SHARES``, straight between two."""
+    before, share = CURVE_JERK_SHARES[0]
+    for at, to in CURVE_JERK_SHARES:
+        if turns <= at:
+            way = (turns - before) / (at - before) if turns > before else 0.0
+            return share + (to - share) * way
+        before, share = at, to
+    return share
+
+
 @array_arithmetic_kernel
 def piece_limits(
     block: BlockLimits, owner: IntArray, length: FloatArray, ceilings: FloatArray,
@@ -52,7 +105,7 @@ def piece_limits(
         ceilings: Highest v at the borders of the pieces, shape (n + 1,).
         bounds: Of the pieces.
         machine: Limits of the axes and the path.
-        share: Of an axis's jerk that a curve may use at constant velocity, shape (n,).
+        share: Of an axis's jerk that each block may use at constant velocity, shape (m,).
 
     Returns:
         Rows velocity, acceleration, deceleration, jerk, shape (4, n).
@@ -74,7 +127,7 @@ def piece_limits(
             path_a,
             path_j,
             machine,
-            share[i],
+            share[row],
         )
         out[0, i], out[3, i] = v, j
         out[1, i] = min(a, scale[row] * highest_a[row])

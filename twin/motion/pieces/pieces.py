@@ -18,24 +18,21 @@ import numpy as np
 
 from twin.columns import Columns, Picked
 from twin.motion.blocks.blocks import (
-    Blocks,
     BoolArray,
     Surroundings,
     blocks_of_chunks,
     with_neighbours,
 )
-from twin.motion.blocks.corners import CONTEXT, Borders, find_borders
+from twin.motion.blocks.corners import CONTEXT, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.motion.pieces.cut_kernels import cut_blocks, place_pieces
-from twin.motion.pieces.limit_kernels import CURVE_JERK_SHARE, BlockLimits, piece_limits
+from twin.motion.pieces.limit_kernels import BlockLimits, curve_shares, piece_limits
 from twin.nc.canonical import Chunk, FloatArray, IntArray
 from twin.toolpath.geometry import Geometry
 
 BATCH = 4000
 """Blocks that are cut into pieces at a time: many more than their neighbours that are cut with them."""
-CURVE_JERK_SHARES = ((1.0, 3.0, 10.0), (CURVE_JERK_SHARE, 0.8, 0.9))
-"""By turns that the path goes round without a step: what of an axis's jerk a curve may use."""
 MAX_ANGLE = 1024.0 * math.pi
 """What their arcs turn together, but for the last [rad]: of helices with many turns each, a few."""
 
@@ -109,7 +106,9 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
     owner, offset, length, rounding = cut_blocks(
         blocks.length, shapes.angle, borders.width, borders.tangent_step, borders.curvature_step
     )
-    scale, begin, entry = place_pieces(blocks.length, blocks.move, borders.entry, owner, offset)
+    scale, begin, entry, overlap = place_pieces(
+        blocks.length, blocks.move, borders.entry, borders.overlap, owner, offset
+    )
     feed = blocks.feed * blocks.parameter_scale
     wanted = feed * np.where(blocks.rapid, 1.0, largest_override)
     velocity, acceleration, deceleration, jerk = piece_limits(
@@ -119,7 +118,7 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
         ),
         owner, length, _ceilings(surroundings, entry),
         bound_derivatives(shapes.curves(), owner, begin, scale, length, rounding),
-        limits.arrays(), _curve_shares(blocks, borders)[owner],
+        limits.arrays(), curve_shares(borders.tangent_step, borders.curvature_step, borders.entry, shapes.angle),
     )  # fmt: skip
     first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
     due = slice(first, last)
@@ -137,25 +136,11 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
         deceleration=deceleration[due],
         jerk=jerk[due],
         entry=entry[due],
-        overlap=np.where(offset[due] == 0.0, borders.overlap.take(owner), 0.0),
+        overlap=overlap[due],
         pause=blocks.pause.take(owner),
         rounding=rounding[due],
         geometry=Picked(owner, shapes),
     )
-
-
-def _curve_shares(blocks: Blocks, borders: Borders) -> FloatArray:
-    """Share of an axis's jerk that each block may use at constant velocity, shape (n,).
-
-    The rest changes the velocity: the longer the path goes round, the less often that is.
-    """
-    steps = np.any(borders.tangent_step, axis=1) | np.any(borders.curvature_step, axis=1)
-    alone = steps | (borders.entry < np.inf)
-    run = np.cumsum(alone) - int(alone[0])
-    angle = np.abs(blocks.geometry.angle)
-    turns = np.bincount(run, weights=angle) / (2.0 * math.pi)
-    shares = np.interp(turns, *CURVE_JERK_SHARES)[run]
-    return np.where(angle > 0.0, shares, CURVE_JERK_SHARES[1][0])
 
 
 def _ceilings(surroundings: Surroundings, entry: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ const UNHEARD_MS = 600;
 
 export class Desk {
   constructor(scene, line) {
-    Object.assign(this, { scene, line, step: 1, feed: null, keys: {}, turned: {}, pressing: "", now: null });
+    Object.assign(this, { scene, line, step: 1, feed: null, keys: {}, turned: {}, pressing: "", pointer: null, now: null });
     const command = (name) => () => line.say({ do: name });
     const at = (id) => document.getElementById(id);
     const add = (where, name, act, given = {}) => at(where).append(this.keys[name] = key("", act, { name, ...given }));
@@ -79,11 +79,16 @@ export class Desk {
         const button = key(`${axis}${sign}`, (event) => { if (event.detail === 0) this.jog(axis, direction, true); }, { name: `jog ${axis}${direction > 0 ? "+" : "-"}` });
         button.setAttribute("aria-label", `${words.label("jog")} ${axis}${sign}`);
         button.addEventListener("pointerdown", (event) => {
-          if (event.button !== 0 || button.disabled) return;
+          if (event.button !== 0 || button.matches(":disabled")) return;
+          // A second finger on the keys is no intention: everything stops until the first one is off.
+          if (this.pointer !== null) return this.line.let_go();
+          this.pointer = event.pointerId;
           button.setPointerCapture(event.pointerId);
           this.jog(axis, direction);
         });
-        for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) button.addEventListener(end, () => this.release());
+        for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) button.addEventListener(end, (event) => {
+          if (event.pointerId === this.pointer) this.release();
+        });
         button.addEventListener("contextmenu", (event) => event.preventDefault());
         box.append(button);
       }
@@ -112,6 +117,7 @@ export class Desk {
 
   release() {
     this.pressing = "";
+    this.pointer = null;
     this.line.let_go();
   }
 

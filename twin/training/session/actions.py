@@ -65,6 +65,7 @@ def _reset(room: Room, _command: c.Reset) -> None:
         room.drop_run()
     if room.alarm is not None:
         room.clear()
+    room.running_down = room.spindle.turns and room.moving
     room.spindle = room.spindle.stopped()
 
 

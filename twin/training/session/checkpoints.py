@@ -12,9 +12,9 @@ from twin.training.scene.scene_file import Scene
 from twin.training.session.program_run import ProgramRun, ProgramRunCopy
 from twin.training.session.room import SLICE, Room
 
-APART_S = 10.0
+APART_S = 4.0
 """Machine time between two copies [s]."""
-DENSE = 12
+DENSE = 20
 """Newest copies that are kept; older ones lie further apart the older they are."""
 
 _SHARED = (Scene, Machine, Source, mujoco.MjModel)

@@ -55,6 +55,7 @@ class Room:
         alarm: The alarm that stands.
         pressed: Whether the emergency stop button is pressed.
         spindle: Whether the spindle turns, and how fast.
+        running_down: Whether the spindle, stopped by a reset, still turns while the axes brake.
         coolant: Whether coolant flows.
         program: The program as the operator has edited it.
         lines: Its lines.
@@ -97,6 +98,7 @@ class Room:
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
         self.spindle = SpindleState(started=file.start.spindle)
+        self.running_down = False
         self.coolant = False
         self.alarm: Notice | None = None
         self.pressed = False
@@ -199,7 +201,8 @@ class Room:
         moves = part.setpoint.move
         run = self.run
         rapid = np.array([run is not None and run.rapid(int(move)) for move in moves], np.bool_)
-        standing = np.full(len(part), not self.spindle.turns)
+        self.running_down = self.running_down and self.moving
+        standing = np.full(len(part), not self.spindle.turns and not self.running_down)
         # Only what a feed with a turning spindle does to the stock may be seen a little later.
         at_once = self.moving and bool(rapid.any() or standing.any())
         self._halt(self.work.cut(tips, rapid, standing, at_once=at_once))

@@ -31,6 +31,9 @@ from twin.training.session.log import Entry, Replay, Who, relive
 from twin.training.session.room import SLICE, Room
 from twin.training.session.snapshot import Snapshot, take_snapshot
 
+LIVED_AGAIN_S = 4.0
+"""Machine time that going back lives again at most [s]."""
+
 
 class Session:
     """A scene that is being played.
@@ -123,11 +126,14 @@ class Session:
         """Go back; what was done after that stays in the log.
 
         Args:
-            seconds: How far, in machine time [s].
+            seconds: How far, in machine time [s]. What lies too far from a checkpoint to be lived
+                again at once is given up for the checkpoint.
         """
         back = SLICE * round(seconds / self.room.slice_s)
         tick = max(0, self.room.tick - back)
         checkpoint = self._checkpoints.before(tick)
+        if (tick - checkpoint.tick) * self.room.slice_s > SLICE * LIVED_AGAIN_S:
+            tick = checkpoint.tick
         self._done = [entry for entry in self._done if entry.tick <= tick]
         self.room = relive(checkpoint.restored(), self._done[checkpoint.done :], tick)
 

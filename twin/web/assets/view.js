@@ -53,13 +53,14 @@ export class View {
       canvas.setPointerCapture(event.pointerId);
       fingers.set(event.pointerId, event);
     });
-    for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => fingers.delete(event.pointerId));
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) canvas.addEventListener(end, (event) => fingers.delete(event.pointerId));
     canvas.addEventListener("pointermove", (event) => {
       const before = fingers.get(event.pointerId);
       if (!before) return;
       const [dx, dy] = [event.clientX - before.clientX, event.clientY - before.clientY];
       const others = [...fingers.values()].filter((one) => one.pointerId !== event.pointerId);
       fingers.set(event.pointerId, event);
+      if (others.length > 1) return;
       if (others.length === 1) {
         const apart = (one) => Math.hypot(one.clientX - others[0].clientX, one.clientY - others[0].clientY);
         this.say("turn", { zoom: apart(before) / Math.max(1, apart(event)), pan: [dx / 1600, dy / 1600] });

@@ -226,9 +226,9 @@ function aim() {
   camera.lookAt(orbit.target);
 }
 
-/** One picture, if anything has changed. What draws slowly leaves the processor to the machine for as long again. */
+/** One picture, if anything has changed. What draws slowly leaves the processor to the machine for twice as long. */
 function draw() {
-  setTimeout(draw, Math.max(FASTEST_MS, drawing));
+  setTimeout(draw, Math.max(FASTEST_MS, 2 * drawing));
   const now = performance.now();
   if (!machine) return;
   const seconds = Math.min(0.1, 0.001 * (now - last));

@@ -1,0 +1,249 @@
+"""LinuxCNC itself on the twin; these tests run where it is installed (``scripts/link`` does that)."""
+
+import contextlib
+import fcntl
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import Finished, Twin
+
+from twin.columns import join
+from twin.files.shipped import machine_file
+from twin.link.component import is_installed, module_folder
+from twin.link.linuxcnc import LOCK, processes_at_home
+from twin.machine.description.config import read_machine
+from twin.machine.model.model import build_spec
+from twin.machine.simulation.simulate import simulate
+from twin.recording.form import STEPS
+from twin.recording.reader import open_recording
+from twin.run.replay import open_scene
+
+LINUXCNC = shutil.which("linuxcnc")
+
+
+def cannot_run() -> str:
+    """Why LinuxCNC cannot be driven here; empty: it can."""
+    if LINUXCNC is None:
+        return "linuxcnc-uspace is not installed"
+    modules = module_folder(Path(LINUXCNC))
+    if not is_installed(modules) and not os.access(modules, os.W_OK):
+        return "LinuxCNC's component of this version is not installed, which takes root"
+    return ""
+
+
+pytestmark = [
+    pytest.mark.skipif(bool(cannot_run()), reason=cannot_run() or "it can"),
+    pytest.mark.xdist_group("linuxcnc"),
+]
+
+SQUARE = """(a square with a rounded corner, a circle, and the table)
+G21 G90 G61
+G0 X0 Y0 Z5
+G1 Z0 F1200
+G1 X15 F3000
+G1 Y10
+G3 X10 Y15 I-5 J0
+G1 X0
+G1 Y0
+G2 X0 Y0 I3 J0
+G1 C10 F3600
+G0 Z5
+M2
+"""
+RAPID = "G21 G90\nG0 Z5\nG0 X200\nM2\n"
+LONG = "G21 G90 G64\nG1 Z5 F600\n" + "G1 X20 F600\nG1 X0\n" * 30 + "M2\n"
+
+
+@pytest.fixture
+def folder() -> Iterator[Path]:
+    """A folder that LinuxCNC's user may enter; one LinuxCNC at a time runs on a computer."""
+    with (
+        tempfile.TemporaryDirectory(prefix="twin-link-") as name,
+        (Path(tempfile.gettempdir()) / "mill-twin-link.lock").open("w") as lock,
+    ):
+        Path(name).chmod(0o755)
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield Path(name)
+        left = processes_at_home(Path(name) / "out" / "linuxcnc")
+        for number in left:
+            os.kill(number, signal.SIGKILL)
+        locked = LOCK.exists()
+        LOCK.unlink(missing_ok=True)
+        assert (left, locked) == ([], False)
+
+
+def linked(twin: Twin, folder: Path, program: str, *options: object) -> Finished:
+    path = folder / "part.ngc"
+    path.write_text(program)
+    return twin("link", "linuxcnc", "--out", folder / "out", "--headless", path, *options)
+
+
+def result(folder: Path) -> dict:
+    return json.loads((folder / "out" / "result.json").read_text())
+
+
+def test_a_sound_machine_runs_a_program_and_can_be_played_back(folder: Path, twin: Twin):
+    ran = linked(twin, folder, SQUARE, "--machine", "mill4")
+    told = result(folder)
+    assert ran.code in (0, 1), ran.stderr
+    assert told["alarms"] == []
+    assert told["link"]["missed"] == 0
+    # LinuxCNC's own f-error is the recording's lag, to what commands are rounded to.
+    assert told["link"]["f_error_difference"] < 1e-6
+    assert told["tracking_um"]["X"]["max"] > 100.0
+    with open_recording(folder / "out" / "recording.h5") as recording:
+        samples = join(list(recording.chunks()))
+        assert recording.header.program.endswith("program_as_read.nc")
+    machine = read_machine(machine_file("mill4"))
+    again = join(list(simulate(machine, build_spec(machine), [samples.setpoint])))
+    step = STEPS["joint/position"]
+    assert np.array_equal(np.rint(again.joint_position / step) * step, samples.joint_position)
+    lines = samples.setpoint.line
+    assert set(lines.tolist()) == {0, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}
+    assert np.all(np.diff(lines) >= 0)
+    corner = samples.setpoint.position[lines == 6][0] - samples.setpoint.position[0]
+    assert corner[:2] == pytest.approx([15.0, 0.0], abs=0.1)
+    with open_scene(folder / "out" / "recording.h5") as (scene, _):
+        assert len(scene.recording) == told["samples"]
+
+
+def test_linuxcncs_own_limit_trips_where_the_lag_reaches_it(folder: Path, twin: Twin):
+    ran = linked(twin, folder, RAPID, "--machine", "mill4", "--ferror", 2)
+    told = result(folder)
+    assert ran.code == 4
+    assert "following error" in ran.stderr
+    assert told["alarms"][0]["code"] == "following-error"
+    with open_recording(folder / "out" / "recording.h5") as recording:
+        samples = join(list(recording.chunks()))
+    lag = np.abs(samples.setpoint.position - samples.joint_position)[:, 0]
+    # It sees the lag of a period in the next one, and switches off in that.
+    assert lag[:-2].max() <= 2.0 < lag.max() < 2.1
+
+
+def test_the_twins_alarm_arrives_as_an_amplifier_fault_with_its_reason(folder: Path, twin: Twin):
+    machine = folder / "dull.toml"
+    machine.write_text('schema = 1\nname = "dull"\nbase = "mill4"\n[axes.X]\nkv = 1.5\n')
+    ran = linked(twin, folder, RAPID, "--machine", machine, "--ferror", 100)
+    assert ran.code == 4
+    assert "joint 0 amplifier fault" in ran.stderr
+    alarm = result(folder)["alarms"][0]
+    assert (alarm["code"], alarm["line"]) == ("following-error", 3)
+    with open_recording(folder / "out" / "recording.h5") as recording:
+        samples = join(list(recording.chunks()))
+    # A drive of 1.5 (m/min)/mm, critically damped, lags 2/w behind a ramp of acceleration a by
+    # 2 v / w - 2 a / w^2 and so trips at 10 mm before the speed has come to 10 w / 2.
+    speed = samples.setpoint.velocity[-1, 0]
+    lag = (samples.setpoint.position - samples.joint_position)[-1, 0]
+    assert 10.0 < lag < 10.5
+    assert speed == pytest.approx(10.0 * 1.5 / 0.06, rel=0.6)
+    log = (folder / "out" / "linuxcnc.log").read_text(errors="replace")
+    assert "mill_twin: line" in log
+    assert "following-error: X trails its setpoint" in log
+
+
+def test_a_program_that_linuxcnc_refuses_ends_with_its_line(folder: Path, twin: Twin):
+    ran = linked(twin, folder, "G21\nG1 X1 F100\nG1 X2 Q\nM2\n")
+    assert ran.code == 3
+    assert "part.ngc:3:1: error linuxcnc:" in ran.stderr
+
+
+@contextlib.contextmanager
+def running_link(folder: Path) -> Iterator[subprocess.Popen[str]]:
+    """The command in a process of its own, once LinuxCNC moves the twin."""
+    path = folder / "part.ngc"
+    path.write_text(LONG)
+    process = subprocess.Popen(
+        [
+            sys.executable, "-m", "twin", "link", "linuxcnc", "--machine", "mill4",
+            "--out", str(folder / "out"), "--headless", str(path),
+        ],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+    )  # fmt: skip
+    log = folder / "out" / "linuxcnc" / "operator.jsonl"
+    until(lambda: log.is_file() and "running" in log.read_text(), 90.0)
+    time.sleep(1.0)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+        if process.stdout is not None:
+            process.stdout.close()
+
+
+def until(done: Callable[[], bool], seconds: float) -> None:
+    end = time.monotonic() + seconds
+    while not done():
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
+def test_a_killed_twin_is_a_fault_and_linuxcnc_ends_by_itself(folder: Path):
+    with running_link(folder) as process:
+        process.kill()
+        process.wait()
+        log = folder / "out" / "linuxcnc" / "operator.jsonl"
+        until(lambda: "failed" in log.read_text(), 60.0)
+        until(lambda: not LOCK.exists(), 60.0)
+    assert "amplifier fault" in log.read_text()
+    assert "the twin does not answer" in (folder / "out" / "linuxcnc.log").read_text()
+    assert not (folder / "out" / "result.json").exists()
+
+
+def test_a_killed_linuxcnc_ends_the_run_with_an_alarm(folder: Path):
+    with running_link(folder) as process:
+        for number in processes_at_home(folder / "out" / "linuxcnc"):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
+        output, _ = process.communicate(timeout=120)
+    assert process.returncode == 4, output
+    told = result(folder)
+    assert told["alarms"][0]["code"] == "control-stop"
+    assert told["samples"] > 100
+    assert told["alarms"][0]["line"] >= 2
+
+
+def test_an_unloaded_component_ends_both_sides(folder: Path):
+    home = folder / "out" / "linuxcnc"
+    at_home = ["env", f"HOME={home}"]
+    if os.geteuid() == 0:
+        at_home = ["runuser", "-u", "nobody", "--", *at_home]
+    with running_link(folder) as process:
+        for order in (["delf", "mill-twin", "servo-thread"], ["unloadrt", "mill_twin"]):
+            # LinuxCNC may be on its way out when the second comes.
+            subprocess.run([*at_home, "halcmd", *order], check=False, timeout=60)
+        output, _ = process.communicate(timeout=120)
+    assert process.returncode == 4, output
+    assert result(folder)["alarms"][0]["code"] in ("control-stop", "following-error")
+
+
+def test_no_question_is_missed_with_a_busy_process_on_each_core(folder: Path, twin: Twin):
+    busy = [
+        subprocess.Popen([sys.executable, "-c", "while True: pass"])
+        for _ in range(os.cpu_count() or 1)
+    ]
+    killer = threading.Timer(120.0, lambda: [process.kill() for process in busy])
+    killer.start()
+    try:
+        ran = linked(twin, folder, SQUARE, "--machine", "mill4")
+    finally:
+        killer.cancel()
+        for process in busy:
+            process.kill()
+            process.wait()
+    told = result(folder)
+    assert ran.code in (0, 1), ran.stderr
+    assert told["alarms"] == []
+    assert told["link"]["missed"] == 0
+    assert told["link"]["f_error_difference"] < 1e-6
