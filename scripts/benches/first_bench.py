@@ -55,6 +55,7 @@ def _seconds(command: list[str], kernels: Path) -> float:
     began = processor_seconds()
     subprocess.run(  # noqa: S603 (this project's own command)
         [sys.executable, "-m", "twin", *command],
-        env=os.environ | {"NUMBA_CACHE_DIR": str(kernels)}, check=True, capture_output=True,
+        env=os.environ | {"XDG_CACHE_HOME": str(kernels), "NUMBA_CACHE_DIR": str(kernels)},
+        check=True, capture_output=True,
     )  # fmt: skip
     return processor_seconds() - began
