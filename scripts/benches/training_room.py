@@ -14,6 +14,7 @@ from typing import Any
 
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.launch import OpenRoom, open_room
+from twin.training.session.log import Who
 
 SCENE = "mefi_helix_hold"
 OVERRIDE = 20
@@ -32,7 +33,18 @@ class MeasuredRoom:
 
     def __init__(self, room: OpenRoom) -> None:
         self._room = room
+        self._asked = 0.0
+        self._ask = room.driver.ask
+        room.driver.ask = self._note_ask
         room.session.room.feed_override = OVERRIDE
+
+    def _note_ask(self, command: Any, who: Who, page: int) -> None:
+        self._asked = time.time()
+        self._ask(command, who, page)
+
+    def asked(self) -> float:
+        """When the last command of a page was heard, by ``time.time`` [s]."""
+        return self._asked
 
     def addresses(self) -> dict[str, str]:
         """Of its pages."""

@@ -21,6 +21,7 @@ from machine_logs import (
 
 from twin.calibrate.calibrate import calibrate
 from twin.calibrate.result import Calibration
+from twin.files.shipped import machine_file
 from twin.logs.column_map import read_column_map
 from twin.logs.machine_log import MachineLog, read_machine_log
 from twin.machine.description.config import read_machine
@@ -76,18 +77,17 @@ def test_positions_alone_leave_mass_and_viscous_friction_open(forced: MachineLog
 
 
 def test_a_log_of_mill4_gives_mill4_back(twin: Twin, tmp_path: Path) -> None:
-    machine = tmp_path / "mill.toml"
-    machine.write_text('base = "mill4"\n[axes.X]\nreset_time_s = 0.0\n', encoding="utf-8")
-    log = write_log(tmp_path / "own.csv", logged(mill()))
-    done = twin(
-        "calibrate", log, "--base", machine, "--out", tmp_path / "again.toml",
-        "--json", tmp_path / "a.json",
-    )  # fmt: skip
+    mill4 = read_machine(machine_file("mill4"))
+    log = write_log(tmp_path / "own.csv", logged(mill4, strokes(3.0)))
+    done = twin("calibrate", log, "--out", tmp_path / "again.toml", "--json", tmp_path / "a.json")
     assert done.code == 0, done.stderr
-    again, base = read_machine(tmp_path / "again.toml").axis("X"), mill().axis("X")
+    again, base = read_machine(tmp_path / "again.toml").axis("X"), mill4.axis("X")
     assert again.kv == pytest.approx(base.kv, rel=1e-4)
-    assert again.damping_ratio == pytest.approx(base.damping_ratio, rel=1e-3)
-    assert again.mass == pytest.approx(1041.154, rel=1e-3)
+    assert again.damping_ratio == pytest.approx(base.damping_ratio, rel=3e-3)
+    # MuJoCo's integrator goes in steps, the fit's does not: 0.4 % of the mass, 0.2 % of the damping.
+    assert again.mass == pytest.approx(1041.154, rel=5e-3)
+    assert again.reset_time_s == base.reset_time_s
+    assert not again.loop_delay_s + again.velocity_filter_s + again.command_filter_s
     assert abs(again.dry_friction) < 0.5
     told = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))
     assert told["schema"] == 1

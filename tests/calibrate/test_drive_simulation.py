@@ -18,6 +18,20 @@ from twin.machine.model.model import build_spec, drives
         ({"reset_time_s": 0.02, "dry_friction": 300.0}, 1.0),
         ({"damping_ratio": 0.4, "dry_friction": 300.0}, 3.0),
         ({"mass": 700.0, "kv": 4.0}, 0.01),
+        ({"command_filter_s": 0.004, "velocity_feedforward": 0.6}, 0.05),
+        ({"velocity_filter_s": 0.0013}, 0.5),
+        ({"loop_delay_s": 0.0021, "kv": 3.0}, 0.5),
+        (
+            {
+                "loop_delay_s": 0.002,
+                "velocity_filter_s": 0.0013,
+                "command_filter_s": 0.003,
+                "kv": 3.0,
+                "reset_time_s": 0.05,
+                "velocity_feedforward": 0.5,
+            },
+            0.5,
+        ),
     ],
 )
 def test_an_axis_moves_as_in_mujoco(changes: dict[str, float], within_um: float) -> None:

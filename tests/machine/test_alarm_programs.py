@@ -29,6 +29,7 @@ EXPECTED = {
         6,
         "a rapid drives tool 1 3.00 mm deep into the stock",
     ),
+    "gouge": ("gouge", 6, "tool 1 cuts 0.10 mm deep into the nominal part"),
     "spindle_off": ("spindle-off", 10, "tool 1 feeds 3.00 mm deep into the stock with the spindle"),
 }
 NO_ALARM = "near_miss"

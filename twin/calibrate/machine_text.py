@@ -6,12 +6,10 @@ from collections.abc import Iterator
 
 from twin.calibrate.fit.parameters import Parameters
 from twin.calibrate.fit.solve import Interval
+from twin.calibrate.fit.stages import OF_THE_LOG
 from twin.calibrate.result import AxisResult, Calibration
 from twin.machine.description.config import AxisTable
 from twin.version import __version__
-
-_OF_THE_LOG = ("delay", "force_delay", "measuring_filter")
-"""Parameters of a log's columns; the machine has none."""
 
 
 def machine_text(result: Calibration, *, base: str, name: str) -> str:
@@ -39,7 +37,7 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
     known = set(AxisTable.model_fields)
     for field in dataclasses.fields(Parameters):
         name, value = field.name, getattr(fit.parameters, field.name)
-        if name in fit.fitted and name not in _OF_THE_LOG and name in known:
+        if name in fit.fitted and name not in OF_THE_LOG and name in known:
             yield f"{name} = {_number(value)}    # {_span(fit.fitted[name], axis.units[name])}"
         elif name in fit.conditional and name in known:
             interval, given = fit.conditional[name]
@@ -49,7 +47,7 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
             if "current_scale" in given and name == "dry_friction":
                 scale = _number(fit.parameters.current_scale)
                 yield f"current_scale = {scale}    # not determined: what the friction stands on"
-    for name in _OF_THE_LOG:
+    for name in OF_THE_LOG:
         if name in fit.fitted:
             yield f"# of the log, not of the machine: {name} {_span(fit.fitted[name], 's', True)}"
     for name, why in fit.undetermined.items():
@@ -63,6 +61,8 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
 
 
 def _span(interval: Interval, unit: str, with_value: bool = False) -> str:
+    if interval.value < interval.low:
+        return f"none: anything above {interval.low:.3g} {unit} would fit as well"
     value = f"{interval.value:.5g}, " if with_value else ""
     low, high = (
         "open" if math.isinf(end) else f"{end:.5g}" for end in (interval.low, interval.high)

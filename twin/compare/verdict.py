@@ -130,6 +130,7 @@ def judge(
     alarms: Sequence[AlarmLike] = (),
     *,
     cycle_time_s: float | None = None,
+    more: Sequence[Check] = (),
 ) -> Verdict:
     """Hold a run to its tolerances.
 
@@ -141,6 +142,7 @@ def judge(
         alarms: What the machine raised.
         cycle_time_s: Machine time of the program; by default the time of the last sample, which
             holds the settling at the end too [s].
+        more: Other figures that are held to a tolerance.
     """
     alarmed = [Reason(a.code, a.message, a.line, a.time_s) for a in alarms]
     checks = [
@@ -148,6 +150,7 @@ def judge(
         *_corner_checks(figures, tolerance),
         *_circular_checks(figures, tolerance),
         *_following_checks(figures, tolerance),
+        *more,
     ]
     if tolerance.cycle_time_s is not None:
         cycle_time = figures.duration_s if cycle_time_s is None else cycle_time_s

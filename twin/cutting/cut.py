@@ -81,6 +81,7 @@ class Cutter:
 
     Attributes:
         map: The height map as cut so far; look, but let only the cutter change it.
+        plan: What is in the spindle when.
         changed: Cells that changed in the last ``add``: row, row end, column, column end; none
             when the rows end before they begin.
         tool: What is in the spindle after the last ``add``.
@@ -121,10 +122,10 @@ class Cutter:
             ConfigError: The stock is too large for its grid, its file cannot be read, or its
                 material is not known.
         """
-        self._plan = tool if isinstance(tool, ToolPlan) else ToolPlan((tool,))
-        self.tool = self._plan.tools[0]
+        self.plan = tool if isinstance(tool, ToolPlan) else ToolPlan((tool,))
+        self.tool = self.plan.tools[0]
         corner = np.asarray(part_zero[:3]) - np.array([*part_frame.center, 0.0])
-        self.map = blank(stock, corner, stock.cell or default_cell(self._plan.tools, stock))
+        self.map = blank(stock, corner, stock.cell or default_cell(self.plan.tools, stock))
         self.changed = (0, 0, 0, 0)
         self.force = np.zeros((0, 3))
         self.marks = np.zeros(self.map.heights.shape if keep_marks else (0, 0))
@@ -171,13 +172,13 @@ class Cutter:
         lag = np.abs(meant - points).sum(axis=1)
         turn = self._part_frame.direction(joints)
         way = _Way(points, turn, lag, setpoint.time, setpoint.line, rapid, off)
-        for run, tool in self._plan.runs(setpoint.move):
+        for run, tool in self.plan.runs(setpoint.move):
             if self.halted is not None:
                 break
             if tool.number != self.tool.number:
                 self._last = None
             self.tool = tool
-            force = self._cut(way[run].lowered(self._plan.longer(tool)))
+            force = self._cut(way[run].lowered(self.plan.longer(tool)))
             self.force[run.start : run.start + len(force)] = force
         return sum(self._removed.values()) - before
 

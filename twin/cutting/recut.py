@@ -3,14 +3,11 @@
 from pathlib import Path
 from typing import Literal
 
-import numpy as np
-
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import HeightMap
 from twin.cutting.inspection import Inspection, inspect
-from twin.cutting.kernels.drape import drape
+from twin.cutting.nominal import nominal_map
 from twin.cutting.program_summary import ProgramSummary
-from twin.files.stl import read_stl
 from twin.job.job_file import StockTable
 from twin.recording.reader import Recording
 
@@ -43,26 +40,6 @@ def recut(
     return cutter
 
 
-def nominal_map(part: HeightMap, file: Path, recording: Recording) -> HeightMap:
-    """A nominal part on the grid of a machined one: seen from above, the highest surface counts.
-
-    Args:
-        part: The machined part.
-        file: STL of the nominal part in program coordinates [mm].
-        recording: The run, whose program zero the file counts from.
-
-    Raises:
-        ConfigError: The file cannot be read.
-    """
-    header = recording.header
-    corner = header.part_zero[:3] - np.array([*header.part_frame.center, 0.0])
-    result = part.copy()
-    result.heights[:] = part.bottom
-    triangles = np.ascontiguousarray(read_stl(file).triangles + corner, dtype=np.float64)
-    drape(result.heights, result.origin, result.cell, triangles)
-    return result
-
-
 def inspect_recorded(
     recording: Recording,
     summary: ProgramSummary,
@@ -89,5 +66,7 @@ def inspect_recorded(
     if nominal == COMMANDED:
         ideal = recut(recording, summary, stock, "setpoints").map
     else:
-        ideal = nominal_map(part, Path(nominal), recording)
+        ideal = nominal_map(
+            part, Path(nominal), recording.header.part_frame, recording.header.part_zero
+        )
     return inspect(part, ideal, tolerance_um), part

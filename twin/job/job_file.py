@@ -180,6 +180,17 @@ class ToleranceTable(Table):
     """Longest machine time of the program [s]; none: not judged."""
 
 
+class NominalTable(Table):
+    """The part as it shall be, which no cutter may reach into."""
+
+    file: str
+    """STL in program coordinates [mm], relative to the job file; the highest surface counts."""
+    gouge_um: Positive = 100.0
+    """How far below its surface the tool may cut [µm]."""
+    gouge: Literal["fail", "alarm"] = "fail"
+    """What a deeper cut is: a tolerance that is not kept, or an alarm that stops the machine."""
+
+
 class BaselineTable(Table):
     """How far a run may be from its baseline (``twin check --baseline``)."""
 
@@ -244,6 +255,7 @@ class JobFile(Table):
     start: dict[str, float] = Field(default_factory=dict)
     """Where the axes stand when the program starts, program coordinates [mm or deg]."""
     stock: StockTable | None = None
+    nominal: NominalTable | None = None
     tools: tuple[ToolTable, ...] = (ToolTable(number=1),)
     """The first is in the spindle at the start."""
     fixtures: tuple[FixtureTable, ...] = ()
@@ -268,6 +280,12 @@ class JobFile(Table):
     baseline: BaselineTable = BaselineTable()
     video: VideoTable = VideoTable()
 
+    @pydantic.model_validator(mode="after")
+    def _nominal_needs_stock(self) -> "JobFile":
+        if self.nominal is not None and self.stock is None:
+            raise ValueError("a nominal part needs a [stock] that it is cut from")
+        return self
+
     @pydantic.field_validator("tools")
     @classmethod
     def _tools_distinct(cls, tools: tuple[ToolTable, ...]) -> tuple[ToolTable, ...]:
@@ -282,7 +300,8 @@ class Job:
 
     Attributes:
         folder: What relative paths in it are relative to.
-        file: Its checked content; the file of an STL stock is a whole path.
+        file: Its checked content; the files of an STL stock and of a nominal part are whole
+            paths.
         program: The NC program.
         path: The job file; None where a program has none.
     """
@@ -292,6 +311,10 @@ class Job:
             whole = str((folder / file.stock.file).absolute())
             stock = file.stock.model_copy(update={"file": whole})
             file = file.model_copy(update={"stock": stock})
+        if file.nominal is not None:
+            whole = str((folder / file.nominal.file).absolute())
+            nominal = file.nominal.model_copy(update={"file": whole})
+            file = file.model_copy(update={"nominal": nominal})
         self.folder = folder
         self.file = file
         self.program = folder / file.program

@@ -16,7 +16,7 @@ from twin.files.toml import Data, load_toml
 SHARED_NAME = "twin.toml"
 EXTENDS = "extends"
 _LONGEST_CHAIN = 10
-_FILES = (("machine",), ("stock", "file"))
+_FILES = (("machine",), ("stock", "file"), ("nominal", "file"))
 """Keys whose values are paths, relative to the file that says them."""
 
 

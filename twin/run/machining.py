@@ -6,10 +6,11 @@ import numpy as np
 
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.events import CutEvent
+from twin.cutting.nominal import NominalGouge, NominalWatch
 from twin.cutting.part import write_stl
 from twin.cutting.program_summary import ProgramSummary
 from twin.cutting.spindle import Spindle
-from twin.job.job_file import StockTable, ToolTable
+from twin.job.job_file import JobFile, ToolTable
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import head_shape
 from twin.machine.watching.alarms import Alarm
@@ -24,7 +25,7 @@ class Machining:
     def __init__(
         self,
         machine: Machine,
-        stock: StockTable | None,
+        job: JobFile,
         summary: ProgramSummary,
         part_frame: PartFrame,
         part_zero: FloatArray,
@@ -35,7 +36,7 @@ class Machining:
 
         Args:
             machine: What is above the tool is its.
-            stock: The blank; None where nothing is cut.
+            job: Its blank, without which nothing is cut, and its nominal part, if it names one.
             summary: What is in the spindle when, and which moves are rapids.
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
@@ -44,11 +45,20 @@ class Machining:
         self._summary = summary
         self._spindle = Spindle(held_to_program=speaks_of_spindle)
         self._cutter: Cutter | None = None
-        if stock is not None:
+        self._nominal: NominalWatch | None = None
+        self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
+        if job.stock is not None:
             head = head_shape(machine).above_tip
             self._cutter = Cutter(
-                stock, summary.tools, part_frame, part_zero, halts=True, head=head
+                job.stock, summary.tools, part_frame, part_zero, halts=True, head=head
             )
+            if job.nominal is not None:
+                self._nominal = NominalWatch(job.nominal, self._cutter, part_frame, part_zero)
+
+    @property
+    def gouge(self) -> NominalGouge | None:
+        """The deepest cut into the nominal part beyond what it allows."""
+        return None if self._nominal is None else self._nominal.worst
 
     def expect(self, chunk: Chunk) -> None:
         """Take note of a chunk of the program, before its samples come."""
@@ -63,8 +73,13 @@ class Machining:
         cutter = self._cutter
         if cutter is None:
             return samples, None
-        rapid = self._summary.is_rapid(samples.setpoint.move)
+        move = samples.setpoint.move
+        rapid = self._summary.is_rapid(move)
         cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
+        found = None if self._nominal is None else self._nominal.look(samples)
+        if found is not None and self._gouge_stops:
+            gouge, sample = found
+            return samples[: sample + 1], gouge_alarm(gouge, cutter.plan.at(int(move[sample])))
         if cutter.halted is None:
             return samples, None
         alarm = stock_alarm(cutter.halted, cutter.tool)
@@ -85,6 +100,12 @@ class Machining:
         if out is not None:
             write_stl(self._cutter.map, out / "part.stl")
         return self._cutter.result()
+
+
+def gouge_alarm(gouge: NominalGouge, tool: ToolTable) -> Alarm:
+    """The alarm of a tool that cuts into the nominal part."""
+    message = f"tool {tool.number} cuts {gouge.depth_mm:.2f} mm deep into the nominal part"
+    return Alarm("gouge", gouge.line, gouge.time_s, "", message)
 
 
 def stock_alarm(event: CutEvent, tool: ToolTable) -> Alarm:

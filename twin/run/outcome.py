@@ -5,6 +5,7 @@ import dataclasses
 from twin.compare.figures import Figures
 from twin.compare.verdict import Verdict
 from twin.cutting.cut import CutResult
+from twin.cutting.nominal import NominalGouge
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.nc.canonical import FloatArray
 from twin.nc.text.diagnostics import Diagnostic
@@ -18,6 +19,7 @@ class Outcome:
         verdict: Pass, fail or alarm, with the reasons.
         figures: Following and contour error.
         cut: What the cut told; None without a stock.
+        gouge: The deepest cut into the nominal part, beyond what the job allows.
         alarms: Alarms of the machine, in order.
         near_miss: The closest that the tool's side and the part's came, below the machine's limit.
         warnings: The interpreter's.
@@ -31,6 +33,7 @@ class Outcome:
     verdict: Verdict
     figures: Figures
     cut: CutResult | None
+    gouge: NominalGouge | None
     alarms: tuple[Alarm, ...]
     near_miss: NearMiss | None
     warnings: tuple[Diagnostic, ...]

@@ -97,7 +97,15 @@ def _summary(run: Run, outcome: Outcome) -> RunSummary:
         wall_s=run.clock.wall_s,
         stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
         near_miss=None if outcome.near_miss is None else dataclasses.asdict(outcome.near_miss),
-        cut=None if outcome.cut is None else outcome.cut.as_json(),
+        cut=_cut(outcome),
         commanded=named(outcome.final_commanded),
         simulated=named(outcome.final_simulated),
     )
+
+
+def _cut(outcome: Outcome) -> dict[str, Any] | None:
+    """The object ``cut`` of ``result.json``."""
+    if outcome.cut is None:
+        return None
+    gouge = None if outcome.gouge is None else outcome.gouge.as_json()
+    return {**outcome.cut.as_json(), "nominal_gouge": gouge}

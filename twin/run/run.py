@@ -10,8 +10,9 @@ import numpy as np
 
 from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
-from twin.compare.verdict import judge
+from twin.compare.verdict import Check, judge
 from twin.cutting.axis_load import AxisLoad
+from twin.cutting.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
 from twin.machine.description.motion_limits import motion_limits
@@ -32,6 +33,7 @@ from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.stages import StageClock
 from twin.toolpath.part_frame import PartFrame
+from twin.units import UM_PER_MM
 from twin.version import __version__
 
 
@@ -139,9 +141,16 @@ class Run:
         duration_s = min(self._planned_s or reached.last_motion_s, reached.time_s)
         tolerance = self.preparation.job.file.tolerance
         return Outcome(
-            verdict=judge(figures, tolerance, alarms, cycle_time_s=duration_s),
+            verdict=judge(
+                figures,
+                tolerance,
+                alarms,
+                cycle_time_s=duration_s,
+                more=self._gouge_checks(machining.gouge),
+            ),
             figures=figures,
             cut=cut,
+            gouge=machining.gouge,
             alarms=alarms,
             near_miss=near_miss,
             warnings=dry_run.warnings,
@@ -156,6 +165,16 @@ class Run:
         for chunk in self.clock.watch("interpret", self.preparation.interpretation().chunks()):
             comparison.expect(chunk.moves)
             machining.expect(chunk)
+
+    def _gouge_checks(self, gouge: NominalGouge | None) -> list[Check]:
+        nominal = self.preparation.job.file.nominal
+        if nominal is None or nominal.gouge == "alarm":
+            return []
+        depth, line, when = (0.0, 0, 0.0)
+        if gouge is not None:
+            depth, line, when = gouge.depth_mm * UM_PER_MM, gouge.line, gouge.time_s
+        limit = nominal.gouge_um
+        return [Check("gouge_um", "gouge into the nominal part", depth, limit, "µm", line, when)]
 
     def _setpoints(self, comparison: Comparison, machining: Machining) -> Iterator[Setpoints]:
         """The planned motion; those who judge it hear of every move before it is simulated."""
@@ -201,7 +220,7 @@ class Run:
     def _machining(self, dry_run: DryRun) -> Machining:
         return Machining(
             self.preparation.machine,
-            self.preparation.job.file.stock,
+            self.preparation.job.file,
             dry_run.summary,
             self.part_frame,
             self.part_zero,

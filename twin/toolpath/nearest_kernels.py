@@ -15,6 +15,8 @@ _RESOLUTION_MM = 1e-9
 """A piece of a curve that can hold nothing nearer by more than this is left out."""
 _STEP_MM = 1e-10
 """Newton's method ends when a step is shorter than this; the distance changes by far less."""
+_LAST_STEP_MM = 1e-6
+"""So short a step of Newton's method leaves less than its square over the radius of curvature."""
 _SMALLEST_PIECE = 2.0**-10
 """Share of the searched fractions below which a piece is solved without the proof."""
 _ITERATIONS = 80
@@ -24,9 +26,10 @@ _ITERATIONS = 80
 @array_kernel
 def derivatives(path, move, u):
     """Point, first and second derivative by fraction in the part's frame, nine numbers [mm]."""
-    angle = u * path.sweep[move]
-    cosine, sine = math.cos(angle), math.sin(angle)
     sweep = path.sweep[move]
+    cosine, sine = 1.0, 0.0
+    if sweep != 0.0:
+        cosine, sine = math.cos(u * sweep), math.sin(u * sweep)
     f, s, o, a = path.first[move], path.second[move], path.origin[move], path.along[move]
     px = o[0] + u * a[0] + cosine * f[0] + sine * s[0]
     py = o[1] + u * a[1] + cosine * f[1] + sine * s[1]
@@ -42,7 +45,9 @@ def derivatives(path, move, u):
     wx = ddx - 2.0 * rate * dy - rate * rate * px
     wy = ddy + 2.0 * rate * dx - rate * rate * py
     turned = path.turn[move] + u * rate
-    c, t = math.cos(turned), math.sin(turned)
+    c, t = 1.0, 0.0
+    if turned != 0.0:
+        c, t = math.cos(turned), math.sin(turned)
     return (
         c * px - t * py, t * px + c * py, pz,
         c * vx - t * vy, t * vx + c * vy, dz,
@@ -60,6 +65,9 @@ def distance_at(path, move, u, x, y, z):
 @array_kernel
 def speed_at(path, move, u):
     """How fast the place moves with the fraction, seen from the part [mm]."""
+    if path.kind[move] == _LINE:
+        a = path.along[move]
+        return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
     _, _, _, dx, dy, dz, _, _, _ = derivatives(path, move, u)
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
@@ -101,7 +109,9 @@ def nearest_on_move(path, move, low, high, x, y, z):
     kind = path.kind[move]
     if kind != _LINE and kind != _CIRCLE:
         return _nearest_on_curve(path, move, low, high, x, y, z)
-    c, t = math.cos(path.turn[move]), math.sin(path.turn[move])
+    c, t = 1.0, 0.0
+    if path.turn[move] != 0.0:
+        c, t = math.cos(path.turn[move]), math.sin(path.turn[move])
     o = path.origin[move]
     rx, ry, rz = c * x + t * y - o[0], c * y - t * x - o[1], z - o[2]
     if kind == _LINE:
@@ -152,22 +162,33 @@ def _look(path, move, u, x, y, z):
 
 
 @array_kernel
-def _minimum_between(path, move, low, high, x, y, z):
-    """Distance and place of the minimum of a convex piece."""
+def _minimum_between(path, move, low, high, middle, x, y, z):
+    """Distance and place of the minimum of a convex piece, from what its middle looks like."""
     u = 0.5 * (low + high)
-    here, slope, curvature, speed = _look(path, move, u, x, y, z)
+    here, slope, curvature, speed = middle
+    begin, end = low, high
     for _ in range(_ITERATIONS):
         if slope > 0.0:
             high = u
         else:
             low = u
         new = u - slope / curvature if curvature > 0.0 else low
-        if not low < new < high:
+        quadratic = low < new < high
+        if not quadratic:
             new = 0.5 * (low + high)
+            # Where the piece falls up to its end, the end is the minimum.
+            if slope > 0.0 and low == begin:
+                at_end, falling, _, _ = _look(path, move, begin, x, y, z)
+                if falling >= 0.0:
+                    return at_end, begin
+            elif slope <= 0.0 and high == end:
+                at_end, rising, _, _ = _look(path, move, end, x, y, z)
+                if rising <= 0.0:
+                    return at_end, end
         moved = abs(new - u) * speed
         u = new
         here, slope, curvature, speed = _look(path, move, u, x, y, z)
-        if moved < _STEP_MM:
+        if moved < _STEP_MM or (quadratic and moved < _LAST_STEP_MM):
             break
     return here, u
 
@@ -190,6 +211,13 @@ def _bounds(path, move):
 
 
 @array_kernel
+def _bend(second, third, here, speed, half):
+    """How much the curvature of half the squared distance may change within half a piece [mm²]."""
+    across = (speed + 0.5 * second * half) * half
+    return (3.0 * (speed + second * half) * second + (here + across) * third) * half
+
+
+@array_kernel
 def _nearest_on_curve(path, move, low, high, x, y, z):
     """Nearest place of a curve between two fractions; no minimum is missed, cusps included.
 
@@ -198,22 +226,27 @@ def _nearest_on_curve(path, move, low, high, x, y, z):
     it does about the middle of a circle.
     """
     second, third = _bounds(path, move)
+    start, step = low, high - low
+    half, whole = 0.5 * step, 0.5 * (low + high)
+    look = _look(path, move, whole, x, y, z)
+    if look[2] > _bend(second, third, look[0], look[3], half):
+        return _minimum_between(path, move, low, high, look, x, y, z)
     best, best_u = distance_at(path, move, high, x, y, z), high
     at_low = distance_at(path, move, low, x, y, z)
     if at_low < best:
         best, best_u = at_low, low
-    start, step = low, high - low
     smallest = step * _SMALLEST_PIECE
     while start < high:
         end = min(start + step, high)
         half = 0.5 * (end - start)
         middle = start + half
-        here, slope, curvature, speed = _look(path, move, middle, x, y, z)
+        look = _look(path, move, middle, x, y, z)
+        here, slope, curvature, speed = look
         if here < best:
             best, best_u = here, middle
         across = (speed + 0.5 * second * half) * half
         if here - across < best - _RESOLUTION_MM and across > _RESOLUTION_MM:
-            bend = (3.0 * (speed + second * half) * second + (here + across) * third) * half
+            bend = _bend(second, third, here, speed, half)
             # Taylor's bound on half the squared distance: of circles about the point, and of all
             # that is nearly so, it leaves out far longer pieces than the speed alone.
             falls = abs(slope) * half + 0.5 * max(bend / 3.0 - curvature, 0.0) * half**2
@@ -222,7 +255,7 @@ def _nearest_on_curve(path, move, low, high, x, y, z):
                 if curvature <= bend and step > smallest:
                     step = half
                     continue
-                here, u = _minimum_between(path, move, start, end, x, y, z)
+                here, u = _minimum_between(path, move, start, end, look, x, y, z)
                 if here < best:
                     best, best_u = here, u
         start, step = end, 4.0 * half

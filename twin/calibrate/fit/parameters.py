@@ -19,6 +19,9 @@ class Parameters:
     velocity_feedforward: float
     acceleration_feedforward: float
     reset_time_s: float
+    loop_delay_s: float
+    velocity_filter_s: float
+    command_filter_s: float
     current_scale: float
     current_at_rest: float
     delay: float = 0.0
@@ -39,6 +42,7 @@ class Coordinate:
         low: Lowest value.
         high: Highest value.
         logarithmic: Moved by its logarithm: it is positive, and errors are shares.
+        reciprocal: Moved by one over it, and 0 as 0: a time whose rate counts, 0 being none.
     """
 
     unit: str
@@ -46,17 +50,31 @@ class Coordinate:
     low: float
     high: float
     logarithmic: bool = False
+    reciprocal: bool = False
 
     def inside(self, value: float) -> float:
         """The coordinate of a value."""
+        if self.reciprocal:
+            return 1.0 / value if value > 0.0 else 0.0
         return math.log(value) if self.logarithmic else value
 
     def outside(self, coordinate: float) -> float:
         """The value of a coordinate."""
-        return math.exp(coordinate) if self.logarithmic else coordinate
+        if self.reciprocal:
+            return 1.0 / coordinate if coordinate > _SLOWEST_RATE else 0.0
+        return math.exp(min(max(coordinate, -700.0), 700.0)) if self.logarithmic else coordinate
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lowest and highest coordinate."""
+        if self.reciprocal:
+            return 0.0, 1.0 / self.low
+        return self.inside(self.low), self.inside(self.high)
 
 
 _ANY = float("inf")
+_SLOWEST_RATE = 1e-3
+"""A rate below this is none [1/s]."""
 
 
 def coordinates(kind: str, force_scale: float) -> dict[str, Coordinate]:
@@ -81,7 +99,10 @@ def coordinates(kind: str, force_scale: float) -> dict[str, Coordinate]:
         "constant_force": Coordinate(force, nudge, -_ANY, _ANY),
         "velocity_feedforward": Coordinate("", 1e-4, 0.0, 1.0),
         "acceleration_feedforward": Coordinate("", 1e-3, 0.0, 1.0),
-        "reset_time_s": Coordinate("s", 1e-5, 0.0, 10.0),
+        "reset_time_s": Coordinate("s", 0.05, 1e-3, 1e3, reciprocal=True),
+        "loop_delay_s": Coordinate("s", 1e-5, 0.0, 0.02),
+        "velocity_filter_s": Coordinate("s", 1e-5, 0.0, 0.02),
+        "command_filter_s": Coordinate("s", 1e-5, 0.0, 0.1),
         "current_scale": Coordinate(f"{force}/A", 1e-4, 1e-9, 1e9, logarithmic=True),
         "current_at_rest": Coordinate("A", 1e-4, -_ANY, _ANY),
         "delay": Coordinate("s", 1e-6, -0.05, 0.2),
@@ -107,6 +128,9 @@ def of_base(axis: AxisTable, mass: float) -> Parameters:
         velocity_feedforward=axis.velocity_feedforward,
         acceleration_feedforward=axis.acceleration_feedforward,
         reset_time_s=axis.reset_time_s,
+        loop_delay_s=axis.loop_delay_s,
+        velocity_filter_s=axis.velocity_filter_s,
+        command_filter_s=axis.command_filter_s,
         current_scale=axis.current_scale or 1.0,
         current_at_rest=axis.current_at_rest,
     )

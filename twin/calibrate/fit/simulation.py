@@ -2,13 +2,14 @@
 
 Between two inputs the axis is linear, so that a step is a matrix exponential; dry friction acts as in
 ``axis_kernels``. ``tests/calibrate/test_drive_simulation.py`` holds it to MuJoCo's run of the same machine
-file. The state is (q, v, y, x): position, speed, what the measuring filter shows, and what the
-velocity loop has integrated; inputs are the setpoint, its velocity and acceleration, and what pushes
-from outside over mass.
+file. The state begins with position and speed; what the axis has besides (an integrator, filters, a
+dead time) adds one state each. Inputs are the setpoint, its velocity and acceleration, and what
+pushes from outside over mass.
 """
 
 import dataclasses
 import math
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
@@ -25,6 +26,8 @@ _POLYLINE_LOSS = 1.0 / 12.0
 _SPEED = 1
 _FASTEST_FILTER_S = 1e-6
 """A filter faster than this is none [s]."""
+_STANDS = 1e-3
+"""An axis slower than this stands [mm/s or deg/s]."""
 _START_S = 0.01
 """Over this time the first speed of a log is seen [s]."""
 
@@ -128,75 +131,117 @@ def simulate_axis(parameters: Parameters, command: Command) -> Motion:
         parameters: The axis.
         command: What it was told.
     """
-    unit = to_si(command.kind)
-    inertia = parameters.mass * unit
-    law, feedforward, integral = _control_law(parameters)
-    states_of, forward = _matrices(parameters, law, feedforward, integral, inertia)
+    inertia = parameters.mass * to_si(command.kind)
+    system = _system(parameters, inertia)
     step = command.step_s
-    transition, now, then = _discrete(states_of, forward, step)
-    inputs = np.column_stack(
-        [
-            command.position[:, 0] - _POLYLINE_LOSS * step**2 * command.position[:, 2],
-            command.position[:, 1:],
-            (command.push + parameters.constant_force) / inertia,
-        ]
-    )
-    push = now[:, 3] + then[:, 3]
-    place, speed = command.start
-    stored = 0.0
-    if integral:
-        asked = law[0] * (command.position[0, 0] - place) + inputs[0, 3]
-        stored = -asked / integral if abs(speed) < 1e-3 else 0.0
-    start = np.array([place, speed, place, stored])
+    transition, now, then = _discrete(system.rates, system.forward, step)
+    told = np.column_stack([command.position, (command.push + parameters.constant_force) / inertia])
+    inputs = told.copy()
+    inputs[:, 0] -= _POLYLINE_LOSS * step**2 * told[:, 2]
+    start = _start_state(parameters, system, told[0], command.start)
     dry = parameters.dry_friction / inertia
+    push = now[:, 3] + then[:, 3]
     states = step_axis(transition, now, then, push, inputs, start, dry, _SPEED)
-    lag = command.position[:, 0] - states[:, 0]
-    drive = (
-        law[0] * lag
-        - law[1] * states[:, 1]
-        + command.position[:, 1:] @ feedforward
-        + integral * states[:, 3]
-    )
-    filtered = parameters.measuring_filter > _FASTEST_FILTER_S
-    rate = (states[:, 0] - states[:, 2]) / parameters.measuring_filter if filtered else states[:, 1]
-    return Motion(
-        position=states[:, 2] if filtered else states[:, 0],
-        velocity=rate,
-        speed=states[:, 1],
-        force=drive * inertia,
-    )
+    width = system.width
+    drive = states @ system.force[:width] + told @ system.force[width:]
+    shown = system.places.get("measuring_filter")
+    position, rate = states[:, 0], states[:, 1]
+    if shown is not None:
+        position = states[:, shown]
+        rate = (states[:, 0] - position) / parameters.measuring_filter
+    return Motion(position=position, velocity=rate, speed=states[:, 1], force=drive * inertia)
 
 
-def _control_law(parameters: Parameters) -> tuple[FloatArray, FloatArray, float]:
-    """Gains over mass: of lag and speed, of the setpoint's speed and acceleration, of the integral."""
+_OPTIONAL = (
+    "measuring_filter", "reset_time_s", "command_filter_s", "velocity_filter_s", "loop_delay_s",
+)  # fmt: skip
+"""Parameters that add a state where they are not zero."""
+
+
+class _System(NamedTuple):
+    """An axis as a linear system, but for its dry friction."""
+
+    width: int
+    """Number of states."""
+    places: dict[str, int]
+    """Of the states that parameters add."""
+    rates: FloatArray
+    """Of the states by the states, (width, width)."""
+    forward: FloatArray
+    """And by the inputs, (width, 4)."""
+    force: FloatArray
+    """Of the drive over mass, by states and inputs, (width + 4,)."""
+    law: FloatArray
+    """What it would be without the dead time."""
+
+
+def _system(parameters: Parameters, inertia: float) -> _System:
+    """The law of ``twin.machine.model.drives`` over mass, every signal as a row over states and inputs."""
+    added = [name for name in _OPTIONAL if getattr(parameters, name) > _FASTEST_FILTER_S]
+    places = {name: 2 + number for number, name in enumerate(added)}
+    width = 2 + len(added)
+    every = np.eye(width + 4)
+    place, speed = every[0], every[1]
+    setpoint, told_speed, told_change, pushed = every[width:]
+    rates = np.zeros((width, width + 4))
+    if "command_filter_s" in places:
+        behind, lag = every[places["command_filter_s"]], parameters.command_filter_s
+        filtered_speed = (setpoint - behind) / lag
+        told_change = (told_speed - filtered_speed) / lag
+        setpoint, told_speed = behind, filtered_speed
+        rates[places["command_filter_s"]] = filtered_speed
+    seen_speed = speed
+    if "velocity_filter_s" in places:
+        seen_speed = every[places["velocity_filter_s"]]
+        rates[places["velocity_filter_s"]] = (speed - seen_speed) / parameters.velocity_filter_s
     loop = kv_per_second(parameters.kv)
     frequency = 2.0 * parameters.damping_ratio * loop
     damping = 2.0 * parameters.damping_ratio * frequency
-    reset = 1.0 / parameters.reset_time_s if parameters.reset_time_s else 0.0
-    law = np.array([frequency**2 + damping * reset, damping])
-    told = np.array(
-        [parameters.velocity_feedforward * damping, parameters.acceleration_feedforward]
-    )
-    return law, told, damping * reset * loop
+    reset = 1.0 / parameters.reset_time_s if "reset_time_s" in places else 0.0
+    law = (frequency**2 + damping * reset) * (setpoint - place)
+    law = law + damping * (parameters.velocity_feedforward * told_speed - seen_speed)
+    law = law + parameters.acceleration_feedforward * told_change
+    if "reset_time_s" in places:
+        trail = (1.0 - parameters.velocity_feedforward) / loop
+        law = law + damping * reset * loop * every[places["reset_time_s"]]
+        rates[places["reset_time_s"]] = setpoint - trail * told_speed - place
+    force = law
+    if "loop_delay_s" in places:
+        late = every[places["loop_delay_s"]]
+        force = 2.0 * late - law
+        rates[places["loop_delay_s"]] = (law - late) / (parameters.loop_delay_s / 2.0)
+    if "measuring_filter" in places:
+        shown = every[places["measuring_filter"]]
+        rates[places["measuring_filter"]] = (place - shown) / parameters.measuring_filter
+    rates[0] = speed
+    rates[1] = force - parameters.viscous_friction / inertia * speed + pushed
+    return _System(width, places, rates[:, :width], rates[:, width:], force, law)
 
 
-def _matrices(
-    parameters: Parameters, law: FloatArray, told: FloatArray, integral: float, inertia: float
-) -> tuple[FloatArray, FloatArray]:
-    """Rates of the state by the state (4, 4) and by the inputs (4, 4)."""
-    states_of = np.zeros((4, 4))
-    forward = np.zeros((4, 4))
-    states_of[0, 1] = 1.0
-    states_of[1] = [-law[0], -law[1] - parameters.viscous_friction / inertia, 0.0, integral]
-    forward[1] = [law[0], told[0], told[1], 1.0]
-    if parameters.measuring_filter > _FASTEST_FILTER_S:
-        states_of[2, 0] = 1.0 / parameters.measuring_filter
-        states_of[2, 2] = -1.0 / parameters.measuring_filter
-    if integral:
-        states_of[3, 0] = -1.0
-        trail = (1.0 - parameters.velocity_feedforward) / kv_per_second(parameters.kv)
-        forward[3] = [1.0, -trail, 0.0, 0.0]
-    return states_of, forward
+def _start_state(
+    parameters: Parameters, system: _System, told: FloatArray, start: tuple[float, float]
+) -> FloatArray:
+    """The states at the first input: filters that have settled, an integrator that holds the axis."""
+    place, speed = start
+    width, places = system.width, system.places
+    state = np.zeros(width)
+    state[:2] = place, speed
+    for name, value in (
+        ("measuring_filter", place - speed * parameters.measuring_filter),
+        ("command_filter_s", told[0] - told[1] * parameters.command_filter_s),
+        ("velocity_filter_s", speed),
+    ):
+        if name in places:
+            state[places[name]] = value
+
+    def law() -> float:
+        return float(system.law[:width] @ state + system.law[width:] @ told)
+
+    if "reset_time_s" in places and abs(speed) < _STANDS:
+        state[places["reset_time_s"]] = -(law() + told[3]) / system.law[places["reset_time_s"]]
+    if "loop_delay_s" in places:
+        state[places["loop_delay_s"]] = law()
+    return state
 
 
 def _discrete(

@@ -93,8 +93,7 @@ def solve(problem: Problem, start: Parameters, free: Sequence[str]) -> Solution:
         free: Names of those that are fitted.
     """
     ways = [problem.coordinates[name] for name in free]
-    low = np.array([way.inside(way.low) for way in ways])
-    high = np.array([way.inside(way.high) for way in ways])
+    low, high = np.array([way.bounds for way in ways]).reshape(-1, 2).T
     begin = np.array(
         [way.inside(getattr(start, name)) for name, way in zip(free, ways, strict=True)]
     )
@@ -137,20 +136,31 @@ def solve(problem: Problem, start: Parameters, free: Sequence[str]) -> Solution:
     )
 
 
-def promised_cost(problem: Problem, best: Solution, name: str) -> float:
-    """What the cost would come to with one parameter more, by the tangents at an optimum."""
+def promised_costs(problem: Problem, best: Solution, names: Sequence[str]) -> dict[str, float]:
+    """What the cost would come to with one parameter more, by the tangents at an optimum.
+
+    Args:
+        problem: What is minimised.
+        best: The optimum.
+        names: Parameters, each of which is tried by itself.
+    """
     here = problem.residuals(best.parameters)
-    columns = []
-    for moved in (*best.free, name):
+
+    def tangent(moved: str) -> FloatArray:
         way = problem.coordinates[moved]
         value = way.inside(getattr(best.parameters, moved))
-        step = way.step if value + way.step < way.inside(way.high) else -way.step
+        step = way.step if value + way.step < way.bounds[1] else -way.step
         there = dataclasses.replace(best.parameters, **{moved: way.outside(value + step)})
-        columns.append((problem.residuals(there) - here) / step)
-    tangents = np.column_stack(columns)
-    size = np.maximum(np.sqrt(np.sum(tangents**2, axis=0)), _NOTHING)
-    step_to, *_ = np.linalg.lstsq(tangents / size, -here, rcond=1e-10)
-    return float(np.sqrt(np.mean((here + tangents / size @ step_to) ** 2)))
+        slope = (problem.residuals(there) - here) / step
+        return slope / max(float(np.sqrt(slope @ slope)), _NOTHING)
+
+    known = [tangent(moved) for moved in best.free]
+    promised = {}
+    for name in names:
+        tangents = np.column_stack([*known, tangent(name)])
+        step_to, *_ = np.linalg.lstsq(tangents, -here, rcond=1e-10)
+        promised[name] = float(np.sqrt(np.mean((here + tangents @ step_to) ** 2)))
+    return promised
 
 
 def _covariance(jacobian: FloatArray, rest: FloatArray, batch: IntArray) -> FloatArray:
@@ -186,17 +196,17 @@ def _intervals(
     for index, (name, way) in enumerate(zip(free, ways, strict=True)):
         half = reach * float(np.sqrt(covariance[index, index]))
         value = float(point[index])
-        with np.errstate(over="ignore"):
-            low, high = (
-                max(way.low, min(way.high, _outside(way, value + side * half)))
-                for side in (-1.0, 1.0)
-            )
-        found[name] = Interval(way.outside(value), low, high)
+        ends = [_end(way, value + side * half) for side in (-1.0, 1.0)]
+        found[name] = Interval(way.outside(value), min(ends), max(ends))
     return found
 
 
-def _outside(way: Coordinate, coordinate: float) -> float:
-    return float(np.exp(np.clip(coordinate, -700, 700))) if way.logarithmic else coordinate
+def _end(way: Coordinate, coordinate: float) -> float:
+    """Value at the end of an interval; open where a rate may be none."""
+    low, high = way.bounds
+    if way.reciprocal and coordinate <= 0.0:
+        return float("inf")
+    return way.outside(min(max(coordinate, low), high))
 
 
 def _correlations(covariance: FloatArray) -> FloatArray:

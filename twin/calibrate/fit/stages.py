@@ -12,7 +12,7 @@ from twin.calibrate.fit.solve import (
     Interval,
     Problem,
     Solution,
-    promised_cost,
+    promised_costs,
     solve,
 )
 from twin.calibrate.fit.stretch import Stretch, predict
@@ -21,10 +21,17 @@ from twin.units import AxisKind, kv_per_second, to_si
 
 WORTH = 0.9
 """What is not needed is not fitted: one parameter more must leave less than this share."""
+_ENOUGH = 1e-4
+"""A fit that leaves less than this share of the following error is as good as the simulation."""
 _HOPE = 0.97
 """A parameter is tried where the tangent at the optimum promises less than this share."""
-_EXTRAS = ("delay", "velocity_feedforward", "acceleration_feedforward", "measuring_filter")
-_DAMPINGS = (0.3, 0.5, 0.8, 1.2, 2.0)
+_EXTRAS = (
+    "delay", "velocity_feedforward", "acceleration_feedforward", "measuring_filter", "reset_time_s",
+    "loop_delay_s", "velocity_filter_s", "command_filter_s",
+)  # fmt: skip
+OF_THE_LOG = ("delay", "force_delay", "measuring_filter")
+"""Parameters of a log's columns; the machine has none."""
+_DAMPINGS = (0.5, 1.2)
 _WIDE = 0.5
 """A parameter whose interval reaches further than this share to a side is not determined."""
 _VISCOUS_SHARE = 0.05
@@ -66,15 +73,16 @@ def fit_axis(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters) -> 
     free = _core(stretches)
     problem = _weighted(kind, stretches, start)
     best = min(
-        (
-            solve(problem, dataclasses.replace(start, damping_ratio=z), free)
-            for z in _DAMPINGS[1::2]
-        ),
+        (solve(problem, dataclasses.replace(start, damping_ratio=z), free) for z in _DAMPINGS),
         key=lambda solution: solution.cost,
     )
+    if base.reset_time_s:
+        plain = dataclasses.replace(best.parameters, reset_time_s=0.0)
+        best = min(best, solve(problem, plain, free), key=lambda solution: solution.cost)
     problem = _weighted(kind, stretches, best.parameters)
     best = solve(problem, best.parameters, free)
-    best = _with_extras(problem, best)
+    if _share_left(stretches, best.parameters) > _ENOUGH:
+        best = _with_extras(problem, best)
     best, undetermined = _without_undetermined(problem, best, base)
     fitted = dict(best.intervals)
     if "delay" not in fitted and "delay" not in undetermined:
@@ -83,6 +91,15 @@ def fit_axis(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters) -> 
             name: interval.spanning(other.intervals[name]) for name, interval in fitted.items()
         }
         fitted["delay"] = Interval(0.0, 0.0, 0.0).spanning(other.intervals["delay"])
+    if best.parameters.reset_time_s != base.reset_time_s and "reset_time_s" not in fitted:
+        other = solve(problem, best.parameters, [*best.free, "reset_time_s"])
+        fitted["reset_time_s"] = dataclasses.replace(
+            other.intervals["reset_time_s"], value=best.parameters.reset_time_s
+        )
+    undetermined |= {
+        name: "the log does not ask for another value" for name in _EXTRAS
+        if name not in fitted and name not in undetermined and name not in OF_THE_LOG
+    }  # fmt: skip
     if any(stretch.command.every > 1 for stretch in stretches):
         fitted = _allowing_for_drawing(kind, stretches, best, fitted)
     return _told(stretches, best, fitted, undetermined)
@@ -103,6 +120,13 @@ def _allowing_for_drawing(
         else interval
         for name, interval in fitted.items()
     }
+
+
+def _share_left(stretches: Sequence[Stretch], parameters: Parameters) -> float:
+    """What the model leaves of the following error, as a share."""
+    left = np.concatenate([columns[0] for columns in _columns_left(stretches, parameters)])
+    lag = np.concatenate([stretch.lag for stretch in stretches])
+    return float(np.sqrt(np.mean(left**2) / max(float(np.mean(lag**2)), 1e-30)))
 
 
 def _core(stretches: Sequence[Stretch]) -> list[str]:
@@ -203,7 +227,8 @@ def _with_extras(problem: Problem, best: Solution) -> Solution:
     """Take in what else the log asks for, one after the other."""
     left: list[str] = list(_EXTRAS)
     while left:
-        hopeful = [name for name in left if promised_cost(problem, best, name) < _HOPE * best.cost]
+        promised = promised_costs(problem, best, left)
+        hopeful = [name for name in left if promised[name] < _HOPE * best.cost]
         tried = [(solve(problem, best.parameters, [*best.free, name]), name) for name in hopeful]
         better, name = min(tried, key=lambda pair: pair[0].cost, default=(best, ""))
         if better.cost > WORTH * best.cost:

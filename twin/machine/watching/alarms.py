@@ -26,6 +26,7 @@ AlarmCode = Literal[
     "collision",
     "rapid-into-stock",
     "spindle-off",
+    "gouge",
     "emergency-stop",
     "control-stop",
 ]

@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import gc
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -93,14 +94,26 @@ def open_room(
         role: f"{server.origin}/{role}/#{token}" for role, token in doorkeeper.tokens.items()
     }
     server.start(Guard(app.asgi, doorkeeper, local=server.local))
-    turns_s = sys.getswitchinterval()
-    sys.setswitchinterval(TURNS_S)
     try:
-        yield OpenRoom(driver, app, addresses, writer.folder)
+        with _prompt_threads():
+            yield OpenRoom(driver, app, addresses, writer.folder)
     finally:
-        sys.setswitchinterval(turns_s)
         server.stop()
         writer.close()
+
+
+@contextlib.contextmanager
+def _prompt_threads() -> Iterator[None]:
+    """Let no thread wait long for another, nor all of them for the search through modules' objects."""
+    turns_s = sys.getswitchinterval()
+    sys.setswitchinterval(TURNS_S)
+    gc.collect()
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
+        sys.setswitchinterval(turns_s)
 
 
 def warm_up(scene: Scene) -> None:
