@@ -16,6 +16,21 @@ from benches.row import Row, processor_seconds
 from twin.files.shipped import resource_root
 
 LINES = 1000
+_FIRST_MOVES = """
+import sys
+from pathlib import Path
+from twin.nc.canonical import Axes
+from twin.nc.control.settings import ControlSettings
+from twin.nc.dialects import dialect_named
+from twin.nc.interpreter import Interpretation
+from twin.nc.text.source import read_source
+axes = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
+run = Interpretation(
+    read_source(Path(sys.argv[1])), dialect_named("gost"), ControlSettings(axes=axes)
+)
+assert len(next(iter(run.chunks())).moves) > 0
+"""
+_COMPILE = "from twin.nc.compile_all import compile_all; compile_all()"
 TEN = ("codesys", "fagor8070/omitted_words.toml", "fagor8070/full_circles.toml",
        "fagor8070/three_planes.toml", "mefi")  # fmt: skip
 """Ten small programs."""
@@ -39,8 +54,17 @@ def rows() -> Iterator[Row]:
             "run of a helix": helix,
             "rehearsal of a training scene": ["train", "codesys_opening_angle", "--rehearse"],
         }
+<<<<<<< HEAD
         cold = {}
         for number, task in enumerate(tuple(tasks)[:2]):
+=======
+        commands = {task: ["-m", "twin", *command] for task, command in tasks.items()}
+        twice = folder / "twice.nc"
+        twice.write_text(long.read_text() * 2)
+        commands[f"first moves of {2 * LINES} lines"] = ["-c", _FIRST_MOVES, str(twice)]
+        commands["whole compilation of the language"] = ["-c", _COMPILE]
+        for number, (task, command) in enumerate(commands.items()):
+>>>>>>> main
             kernels = folder / f"kernels{number}"
             cold[task] = _seconds(tasks[task], kernels)
         for task, command in tasks.items():
@@ -54,8 +78,13 @@ def rows() -> Iterator[Row]:
 def _seconds(command: list[str], kernels: Path) -> float:
     began = processor_seconds()
     subprocess.run(  # noqa: S603 (this project's own command)
+<<<<<<< HEAD
         [sys.executable, "-m", "twin", *command],
         env=os.environ | {"XDG_CACHE_HOME": str(kernels), "NUMBA_CACHE_DIR": str(kernels)},
         check=True, capture_output=True,
+=======
+        [sys.executable, *command],
+        env=os.environ | {"NUMBA_CACHE_DIR": str(kernels)}, check=True, capture_output=True,
+>>>>>>> main
     )  # fmt: skip
     return processor_seconds() - began

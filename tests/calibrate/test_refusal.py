@@ -90,6 +90,25 @@ def test_a_slow_log_is_fitted_as_far_as_it_tells(log: MachineLog) -> None:
     assert fit.fitted["delay"].low < 0.0 < fit.fitted["delay"].high
 
 
+@pytest.mark.parametrize(("rapid", "told"), [(2000.0, False), (500.0, True)])
+def test_friction_that_grows_with_speed_is_not_extrapolated(
+    log: MachineLog, rapid: float, told: bool
+) -> None:
+    axis, every = log.axes["X"], slice(0, None, 50)
+    current = axis.more["force"][every] / 100.0
+    slow = dataclasses.replace(
+        log, time=log.time[every], line=log.line[every],
+        axes={"X": dataclasses.replace(axis, command=axis.command[every], actual=axis.actual[every],
+                                       more={"current": current})},
+    )  # fmt: skip
+    fit = calibrate(mill(velocity=rapid), [slow]).axes["X"].fit
+    assert ("viscous_friction" in fit.conditional) == told
+    assert "viscous_friction" in fit.undetermined
+    if not told:
+        assert "would be extrapolated" in fit.undetermined["viscous_friction"]
+        assert fit.parameters.viscous_friction == mill().axis("X").viscous_friction
+
+
 def test_the_step_of_quantised_values_is_found() -> None:
     draw = np.random.default_rng(2)
     values = draw.standard_normal(500)

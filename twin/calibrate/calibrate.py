@@ -66,7 +66,7 @@ def calibrate(
         kind = machine.axis(name).kind
         base = of_base(machine.axis(name), masses[name])
         own = [item for item in fitted if name in item.log.axes]
-        fit = _fit(kind, name, own, base)
+        fit = _fit(kind, name, own, base, machine.axis(name).velocity)
         results[name] = AxisResult(kind, fit, _units(kind), _limits(name, own))
         figures += [
             _figures(item, name, fit.parameters) for item in fitted + held if name in item.log.axes
@@ -151,10 +151,12 @@ def _units(kind: AxisKind) -> dict[str, str]:
     return {name: way.unit for name, way in coordinates(kind, 1.0).items()}
 
 
-def _fit(kind: AxisKind, name: str, logs: Sequence[_Log], base: Parameters) -> AxisFit:
+def _fit(
+    kind: AxisKind, name: str, logs: Sequence[_Log], base: Parameters, fastest: float
+) -> AxisFit:
     fast = [item for item in logs if item.health.period_s <= SLOW_S]
     if not fast:
-        return fit_slow(kind, [_slow(item, name) for item in logs], base)
+        return fit_slow(kind, [_slow(item, name) for item in logs], base, fastest)
     pieces = [piece for item in fast for piece in _stretches(item, name)]
     return fit_axis(kind, pieces, base)
 

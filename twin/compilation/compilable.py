@@ -5,10 +5,9 @@ becomes known to the compiler. Such a function has one source for both speeds, a
 of its own: it is compiled once, as a part of the kernels that call it.
 """
 
-import functools
 import math
-from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple, TypeVar, cast
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -28,6 +27,8 @@ class Declared(NamedTuple):
 
 
 _declared: list[Declared] = []
+_ARITHMETIC: Mapping[str, Any] = {"_nrt": False, "error_model": "numpy"}
+"""An undefined value is infinity or NaN, and raises nothing."""
 
 
 def compilable(function: Function) -> Function:
@@ -56,18 +57,41 @@ def inlined(function: Function) -> Function:
     return function
 
 
-def compilable_arithmetic(function: Function) -> Function:
-    """Let kernels compile a function whose undefined values are infinity or NaN, raising nothing."""
+def compilable_choice(functions: Sequence[Callable[..., float]]) -> Callable[..., float]:
+    """One function that calls the one of several that its first argument numbers.
 
-    @functools.wraps(function)
-    def run(*values: Any) -> Any:
+    What Python refuses to compute is NaN; compiled it is infinity or NaN.
+    """
+
+    def run(number: int, *values: float) -> float:
         try:
-            return function(*values)
+            return functions[number](*values)
         except (ArithmeticError, ValueError):
             return math.nan
 
-    _declared.append(Declared(run, function, {"_nrt": False, "error_model": "numpy"}))
-    return cast("Function", run)
+    chosen = _else(functions[-1])
+    for number in range(len(functions) - 2, -1, -1):
+        chosen = _either(number, functions[number], chosen)
+    _declared.append(Declared(run, chosen, _ARITHMETIC))
+    return run
+
+
+def _either(
+    number: int, function: Callable[..., float], others: Callable[..., float]
+) -> Callable[..., float]:
+    def choose(chosen: int, *values: float) -> float:
+        return function(*values) if chosen == number else others(chosen, *values)
+
+    _declared.append(Declared(choose, choose, _ARITHMETIC))
+    return choose
+
+
+def _else(function: Callable[..., float]) -> Callable[..., float]:
+    def choose(_chosen: int, *values: float) -> float:
+        return function(*values)
+
+    _declared.append(Declared(choose, choose, _ARITHMETIC))
+    return choose
 
 
 def take_declared() -> list[Declared]:

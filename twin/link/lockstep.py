@@ -101,7 +101,7 @@ class LockstepMotion:
         self._session = session
         self._phase = _Phase.RUNNING if session else _Phase.BEFORE
         self._enabled, self._left = False, False
-        self._log = SampleLog(self._count, self._period)
+        self._log = SampleLog(self._period)
         self._line = self._source_line = 0
         self._sequence = 0
         self._reason, self._reason_number = b"", 0
@@ -203,11 +203,12 @@ class LockstepMotion:
             self._phase = _Phase.RUNNING
         running = self._phase is _Phase.RUNNING
         if self._line:
-            lag = commands.position - self._live.position
-            seen = np.array(request.following_error[: self._count])
-            self.greatest_disagreement = max(
-                self.greatest_disagreement, float(np.abs(seen - lag).max())
-            )
+            asked, stood = commands.position.tolist(), self._live.position.tolist()
+            for seen, command, place in zip(
+                request.following_error[: self._count], asked, stood, strict=True
+            ):
+                differs = abs(seen - (command - place))
+                self.greatest_disagreement = max(self.greatest_disagreement, differs)
         self._line = request.line if running else 0
         samples = self._step_to(position)
         if running:

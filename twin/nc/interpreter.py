@@ -39,6 +39,7 @@ class Interpretation:
         dialect: The language it is read in.
         settings: What the control was told of the machine and the job.
         before_compiled_tier: Done when the compiled tier is about to be loaded, which may have to compile it.
+        compiled_after: Blocks and moves after which the compiled tier has taken over; None: it has not.
     """
 
     def __init__(
@@ -63,6 +64,7 @@ class Interpretation:
         self.dialect = dialect
         self.settings = settings
         self.before_compiled_tier: Callable[[], None] = lambda: None
+        self.compiled_after: int | None = None
         self._compiled_from = compiled_from
         self._speed = usual_speed() if speed is None else speed
         self._control = Executor(dialect, settings, source)
@@ -91,21 +93,22 @@ class Interpretation:
         control = self._control
         try:
             control.prepare()
-            done, due = 0, self._compiled_after()
+            done, moves, due = 0, 0, self._compiled_after()
             machine = self._virtual_machine(done) if due == 0 else None
             while not control.ended:
                 if machine is None or not machine.run():
                     block = control.program_counter.next()
                     if block is None:
                         break
-                    before = len(control.path)
                     control.run(block)
-                    if machine is None:
-                        done += 1 + len(control.path) - before
-                        if done >= due:
-                            machine, due = self._virtual_machine(done), done + _LOOK_AGAIN
-                if len(control.path) >= CHUNK or (machine is not None and machine.full):
+                before, moves = moves, len(control.path)
+                if machine is None:
+                    done += 1 + moves - before
+                    if done >= due:
+                        machine, due = self._virtual_machine(done), done + _LOOK_AGAIN
+                if moves >= CHUNK or (machine is not None and machine.full):
                     yield control.path.take()
+                    moves = 0
             control.finish()
         except ProgramError:
             yield control.path.take()
@@ -122,9 +125,10 @@ class Interpretation:
         if self._speed is Speed.COLD:
             return cold
         waits = self._speed is Speed.HOT or done >= _PAYS
-        if waits or not compiles_beside(cold):
-            return VirtualMachine(self._control, hot())
-        return None
+        if not waits and compiles_beside(cold):
+            return None
+        self.compiled_after = done
+        return VirtualMachine(self._control, hot())
 
     def _compiled_after(self) -> int:
         """Blocks and moves after which the compiled tier begins."""

@@ -2,10 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
+from jerk_oracle import circle, shortest_time
 from motion_checks import assert_within_limits
 from motion_programs import PERIOD, Program, duration, mill, run
 
+from twin.motion.limits import MotionLimits
 from twin.nc.canonical import Corner
 
 
@@ -39,3 +42,27 @@ def test_circles_keep_the_limits(turns: int) -> None:
 def test_it_does_not_matter_how_many_blocks_make_a_circle() -> None:
     whole, cut = (duration(circles(3.0, 4, blocks), mill()) for blocks in (1, 4))
     assert cut == pytest.approx(whole, rel=1e-6)
+
+
+def even_mill() -> MotionLimits:
+    """X and Y alike: the oracle's axes."""
+    return mill(
+        acceleration=np.full(4, 4000.0), jerk=np.full(4, 5e4),
+        path_acceleration=4000.0, path_jerk=5e4,
+    )  # fmt: skip
+
+
+def test_the_oracle_knows_a_straight_line() -> None:
+    """Jerk up and down again takes 4 (s / (2 j))^(1/3); between its places the oracle gains a little."""
+    nearly_straight = circle(1e4, 20.0 / (math.tau * 1e4))
+    ratio = shortest_time(nearly_straight, 1e4, 5e4) / (4.0 * (20.0 / 2.0 / 5e4) ** (1.0 / 3.0))
+    assert 0.97 < ratio < 1.0
+
+
+@pytest.mark.parametrize(
+    ("radius", "turns", "most"), [(0.5, 3, 1.26), (5.0, 1, 1.35), (50.0, 1, 1.29)]
+)
+def test_circles_beside_the_shortest_time(radius: float, turns: int, most: float) -> None:
+    """No faster than can be, and no slower than they are known to be."""
+    shortest = shortest_time(circle(radius, turns), 4000.0, 5e4)
+    assert 1.0 < duration(circles(radius, turns), even_mill()) / shortest < most

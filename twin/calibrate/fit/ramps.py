@@ -25,6 +25,12 @@ _UNLIKELY = 10.0
 """A sample that fits no ramp better than this is left out."""
 _LATER = 0.05
 """What a less plain course of the speed must fit better."""
+_ALIKE = 1.0
+"""Courses that fit no worse than the best by more than this are as likely."""
+_TELLING = 0.3
+"""Where likely courses make lags that differ by more than this share, a sample tells nothing."""
+_TYPICAL_LAG_S = 0.008
+"""Lag by which courses are told apart [s]."""
 NEEDED = ("command_velocity", "velocity", "command_acceleration")
 """Columns without which ramps tell nothing."""
 
@@ -39,6 +45,7 @@ class Ramp:
         place: Of the sample, in inputs of the command.
         window: Inputs per cycle of the control.
         lag: Logged commanded minus actual velocity [mm/s or deg/s].
+        tells: Whether all courses of the speed that fit the sample make alike lags.
     """
 
     row: int
@@ -46,6 +53,7 @@ class Ramp:
     place: int
     window: int
     lag: float
+    tells: bool
 
 
 def find_cycle(log: MachineLog, rows: tuple[tuple[int, int], ...]) -> float:
@@ -77,7 +85,8 @@ def find_ramps(
         rows: First and last row, exclusive, of each stretch.
         cycle_s: Over which the control forms its velocities [s].
     """
-    return [ramp for cost, ramp in _candidates(log, name, rows, cycle_s) if cost < _UNLIKELY]
+    found = _candidates(log, name, rows, cycle_s)
+    return [ramp for cost, ramp in found if cost < _UNLIKELY and ramp.tells]
 
 
 def _candidates(
@@ -104,6 +113,7 @@ def _likeliest(axis: AxisLog, row: int, rate: float, cycle_s: float) -> tuple[fl
     window = round(cycle_s / _STEP_S)
     speed = max(abs(asked[row]), 1e-3 * rate)
     best_cost, best_place, best = np.inf, 0, np.zeros(len(time))
+    lags: list[tuple[float, float]] = []
     courses = _courses(time, asked[row - 1 : row + 2], rate)
     for order, course in enumerate(courses):
         mean = _averaged(course, window)
@@ -111,8 +121,12 @@ def _likeliest(axis: AxisLog, row: int, rate: float, cycle_s: float) -> tuple[fl
         cost = ((mean - asked[row]) / (0.01 * speed + 0.05 * rate * cycle_s)) ** 2
         cost = cost + ((change - changed[row]) / (0.04 * rate)) ** 2 + order * _LATER
         place = int(np.argmin(cost))
+        earlier = mean[max(0, place - round(_TYPICAL_LAG_S / _STEP_S))]
+        lags.append((float(cost[place]) - order * _LATER, float(mean[place] - earlier)))
         if cost[place] < best_cost:
             best_cost, best_place, best = float(cost[place]), place, course
+    alike = [lag for cost, lag in lags if cost < best_cost + _ALIKE]
+    tells = max(alike) - min(alike) <= _TELLING * max(map(abs, alike))
     change = np.gradient(best, _STEP_S)
     position = np.concatenate([[0.0], np.cumsum((best[1:] + best[:-1]) / 2) * _STEP_S])
     command = Command(
@@ -120,7 +134,7 @@ def _likeliest(axis: AxisLog, row: int, rate: float, cycle_s: float) -> tuple[fl
         (0.0, float(best[0])),
     )  # fmt: skip
     lag = float(asked[row] - axis.more["velocity"][row])
-    return best_cost, Ramp(row, command, best_place, window, lag)
+    return best_cost, Ramp(row, command, best_place, window, lag, tells)
 
 
 def _courses(time: FloatArray, speeds: FloatArray, rate: float) -> list[FloatArray]:

@@ -23,6 +23,8 @@ _OUTLIER = 2.0
 """A residual beyond so many typical ones counts by its square root: a course was mistaken."""
 _STILL = 0.02
 """An axis slower than this share of its greatest speed counts as standing."""
+_REACHES = 0.3
+"""Share of the rapid velocity that a log must reach to tell of friction that grows with speed."""
 _TOO_SLOW = "the log is too slow to show how the position loop settles"
 _NOT_TOLD = {
     "kv": _TOO_SLOW,
@@ -48,8 +50,15 @@ class SlowLog:
     period_s: float
 
 
-def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters) -> AxisFit:
-    """Fit what slow logs tell of an axis; everything else stays at the base's value."""
+def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters, fastest: float) -> AxisFit:
+    """Fit what slow logs tell of an axis; everything else stays at the base's value.
+
+    Args:
+        kind: Of the axis.
+        logs: Of the axis.
+        base: What is not determined stays at.
+        fastest: Rapid velocity of the base's axis [mm/s or deg/s].
+    """
     ramps = [ramp for log in logs for ramp in log.ramps]
     if len(ramps) >= _FEW:
         best = _fit_ramps(kind, ramps, base)
@@ -60,15 +69,23 @@ def fit_slow(kind: AxisKind, logs: Sequence[SlowLog], base: Parameters) -> AxisF
             "velocity_feedforward": "the log does not tell a drive's lag from a delay of its columns"
         }
     fitted = dict(best.intervals)
+    unit = "mm" if kind == "linear" else "deg"
     conditional: dict[str, tuple[Interval, tuple[str, ...]]] = {}
     parameters = best.parameters
     if all("current" in log.axis.more for log in logs):
-        parameters, conditional = _fit_friction(kind, logs, parameters)
+        reached = max(float(np.abs(_speed(log)).max(initial=0.0)) for log in logs)
+        reaches = reached >= _REACHES * fastest
+        parameters, conditional = _fit_friction(kind, logs, parameters, viscous=reaches)
         told |= {
             name: f"only its ratio to the force per ampere is told; {interval.value:.4g} holds for "
             f"current_scale {parameters.current_scale:.4g}"
             for name, (interval, _) in conditional.items()
         }
+        if not reaches:
+            told["viscous_friction"] = (
+                f"the log reaches {reached:.3g} of {fastest:.3g} {unit}/s, and a friction that grows "
+                "with speed would be extrapolated"
+            )
         told["current_scale"] = "too few samples within ramps tell force per ampere from friction"
     else:
         told |= dict.fromkeys(
@@ -153,14 +170,20 @@ def slow_force(
 
 
 def _fit_friction(
-    kind: AxisKind, logs: Sequence[SlowLog], at: Parameters
+    kind: AxisKind, logs: Sequence[SlowLog], at: Parameters, *, viscous: bool
 ) -> tuple[Parameters, dict[str, tuple[Interval, tuple[str, ...]]]]:
     """Friction from the current of rows that move, for the force per ampere that ramps suggest."""
     rows = [_friction_rows(log, at) for log in logs]
     columns = np.vstack([part[0] for part in rows])
     shown = np.concatenate([part[1] for part in rows])
-    found, *_ = np.linalg.lstsq(columns, shown, rcond=None)
     inertia = at.mass * to_si(kind)
+    if viscous:
+        found, *_ = np.linalg.lstsq(columns, shown, rcond=None)
+    else:
+        # What is known of viscous friction takes its share of the force, as the mass does.
+        moved = columns[:, 0] + at.viscous_friction / inertia * columns[:, 1]
+        less, *_ = np.linalg.lstsq(np.column_stack([moved, columns[:, 2:]]), shown, rcond=None)
+        found = np.array([less[0], less[0] * at.viscous_friction / inertia, less[1], less[2]])
     scale = inertia / found[0] if found[0] > 0 else at.current_scale
     rest = shown - columns @ found
     typical = max(float(np.std(rest)), 1e-9)
@@ -180,7 +203,7 @@ def _fit_friction(
     )  # fmt: skip
     batch = (np.arange(len(shown)) * BATCHES // len(shown)).astype(np.int64)
     ways = coordinates(kind, max(start.dry_friction, 1.0))
-    free = ["dry_friction", "viscous_friction", "current_at_rest"]
+    free = ["dry_friction", "current_at_rest", *["viscous_friction"] * viscous]
     solution = solve(Problem(residuals, batch, ways), start, free)
     stands_on = ("current_scale",)
     return solution.parameters, {

@@ -29,6 +29,14 @@ NOTHING, WORDS_ALONE = 0, 1
 been read."""
 
 
+class Instruction(NamedTuple):
+    """One row of the table; what the operands mean, ``opcodes`` says."""
+
+    opcode: int
+    operand: int
+    immediate: float
+
+
 class BytecodeTable(NamedTuple):
     """The rows, as the kernel reads them.
 

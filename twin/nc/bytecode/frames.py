@@ -1,7 +1,16 @@
-"""What the compiled run through a program is given and changes besides its moves, as columns."""
+"""How far a program has come: its location, the parts that it calls, and how they end.
 
+Both tiers keep it in the same columns.
+"""
+
+from copy import deepcopy
 from typing import NamedTuple
 
+import numpy as np
+
+from twin.compilation.compilable import compilable
+from twin.nc.bytecode.bytecode import LARGEST_PART, MOST_STORES, MOST_VALUES, PART_BITS
+from twin.nc.bytecode.registers import MOST_WORDS, State
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.path.compensation.contour import Contour
 
@@ -12,10 +21,12 @@ caller; blocks run; moves made."""
 PROGRESS = 8
 
 BACK, FIRST, AGAIN, LAST, OWNS_SCOPE, RESTORES = range(6)
-"""Columns of the calls, as ``CallFrame`` has them; ``LAST`` is ``NO_LOCATION`` where a word ends the
-part, ``RESTORES`` is one of the following."""
+"""Columns of the calls: where to go on; where the part begins; how often it still runs anew before
+that; its last block where it ends by its location, ``NO_LOCATION`` where a word ends it; whether it has
+local variables of its own, which its end forgets; and what its end puts back into force, one of the
+following."""
 NOTHING_RESTORED, RESTORED_BY_CONTROL, RESTORED_HERE = range(3)
-"""What its end puts back into force: nothing; what only the control knows; what ``Saved`` holds."""
+"""What its end puts back into force: nothing; what the control has kept; what ``Saved`` holds."""
 CALL_COLUMNS = 6
 NO_LOCATION = -1
 MOST_CALLS = 64
@@ -25,6 +36,43 @@ ENDED, FULL, PAUSED, UNCOMPILED_LINE, TRAPPED, OFF_PAGE = range(6)
 """Why a run ends: behind the last line; no room for a move; the caller has not been heard for
 long; at a line that is to be compiled; at a block for the interpreter tier; at a line of
 another page."""
+
+
+@compilable
+def go_to(location: int, progress: IntArray) -> None:
+    """Let a location come next."""
+    progress[LINE], progress[PART] = location >> PART_BITS, location & LARGEST_PART
+
+
+@compilable
+def end_part(progress: IntArray, calls: IntArray) -> None:
+    """The innermost called part has ended: run it again, or go back to its caller."""
+    call = calls[progress[CALLS] - 1]
+    if call[AGAIN] > 0:
+        call[AGAIN] -= 1
+        go_to(call[FIRST], progress)
+    else:
+        progress[CALLS] -= 1
+        progress[DEPTH] -= call[OWNS_SCOPE]
+        go_to(call[BACK], progress)
+
+
+@compilable
+def end_parts(progress: IntArray, calls: IntArray) -> None:
+    """Parts that end by their location and have been passed end."""
+    while progress[CALLS] > 0:
+        last = calls[progress[CALLS] - 1, LAST]
+        if last == NO_LOCATION or (progress[LINE] << PART_BITS | progress[PART]) <= last:
+            return
+        end_part(progress, calls)
+
+
+@compilable
+def innermost(calls: IntArray, called: int) -> int:
+    """How many parts are being run up to the innermost that a word ends; 0: there is none."""
+    while called > 0 and calls[called - 1, LAST] != NO_LOCATION:
+        called -= 1
+    return called
 
 
 class VariableStore(NamedTuple):
@@ -71,3 +119,45 @@ class ExecutionState(NamedTuple):
     memory: VariableStore
     saved: Saved
     contour: Contour
+
+
+WORDS, STORES = range(2)
+"""Places in the counts of ``Scratch``."""
+
+
+class Scratch(NamedTuple):
+    """Room to work in.
+
+    Attributes:
+        counts: How many ``WORDS`` and ``STORES`` there are, shape (2,).
+        token_kinds: Of words, shape (``MOST_WORDS``,).
+        values: Of words, shape (``MOST_WORDS``,).
+        modal: Modal state of the block.
+        snapshot: State before a block that runs often.
+        stack: Shape (``MOST_VALUES``,).
+        slots: Variables that the block has set, shape (``MOST_STORES``,).
+        before: What they held before, shape (``MOST_STORES``,).
+    """
+
+    counts: IntArray
+    token_kinds: IntArray
+    values: FloatArray
+    modal: FloatArray
+    snapshot: State
+    stack: FloatArray
+    slots: IntArray
+    before: FloatArray
+
+
+def new_scratch(state: State) -> Scratch:
+    """Room to work in, for a state of this size."""
+    return Scratch(
+        np.zeros(2, np.int64),
+        np.zeros(MOST_WORDS, np.int64),
+        np.zeros(MOST_WORDS),
+        np.zeros_like(state.modal),
+        deepcopy(state),
+        np.zeros(MOST_VALUES),
+        np.zeros(MOST_STORES, np.int64),
+        np.zeros(MOST_STORES),
+    )

@@ -1,7 +1,8 @@
 """What an instruction does, by its opcode; ``operand`` and ``immediate`` are its other columns.
 
 Values wait on a stack. A block begins with ``BLOCK`` and ends with ``NEXT``; before its first instruction
-that cannot be undone it has met all that could stop it.
+that cannot be undone it has met all that could stop it. Opcodes of one kind follow each other: their
+range says which function runs them.
 """
 
 BLOCK = 0
@@ -10,6 +11,9 @@ NEXT = 1
 """The block ends."""
 TRAP = 2
 """The interpreter tier must run this block."""
+
+# --- values on the stack
+
 CONSTANT = 3
 """Put ``immediate`` on the stack."""
 LOAD = 4
@@ -32,12 +36,18 @@ TERNARY = 12
 """Replace the three topmost values by the function ``operand`` of them."""
 DROP = 13
 """Take the topmost value off the stack."""
+
+# --- variables
+
 STORE = 14
 """Give the variable with the slot ``operand`` the topmost value."""
 STORE_DECLARED = 15
 """Store the topmost value in the slot ``operand``, if that variable has a value of its own already."""
 STORE_NUMBERED = 16
 """Store the topmost value in the variable whose number lies below it."""
+
+# --- words and moves
+
 WORD = 17
 """The topmost value becomes a word of the token kind ``operand``."""
 WORD_CONSTANT = 18
@@ -46,95 +56,125 @@ RUN = 19
 """Execute the block's words."""
 RUN_REPEATEDLY = 20
 """Execute the block's words as often as the topmost value says, at most ``immediate`` times."""
-JUMP = 21
-"""Jump to the location ``operand``."""
-JUMP_IF = 22
-"""Jump to the location ``operand`` if the topmost value is not 0."""
-JUMP_UNLESS = 23
-"""Jump to the location ``operand`` if the topmost value is 0."""
-JUMP_CASE = 24
-"""Jump to the location ``operand`` if the topmost value equals the one below, which stays."""
-BEGIN_FOR = 25
-"""First, last and step become whether first lies beyond last, and first."""
-STEP_FOR = 26
-"""First, last, step and value become whether the next value is in reach, and that value."""
-COUNT_DOWN = 27
-"""Put on the stack whether the counter with the slot ``operand``, which begins at ``immediate``,
-is not 0 yet, and take 1 from it; at 0 it is forgotten."""
-CHECK_CALL = 28
-"""At most ``operand`` parts may call each other."""
-OWN_VARIABLES = 29
-"""The part that is called next has local variables of its own."""
-RESTORE_CODES = 30
-"""The end of the part that is called next restores the codes that are active now."""
-CALL = 31
-"""Run the part that begins at the location ``operand``."""
-RANGE = 32
-"""The range that is repeated next ends at the location ``operand``."""
-REPEAT = 33
-"""Run the range that begins at the location ``operand`` as often as the topmost value says."""
-CHECK_RETURN = 34
-"""There must be a part that can be returned from."""
-RETURN = 35
-"""Go back behind the call."""
-SNAPSHOT = 36
-"""What follows changes more than variables: keep a snapshot of the registers."""
-RUN_CODES = 37
+RUN_CODES = 21
 """Execute the block's words so far, and drop them except N."""
-RUN_POLAR = 38
+RUN_POLAR = 22
 """Execute the block's words, on a straight line to where R (``operand`` 1), Q (2) or both (3) lead,
 whose values are the topmost."""
-ACTIVATE = 39
-"""The G code ``operand`` becomes active."""
-PLANE = 40
-"""The plane ``operand`` becomes active: 0 to 2."""
-FUNCTION = 41
-"""Report the M function ``operand``."""
-SPINDLE_FUNCTION = 42
-"""Report the M function ``operand`` together with the spindle's speed."""
-SPEED = 43
-"""The spindle's speed is the topmost value; ``operand`` 1: report it."""
-TOOL = 44
-"""The topmost value is the number of the tool to prepare; ``operand`` 1: it must be one of the job's."""
-AUXILIARY = 45
-"""Report H with the topmost value."""
-DWELL = 46
-"""Wait as many seconds as the topmost value."""
-CHANGE_TOOL = 47
-"""The tool that was prepared last becomes the tool in use."""
-OFFSET_ON = 48
-"""``operand`` 1: tool offsets apply; 0: they do not."""
-TOOL_LENGTH = 49
-"""Shift Z by the length of the tool in use, if its offset applies."""
-SHIFT = 50
-"""The topmost values, one for each axis, are the shift ``operand``."""
-REFRAME = 51
-"""The shifts have changed."""
-BEGIN_TARGET = 52
-"""Begin to set new coordinates for the present position: until set, each axis keeps its own."""
-TARGET = 53
-"""The topmost value is the new coordinate of the axis ``operand``."""
-SET_POSITION = 54
-"""The new coordinates hold from here on, by the shift ``operand``."""
-POLAR_ORIGIN = 55
-"""``operand`` 2: the two topmost values are the polar origin; 0: the present position is."""
-TO_MILLIMETRES = 56
-"""Convert the topmost value from the active unit, as one of the axis ``operand``."""
-NO_PECKS = 57
-"""No drilling cycle with pecks may be in force."""
-FORGET_POLAR = 58
-"""The last R and Q are no longer modal."""
-TOOL_RADIUS = 59
-"""Put the radius of the tool in use on the stack; ``operand`` 1: 0 where it has no offset."""
-COMPENSATE = 60
+
+# --- the registers' snapshot, radius compensation
+
+SNAPSHOT = 23
+"""What follows changes more than variables: keep a snapshot of the registers."""
+COMPENSATE = 24
 """Radius compensation begins, of the topmost value, left (``operand`` 1) or right (-1)."""
-END_COMPENSATION = 61
+END_COMPENSATION = 25
 """Radius compensation ends."""
-CYCLE_WORD = 62
-"""The topmost value is that of the drilling cycle's word for ``operand``."""
-PROGRAMMED_RADIUS = 63
+
+# --- jumps
+
+JUMP = 26
+"""Jump to the location ``operand``."""
+JUMP_IF = 27
+"""Jump to the location ``operand`` if the topmost value is not 0."""
+JUMP_UNLESS = 28
+"""Jump to the location ``operand`` if the topmost value is 0."""
+JUMP_CASE = 29
+"""Jump to the location ``operand`` if the topmost value equals the one below, which stays."""
+
+# --- counted loops
+
+BEGIN_FOR = 30
+"""First, last and step become whether first lies beyond last, and first."""
+STEP_FOR = 31
+"""First, last, step and value become whether the next value is in reach, and that value."""
+COUNT_DOWN = 32
+"""Put on the stack whether the counter with the slot ``operand``, which begins at ``immediate``,
+is not 0 yet, and take 1 from it; at 0 it is forgotten."""
+
+# --- calls
+
+CHECK_CALL = 33
+"""At most ``operand`` parts may call each other."""
+OWN_VARIABLES = 34
+"""The part that is called next has local variables of its own."""
+RESTORE_CODES = 35
+"""The end of the part that is called next restores the codes that are active now."""
+CALL = 36
+"""Run the part that begins at the location ``operand``."""
+RANGE = 37
+"""The range that is repeated next ends at the location ``operand``."""
+REPEAT = 38
+"""Run the range that begins at the location ``operand`` as often as the topmost value says."""
+CHECK_RETURN = 39
+"""There must be a part that can be returned from."""
+RETURN = 40
+"""Go back behind the call."""
+
+# --- codes and events
+
+ACTIVATE = 41
+"""The G code ``operand`` becomes active."""
+FUNCTION = 42
+"""Report the M function ``operand``."""
+SPINDLE_FUNCTION = 43
+"""Report the M function ``operand`` together with the spindle's speed."""
+SPEED = 44
+"""The spindle's speed is the topmost value; ``operand`` 1: report it."""
+TOOL = 45
+"""The topmost value is the number of the tool to prepare; ``operand`` 1: it must be one of the job's."""
+AUXILIARY = 46
+"""Report H with the topmost value."""
+DWELL = 47
+"""Wait as many seconds as the topmost value."""
+
+# --- tools
+
+CHANGE_TOOL = 48
+"""The tool that was prepared last becomes the tool in use."""
+OFFSET_ON = 49
+"""``operand`` 1: tool offsets apply; 0: they do not."""
+TOOL_LENGTH = 50
+"""Shift Z by the length of the tool in use, if its offset applies."""
+TOOL_RADIUS = 51
+"""Put the radius of the tool in use on the stack; ``operand`` 1: 0 where it has no offset."""
+PROGRAMMED_RADIUS = 52
 """The topmost value is the radius that the program gives the tool; ``operand`` 0: put on the
 stack what it gave last."""
+
+# --- shifts of coordinates
+
+SHIFT = 53
+"""The topmost values, one for each axis, are the shift ``operand``."""
+REFRAME = 54
+"""The shifts have changed."""
+BEGIN_TARGET = 55
+"""Begin to set new coordinates for the present position: until set, each axis keeps its own."""
+TARGET = 56
+"""The topmost value is the new coordinate of the axis ``operand``."""
+SET_POSITION = 57
+"""The new coordinates hold from here on, by the shift ``operand``."""
+TO_MILLIMETRES = 58
+"""Convert the topmost value from the active unit, as one of the axis ``operand``."""
+
+# --- plane and polar coordinates
+
+PLANE = 59
+"""The plane ``operand`` becomes active: 0 to 2."""
+POLAR_ORIGIN = 60
+"""``operand`` 2: the two topmost values are the polar origin; 0: the present position is."""
+FORGET_POLAR = 61
+"""The last R and Q are no longer modal."""
+
+# --- drilling cycles
+
+NO_PECKS = 62
+"""No drilling cycle with pecks may be in force."""
+CYCLE_WORD = 63
+"""The topmost value is that of the drilling cycle's word for ``operand``."""
+
+# --- mirror, scale, rotation
+
 MIRROR = 64
 """The topmost value, -1 or 1, is the sign of the axis ``operand``."""
 SCALE = 65

@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from twin.compilation.compilable import compilable
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.path.drilling_cycle import VALUES
+from twin.nc.path.rows import Rows, copy, copy_rows
 
 (
     INTERPOLATION,
@@ -166,3 +168,40 @@ class State(NamedTuple):
     shifts: FloatArray
     total: FloatArray
     target: FloatArray
+
+
+class Machine(NamedTuple):
+    """What blocks run on.
+
+    Attributes:
+        tables: What words mean.
+        constants: What stays.
+        state: What changes with moves.
+        rows: Room for moves and events.
+    """
+
+    tables: BlockTables
+    constants: Constants
+    state: State
+    rows: Rows
+
+
+@compilable
+def copy_active_codes(
+    modal: FloatArray, active_codes: IntArray, to_modal: FloatArray, to_active_codes: IntArray
+) -> None:
+    """Copy what is in force."""
+    copy(modal, to_modal)
+    copy(active_codes, to_active_codes)
+
+
+@compilable
+def copy_state(source: State, target: State) -> None:
+    """Copy every column of a state."""
+    copy_active_codes(source.modal, source.active_codes, target.modal, target.active_codes)
+    copy(source.programmed, target.programmed)
+    copy(source.part, target.part)
+    copy(source.registers, target.registers)
+    copy(source.total, target.total)
+    copy_rows(source.shifts, target.shifts)
+    target.event_count[0] = source.event_count[0]

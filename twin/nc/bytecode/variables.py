@@ -4,7 +4,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from twin.nc.canonical import FloatArray
+from twin.nc.bytecode.frames import DEPTH, VariableStore
+from twin.nc.canonical import FloatArray, IntArray
 
 _ROOM = 32
 """Variables and calls that the columns begin with."""
@@ -21,17 +22,20 @@ class Variables:
         local: Values of the others, of the main program and of each call, shape (calls, m).
         given_common: What the job gives where the program has set none, shape (n,).
         given_local: What the job gives of the others, shape (m,).
-        depth: Row of ``local`` that is in use.
     """
 
     def __init__(
-        self, is_local: Callable[[str], bool], given: Callable[[str], float | None]
+        self,
+        is_local: Callable[[str], bool],
+        given: Callable[[str], float | None],
+        progress: IntArray,
     ) -> None:
         """Without variables.
 
         Args:
             is_local: Whether calls have a variable of that name anew.
             given: The job's value of a variable, or None.
+            progress: How far the program has come; its ``DEPTH`` is the row of ``local`` in use.
         """
         self._is_local = is_local
         self._given = given
@@ -41,7 +45,12 @@ class Variables:
         self.given_common = np.full(_ROOM, np.nan)
         self.local = np.full((_ROOM, _ROOM), np.nan)
         self.given_local = np.full(_ROOM, np.nan)
-        self.depth = 0
+        self._progress = progress.data
+
+    @property
+    def columns(self) -> VariableStore:
+        """The columns, which grow with the names that are known."""
+        return VariableStore(self.common, self.given_common, self.local, self.given_local)
 
     def slot(self, name: str) -> int:
         """The slot of a name."""
@@ -72,7 +81,7 @@ class Variables:
         slot = self._slots.get(name)
         if slot is None:
             return self._given(name)
-        value = float(self.common[slot] if slot >= 0 else self.local[self.depth, ~slot])
+        value = float(self.common[slot] if slot >= 0 else self.local[self._progress[DEPTH], ~slot])
         return value if value == value else self._given(name)
 
     def write(self, name: str, value: float) -> None:
@@ -81,7 +90,7 @@ class Variables:
         if slot >= 0:
             self.common[slot] = value
         else:
-            self.local[self.depth, ~slot] = value
+            self.local[self._progress[DEPTH], ~slot] = value
 
     def forget(self, name: str) -> None:
         """From now on the variable has no value."""
@@ -89,16 +98,13 @@ class Variables:
 
     def enter(self, values: Mapping[str, float]) -> None:
         """A call begins that has local variables of its own, these at first."""
-        self.depth += 1
-        if self.depth == len(self.local):
+        depth = self._progress[DEPTH] + 1
+        if depth == len(self.local):
             self.local = np.vstack([self.local, np.full_like(self.local, np.nan)])
-        self.local[self.depth] = np.nan
+        self._progress[DEPTH] = depth
+        self.local[depth] = np.nan
         for name, value in values.items():
             self.write(name, value)
-
-    def leave(self) -> None:
-        """That call has ended."""
-        self.depth -= 1
 
 
 def _doubled(column: FloatArray) -> FloatArray:

@@ -29,8 +29,7 @@ from twin.nc.bytecode.registers import (
     UNIT,
     BlockTables,
 )
-from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.compiled.kernels.tokenizer import (
+from twin.nc.bytecode.token_kinds import (
     AXIS,
     CENTER,
     CODE,
@@ -42,6 +41,7 @@ from twin.nc.compiled.kernels.tokenizer import (
     UNSUPPORTED,
     LineTables,
 )
+from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.control.codes import GCode
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import ArcRule, CycleRule, MotionMode

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from twin.nc.compiled.kernels import program
+from twin.nc.text.lines import Page
 
 
 class Kernels(NamedTuple):
@@ -32,6 +33,11 @@ def _run_program(*arguments: Any) -> int:
 
 
 COLD = Kernels(_run_program, program.unread_lines)
+
+
+def page_columns(page: Page) -> program.PageColumns:
+    """A page as kernels read it."""
+    return program.PageColumns(page.data, page.starts, page.lines.start)
 
 
 @functools.cache

@@ -5,10 +5,10 @@ import numpy as np
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.bytecode import INTERPRETED, LARGEST_PART, Bytecode
+from twin.nc.bytecode.token_kinds import CODE, FUNCTION, NUMBER
 from twin.nc.compiled.decode_tables import DecodeTables
-from twin.nc.compiled.entries import Kernels
+from twin.nc.compiled.entries import Kernels, page_columns
 from twin.nc.compiled.kernels.expression import BINARY_FUNCTIONS, TERNARY_FUNCTIONS, UNARY_FUNCTIONS
-from twin.nc.compiled.kernels.tokenizer import CODE, FUNCTION, NUMBER
 from twin.nc.compiled.line_templates import LineTemplates
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.executor import Executor
@@ -58,13 +58,7 @@ class LineCompiler:
         if self._copy(line, key, numbers):
             page = lines.page_of(line)
             ahead = self._kernels.unread_lines(
-                page.data,
-                page.starts,
-                page.lines.start,
-                self._lines,
-                bytecode.table.first,
-                line,
-                _AHEAD,
+                page_columns(page), self._lines, bytecode.table.first, line, _AHEAD
             )
             for each in ahead.tolist():
                 self._copy(each, *self._templates.split(lines[each]))

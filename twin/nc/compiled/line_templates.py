@@ -12,8 +12,8 @@ import numpy as np
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import BytecodeTable
+from twin.nc.bytecode.token_kinds import CODE, FUNCTION
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.compiled.kernels.tokenizer import CODE, FUNCTION
 from twin.nc.text.expressions import LARGEST_NUMBER, NUMBER
 
 _LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)

@@ -9,7 +9,24 @@ import math
 
 import numpy as np
 
-from twin.nc.bytecode.frames import FULL, OFF_PAGE, PAUSED, TRAPPED, UNCOMPILED_LINE
+from twin.nc.bytecode.frames import (
+    BLOCKS,
+    CALLS,
+    FULL,
+    LINE,
+    MADE,
+    MOST_CALLS,
+    OFF_PAGE,
+    PAUSED,
+    RESTORED_BY_CONTROL,
+    RESTORED_HERE,
+    RESTORES,
+    TRAPPED,
+    UNCOMPILED_LINE,
+    ExecutionState,
+    Saved,
+    new_scratch,
+)
 from twin.nc.bytecode.registers import (
     CYCLE,
     CYCLE_STATE,
@@ -25,20 +42,19 @@ from twin.nc.bytecode.registers import (
     SPINDLE,
     TURNED,
     Constants,
+    Machine,
     State,
 )
-from twin.nc.canonical import FloatArray
+from twin.nc.bytecode.token_kinds import UNSUPPORTED
+from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.decode_tables import DecodeTables
-from twin.nc.compiled.entries import Kernels, hot
-from twin.nc.compiled.kernels.block import new_scratch
+from twin.nc.compiled.entries import Kernels, hot, page_columns
 from twin.nc.compiled.kernels.cycle import MOST_STOPS
-from twin.nc.compiled.kernels.tokenizer import UNSUPPORTED
 from twin.nc.compiled.line_compiler import LineCompiler
-from twin.nc.compiled.state_transfer import StateTransfer, put_into_force
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import FEED_FACTORS
 from twin.nc.geometry.planes import PLANE_ORDER
-from twin.nc.path.compensation.contour import new_contour
+from twin.nc.path.compensation.contour import Contour, new_contour
 from twin.nc.path.drilling_cycle import most_acts, no_values
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import CHUNK
@@ -84,7 +100,12 @@ class VirtualMachine:
         self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
         self._radii = np.array([tool.radius for tool in table.values()])
         self._hole = np.zeros((4, most_acts(MOST_STOPS)))
-        self._scratch = new_scratch(self._state())
+        state = self._state()
+        self._scratch = new_scratch(state)
+        self._saved = Saved(
+            np.zeros((MOST_CALLS, len(state.modal))),
+            np.zeros((MOST_CALLS, len(state.active_codes)), np.int64),
+        )
         self._pause = 1
         self._wait = 0
         self.full = False
@@ -103,28 +124,33 @@ class VirtualMachine:
         if contour is None:
             return False
         state, rows = self._state(), self._rows.first(room)
-        transfer = StateTransfer(control, state, contour)
-        why = self._run(state, rows, transfer)
-        self.full = why == FULL and room - transfer.made < CHUNK
-        worthwhile = transfer.blocks >= _WORTHWHILE
+        control.program_counter.leave_line()
+        progress = control.program_counter.progress
+        begin = progress[LINE]
+        progress[[BLOCKS, MADE]] = 0
+        why = self._run(state, rows, contour)
+        made = int(progress[MADE])
+        self.full = why == FULL and room - made < CHUNK
+        worthwhile = progress[BLOCKS] >= _WORTHWHILE
         if why == TRAPPED:
             self._wait = 1 if worthwhile else self._pause
         self._pause = 1 if worthwhile or why != TRAPPED else min(2 * self._pause, _LONGEST_PAUSE)
-        if not transfer.gone_on:
-            return self.full
-        transfer.give_back()
-        self._give_back(state, rows.first(transfer.made))
+        if progress[BLOCKS] == 0 and made == 0 and progress[LINE] == begin:
+            return self.full  # it has gone past no line, and let go no move that was held
+        self._keep_saved_codes()
+        self._give_back(state, rows.first(made))
         return True
 
-    def _run(self, state: State, rows: Rows, transfer: StateTransfer) -> int:
+    def _run(self, state: State, rows: Rows, contour: Contour) -> int:
         """Run; why the run ended."""
-        line_compiler, constants = self._line_compiler, self._constants()
+        line_compiler, progress = self._line_compiler, self._control.program_counter.progress
+        machine = Machine(self._tables.blocks, self._constants(), state, rows)
         while True:
-            why = self._kernels.run_program(*self._arguments(state, rows, constants, transfer))
+            why = self._kernels.run_program(*self._arguments(machine, contour))
             if why == OFF_PAGE:
-                self._page = self._lines.page_of(transfer.line)
+                self._page = self._lines.page_of(int(progress[LINE]))
             elif why == UNCOMPILED_LINE:
-                if not line_compiler.compile(transfer.line):
+                if not line_compiler.compile(int(progress[LINE])):
                     return TRAPPED
             elif why != PAUSED:
                 return why
@@ -133,27 +159,25 @@ class VirtualMachine:
         """Whether the hot kernels could run now, without waiting for the compiler."""
         from twin.compilation.cache import is_compiled
 
-        state = self._state()
+        machine = Machine(self._tables.blocks, self._constants(), self._state(), self._rows)
         contour = new_contour(len(self._control.settings.axes))
-        transfer = StateTransfer(self._control, state, contour)
-        arguments = self._arguments(state, self._rows, self._constants(), transfer)
-        return is_compiled(hot().run_program, arguments)
+        return is_compiled(hot().run_program, self._arguments(machine, contour))
 
-    def _arguments(
-        self, state: State, rows: Rows, constants: Constants, transfer: StateTransfer
-    ) -> tuple[object, ...]:
-        """What ``run_program`` is given."""
+    def _arguments(self, machine: Machine, contour: Contour) -> tuple[object, ...]:
+        """What ``run_program`` is given; the columns of variables grow when lines are compiled."""
+        counter = self._control.program_counter
         return (
-            self._page.data,
-            self._page.starts,
-            self._page.lines.start,
+            page_columns(self._page),
             self._tables.lines,
-            self._tables.blocks,
-            constants,
-            state,
-            rows,
             self._line_compiler.bytecode.table,
-            transfer.execution,
+            machine,
+            ExecutionState(
+                counter.progress,
+                counter.calls,
+                self._control.variables.columns,
+                self._saved,
+                contour,
+            ),
             self._scratch,
             _MOST,
         )
@@ -249,9 +273,27 @@ class VirtualMachine:
         self._control.modal.cycle = cycle
         self._control.cycle_state = no_values() if cycle is None else values
 
+    def _keep_saved_codes(self) -> None:
+        """What the run has saved at calls that go on, the control can restore."""
+        control, counter = self._control, self._control.program_counter
+        for number, call in enumerate(counter.calls[: counter.progress[CALLS]]):
+            if call[RESTORES] == RESTORED_HERE:
+                before = control.saved_modal()
+                self._put_into_force(self._saved.active_codes[number])
+                counter.saved[number] = control.saved_modal()
+                call[RESTORES] = RESTORED_BY_CONTROL
+                control.restore_modal(before)
+
+    def _put_into_force(self, numbers: IntArray) -> None:
+        """Apply the codes that a run has found in each group."""
+        control = self._control
+        for number in numbers.tolist():
+            if number != UNSUPPORTED:
+                control.put_into_force(number, control.dialect.g[number])
+
     def _give_back(self, state: State, rows: Rows) -> None:
         control = self._control
-        put_into_force(control, state.active_codes)
+        self._put_into_force(state.active_codes)
         self._give_cycle_back(state)
         self._take_registers(state.registers.tolist())
         control.frame.set_shifts(state.shifts.tolist())
@@ -270,7 +312,7 @@ def compiles_beside(machine: VirtualMachine) -> bool:
     from twin.compilation.folders import lasts
 
     compilation = beside("twin.nc.compile_all")
-    if compilation.is_running():
+    if compilation.is_own():
         return True
     if machine.is_compiled():
         return False

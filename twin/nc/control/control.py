@@ -26,12 +26,12 @@ class Control(ControlWords):
 
     def target(self) -> list[float]:
         """Take the axis words; the programmed position that they ask for, shape (k,)."""
-        target = list(self.programmed)
+        target, modal = list(self.programmed), self.modal
         for index, word in self.take_axis_words():
             value = self.axis_value(index, word)
-            if self.modal.incremental or word.incremental:
+            if modal.incremental or word.incremental:
                 value += target[index]
-            if not abs(value) <= LARGEST_COORDINATE:
+            if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value
         return target

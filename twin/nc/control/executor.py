@@ -5,7 +5,6 @@ early M functions, the motion or what stands in its place, late M functions, jum
 be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
 """
 
-import dataclasses
 from typing import NoReturn
 
 from twin.nc.control.codes import GCode, Interpolation, MCode
@@ -60,10 +59,12 @@ class Executor(Control):
         functions = self._sort_words(block)
         codes = self._codes
         restore = self._apply_codes()
+        instead = None
         for _, code in codes:
             if code.action is not None:
                 code.action(self)
-        instead = next((code for _, code in codes if code.perform is not None), None)
+            if code.perform is not None:
+                instead = code
         self._run_modal_words("" if instead is None else instead.takes)
         for word, function in functions:
             if not function.late:
@@ -103,7 +104,7 @@ class Executor(Control):
             self.fail("repeat-count", f"{word.address} repeats motion only, no M, T, D or H", word)
         if count > self.settings.step_limit:
             self.fail("endless-program", f"more than {self.settings.step_limit} runs", word)
-        plain = dataclasses.replace(block, words=rest)
+        plain = block._replace(words=rest)
         for _ in range(int(count) - 1):
             self.run(plain)
         return plain
@@ -135,27 +136,29 @@ class Executor(Control):
         return restore
 
     def _sort_words(self, block: Block) -> list[tuple[Word, MCode]]:
-        self.codes = self._codes = []
-        self.words = {}
+        dialect = self.dialect
+        self.codes = self._codes = codes = []
+        self.words = words = {}
         self.series = []
         functions: list[tuple[Word, MCode]] = []
         for word in block.words:
-            if isinstance(word.value, Expression) and word.address not in self.dialect.references:
+            if isinstance(word.value, Expression) and word.address not in dialect.references:
                 word = word._replace(value=self.evaluate(word.value, word))
-            if word.address in self.dialect.signed and number_of(word) < 0.0:
+            if word.address in dialect.signed and number_of(word) < 0.0:
                 word = word._replace(address=f"{word.address}-")
-            if word.address == "G":
-                self._codes.append((word, self._g_code(word)))
-            elif word.address == "M" and not self._takes_m(block):
+            address = word.address
+            if address == "G":
+                codes.append((word, self._g_code(word)))
+            elif address == "M" and not self._takes_m(block):
                 functions.append((word, self._m_code(word)))
-            elif word.address in self.dialect.series and self._has_switch(block):
+            elif address in dialect.series and self._has_switch(block):
                 if isinstance(word.value, Expression):
                     word = word._replace(value=self.evaluate(word.value, word))
                 self.series.append(word)
-            elif word.address in self.words:
-                self.fail("duplicate-word", f"'{word.address}' stands twice in the block", word)
+            elif address in words:
+                self.fail("duplicate-word", f"'{address}' stands twice in the block", word)
             else:
-                self.words[word.address] = word
+                words[address] = word
         if len(self._codes) > 1:
             self._check_groups()
         if len(functions) > 1:
@@ -235,8 +238,10 @@ class Executor(Control):
                 self.fail("conflicting-codes", message, word, hint="write them in two blocks")
 
     def _run_modal_words(self, reserved: str) -> None:
-        words = self.words
-        for address, action in self.dialect.words.items():
+        words, modal_words = self.words, self.dialect.words
+        if words.keys().isdisjoint(modal_words):
+            return
+        for address, action in modal_words.items():
             if address in words and address not in reserved:
                 action(self, words.pop(address))
 
@@ -265,9 +270,8 @@ class Executor(Control):
 
     def _move(self) -> None:
         words = self.words
-        starts_cycle = any(code.begins_cycle for _, code in self._codes)
         motion_words = self.dialect.motion_words
-        if not starts_cycle and not any(address in motion_words for address in words):
+        if motion_words.isdisjoint(words) and not any(code.begins_cycle for _, code in self._codes):
             return
         interpolation = self.modal.cycle or self.modal.interpolation
         if interpolation is None:

@@ -1,10 +1,34 @@
 """Which block comes next: straight on, jumps, and a guard against programs without an end."""
 
-import dataclasses
 import re
 from collections.abc import Callable, Container, Iterator
 from typing import NamedTuple, NoReturn
 
+import numpy as np
+
+from twin.nc.bytecode.bytecode import PART_BITS, number_of_location
+from twin.nc.bytecode.frames import (
+    AGAIN,
+    BACK,
+    CALL_COLUMNS,
+    CALLS,
+    FIRST,
+    FURTHEST,
+    INSTRUCTION_BUDGET,
+    LAST,
+    LINE,
+    MOST_CALLS,
+    NO_LOCATION,
+    NOTHING_RESTORED,
+    OWNS_SCOPE,
+    PART,
+    PROGRESS,
+    RESTORED_BY_CONTROL,
+    RESTORES,
+    end_part,
+    end_parts,
+    innermost,
+)
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.control.modal import SavedModal
 from twin.nc.text.blocks import Block, Location
@@ -19,20 +43,17 @@ _CACHED_LINES = 10_000
 """Lines whose blocks are remembered once a program has jumped."""
 
 
-@dataclasses.dataclass(slots=True)
-class CallFrame:
-    """What happens when a called part of the program ends.
+class CallFrame(NamedTuple):
+    """A part of the program that is called, and what happens when it ends.
 
     Attributes:
-        back: Where to go on.
         first: Where it begins.
-        again: How often the part still runs anew before that.
+        again: How often it runs anew before the program goes on behind the call.
         last: Its last block where it ends by its location; None where it ends by a word.
         owns_scope: It has local variables of its own, which its end forgets.
         restores: What is put back into force at its end; None: nothing.
     """
 
-    back: Location
     first: Location
     again: int = 0
     last: Location | None = None
@@ -40,26 +61,13 @@ class CallFrame:
     restores: SavedModal | None = None
 
 
-class Progress(NamedTuple):
-    """How far a program has come.
-
-    Attributes:
-        location: What comes next.
-        furthest: The furthest location that was run.
-        instruction_budget: Blocks that may still be run again.
-    """
-
-    location: Location
-    furthest: Location
-    instruction_budget: int
-
-
 class ProgramCounter:
     """The program counter.
 
     Attributes:
-        location: The block that comes next.
-        calls: The parts of the program that are being run for a caller, the innermost last.
+        progress: How far the program has come, as ``frames`` has it, shape (``PROGRESS``,).
+        calls: The parts that are being run for a caller, the innermost last, as ``frames`` has them.
+        saved: What the ends of calls put back into force, by their rows.
     """
 
     def __init__(
@@ -68,7 +76,7 @@ class ProgramCounter:
         lexer: Lexer,
         step_limit: int,
         report: Reporter,
-        leave: Callable[[CallFrame], None],
+        restore: Callable[[SavedModal], None],
     ) -> None:
         """Stand before the program.
 
@@ -77,23 +85,23 @@ class ProgramCounter:
             lexer: Reads its lines.
             step_limit: Blocks that may be run again.
             report: Where diagnostics go.
-            leave: Done when a called part ends.
+            restore: Puts back into force what a called part has saved.
         """
         self._lines = source.lines
         self._lexer = lexer
         self._report = report
-        self._leave = leave
+        self._restore = restore
         self._step_limit = step_limit
-        self._steps_left = step_limit
-        self._furthest = Location(-1, 0)
+        self.progress = np.zeros(PROGRESS, np.int64)
+        self._now = self.progress.data
+        self._now[FURTHEST], self._now[INSTRUCTION_BUDGET] = -1, step_limit
+        self.calls = np.zeros((MOST_CALLS, CALL_COLUMNS), np.int64)
+        self.saved: dict[int, SavedModal] = {}
         self._labels: dict[int | str, list[Location]] | None = None
         self._cache: dict[int, tuple[Block, ...]] = {}
-        self._jumped = False
         self._told_to_end = False
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
-        self.location = Location(0, 0)
-        self.calls: list[CallFrame] = []
 
     @property
     def lines(self) -> Lines:
@@ -108,7 +116,17 @@ class ProgramCounter:
     @property
     def begun(self) -> bool:
         """A block was run."""
-        return self._furthest.line >= 0
+        return self._now[FURTHEST] >= 0
+
+    @property
+    def location(self) -> Location:
+        """The block that comes next."""
+        return Location(self._now[LINE], self._now[PART])
+
+    @property
+    def is_calling(self) -> bool:
+        """A part of the program is being run for a caller."""
+        return self._now[CALLS] > 0
 
     def next(self) -> Block | None:
         """The next block, or None at the end of the program.
@@ -116,17 +134,18 @@ class ProgramCounter:
         Raises:
             ProgramError: Its line cannot be read, or the program runs without end.
         """
-        while self.calls and self._past_end(self.calls[-1]):
-            self.end_part()
-        line, part = self.location
+        now = self._now
+        if now[CALLS]:
+            end_parts(self.progress, self.calls)
+        line, part = now[LINE], now[PART]
         while line < len(self._lines):
             blocks = self._blocks(line)
             if part < len(blocks):
-                self.location = Location(line, part + 1)
-                self._count(Location(line, part))
+                now[LINE], now[PART] = line, part + 1
+                self._count(line, part)
                 return blocks[part]
             line, part = line + 1, 0
-        self.location = Location(line, 0)
+        now[LINE], now[PART] = line, 0
         if not self._told_to_end:
             self._run_out()
         return None
@@ -136,18 +155,11 @@ class ProgramCounter:
         written = (line for line in range(len(self._lines), 0, -1) if self._lines[line - 1].strip())
         self._report.line = next(written, 0)
 
-    def progress(self) -> Progress:
-        """How far the program has come."""
-        line, part = self.location
-        if part > 0 and line == self._here_line and part >= len(self._here):
-            line, part = line + 1, 0
-        return Progress(Location(line, part), self._furthest, self._steps_left)
-
-    def resume(self, progress: Progress, calls: list[CallFrame]) -> None:
-        """The program has gone on past here, into these calls."""
-        self.location, self._furthest, self._steps_left = progress
-        self.calls = calls
-        self._jumped = self._jumped or self.location <= self._furthest
+    def leave_line(self) -> None:
+        """Let the next line come next where the last block of one was run."""
+        now = self._now
+        if now[PART] > 0 and now[LINE] == self._here_line and now[PART] >= len(self._here):
+            now[LINE], now[PART] = now[LINE] + 1, 0
 
     def quiet_blocks(self, line: int) -> tuple[Block, ...] | None:
         """A line's blocks, read before it is run; None where there is something to say of it."""
@@ -166,48 +178,52 @@ class ProgramCounter:
             self._here, self._here_line = blocks, line
         return blocks
 
-    def _past_end(self, call: CallFrame) -> bool:
-        return call.last is not None and self.location > call.last
-
     def call(self, call: CallFrame, deepest: int, column: int, width: int) -> None:
         """Run a part of the program for the block that asks for it.
 
         Raises:
             ProgramError: More than ``deepest`` parts call each other.
         """
-        if len(self.calls) >= deepest:
+        now = self._now
+        number = now[CALLS]
+        if number >= deepest:
             message = f"more than {deepest} calls within calls"
             self._report.fail("call-depth", message, column, width)
-        self._jumped = True
-        self.calls.append(call)
-        self.location = call.first
+        row = self.calls[number]
+        row[BACK] = number_of_location(self.location)
+        row[FIRST], row[AGAIN] = number_of_location(call.first), call.again
+        row[LAST] = NO_LOCATION if call.last is None else number_of_location(call.last)
+        row[OWNS_SCOPE], row[RESTORES] = call.owns_scope, NOTHING_RESTORED
+        if call.restores is not None:
+            row[RESTORES], self.saved[number] = RESTORED_BY_CONTROL, call.restores
+        now[CALLS] = number + 1
+        self.go(call.first)
 
-    def end_part(self) -> None:
-        """The innermost called part has ended: run it again, or go back to its caller."""
-        call = self.calls[-1]
-        if call.again > 0:
-            call.again -= 1
-            self.location = call.first
-            return
-        self.calls.pop()
-        self.location = call.back
-        self._leave(call)
+    def leave(self) -> bool:
+        """Go back behind the innermost call that a word ends; False where there is none."""
+        called = innermost(self.calls, self._now[CALLS])
+        if called == 0:
+            return False
+        self._now[CALLS] = called
+        end_part(self.progress, self.calls)
+        if self.calls[called - 1, RESTORES] == RESTORED_BY_CONTROL:
+            self._restore(self.saved.pop(called - 1))
+        return True
 
     def go(self, location: Location) -> None:
         """Go on at a location."""
-        self._jumped = True
-        self.location = location
+        self._now[LINE], self._now[PART] = location
 
     def end(self) -> None:
         """Go on behind the last line, which ends the program here."""
         self._told_to_end = True
-        self.location = Location(len(self._lines), 0)
+        self.go(Location(len(self._lines), 0))
 
     def seek(self, wanted: Callable[[Block], bool]) -> bool:
         """Go on at the next block that is wanted; stay where it is when there is none."""
         for block in self._ahead():
             if wanted(block):
-                self.location = Location(block.line - 1, block.part)
+                self.go(Location(block.line - 1, block.part))
                 return True
         return False
 
@@ -284,20 +300,22 @@ class ProgramCounter:
             return self._here
         blocks = self._cache.get(line)
         if blocks is None:
-            previous = self._lines[line - 1] if line else ""
-            blocks = self._lexer.blocks(self._lines[line], line + 1, previous)
-            if self._jumped and len(self._cache) < _CACHED_LINES:
+            blocks = self._lexer.blocks(
+                self._lines[line], line + 1, lambda: self._lines[line - 1] if line else ""
+            )
+            if line <= self._now[FURTHEST] >> PART_BITS and len(self._cache) < _CACHED_LINES:
                 self._cache[line] = blocks
         self._here, self._here_line = blocks, line
         return blocks
 
-    def _count(self, location: Location) -> None:
-        if location > self._furthest:
-            self._furthest = location
+    def _count(self, line: int, part: int) -> None:
+        now, here = self._now, line << PART_BITS | part
+        if here > now[FURTHEST]:
+            now[FURTHEST] = here
             return
-        self._steps_left -= 1
-        if self._steps_left < 0:
-            self._report.line = location.line + 1
+        now[INSTRUCTION_BUDGET] -= 1
+        if now[INSTRUCTION_BUDGET] < 0:
+            self._report.line = line + 1
             self._report.fail(
                 "endless-program",
                 f"more than {self._step_limit} blocks were repeated",

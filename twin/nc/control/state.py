@@ -8,7 +8,7 @@ from typing import NoReturn, Protocol
 
 from twin.nc.bytecode.variables import Variables
 from twin.nc.control.modal import Modal, SavedModal
-from twin.nc.control.program_counter import CallFrame, ProgramCounter
+from twin.nc.control.program_counter import ProgramCounter
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.tools import Tools
 from twin.nc.geometry.frame import Frame
@@ -120,10 +120,12 @@ class ControlState:
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
         lexer = Lexer(language, self.report)
         self.program_counter = ProgramCounter(
-            source, lexer, settings.step_limit, self.report, self._leave
+            source, lexer, settings.step_limit, self.report, self.restore_modal
         )
         self.variables = Variables(
-            language.is_local, lambda name: language.given_variable(settings.variables, name)
+            language.is_local,
+            lambda name: language.given_variable(settings.variables, name),
+            self.program_counter.progress,
         )
         self.cycle_values: dict[str, float] = {}
         self.cycle_state = no_values()
@@ -156,13 +158,6 @@ class ControlState:
     def restore_modal(self, saved: SavedModal) -> None:
         """Put back what ``saved_modal`` gave."""
         self.modal, self.active = saved
-
-    def _leave(self, part: CallFrame) -> None:
-        """A called part of the program has ended."""
-        if part.owns_scope:
-            self.variables.leave()
-        if part.restores is not None:
-            self.restore_modal(part.restores)
 
     def code_word(self, number: int) -> Word | None:
         """Where the block writes a G code, for diagnostics."""

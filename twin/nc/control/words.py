@@ -41,13 +41,15 @@ class ControlWords(ControlState, abc.ABC):
         Raises:
             ProgramError: The machine lacks an axis.
         """
-        taken = []
-        for address in [a for a in self.words if a in self.axis_letters]:
-            word = self.words.pop(address)
-            index = self.axis_index.get(address)
-            if index is None:
-                self.refuse_axis(word)
-            taken.append((index, word))
+        taken: list[tuple[int, Word]] = []
+        words, letters = self.words, self.axis_letters
+        for address in list(words):
+            if address in letters:
+                word = words.pop(address)
+                index = self.axis_index.get(address)
+                if index is None:
+                    self.refuse_axis(word)
+                taken.append((index, word))
         return taken
 
     def refuse_axis(self, word: Word) -> NoReturn:

@@ -1,13 +1,17 @@
 """What operators and functions of expressions compute, for every dialect. Truth is 1, falsehood 0.
 
-The compiled tier (``expression_kernels``) compiles these functions as they stand here, so that it
+The compiled tier (``compiled/kernels/expression``) compiles these functions as they stand here, so that it
 computes the same bits. Where a value is undefined Python raises ``ArithmeticError`` or
 ``ValueError``; the compiled ones give infinity or NaN there.
 """
 
 import math
+from collections.abc import Callable
+from typing import cast
 
-from twin.compilation.compilable import compilable
+import numpy as np
+
+from twin.compilation.compilable import compilable, compilable_as
 
 
 @compilable
@@ -219,3 +223,11 @@ def limited(low: float, a: float, high: float) -> float:
 def chosen(choice: float, no: float, yes: float) -> float:
     """The last value where the choice is true, else the one before."""
     return yes if choice != 0.0 else no
+
+
+def _remainder(a: float, b: float) -> float:
+    """NumPy's remainder is as exact, and warns of a division by zero."""
+    return np.fmod(a, b) if b != 0.0 else math.nan
+
+
+compilable_as(cast("Callable[..., float]", _remainder))(math.fmod)

@@ -1,6 +1,5 @@
 """A program's blocks: words with the place where they stand."""
 
-import dataclasses
 from typing import NamedTuple
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
@@ -54,8 +53,7 @@ class Statement(NamedTuple):
     text_column: int
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class Block:
+class Block(NamedTuple):
     """One block of a program.
 
     Attributes:

@@ -1,5 +1,7 @@
 """From a line of text to blocks of words, by a dialect's syntax."""
 
+from collections.abc import Callable
+
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.expression_reader import ExpressionReader
@@ -25,13 +27,15 @@ class Lexer:
         assert self._grammar.reader is not None
         return self._grammar.reader
 
-    def blocks(self, line: str, number: int, previous: str = "") -> tuple[Block, ...]:
+    def blocks(
+        self, line: str, number: int, previous: Callable[[], str] = str
+    ) -> tuple[Block, ...]:
         """Read a line; a line without words gives no block.
 
         Args:
             line: Its text.
             number: Its number, from 1.
-            previous: Text of the line before.
+            previous: Gives the text of the line before.
 
         Raises:
             ProgramError: It cannot be read.
@@ -43,7 +47,7 @@ class Lexer:
         try:
             return LineReader(self._grammar, self._report, line, number).blocks()
         except ProgramError:
-            excuse = self._grammar.syntax.excused(line, previous)
+            excuse = self._grammar.syntax.excused(line, previous())
             if excuse is None:
                 raise
         self._report.warn(excuse, "this line is no block and is left out", 0, len(line))

@@ -1,6 +1,7 @@
 """One line being read: its words, labels, comments and statements, from left to right."""
 
 import re
+import string
 import unicodedata
 from typing import NoReturn
 
@@ -27,6 +28,7 @@ _NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re
 _NAME = re.compile(r"[^\W\d_]\w+(?![\w(\[])")
 """Letters and digits without a bracket behind, as neither a value nor a function is written."""
 
+_LETTERS = frozenset(string.ascii_uppercase)
 _LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
 """Cyrillic letters that look like Latin ones: a keyboard left in the wrong layout."""
 
@@ -53,32 +55,38 @@ class LineReader:
         Raises:
             ProgramError: It cannot be read.
         """
-        line = self._line
-        match_word = self._grammar.word.match
         has_statements = self._grammar.statement is not None
-        name_of = self._grammar.name
-        words = self._words
+        end = len(self._line)
         while True:
-            if has_statements and not words and self._statement():
-                words = self._words
+            if has_statements and not self._words and self._statement():
                 continue
-            match = match_word(line, self._at)
-            if match is None:
-                if not self._something_else():
-                    break
+            if self._plain_words():
                 continue
-            address, number, suffix = match.groups()
-            begin, self._at = match.start(1), match.end()
-            if address in ("N", "n"):
-                self._label(number, begin)
-                words = self._words
-                continue
-            value = float(number)
-            if not abs(value) <= LARGEST_NUMBER:
-                self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
-            words.append(Word(name_of(address), value, begin, self._at - begin, bool(suffix)))
+            if self._at == end or not self._something_else():
+                break
         self._close()
         return tuple(self._done)
+
+    def _plain_words(self) -> bool:
+        """Read words with plain numbers; True behind an N where a statement may follow."""
+        line, at = self._line, self._at
+        match_word, name_of = self._grammar.word.match, self._grammar.name
+        while (match := match_word(line, at)) is not None:
+            address, number, suffix = match.groups()
+            begin, at = match.start(1), match.end()
+            if address in ("N", "n"):
+                self._at = at
+                self._label(number, begin)
+                if self._grammar.statement is not None:
+                    return True
+                continue
+            value = float(number)
+            if not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
+                self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
+            name = address if address in _LETTERS else name_of(address)
+            self._words.append(Word(name, value, begin, at - begin, bool(suffix)))
+        self._at = at
+        return False
 
     def _something_else(self) -> bool:
         """Read what is no plain word and no statement; False at the end of the line."""

@@ -101,9 +101,9 @@ class Lines(Sequence[str]):
     def __getitem__(self, index: int | slice) -> str | list[str]:
         if isinstance(index, slice):
             return [self[each] for each in range(*index.indices(len(self)))]
-        if not -len(self) <= index < len(self):
+        line = index if index >= 0 else index + self._count
+        if not 0 <= line < self._count:
             raise IndexError(index)
-        line = index % len(self)
         return self.page_of(line).line(line)
 
     def __iter__(self) -> Iterator[str]:

@@ -14,9 +14,9 @@ from twin.nc.bytecode.registers import (
     Constants,
     State,
 )
+from twin.nc.bytecode.token_kinds import AXIS, CENTER, RADIUS
 from twin.nc.compiled.kernels.frame import turn_arc
 from twin.nc.compiled.kernels.target import PlainBlock, value_of
-from twin.nc.compiled.kernels.tokenizer import AXIS, CENTER, RADIUS
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import Bounds, Point
 from twin.nc.geometry.planes import vector_of

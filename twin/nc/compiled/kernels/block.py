@@ -1,126 +1,95 @@
 """One block's words, run once or several times, and compensated."""
 
-from copy import deepcopy
 from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.compilable import compilable, inlined
-from twin.nc.bytecode.bytecode import MOST_STORES, MOST_VALUES
-from twin.nc.bytecode.registers import MOST_WORDS, BlockTables, Constants, State
-from twin.nc.canonical import FloatArray, IntArray
+from twin.compilation.compilable import inlined
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import Instruction
+from twin.nc.bytecode.frames import WORDS, Scratch
+from twin.nc.bytecode.registers import BAILOUT, CYCLE, Machine, copy_state
+from twin.nc.bytecode.token_kinds import NUMBER
+from twin.nc.compiled.kernels.cycle import NO_ROOM
+from twin.nc.compiled.kernels.effects import polar_target
 from twin.nc.compiled.kernels.words import execute_block
 from twin.nc.path.compensation.contour import OFF, STAGE, Contour
 from twin.nc.path.compensation.follow import follow
-from twin.nc.path.rows import Rows, copy, copy_rows
 
 
-class Scratch(NamedTuple):
-    """Room to work in.
+class BlockBegin(NamedTuple):
+    """Where a block's words begin.
 
     Attributes:
-        token_kinds: Of words, shape (``MOST_WORDS``,).
-        values: Of words, shape (``MOST_WORDS``,).
-        modal: Modal state of the block.
-        snapshot: State before a block that runs often.
-        stack: Shape (``MOST_VALUES``,).
-        slots: Variables that the block has set, shape (``MOST_STORES``,).
-        before: What they held before, shape (``MOST_STORES``,).
+        line: The block's line, from 1.
+        made: The next row.
+        first_event: The block's first event that has not been seen to.
     """
 
-    token_kinds: IntArray
-    values: FloatArray
-    modal: FloatArray
-    snapshot: State
-    stack: FloatArray
-    slots: IntArray
-    before: FloatArray
-
-
-def new_scratch(state: State) -> Scratch:
-    """Room to work in, for a state of this size."""
-    return Scratch(
-        np.zeros(MOST_WORDS, np.int64),
-        np.zeros(MOST_WORDS),
-        np.zeros_like(state.modal),
-        deepcopy(state),
-        np.zeros(MOST_VALUES),
-        np.zeros(MOST_STORES, np.int64),
-        np.zeros(MOST_STORES),
-    )
-
-
-@compilable
-def copy_active_codes(
-    modal: FloatArray, active_codes: IntArray, to_modal: FloatArray, to_force: IntArray
-) -> None:
-    """Copy what is in force."""
-    copy(modal, to_modal)
-    copy(active_codes, to_force)
-
-
-@compilable
-def copy_state(source: State, target: State) -> None:
-    """Copy every column of a state."""
-    copy_active_codes(source.modal, source.active_codes, target.modal, target.active_codes)
-    copy(source.programmed, target.programmed)
-    copy(source.part, target.part)
-    copy(source.registers, target.registers)
-    copy(source.total, target.total)
-    copy_rows(source.shifts, target.shifts)
-    target.event_count[0] = source.event_count[0]
+    line: int
+    made: int
+    first_event: int
 
 
 @inlined
-def execute_repeatedly(
-    times: int,
-    line: int,
-    words: int,
-    polar: bool,
-    made: int,
-    first_event: int,
-    tables: BlockTables,
-    constants: Constants,
-    state: State,
-    rows: Rows,
+def run_words(
+    instruction: Instruction,
+    top: int,
+    begun: BlockBegin,
+    machine: Machine,
     contour: Contour,
     scratch: Scratch,
 ) -> int:
-    """Run the words on the scratch.
+    """Run one of the instructions that execute the words on the scratch.
 
     Args:
-        times: How often; more than once only while nothing is compensated.
-        line: The block's line, from 1.
-        words: How many there are.
-        polar: As for ``execute_block``.
-        made: The next row.
-        first_event: The block's first event that has not been seen to.
-        tables: What words mean.
-        constants: What stays.
-        state: What changes.
-        rows: Room for the moves.
+        instruction: One from ``RUN`` to ``RUN_POLAR``.
+        top: How many values there are.
+        begun: Where they begin.
+        machine: What they run on.
         contour: Radius compensation.
-        scratch: The words.
+        scratch: Words and values.
 
     Returns:
         The row after the block's moves, ``UNSUPPORTED``, ``BAILOUT`` or ``NO_ROOM``.
     """
-    after = made
+    words = scratch.counts[WORDS]
+    opcode, operand, stack = instruction.opcode, instruction.operand, scratch.stack
+    state, polar, times = machine.state, opcode == opcodes.RUN_POLAR, 1
+    if polar:
+        radius = stack[top - 2 if operand == 3 else top - 1]
+        if not polar_target(operand, radius, stack[top - 1], machine.constants, state):
+            return BAILOUT
+    if opcode == opcodes.RUN_REPEATEDLY:
+        count = stack[top - 1]
+        if not 1.0 <= count <= instruction.immediate or count != np.floor(count):
+            return BAILOUT
+        if state.modal[CYCLE] != 0.0 or contour.counts[STAGE] != OFF:
+            return BAILOUT
+        if begun.made + count > len(machine.rows.codes):
+            return NO_ROOM
+        times = int(count)
+        copy_state(state, scratch.snapshot)
+    after = begun.made
     for _ in range(times):
         after = execute_block(
-            line,
+            begun.line,
             scratch.token_kinds[:words],
             scratch.values[:words],
-            tables,
-            constants,
-            state,
+            machine,
             scratch.modal,
-            rows,
             after,
             polar,
         )
         if after < 0:
-            return after
+            break
+    if after < 0:
+        if opcode == opcodes.RUN_REPEATEDLY:
+            copy_state(scratch.snapshot, state)
+        return after
+    if opcode == opcodes.RUN_CODES:
+        scratch.counts[WORDS] = 1 if words > 0 and scratch.token_kinds[0] == NUMBER else 0
     if contour.counts[STAGE] != OFF:
-        return follow(made, after, first_event, state.event_count[0], contour, rows)
+        events = state.event_count[0]
+        return follow(begun.made, after, begun.first_event, events, contour, machine.rows)
     return after

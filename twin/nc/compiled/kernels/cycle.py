@@ -20,11 +20,11 @@ from twin.nc.bytecode.registers import (
     Constants,
     State,
 )
+from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import Corner, FloatArray, Motion, Shape
 from twin.nc.compiled.kernels.effects import report
 from twin.nc.compiled.kernels.frame import turn_place
 from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
-from twin.nc.compiled.kernels.tokenizer import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole

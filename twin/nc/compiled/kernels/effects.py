@@ -3,10 +3,13 @@
 Each does what ``opcodes`` says of it; the state is kept before the first of a block.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from twin.compilation.compilable import compilable
 from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import Instruction
 from twin.nc.bytecode.registers import (
     BAILOUT,
     CYCLE,
@@ -28,8 +31,8 @@ from twin.nc.bytecode.registers import (
     SIGNS,
     SPINDLE,
     UNIT,
-    BlockTables,
     Constants,
+    Machine,
     State,
 )
 from twin.nc.canonical import FloatArray
@@ -47,72 +50,81 @@ from twin.nc.path.event_columns import (
     SPEED,
     TOOL,
 )
-from twin.nc.path.rows import Rows
+from twin.nc.path.rows import Rows, copy
 
 _NO_EVENT = -1
 _PECKING = Cycle._fields.index("pecking")
 _LENGTH = SHIFTS.index("length")
-_LARGEST_NUMBER = 1e6
-"""Numbers of tools and of auxiliary functions above this are left to the interpreter tier."""
+LARGEST_TOOL, LARGEST_AUXILIARY = 1e6, 999_999.0
+"""Numbers of tools and of auxiliary functions above these are left to the interpreter tier."""
+
+
+class BlockPlace(NamedTuple):
+    """Where the block of an instruction stands.
+
+    Attributes:
+        line: Its line, from 1.
+        made: Moves that were made before it.
+        compensates: Radius compensation is in force.
+    """
+
+    line: int
+    made: int
+    compensates: bool
 
 
 @compilable
 def run_effect(
-    opcode: int,
-    operand: int,
-    stack: FloatArray,
-    top: int,
-    line: int,
-    made: int,
-    tables: BlockTables,
-    constants: Constants,
-    state: State,
-    rows: Rows,
-    compensates: bool,
+    instruction: Instruction, stack: FloatArray, top: int, block: BlockPlace, machine: Machine
 ) -> int:
     """Run one instruction.
 
     Args:
-        opcode: Which.
-        operand: Its operand.
+        instruction: One from ``ACTIVATE`` on.
         stack: Values.
         top: How many there are.
-        line: The block's line, from 1.
-        made: Moves that were made.
-        tables: What words mean.
-        constants: What stays.
-        state: What changes.
-        rows: Where events go.
-        compensates: Radius compensation is in force.
+        block: Whose it is.
+        machine: What it runs on.
 
     Returns:
         How many values are left, or ``BAILOUT``.
     """
-    registers = state.registers
-    value = stack[top - 1] if top > 0 else 0.0
-    kind, number, amount = _NO_EVENT, operand, np.nan
+    opcode, operand = instruction.opcode, instruction.operand
     if opcode == opcodes.ACTIVATE:
-        state.active_codes[tables.group[operand]] = operand
-    elif opcode == opcodes.PLANE:
-        doubtful = np.isnan(registers[POLAR_ABSCISSA]) or not np.isnan(registers[ROTATION])
-        if compensates or doubtful:
-            return BAILOUT
-        state.modal[PLANE] = operand
-        registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
-        registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
-    elif opcode == opcodes.FUNCTION:
-        kind = FUNCTION_ALONE
-    elif opcode == opcodes.SPINDLE_FUNCTION:
+        machine.state.active_codes[machine.tables.group[operand]] = operand
+        return top
+    if opcode <= opcodes.DWELL:
+        return _report_effect(instruction, stack, top, block, machine)
+    if opcode <= opcodes.PROGRAMMED_RADIUS:
+        return _use_tool(instruction, stack, top, machine)
+    if opcode <= opcodes.TO_MILLIMETRES:
+        return _shift_coordinates(instruction, stack, top, machine)
+    if opcode <= opcodes.FORGET_POLAR:
+        return _choose_plane(instruction, stack, top, block, machine)
+    if opcode <= opcodes.CYCLE_WORD:
+        return _prepare_cycle(instruction, stack, top, machine)
+    return _transform(instruction, stack, top, block, machine)
+
+
+@compilable
+def _report_effect(
+    instruction: Instruction, stack: FloatArray, top: int, block: BlockPlace, machine: Machine
+) -> int:
+    """Functions, speeds, tools and dwells, which are reported; as ``run_effect``."""
+    opcode, operand = instruction.opcode, instruction.operand
+    registers, constants = machine.state.registers, machine.constants
+    value = stack[top - 1] if top > 0 else 0.0
+    kind, number, amount = FUNCTION_ALONE, operand, np.nan
+    if opcode == opcodes.SPINDLE_FUNCTION:
         kind, amount = FUNCTION_WITH_SPEED, registers[SPINDLE]
     elif opcode == opcodes.SPEED:
         if value < 0.0:
             return BAILOUT
         registers[SPINDLE] = value
-        if operand:
-            kind, amount = SPEED, value
+        kind, amount = SPEED if operand else _NO_EVENT, value
         top -= 1
     elif opcode == opcodes.TOOL:
-        if not 0.0 <= value <= _LARGEST_NUMBER or value != np.floor(value):
+        if not is_whole(value, LARGEST_TOOL):
             return BAILOUT
         if operand and len(constants.tools) > 0 and _tool(constants, value) == BAILOUT:
             return BAILOUT
@@ -120,7 +132,7 @@ def run_effect(
         kind, number = TOOL, int(value)
         top -= 1
     elif opcode == opcodes.AUXILIARY:
-        if not 0.0 <= value < _LARGEST_NUMBER or value != np.floor(value):
+        if not is_whole(value, LARGEST_AUXILIARY):
             return BAILOUT
         kind, number = AUXILIARY, int(value)
         top -= 1
@@ -129,7 +141,18 @@ def run_effect(
             return BAILOUT
         kind, amount = DWELL, value
         top -= 1
-    elif opcode == opcodes.CHANGE_TOOL:
+    if kind != _NO_EVENT:
+        report(machine.rows, machine.state, block.made, block.line, kind, number, amount)
+    return top
+
+
+@compilable
+def _use_tool(instruction: Instruction, stack: FloatArray, top: int, machine: Machine) -> int:
+    """The tool in use, its length and its radius; as ``run_effect``."""
+    opcode, operand = instruction.opcode, instruction.operand
+    state, constants = machine.state, machine.constants
+    registers = state.registers
+    if opcode == opcodes.CHANGE_TOOL:
         registers[IN_SPINDLE] = registers[SELECTED]
     elif opcode == opcodes.OFFSET_ON:
         registers[OFFSET_ON] = operand
@@ -143,36 +166,6 @@ def run_effect(
         state.shifts[_LENGTH, :] = 0.0
         state.shifts[_LENGTH, 2] = longer
         reframe(state)
-    elif opcode == opcodes.SHIFT:
-        top -= len(state.part)
-        for axis in range(len(state.part)):
-            state.shifts[operand, axis] = stack[top + axis]
-    elif opcode == opcodes.REFRAME:
-        reframe(state)
-    elif opcode == opcodes.BEGIN_TARGET:
-        for axis in range(len(state.part)):
-            state.target[axis] = state.programmed[axis]
-    elif opcode == opcodes.TARGET:
-        state.target[operand] = value
-        top -= 1
-    elif opcode == opcodes.SET_POSITION:
-        here = constants.over
-        to_part(state.target, state, here)
-        for axis in range(len(state.part)):
-            shift = state.shifts[operand, axis]
-            state.shifts[operand, axis] = shift + state.part[axis] - here[axis]
-            state.programmed[axis] = state.target[axis]
-        add_up(state)
-    elif opcode == opcodes.POLAR_ORIGIN:
-        if np.isnan(registers[POLAR_ABSCISSA]):
-            return BAILOUT
-        _set_polar_origin(stack, top, operand, constants, state)
-        top -= operand
-    elif opcode == opcodes.TO_MILLIMETRES:
-        stack[top - 1] = value * (state.modal[UNIT] if tables.linear[operand] else 1.0)
-    elif opcode == opcodes.NO_PECKS:
-        if tables.cycles[int(state.modal[CYCLE]), _PECKING] != 0.0:
-            return BAILOUT
     elif opcode == opcodes.TOOL_RADIUS:
         tool = _tool(constants, registers[IN_SPINDLE])
         if tool == BAILOUT:
@@ -180,43 +173,125 @@ def run_effect(
         offset = operand == 0 or registers[OFFSET_ON] != 0.0
         stack[top] = constants.radii[tool] if offset else 0.0
         top += 1
-    elif opcode == opcodes.FORGET_POLAR:
-        registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
-    elif opcode == opcodes.CYCLE_WORD:
-        registers[CYCLE_WORDS + operand] = value
-        top -= 1
-    elif opcode == opcodes.PROGRAMMED_RADIUS and operand:
-        registers[RADIUS_GIVEN] = value * state.modal[UNIT]
+    elif operand:
+        registers[RADIUS_GIVEN] = stack[top - 1] * state.modal[UNIT]
         stack[top - 1] = registers[RADIUS_GIVEN]
-    elif opcode == opcodes.PROGRAMMED_RADIUS:
+    else:
         stack[top] = registers[RADIUS_GIVEN]
         top += 1
-    elif opcode == opcodes.MIRROR:
-        if abs(value) != 1.0:
-            return BAILOUT
-        registers[SIGNS + operand] = value
+    return top
+
+
+@compilable
+def _shift_coordinates(
+    instruction: Instruction, stack: FloatArray, top: int, machine: Machine
+) -> int:
+    """Shifts, and other coordinates for the present position; as ``run_effect``."""
+    opcode, operand = instruction.opcode, instruction.operand
+    state = machine.state
+    if opcode == opcodes.SHIFT:
+        top -= len(state.part)
+        for axis in range(len(state.part)):
+            state.shifts[operand, axis] = stack[top + axis]
+    elif opcode == opcodes.REFRAME:
+        reframe(state)
+    elif opcode == opcodes.BEGIN_TARGET:
+        copy(state.programmed, state.target)
+    elif opcode == opcodes.TARGET:
         top -= 1
+        state.target[operand] = stack[top]
+    elif opcode == opcodes.SET_POSITION:
+        here = machine.constants.over
+        to_part(state.target, state, here)
+        for axis in range(len(state.part)):
+            shift = state.shifts[operand, axis]
+            state.shifts[operand, axis] = shift + state.part[axis] - here[axis]
+            state.programmed[axis] = state.target[axis]
+        add_up(state)
+    else:
+        unit = state.modal[UNIT] if machine.tables.linear[operand] else 1.0
+        stack[top - 1] *= unit
+    return top
+
+
+@compilable
+def _choose_plane(
+    instruction: Instruction, stack: FloatArray, top: int, block: BlockPlace, machine: Machine
+) -> int:
+    """The plane, and what polar coordinates refer to; as ``run_effect``."""
+    opcode, operand = instruction.opcode, instruction.operand
+    state = machine.state
+    registers = state.registers
+    if opcode == opcodes.PLANE:
+        doubtful = np.isnan(registers[POLAR_ABSCISSA]) or not np.isnan(registers[ROTATION])
+        if block.compensates or doubtful:
+            return BAILOUT
+        state.modal[PLANE] = operand
+        registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
+    elif opcode == opcodes.POLAR_ORIGIN:
+        if np.isnan(registers[POLAR_ABSCISSA]):
+            return BAILOUT
+        plane, unit = machine.constants.planes[int(state.modal[PLANE])], state.modal[UNIT]
+        abscissa, ordinate = _along(state.programmed, plane[0]), _along(state.programmed, plane[1])
+        if operand:
+            abscissa, ordinate = stack[top - 2] * unit, stack[top - 1] * unit
+        registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE] = abscissa, ordinate
+        top -= operand
+    registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
+    return top
+
+
+@compilable
+def _prepare_cycle(instruction: Instruction, stack: FloatArray, top: int, machine: Machine) -> int:
+    """Words of drilling cycles; as ``run_effect``."""
+    opcode, operand = instruction.opcode, instruction.operand
+    state = machine.state
+    if opcode == opcodes.NO_PECKS:
+        pecks = machine.tables.cycles[int(state.modal[CYCLE]), _PECKING] != 0.0
+        return BAILOUT if pecks else top
+    top -= 1
+    state.registers[CYCLE_WORDS + operand] = stack[top]
+    return top
+
+
+@compilable
+def _transform(
+    instruction: Instruction, stack: FloatArray, top: int, block: BlockPlace, machine: Machine
+) -> int:
+    """Mirror, scale and rotation; as ``run_effect``."""
+    opcode, operand = instruction.opcode, instruction.operand
+    state = machine.state
+    registers, unit = state.registers, state.modal[UNIT]
+    if opcode == opcodes.MIRROR:
+        top -= 1
+        if abs(stack[top]) != 1.0:
+            return BAILOUT
+        registers[SIGNS + operand] = stack[top]
     elif opcode == opcodes.SCALE:
-        if not SMALLEST_SCALE <= value <= LARGEST_SCALE:
-            return BAILOUT
-        registers[SCALE] = value
         top -= 1
+        if not SMALLEST_SCALE <= stack[top] <= LARGEST_SCALE:
+            return BAILOUT
+        registers[SCALE] = stack[top]
     elif opcode == opcodes.ROTATE:
         if not np.isnan(registers[ROTATION]):
             return BAILOUT
-        registers[ROTATION] = stack[top - 3]
-        registers[ROTATION_ABSCISSA] = stack[top - 2] * state.modal[UNIT]
-        registers[ROTATION_ORDINATE] = stack[top - 1] * state.modal[UNIT]
         top -= 3
+        registers[ROTATION] = stack[top]
+        registers[ROTATION_ABSCISSA] = stack[top + 1] * unit
+        registers[ROTATION_ORDINATE] = stack[top + 2] * unit
     elif opcode == opcodes.END_ROTATION:
         registers[ROTATION] = np.nan
-    elif opcode == opcodes.TRANSFORM:
-        if compensates:
+    else:
+        if block.compensates:
             return BAILOUT
-        transform(constants, state)
-    if kind != _NO_EVENT:
-        report(rows, state, made, line, kind, number, amount)
+        transform(machine.constants, state)
     return top
+
+
+@compilable
+def is_whole(value: float, largest: float) -> bool:
+    """Whether a value is a whole number from 0 to the largest."""
+    return 0.0 <= value <= largest and value == np.floor(value)
 
 
 @compilable
@@ -226,20 +301,6 @@ def _tool(constants: Constants, number: float) -> int:
         if constants.tools[tool] == number:
             return tool
     return BAILOUT
-
-
-@compilable
-def _set_polar_origin(
-    stack: FloatArray, top: int, given: int, constants: Constants, state: State
-) -> None:
-    """The polar origin: two values on the stack, or where the tool stands."""
-    plane = constants.planes[int(state.modal[PLANE])]
-    abscissa, ordinate = _along(state.programmed, plane[0]), _along(state.programmed, plane[1])
-    if given:
-        abscissa, ordinate = stack[top - 2] * state.modal[UNIT], stack[top - 1] * state.modal[UNIT]
-    registers = state.registers
-    registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE] = abscissa, ordinate
-    registers[POLAR_RADIUS] = registers[POLAR_ANGLE] = np.nan
 
 
 @compilable

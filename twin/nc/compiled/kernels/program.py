@@ -4,6 +4,8 @@ It stops before a block that it does not know or that something is wrong with, w
 was before that block.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
@@ -13,7 +15,6 @@ from twin.nc.bytecode.bytecode import (
     INTERPRETED,
     NOT_COMPILED,
     NOTHING,
-    PART_BITS,
     WORDS_ALONE,
     BytecodeTable,
 )
@@ -25,66 +26,68 @@ from twin.nc.bytecode.frames import (
     OFF_PAGE,
     PART,
     PAUSED,
+    STORES,
     TRAPPED,
     UNCOMPILED_LINE,
+    WORDS,
     ExecutionState,
+    Scratch,
+    end_parts,
 )
-from twin.nc.bytecode.registers import MOST_EVENTS, MOST_WORDS, BlockTables, Constants, State
+from twin.nc.bytecode.registers import MOST_EVENTS, MOST_WORDS, Machine
+from twin.nc.bytecode.token_kinds import UNSUPPORTED, ByteArray, LineTables
 from twin.nc.canonical import IntArray
-from twin.nc.compiled.kernels.block import Scratch
 from twin.nc.compiled.kernels.dispatch import DONE, dispatch_loop
 from twin.nc.compiled.kernels.tokenizer import (
-    UNSUPPORTED,
-    ByteArray,
-    LineTables,
     line_end,
     read_words,
 )
-from twin.nc.compiled.kernels.variables import end_parts
 from twin.nc.path.compensation.contour import MOST_LET_GO, OFF, STAGE
-from twin.nc.path.rows import Rows
 from twin.nc.text.lexer import LONGEST_LINE
 
-_PART_MASK = (1 << PART_BITS) - 1
+
+class PageColumns(NamedTuple):
+    """A page of the program as UTF-8.
+
+    Attributes:
+        data: Its bytes.
+        starts: Where each line of it begins, and where the last one ends, shape (lines + 1,).
+        first_line: Its first line, from 0.
+    """
+
+    data: ByteArray
+    starts: IntArray
+    first_line: int
 
 
 @compilable
 def run_program(
-    data: ByteArray,
-    starts: IntArray,
-    first_line: int,
+    page: PageColumns,
     line_tables: LineTables,
-    tables: BlockTables,
-    constants: Constants,
-    state: State,
-    rows: Rows,
     table: BytecodeTable,
-    routine: ExecutionState,
+    machine: Machine,
+    execution: ExecutionState,
     scratch: Scratch,
     most: int,
 ) -> int:
     """Run blocks until one is for the interpreter tier or for the line compiler, or the rows are full.
 
     Args:
-        data: A page of the program as UTF-8.
-        starts: Where each line of it begins, and where the last one ends, shape (lines + 1,).
-        first_line: Its first line, from 0.
+        page: The lines to read.
         line_tables: How lines are read.
-        tables: What blocks mean.
-        constants: What stays.
-        state: What changes with moves.
-        rows: Room for the moves.
         table: What compiled lines do.
-        routine: How far the program has come.
+        machine: What blocks run on.
+        execution: How far the program has come.
         scratch: Room to work in.
         most: Lines and blocks after which it pauses.
 
     Returns:
         Why it ended.
     """
-    progress, calls = routine.progress, routine.calls
+    rows, data, starts = machine.rows, page.data, page.starts
+    progress, calls = execution.progress, execution.calls
     lines = len(table.first) - 1
-    contour = routine.contour
+    contour, events = execution.contour, machine.state.event_count
     for _ in range(most):
         end_parts(progress, calls)
         line = int(progress[LINE])
@@ -93,16 +96,14 @@ def run_program(
         room = 1
         if contour.counts[STAGE] != OFF:
             room = len(contour.waiting.codes) + MOST_LET_GO
-        if progress[MADE] + room > len(rows.codes) or state.event_count[0] + MOST_EVENTS > len(
-            rows.events
-        ):
+        if progress[MADE] + room > len(rows.codes) or events[0] + MOST_EVENTS > len(rows.events):
             return FULL
         row, words = int(np.int64(table.first[line])), 0
         if row == INTERPRETED:
             return TRAPPED
         is_text = row == NOT_COMPILED
         if is_text:
-            at = line - first_line
+            at = line - page.first_line
             if at < 0 or at >= len(starts) - 1:
                 return OFF_PAGE
             begin = int(starts[at])
@@ -120,7 +121,8 @@ def run_program(
         if table.opcode[row] != opcodes.BLOCK:
             progress[LINE], progress[PART] = line + 1, 0
             continue
-        result = dispatch_loop(row, words, table, tables, constants, state, rows, routine, scratch)
+        scratch.counts[WORDS], scratch.counts[STORES] = words, 0
+        result = dispatch_loop(row, table, machine, execution, scratch)
         if result != DONE:
             return UNCOMPILED_LINE if is_text and result == TRAPPED else result
     return PAUSED
@@ -128,9 +130,7 @@ def run_program(
 
 @compilable
 def unread_lines(
-    data: ByteArray,
-    starts: IntArray,
-    first_line: int,
+    page: PageColumns,
     line_tables: LineTables,
     first: npt.NDArray[np.int32],
     line: int,
@@ -139,14 +139,13 @@ def unread_lines(
     """Those of the next lines on the page that a run would not read by itself.
 
     Args:
-        data: As for ``run_program``.
-        starts: As for ``run_program``.
-        first_line: As for ``run_program``.
-        line_tables: As for ``run_program``.
+        page: The lines to read.
+        line_tables: How lines are read.
         first: First row of each compiled line.
         line: The line before them, from 0.
         most: How many lines are looked at.
     """
+    data, starts, first_line = page
     token_kinds, values = np.zeros(MOST_WORDS, np.int64), np.zeros(MOST_WORDS)
     last = min(line + 1 + most, first_line + len(starts) - 1)
     found, count = np.zeros(most, np.int64), 0

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.registers import INCREMENTAL, UNIT, BlockTables, State
+from twin.nc.bytecode.token_kinds import AXIS
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.compiled.kernels.frame import directions
-from twin.nc.compiled.kernels.tokenizer import AXIS
 from twin.nc.geometry.planes import along, put_point
 
 

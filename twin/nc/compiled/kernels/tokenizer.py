@@ -5,21 +5,12 @@ the letters that ``DecodeTables`` names, each with a plain number, and comments.
 holds, right or wrong, is left to that reader: it alone makes diagnostics.
 """
 
-from typing import NamedTuple
-
 import numpy as np
-import numpy.typing as npt
 
 from twin.compilation.compilable import compilable
 from twin.nc.bytecode.registers import MOST_WORDS
+from twin.nc.bytecode.token_kinds import NUMBER, OTHER, UNSUPPORTED, ByteArray, LineTables
 from twin.nc.canonical import FloatArray, IntArray
-
-ByteArray = npt.NDArray[np.uint8]
-
-UNSUPPORTED = -1
-
-OTHER, NUMBER, CODE, FEED, FUNCTION, RADIUS, CENTER, AXIS = 0, 1, 2, 3, 4, 5, 6, 9
-"""What a letter is: N, G, F, M, R; I, J, K from ``CENTER`` on; axes by their column from ``AXIS``."""
 
 _BLANK, _TAB, _PLUS, _MINUS, _POINT = 32, 9, 43, 45, 46
 _DIGIT_0, _DIGIT_9, _LETTER_A, _LETTER_Z, _TO_UPPER = 48, 57, 65, 90, 0xDF
@@ -31,22 +22,6 @@ _POWERS = 10.0 ** np.arange(23)
 A quotient of two exact doubles is the double nearest to the decimal number, as ``float`` gives it
 (W. D. Clinger, How to read floating point numbers accurately, 1990).
 """
-
-
-class LineTables(NamedTuple):
-    """How a dialect's lines are read.
-
-    Attributes:
-        token_kinds: What each letter is, shape (26,).
-        openings: First bytes of each kind of comment, 0 where there is none, shape (c, 2).
-        closings: First bytes of what ends a comment of each kind; 0, 0: the end of the line.
-        whole_line: It can only begin its line, shape (c,).
-    """
-
-    token_kinds: IntArray
-    openings: ByteArray
-    closings: ByteArray
-    whole_line: npt.NDArray[np.bool_]
 
 
 @compilable

@@ -4,21 +4,10 @@ import math
 
 import numpy as np
 
-from twin.compilation.compilable import compilable
-from twin.nc.bytecode.bytecode import PART_BITS
-from twin.nc.bytecode.frames import (
-    AGAIN,
-    BACK,
-    CALLS,
-    DEPTH,
-    FIRST,
-    LAST,
-    LINE,
-    NO_LOCATION,
-    OWNS_SCOPE,
-    PART,
-    VariableStore,
-)
+from twin.compilation.compilable import compilable, inlined
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import Instruction
+from twin.nc.bytecode.frames import STORES, Scratch, VariableStore
 from twin.nc.canonical import IntArray
 
 NO_SLOT = np.iinfo(np.int64).min
@@ -59,30 +48,45 @@ def store(memory: VariableStore, depth: int, slot: int, value: float) -> None:
         memory.local[depth, ~slot] = value
 
 
-_PART_MASK = (1 << PART_BITS) - 1
+@inlined
+def assign(
+    instruction: Instruction,
+    top: int,
+    depth: int,
+    numbered: IntArray,
+    memory: VariableStore,
+    scratch: Scratch,
+) -> bool:
+    """Run one of the instructions that store the topmost value.
+
+    Args:
+        instruction: One from ``STORE`` to ``STORE_NUMBERED``.
+        top: How many values there are.
+        depth: Row of the local variables.
+        numbered: Slots of the variables that have a number.
+        memory: The variables.
+        scratch: The values; takes what the variable held before.
+
+    Returns:
+        Whether there is such a variable.
+    """
+    slot = instruction.operand
+    if instruction.opcode == opcodes.STORE_NUMBERED:
+        slot = slot_of_number(numbered, scratch.stack[top - 2])
+        if slot == NO_SLOT:
+            return False
+    before = own_value(memory, depth, slot)
+    if instruction.opcode == opcodes.STORE_DECLARED and np.isnan(before):
+        return False
+    stores = scratch.counts[STORES]
+    scratch.slots[stores], scratch.before[stores] = slot, before
+    scratch.counts[STORES] = stores + 1
+    store(memory, depth, slot, scratch.stack[top - 1])
+    return True
 
 
-@compilable
-def end_parts(progress: IntArray, calls: IntArray) -> None:
-    """Parts that end by place and have been passed run again, or go back to their caller."""
-    while progress[CALLS] > 0:
-        call = calls[progress[CALLS] - 1]
-        here = progress[LINE] << PART_BITS | progress[PART]
-        if call[LAST] == NO_LOCATION or here <= call[LAST]:
-            return
-        to = call[FIRST]
-        if call[AGAIN] > 0:
-            call[AGAIN] -= 1
-        else:
-            to = call[BACK]
-            progress[CALLS] -= 1
-            progress[DEPTH] -= call[OWNS_SCOPE]
-        progress[LINE], progress[PART] = to >> PART_BITS, to & _PART_MASK
-
-
-@compilable
-def innermost(calls: IntArray, called: int) -> int:
-    """How many parts are being run up to the innermost that a word ends; 0: there is none."""
-    while called > 0 and calls[called - 1, LAST] != NO_LOCATION:
-        called -= 1
-    return called
+@inlined
+def undo_stores(depth: int, memory: VariableStore, scratch: Scratch) -> None:
+    """Give the variables that a block has set their values before it."""
+    for change in range(scratch.counts[STORES] - 1, -1, -1):
+        store(memory, depth, scratch.slots[change], scratch.before[change])

@@ -1,7 +1,7 @@
 """One plain block: its words, modal codes, and the row of its move, compiled.
 
-Each step is the control's own (``control``, ``control_motion``) for a block in which nothing is
-doubtful, and computes the same bits. A block in which something is, be it wrong or only rare, is
+Each step is the control's own (``control.executor``, ``control.control``) for a block in which nothing
+is doubtful, and computes the same bits. A block in which something is, be it wrong or only rare, is
 left untouched; the control runs it and makes its diagnostics.
 """
 
@@ -24,16 +24,10 @@ from twin.nc.bytecode.registers import (
     RAPID_LINE,
     UNIT,
     BlockTables,
-    Constants,
+    Machine,
     State,
 )
-from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
-from twin.nc.compiled.kernels.arc import emit_arc
-from twin.nc.compiled.kernels.cycle import drill
-from twin.nc.compiled.kernels.effects import report
-from twin.nc.compiled.kernels.frame import turn_place
-from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
-from twin.nc.compiled.kernels.tokenizer import (
+from twin.nc.bytecode.token_kinds import (
     AXIS,
     CODE,
     FEED,
@@ -42,15 +36,24 @@ from twin.nc.compiled.kernels.tokenizer import (
     RADIUS,
     UNSUPPORTED,
 )
+from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
+from twin.nc.compiled.kernels.arc import emit_arc
+from twin.nc.compiled.kernels.cycle import drill
+from twin.nc.compiled.kernels.effects import is_whole, report
+from twin.nc.compiled.kernels.frame import turn_place
+from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
 from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path.event_columns import FUNCTION_ALONE
 from twin.nc.path.moves import feed_per_minute, line_length, only_turns
-from twin.nc.path.rows import Rows, copy
+from twin.nc.path.rows import copy
 from twin.nc.text.line_reader import LARGEST_LABEL
 
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
 _LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
 _STOP = int(Corner.EXACT_STOP)
+_MOTION_WORDS = -1 << RADIUS
+_ARC_WORDS = (1 << AXIS) - (1 << RADIUS)
+"""Token kinds as bits: of words that make a block move, and of those that only arcs have."""
 
 
 @inlined
@@ -58,11 +61,8 @@ def execute_block(
     line: int,
     token_kinds: IntArray,
     values: FloatArray,
-    tables: BlockTables,
-    constants: Constants,
-    state: State,
+    machine: Machine,
     modal: FloatArray,
-    rows: Rows,
     row: int,
     polar: bool,
 ) -> int:
@@ -72,88 +72,45 @@ def execute_block(
         line: Its line, from 1.
         token_kinds: What each word's letter is, shape (w,).
         values: The words' values, shape (w,).
-        tables: What blocks mean.
-        constants: What stays.
-        state: What changes.
+        machine: What it runs on.
         modal: Room for the modal state, shape (``MODAL``,).
-        rows: Room for the move.
-        row: Its row.
-        polar: The target of ``state`` holds where the move goes in the plane.
+        row: The row of its move.
+        polar: ``State.target`` holds where the move goes in the plane.
 
     Returns:
         The number of rows after it, or ``UNSUPPORTED`` or ``NO_ROOM`` with the state untouched.
     """
-    copy(state.modal, modal)
-    number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
-    function, begins = UNSUPPORTED, 0
-    feed = state.registers[PROGRAMMED_FEED]
-    for word in range(len(token_kinds)):
-        token_kind, value = token_kinds[word], values[word]
-        if token_kind == NUMBER:
-            if word > 0 or not 0.0 <= value <= LARGEST_LABEL or value != np.floor(value):
-                return UNSUPPORTED
-            number = int(value)
-        elif token_kind == CODE:
-            if not 0.0 <= value < CODES or value != np.floor(value):
-                return UNSUPPORTED
-            code = int(value)
-            group = 1 << tables.group[code]
-            if tables.field[code] == UNSUPPORTED or groups & group:
-                return UNSUPPORTED
-            groups |= group
-            modal[tables.field[code]] = tables.value[code]
-            cycle = tables.cycle[code]
-            if cycle == 0:
-                modal[CYCLE] = 0.0
-            elif cycle > 0:
-                begins = cycle
-        else:
-            if seen & (1 << token_kind) or not abs(value) <= LARGEST_COORDINATE:
-                return UNSUPPORTED
-            seen |= 1 << token_kind
-            if token_kind == FEED:
-                if not value > 0.0:
-                    return UNSUPPORTED
-                feed = value
-            elif token_kind == FUNCTION:
-                if not 0.0 <= value < CODES or value != np.floor(value):
-                    return UNSUPPORTED
-                function = int(value)
-                if tables.function[function] == UNSUPPORTED:
-                    return UNSUPPORTED
-    after, event_count = row, state.event_count[0]
-    anew = modal[CYCLE] == 0.0
+    state, tables, rows = machine.state, machine.tables, machine.rows
+    known, block, function, cycle = _decode(line, token_kinds, values, tables, state, modal, polar)
+    if not known:
+        return UNSUPPORTED
+    event_count, anew, begins = state.event_count[0], modal[CYCLE] == 0.0, cycle != 0
     if begins:
-        modal[CYCLE] = begins
+        modal[CYCLE] = cycle
     drills = modal[CYCLE] != 0.0
-    moves = begins != 0 or polar or seen >> RADIUS != 0
-    plane = constants.planes[int(modal[PLANE])]
-    in_plane = seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))) != 0
+    moves = begins or polar or block.seen & _MOTION_WORDS != 0
+    plane = machine.constants.planes[int(modal[PLANE])]
+    in_plane = block.seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))) != 0
     if polar and in_plane:
         return UNSUPPORTED
     early = function != UNSUPPORTED and tables.function[function] == EARLY
     if early:
         report(rows, state, row, line, FUNCTION_ALONE, function, np.nan)
-    block = PlainBlock(line, number, token_kinds, values, seen, feed, modal, polar)
+    after = row
     if drills and moves:
-        after = drill(block, (begins != 0, anew), tables, constants, state, rows, row)
+        after = drill(block, (begins, anew), tables, machine.constants, state, rows, row)
     elif moves:
-        after = _move(block, tables, constants, state, rows, row)
+        after = _move(block, machine, row)
     if after < 0:
         state.event_count[0] = event_count
         return after
     if function != UNSUPPORTED and not early:
         report(rows, state, after, line, FUNCTION_ALONE, function, np.nan)
-    for word in range(len(token_kinds)):
-        if token_kinds[word] == CODE:
-            code = int(values[word])
-            state.active_codes[tables.group[code]] = code
-    copy(modal, state.modal)
-    state.registers[PROGRAMMED_FEED] = feed
+    _activate(block, tables, state)
     if moves:
         if drills:
             copy(state.target, state.part)
-            copy(constants.over, state.programmed)
+            copy(machine.constants.over, state.programmed)
         else:
             copy(rows.positions[row, 1], state.part)
             copy(rows.positions[row, 2], state.programmed)
@@ -163,29 +120,94 @@ def execute_block(
 
 
 @inlined
-def _move(
-    block: PlainBlock,
+def _decode(
+    line: int,
+    token_kinds: IntArray,
+    values: FloatArray,
     tables: BlockTables,
-    constants: Constants,
     state: State,
-    rows: Rows,
-    row: int,
-) -> int:
+    modal: FloatArray,
+    polar: bool,
+) -> tuple[bool, PlainBlock, int, int]:
+    """Read what words mean; the arguments are those of ``execute_block``.
+
+    Returns:
+        Whether nothing about them is doubtful, the block, its M function or ``UNSUPPORTED``, and the
+        drilling cycle that it calls or 0.
+    """
+    copy(state.modal, modal)
+    known = True
+    number, seen, groups = int(np.int64(NO_BLOCK_NUMBER)), int(np.int64(0)), 0
+    function, cycle = UNSUPPORTED, 0
+    feed = state.registers[PROGRAMMED_FEED]
+    for word in range(len(token_kinds)):
+        token_kind, value = token_kinds[word], values[word]
+        if token_kind == NUMBER:
+            if word > 0 or not is_whole(value, LARGEST_LABEL):
+                known = False
+                break
+            number = int(value)
+        elif token_kind == CODE:
+            if not is_whole(value, CODES - 1):
+                known = False
+                break
+            code = int(value)
+            group = 1 << tables.group[code]
+            if tables.field[code] == UNSUPPORTED or groups & group:
+                known = False
+                break
+            groups |= group
+            modal[tables.field[code]] = tables.value[code]
+            if tables.cycle[code] == 0:
+                modal[CYCLE] = 0.0
+            elif tables.cycle[code] > 0:
+                cycle = tables.cycle[code]
+        else:
+            if seen & (1 << token_kind) or not abs(value) <= LARGEST_COORDINATE:
+                known = False
+                break
+            seen |= 1 << token_kind
+            if token_kind == FEED:
+                if not value > 0.0:
+                    known = False
+                    break
+                feed = value
+            elif token_kind == FUNCTION:
+                if not is_whole(value, CODES - 1):
+                    known = False
+                    break
+                function = int(value)
+                if tables.function[function] == UNSUPPORTED:
+                    known = False
+                    break
+    block = PlainBlock(line, number, token_kinds, values, seen, feed, modal, polar)
+    return known, block, function, cycle
+
+
+@inlined
+def _activate(block: PlainBlock, tables: BlockTables, state: State) -> None:
+    """What the block's codes and its F have set holds from here on."""
+    for word in range(len(block.token_kinds)):
+        if block.token_kinds[word] == CODE:
+            code = int(block.values[word])
+            state.active_codes[tables.group[code]] = code
+    copy(block.modal, state.modal)
+    state.registers[PROGRAMMED_FEED] = block.feed
+
+
+@inlined
+def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     """Write the block's move; the number of rows after it, or ``UNSUPPORTED``."""
-    modal, seen, feed = block.modal, block.seen, block.feed
+    tables, constants, state = machine.tables, machine.constants, machine.state
+    modal, seen, rows = block.modal, block.seen, machine.rows
     kind = tables.kind[int(modal[INTERPOLATION])]
-    if kind == NO_MOTION:
-        return UNSUPPORTED
     is_arc = kind == ARC
-    if block.polar and is_arc:
+    if kind == NO_MOTION or (block.polar and is_arc) or (not is_arc and seen & _ARC_WORDS):
         return UNSUPPORTED
-    if not is_arc and (seen >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1):
-        return UNSUPPORTED
-    axes = len(state.part)
     position = rows.positions[row]
     if block.polar:
         aim(constants.planes[int(modal[PLANE])], block, seen, state)
-    for axis in range(axes):
+    for axis in range(len(state.part)):
         target = axis_target(axis, block, seen, tables, state)
         if not abs(target) <= LARGEST_COORDINATE:
             return UNSUPPORTED
@@ -204,18 +226,18 @@ def _move(
     pace = constants.rapid_feed
     own = constants.own_rapid_feed
     if kind == RAPID_LINE and not np.isnan(own):
-        pace = (own if own != 0.0 else feed) * 60.0
+        pace = (own if own != 0.0 else block.feed) * 60.0
     elif kind != RAPID_LINE:
-        if np.isnan(feed) and not constants.feed_may_lack:
+        if np.isnan(block.feed) and not constants.feed_may_lack:
             return UNSUPPORTED
         turning = not is_arc and only_turns(position[0], position[1], tables.linear)
         otherwise = (constants.default_feed, constants.default_rotary_feed)
-        pace = feed_per_minute(feed, turning, modal[UNIT], modal[FEED_FACTOR], otherwise)
+        pace = feed_per_minute(block.feed, turning, modal[UNIT], modal[FEED_FACTOR], otherwise)
     rows.values[row, 7] = pace
     copy(constants.last_values, rows.values[row, 8:])
-    rows.codes[row, 0] = _RAPID if kind == RAPID_LINE else _FEED
-    rows.codes[row, 1] = _ARC if is_arc else _LINE
-    rows.codes[row, 2] = block.line
-    rows.codes[row, 3] = block.number
-    rows.codes[row, 4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
+    code = rows.codes[row]
+    code[0] = _RAPID if kind == RAPID_LINE else _FEED
+    code[1] = _ARC if is_arc else _LINE
+    code[2], code[3] = block.line, block.number
+    code[4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
     return row + 1

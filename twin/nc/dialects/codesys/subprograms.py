@@ -136,7 +136,6 @@ def call(control: Control, statement: Statement) -> None:
     subprogram, expressions, column = called(control, statement)
     values = [control.compute(each, column) for each in expressions]
     part = CallFrame(
-        control.program_counter.location,
         Location(subprogram.lines.start, 0),
         owns_scope=True,
         restores=control.saved_modal() if subprogram.restores else None,
@@ -157,7 +156,6 @@ def assign_or_call(control: Control, statement: Statement) -> None:
 
 def leave_subprogram(control: Control, statement: Statement) -> None:
     """RETURN or END_SUBPROGRAM."""
-    if not control.program_counter.calls:
+    if not control.program_counter.leave():
         message = f"{statement.keyword} stands outside a subprogram"
         control.report.fail("return-outside", message, statement.column, len(statement.keyword))
-    control.program_counter.end_part()

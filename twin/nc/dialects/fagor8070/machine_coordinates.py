@@ -6,8 +6,6 @@ must have ended, polar coordinates are refused (E1305), and what changes the fra
 #MCS OFF.
 """
 
-import dataclasses
-
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import PartFrame, memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar
@@ -51,7 +49,7 @@ def _move_once(control: Control, statement: Statement) -> None:
     lasting = memory_of(control).part_frame is not None
     if not lasting:
         _enter(control, statement)
-    control.run(dataclasses.replace(blocks[0], number=block.number))
+    control.run(blocks[0]._replace(number=block.number))
     if not lasting:
         _leave(control)
 

@@ -136,7 +136,7 @@ def _words(statement: Statement) -> str:
 
 def warn_of_missing_end(control: Control) -> None:
     """The program's last line is reached without M30 or M02 (decision: a warning)."""
-    if control.program_counter.calls:
+    if control.program_counter.is_calling:
         control.report.fail("return-outside", "the subroutine has no M17, M29 or #RET")
     control.report.warn("no-end", "the program ends without M30", hint="write M30 at its end")
 

@@ -77,7 +77,7 @@ def repeat_range(control: Control, statement: Statement) -> None:
     count = control.compute(asked.count, asked.column)
     if count < 1.0 or count != int(count):
         refuse(control, statement, "repeat-range", _NO_RANGE)
-    part = CallFrame(control.program_counter.location, asked.first, int(count) - 1, asked.last)
+    part = CallFrame(asked.first, int(count) - 1, asked.last)
     control.program_counter.call(part, DEEPEST_CALL, *_span(statement))
 
 
@@ -109,7 +109,7 @@ def begin(control: Control) -> None:
         elif main is None and not memory.library:
             main = line
     if memory.subroutines and main is not None:
-        control.program_counter.location = Location(main, 0)
+        control.program_counter.go(Location(main, 0))
     memory.main = main
 
 
@@ -189,7 +189,7 @@ def end_modal_call(control: Control, _statement: Statement) -> None:
 def call_after_motion(control: Control) -> None:
     """The modal subroutine, when a block has moved."""
     memory = memory_of(control)
-    if memory.modal_call is not None and not control.program_counter.calls:
+    if memory.modal_call is not None and not control.program_counter.is_calling:
         name, values, statement = memory.modal_call
         _call(control, statement, _line_of(control, statement, name), values)
 
@@ -259,9 +259,7 @@ def _call(
     line: int,
     values: Mapping[str, float] | None = None,
 ) -> None:
-    part = CallFrame(
-        control.program_counter.location, Location(line, 0), owns_scope=values is not None
-    )
+    part = CallFrame(Location(line, 0), owns_scope=values is not None)
     control.program_counter.call(part, DEEPEST_CALL, *_span(statement))
     if values is not None:
         control.variables.enter(values)
@@ -269,12 +267,8 @@ def _call(
 
 def return_(control: Control) -> None:
     """M17, M29, #RET: back to the caller."""
-    calls = control.program_counter.calls
-    if not any(call.last is None for call in calls):
+    if not control.program_counter.leave():
         control.fail("return-outside", "there is no subroutine to return from")
-    while calls[-1].last is not None:
-        calls.pop()
-    control.program_counter.end_part()
 
 
 def return_statement(control: Control, _statement: Statement) -> None:

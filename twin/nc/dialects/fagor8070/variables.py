@@ -171,7 +171,7 @@ def _rest(control: Control, column: int, text: str) -> Block:
     """The block whose words stand behind assignments."""
     here = control.block
     (block,) = control.program_counter.lexer.blocks(" " * column + text, here.line)
-    return dataclasses.replace(block, number=here.number)
+    return block._replace(number=here.number)
 
 
 def _read(

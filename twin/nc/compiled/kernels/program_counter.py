@@ -1,0 +1,196 @@
+"""Instructions that jump, count loops and call."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.compilation.compilable import inlined
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.bytecode import PART_BITS, Instruction
+from twin.nc.bytecode.frames import (
+    AGAIN,
+    BACK,
+    BLOCKS,
+    CALLS,
+    DEPTH,
+    FIRST,
+    FURTHEST,
+    LAST,
+    LINE,
+    NO_LOCATION,
+    NOTHING_RESTORED,
+    OWNS_SCOPE,
+    PART,
+    RESTORED_BY_CONTROL,
+    RESTORED_HERE,
+    RESTORES,
+    ExecutionState,
+    VariableStore,
+    go_to,
+    innermost,
+)
+from twin.nc.bytecode.registers import BAILOUT, State, copy_active_codes
+from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.compiled.kernels.variables import own_value, store
+
+
+class Transfer(NamedTuple):
+    """Where a block leads.
+
+    Attributes:
+        going: The location that comes next.
+        behind: The location behind the block.
+        depth: Row of the local variables then.
+        called: Parts that are being run for a caller then.
+        range_end: Where the range ends that is repeated next, or ``NO_LOCATION``.
+        owns_scope: The part that is called next has local variables of its own.
+        restores: What its end puts back into force.
+    """
+
+    going: int
+    behind: int
+    depth: int
+    called: int
+    range_end: int
+    owns_scope: int
+    restores: int
+
+
+@inlined
+def straight_on(progress: IntArray, ends_line: bool) -> Transfer:
+    """To the block behind the one that comes next."""
+    line, part = progress[LINE], progress[PART]
+    behind = (line + 1) << PART_BITS if ends_line else (line << PART_BITS | part) + 1
+    return Transfer(
+        behind, behind, progress[DEPTH], progress[CALLS], NO_LOCATION, 0, NOTHING_RESTORED
+    )
+
+
+@inlined
+def going_to(location: int, to: Transfer) -> Transfer:
+    """Let another location come next."""
+    return Transfer(
+        location, to.behind, to.depth, to.called, to.range_end, to.owns_scope, to.restores
+    )
+
+
+@inlined
+def arrive(to: Transfer, here: int, progress: IntArray) -> None:
+    """The block at a location has ended: the program has come to where it leads."""
+    progress[FURTHEST] = max(progress[FURTHEST], here)
+    go_to(to.going, progress)
+    progress[DEPTH], progress[CALLS] = to.depth, to.called
+    progress[BLOCKS] += 1
+
+
+@inlined
+def jumps(instruction: Instruction, stack: FloatArray, top: int) -> bool:
+    """Whether a jump is taken, given how many values there are."""
+    if instruction.opcode == opcodes.JUMP:
+        return True
+    if instruction.opcode == opcodes.JUMP_CASE:
+        return stack[top - 1] == stack[top - 2]
+    return (stack[top - 1] != 0.0) == (instruction.opcode == opcodes.JUMP_IF)
+
+
+@inlined
+def count_loop(
+    instruction: Instruction, stack: FloatArray, top: int, depth: int, memory: VariableStore
+) -> int:
+    """Run one of the instructions of counted loops.
+
+    Args:
+        instruction: One from ``BEGIN_FOR`` to ``COUNT_DOWN``.
+        stack: Values.
+        top: How many there are.
+        depth: Row of the local variables.
+        memory: The variables.
+
+    Returns:
+        How many values there are then, or ``BAILOUT`` for a step of 0.
+    """
+    if instruction.opcode == opcodes.BEGIN_FOR:
+        first, last, width = stack[top - 3], stack[top - 2], stack[top - 1]
+        if width == 0.0:
+            return BAILOUT
+        stack[top - 3] = 1.0 if (first - last) * width > 0.0 else 0.0
+        stack[top - 2] = first
+        return top - 1
+    if instruction.opcode == opcodes.STEP_FOR:
+        last, width = stack[top - 3], stack[top - 2]
+        if width == 0.0:
+            return BAILOUT
+        value = stack[top - 1] + width
+        stack[top - 4] = 1.0 if (value - last) * width <= 0.0 else 0.0
+        stack[top - 3] = value
+        return top - 2
+    left = own_value(memory, depth, instruction.operand)
+    if np.isnan(left):
+        left = instruction.immediate
+    store(memory, depth, instruction.operand, np.nan if left == 0.0 else left - 1.0)
+    stack[top] = 0.0 if left == 0.0 else 1.0
+    return top + 1
+
+
+@inlined
+def transfer(
+    instruction: Instruction,
+    stack: FloatArray,
+    top: int,
+    to: Transfer,
+    state: State,
+    execution: ExecutionState,
+) -> tuple[bool, Transfer]:
+    """Run one of the instructions that call parts of the program or go back.
+
+    Args:
+        instruction: One from ``CHECK_CALL`` to ``RETURN``.
+        stack: Values.
+        top: How many there are.
+        to: Where the block leads so far.
+        state: Its codes in force are saved and restored.
+        execution: How far the program has come; its calls are written to.
+
+    Returns:
+        Whether nothing about it is doubtful, and where the block leads.
+    """
+    opcode, operand = instruction.opcode, instruction.operand
+    calls, saved, local = execution.calls, execution.saved, execution.memory.local
+    going, depth, called = to.going, to.depth, to.called
+    range_end, owns_scope, restores = to.range_end, to.owns_scope, to.restores
+    known = True
+    if opcode == opcodes.CHECK_CALL:
+        known = called < min(operand, len(calls)) and depth + 1 < len(local)
+    elif opcode == opcodes.OWN_VARIABLES:
+        depth += 1
+        owns_scope = 1
+        local[depth, :] = np.nan
+    elif opcode == opcodes.RESTORE_CODES:
+        restores = RESTORED_HERE
+    elif opcode == opcodes.RANGE:
+        range_end = operand
+    elif opcode == opcodes.CHECK_RETURN:
+        part = innermost(calls, called)
+        known = part > 0 and calls[part - 1, RESTORES] != RESTORED_BY_CONTROL
+    elif opcode == opcodes.RETURN:
+        called = innermost(calls, called) - 1
+        depth -= calls[called, OWNS_SCOPE]
+        going = calls[called, BACK]
+        if calls[called, RESTORES] == RESTORED_HERE:
+            copy_active_codes(
+                saved.modal[called], saved.active_codes[called], state.modal, state.active_codes
+            )
+    else:
+        again = stack[top - 1] - 1.0 if opcode == opcodes.REPEAT else 0.0
+        known = again >= 0.0 and again == np.floor(again)
+        if known:
+            call = calls[called]
+            call[BACK], call[FIRST], call[AGAIN] = to.behind, operand, int(again)
+            call[LAST], call[OWNS_SCOPE], call[RESTORES] = range_end, owns_scope, restores
+            if restores == RESTORED_HERE:
+                copy_active_codes(
+                    state.modal, state.active_codes, saved.modal[called], saved.active_codes[called]
+                )
+            called += 1
+            going = operand
+    return known, Transfer(going, to.behind, depth, called, range_end, owns_scope, restores)
