@@ -54,20 +54,16 @@ def rows() -> Iterator[Row]:
             "run of a helix": helix,
             "rehearsal of a training scene": ["train", "codesys_opening_angle", "--rehearse"],
         }
-<<<<<<< HEAD
-        cold = {}
-        for number, task in enumerate(tuple(tasks)[:2]):
-=======
         commands = {task: ["-m", "twin", *command] for task, command in tasks.items()}
         twice = folder / "twice.nc"
         twice.write_text(long.read_text() * 2)
         commands[f"first moves of {2 * LINES} lines"] = ["-c", _FIRST_MOVES, str(twice)]
         commands["whole compilation of the language"] = ["-c", _COMPILE]
-        for number, (task, command) in enumerate(commands.items()):
->>>>>>> main
+        cold = {}
+        for number, task in enumerate((*tuple(tasks)[:2], *tuple(commands)[-2:])):
             kernels = folder / f"kernels{number}"
-            cold[task] = _seconds(tasks[task], kernels)
-        for task, command in tasks.items():
+            cold[task] = _seconds(commands[task], kernels)
+        for task, command in commands.items():
             _seconds(command, kernels)  # what it alone needs is compiled now
             warm = _seconds(command, kernels)
             if task in cold:
@@ -78,13 +74,8 @@ def rows() -> Iterator[Row]:
 def _seconds(command: list[str], kernels: Path) -> float:
     began = processor_seconds()
     subprocess.run(  # noqa: S603 (this project's own command)
-<<<<<<< HEAD
-        [sys.executable, "-m", "twin", *command],
+        [sys.executable, *command],
         env=os.environ | {"XDG_CACHE_HOME": str(kernels), "NUMBA_CACHE_DIR": str(kernels)},
         check=True, capture_output=True,
-=======
-        [sys.executable, *command],
-        env=os.environ | {"NUMBA_CACHE_DIR": str(kernels)}, check=True, capture_output=True,
->>>>>>> main
     )  # fmt: skip
     return processor_seconds() - began
