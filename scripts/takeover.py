@@ -55,7 +55,7 @@ def observe(folder: Path) -> Takeover:
     Raises:
         AssertionError: A move is not where the program wants it.
     """
-    os.environ["NUMBA_CACHE_DIR"] = str(folder)
+    os.environ["NUMBA_CACHE_DIR"] = os.environ["XDG_CACHE_HOME"] = str(folder)
     source = source_from_text(_PROGRAM.format(lines=_LINE * (LINES // 2)))
     settings = ControlSettings(axes=_AXES, step_limit=10**9)
     interpretation = Interpretation(
