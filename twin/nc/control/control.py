@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from twin.nc.canonical import Corner, Motion
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
 from twin.nc.control.words import ControlWords
-from twin.nc.geometry.planes import Plane, Vector, cross
+from twin.nc.geometry.frame import moved_shift
+from twin.nc.geometry.planes import Plane, Vector
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.moves import SMALLEST_MOVE, arc_length, feed_per_minute, line_length, only_turns
 from twin.nc.path.segments import direction_of
@@ -180,12 +181,7 @@ class Control(ControlWords):
 
     def part_plane(self) -> Plane:
         """The working plane as the part sees it."""
-        plane, frame = self.modal.plane, self.frame
-        if frame.is_identity:
-            return plane
-        normal, _ = frame.arc(plane.normal, 0.0)
-        abscissa, _ = frame.arc(plane.abscissa, 0.0)
-        return Plane(plane.name, abscissa, cross(normal, abscissa), normal)
+        return self.frame.plane(self.modal.plane)
 
     @property
     def has_moved(self) -> bool:
@@ -201,10 +197,7 @@ class Control(ControlWords):
         """Give the place where it stands other programmed coordinates; nothing moves."""
         here = self.frame.to_part(programmed)
         values = self.frame.shift(shift)
-        moved = [
-            value + part - other for value, part, other in zip(values, self.part, here, strict=True)
-        ]
-        self.frame.set_shift(shift, moved)
+        self.frame.set_shift(shift, list(map(moved_shift, values, self.part, here)))
         self.programmed = programmed
 
     def reframed(self) -> None:

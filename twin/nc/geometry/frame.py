@@ -2,18 +2,88 @@
 
 from collections.abc import Iterable
 
+import numpy as np
+import numpy.typing as npt
+
+from twin.compilation.compilable import compilable
+from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import (
     IDENTITY,
     Matrix,
     applied,
     handedness,
     inverse,
+    rotated,
+    stretched,
     turned_unit,
 )
-from twin.nc.geometry.planes import Vector
+from twin.nc.geometry.planes import Directions, Plane, Vector, cross
+
+Values = list[float] | npt.NDArray[np.float64]
 
 SHIFTS = ("offset", "preset", "length", "increment", "rotation", "turns")
 """Every shift, in the order in which they are added."""
+
+
+@compilable
+def to_part(matrix: Matrix, total: Values, place: Vector) -> Vector:
+    """Part coordinates of a point of X, Y, Z: mirrored, scaled and rotated, then shifted."""
+    x, y, z = applied(matrix, place)
+    return (x + total[0], y + total[1], z + total[2])
+
+
+@compilable
+def to_programmed(matrix: Matrix, total: Values, part: Vector) -> Vector:
+    """The inverse of ``to_part``."""
+    shifted = (part[0] - total[0], part[1] - total[1], part[2] - total[2])
+    return applied(inverse(matrix), shifted)
+
+
+@compilable
+def plane_of_part(matrix: Matrix, plane: Directions) -> Directions:
+    """The directions of a working plane as the part sees them."""
+    normal, abscissa = turned_unit(matrix, plane[2]), turned_unit(matrix, plane[0])
+    return (abscissa, cross(normal, abscissa), normal)
+
+
+@compilable
+def arc_of_part(matrix: Matrix, normal: Vector, sweep: float) -> tuple[Vector, float]:
+    """Normal and sweep of an arc as the part sees them; a mirror reverses the sense."""
+    return turned_unit(matrix, normal), sweep * handedness(matrix)
+
+
+@compilable
+def composed(
+    signs: Vector, scale: float, plane: Directions, rotation: float, center: Point
+) -> tuple[Matrix, Vector]:
+    """Scale, then mirror, then a rotation in the working plane.
+
+    Args:
+        signs: -1 for each of X, Y and Z that is mirrored.
+        scale: Of all three.
+        plane: Abscissa, ordinate and normal.
+        rotation: Its angle, NaN for none [deg].
+        center: Abscissa and ordinate of its centre [mm].
+
+    Returns:
+        The matrix of all, and the shift that comes after it.
+    """
+    matrix, shift = stretched(signs, scale), (0.0, 0.0, 0.0)
+    if rotation == rotation:
+        matrix, shift = rotated(matrix, plane, rotation, center)
+    return matrix, shift
+
+
+@compilable
+def moved_shift(shift: float, part: float, there: float) -> float:
+    """A shift of an axis that gives the place where it stands other programmed coordinates.
+
+    Args:
+        shift: As it was.
+        part: Where the axis stands in part coordinates.
+        there: Where it would stand with its new coordinates and the shift as it was.
+    """
+    return shift + part - there
 
 
 class Frame:
@@ -60,27 +130,27 @@ class Frame:
         """Part coordinates of a programmed position, shape (k,)."""
         if self.is_identity:
             return [value + shift for value, shift in zip(programmed, self.total, strict=True)]
-        turned = [*self.turn((programmed[0], programmed[1], programmed[2])), *programmed[3:]]
-        return [value + shift for value, shift in zip(turned, self.total, strict=True)]
+        others = zip(programmed[3:], self.total[3:], strict=True)
+        place = to_part(self.matrix, self.total, (programmed[0], programmed[1], programmed[2]))
+        return [*place, *(value + shift for value, shift in others)]
 
     def to_programmed(self, part: list[float]) -> list[float]:
         """The inverse of ``to_part``."""
         values = [value - shift for value, shift in zip(part, self.total, strict=True)]
         if self.is_identity:
             return values
-        return [*applied(inverse(self.matrix), (values[0], values[1], values[2])), *values[3:]]
+        place = (part[0], part[1], part[2])
+        return [*to_programmed(self.matrix, self.total, place), *values[3:]]
 
     def point(self, programmed: Vector) -> Vector:
         """Part coordinates of a point of X, Y, Z."""
-        x, y, z = programmed if self.is_identity else self.turn(programmed)
+        if not self.is_identity:
+            return to_part(self.matrix, self.total, programmed)
+        x, y, z = programmed
         return (x + self.total[0], y + self.total[1], z + self.total[2])
 
-    def turn(self, vector: Vector) -> Vector:
-        """A direction of X, Y, Z as the part sees it."""
-        return applied(self.matrix, vector)
-
     def unturn(self, vector: Vector) -> Vector:
-        """The inverse of ``turn``."""
+        """A direction of the part's X, Y, Z as it is programmed."""
         return vector if self.is_identity else applied(inverse(self.matrix), vector)
 
     @property
@@ -90,9 +160,13 @@ class Frame:
 
     def arc(self, normal: Vector, sweep: float) -> tuple[Vector, float]:
         """Normal and sweep of an arc as the part sees them; a mirror reverses the sense."""
+        return (normal, sweep) if self.is_identity else arc_of_part(self.matrix, normal, sweep)
+
+    def plane(self, plane: Plane) -> Plane:
+        """A working plane as the part sees it."""
         if self.is_identity:
-            return normal, sweep
-        return turned_unit(self.matrix, normal), sweep * self.handedness
+            return plane
+        return Plane(plane.name, *plane_of_part(self.matrix, plane.directions))
 
 
 def added(values: Iterable[float]) -> float:

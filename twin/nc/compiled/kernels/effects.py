@@ -38,7 +38,7 @@ from twin.nc.bytecode.registers import (
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.kernels.frame import add_up, reframe, to_part, transform
 from twin.nc.control.control import LARGEST_COORDINATE
-from twin.nc.geometry import arcs
+from twin.nc.geometry import polar
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
 from twin.nc.path.drilling_cycle import Cycle
@@ -336,26 +336,17 @@ def polar_target(
     if np.isnan(origin[0]):
         return False
     start = (_along(state.programmed, plane[0]), _along(state.programmed, plane[1]))
-    radius, angle = registers[POLAR_RADIUS], registers[POLAR_ANGLE]
-    if np.isnan(radius):
-        radius = arcs.distance(origin, start)
-    if np.isnan(angle):
-        angle = arcs.angle_of(start, origin)
+    radius, angle = polar.seen_from(origin, start, registers[POLAR_RADIUS], registers[POLAR_ANGLE])
     incremental = modal[INCREMENTAL] != 0.0
     if seen & 1:
-        value = radius_word * modal[UNIT]
-        radius = radius + value if incremental else value
+        radius = polar.changed(radius, radius_word * modal[UNIT], incremental)
         if not 0.0 <= radius <= LARGEST_COORDINATE:
             return False
     if seen & 2:
-        angle = angle + angle_word if incremental else angle_word
+        angle = polar.changed(angle, angle_word, incremental)
         if not abs(angle) <= LARGEST_COORDINATE:
             return False
-    cosine, sine = arcs.direction(angle)
-    end = (origin[0] + radius * cosine, origin[1] + radius * sine)
-    if arcs.distance(start, end) < arcs.SAME_POINT / 1000.0:
-        end = start
-    state.target[0], state.target[1] = end
+    state.target[0], state.target[1] = polar.point_at(origin, start, radius, angle)
     registers[POLAR_RADIUS], registers[POLAR_ANGLE] = radius, angle
     return True
 

@@ -1,9 +1,7 @@
 """From programmed coordinates to the part's, compiled: ``Frame`` and what changes it.
 
-The geometry is that of ``matrices``, compiled as it stands there.
+What a shift, a mirror, a scale or a rotation does to coordinates, ``geometry.frame`` says.
 """
-
-import numpy as np
 
 from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.registers import (
@@ -19,14 +17,13 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.geometry import matrices, planes
-from twin.nc.geometry.frame import SHIFTS
+from twin.nc.geometry import frame, matrices
 from twin.nc.geometry.matrices import IDENTITY, Matrix
-from twin.nc.geometry.planes import Vector
+from twin.nc.geometry.planes import Vector, vector_of
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import OFF, STAGE, Contour
 
-_ROTATION_SHIFT = SHIFTS.index("rotation")
+_ROTATION_SHIFT = frame.SHIFTS.index("rotation")
 
 
 @inlined
@@ -61,19 +58,16 @@ def turn_place(programmed: FloatArray, state: State, part: FloatArray) -> None:
 
 @compilable
 def _turn(programmed: FloatArray, state: State, part: FloatArray) -> None:
-    place = (programmed[0], programmed[1], programmed[2])
-    x, y, z = matrices.applied(matrix_of(state), place)
-    part[0], part[1], part[2] = x + state.total[0], y + state.total[1], z + state.total[2]
+    put(frame.to_part(matrix_of(state), state.total, vector_of(programmed)), part)
 
 
 @compilable
 def turn_arc(value: FloatArray, state: State) -> None:
     """Centre, normal and sweep of an arc, as ``Rows.values`` has them, become the part's."""
     matrix = matrix_of(state)
-    x, y, z = matrices.applied(matrix, (value[0], value[1], value[2]))
-    value[0], value[1], value[2] = x + state.total[0], y + state.total[1], z + state.total[2]
-    value[3], value[4], value[5] = matrices.turned_unit(matrix, (value[3], value[4], value[5]))
-    value[6] *= matrices.handedness(matrix)
+    put(frame.to_part(matrix, state.total, vector_of(value)), value)
+    normal, value[6] = frame.arc_of_part(matrix, vector_of(value[3:]), value[6])
+    put(normal, value[3:])
 
 
 @compilable
@@ -94,9 +88,7 @@ def reframe(state: State) -> None:
     for axis in range(len(state.total)):
         programmed[axis] = state.part[axis] - state.total[axis]
     if state.registers[TURNED] != 0.0:
-        place = (programmed[0], programmed[1], programmed[2])
-        x, y, z = matrices.applied(matrices.inverse(matrix_of(state)), place)
-        programmed[0], programmed[1], programmed[2] = x, y, z
+        put(frame.to_programmed(matrix_of(state), state.total, vector_of(state.part)), programmed)
 
 
 @compilable
@@ -104,11 +96,9 @@ def transform(constants: Constants, state: State) -> None:
     """Mirror, scale and rotation have changed: the matrix, and where the control stands now."""
     registers = state.registers
     signs = (registers[SIGNS], registers[SIGNS + 1], registers[SIGNS + 2])
-    matrix, shift = matrices.stretched(signs, registers[SCALE]), (0.0, 0.0, 0.0)
-    if not np.isnan(registers[ROTATION]):
-        axes = directions(constants.planes[int(state.modal[PLANE])])
-        center = (registers[ROTATION_ABSCISSA], registers[ROTATION_ORDINATE])
-        matrix, shift = matrices.rotated(matrix, axes, registers[ROTATION], center)
+    axes = directions(constants.planes[int(state.modal[PLANE])])
+    center = (registers[ROTATION_ABSCISSA], registers[ROTATION_ORDINATE])
+    matrix, shift = frame.composed(signs, registers[SCALE], axes, registers[ROTATION], center)
     put(matrix[0], registers[MATRIX:])
     put(matrix[1], registers[MATRIX + 3 :])
     put(matrix[2], registers[MATRIX + 6 :])
@@ -135,17 +125,15 @@ def begin_compensation(
         return False
     if radius == 0.0:
         return True
-    abscissa, ordinate, normal = directions(constants.planes[int(state.modal[PLANE])])
+    axes = directions(constants.planes[int(state.modal[PLANE])])
     signed_offset = side * radius
     if state.registers[TURNED] != 0.0:
         matrix = matrix_of(state)
-        normal = matrices.turned_unit(matrix, normal)
-        abscissa = matrices.turned_unit(matrix, abscissa)
-        ordinate = planes.cross(normal, abscissa)
+        axes = frame.plane_of_part(matrix, axes)
         signed_offset *= matrices.handedness(matrix)
-    put(abscissa, contour.plane[0])
-    put(ordinate, contour.plane[1])
-    put(normal, contour.plane[2])
+    put(axes[0], contour.plane[0])
+    put(axes[1], contour.plane[1])
+    put(axes[2], contour.plane[2])
     leads.begin(contour, signed_offset, constants.square_corners, constants.indirect_leads)
     return True
 

@@ -1,6 +1,7 @@
 """Where a block of the Fagor CNC 8070 goes: Cartesian, polar, or a coordinate and an angle."""
 
 import dataclasses
+import math
 from collections.abc import Iterable
 
 from twin.nc.bytecode import opcodes
@@ -11,12 +12,8 @@ from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.geometry.arcs import (
-    SAME_POINT,
-    angle_of,
-    direction,
-    distance,
-)
+from twin.nc.geometry.arcs import direction
+from twin.nc.geometry.polar import changed, point_at, seen_from
 from twin.nc.text.blocks import Word
 
 HELIX_ANGLE = 0.1
@@ -156,9 +153,9 @@ def current_polar(control: Control) -> tuple[float, float]:
     """R and Q of where the tool stands: as last programmed, else measured [mm, deg]."""
     polar = memory_of(control)
     here = control.modal.plane.local(control.programmed)[:2]
-    radius = distance(polar.origin, here) if polar.radius is None else polar.radius
-    angle = angle_of(here, polar.origin) if polar.angle is None else polar.angle
-    return radius, angle
+    radius = math.nan if polar.radius is None else polar.radius
+    angle = math.nan if polar.angle is None else polar.angle
+    return seen_from(polar.origin, here, radius, angle)
 
 
 def take_goal(control: Control, *, arc: bool) -> Goal:
@@ -193,7 +190,7 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
     if radius_word is not None:
         value = control.length(radius_word)
         incremental = control.modal.incremental or radius_word.incremental
-        radius = radius + value if incremental else value
+        radius = changed(radius, value, incremental)
         if radius < 0.0 or (arc and radius == 0.0):
             control.fail(
                 "polar-radius",
@@ -203,12 +200,8 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
     if angle_word is not None:
         value = control.number(angle_word)
         incremental = control.modal.incremental or angle_word.incremental
-        angle = angle + value if incremental else value
-    cosine, sine = direction(angle)
-    end = (polar.origin[0] + radius * cosine, polar.origin[1] + radius * sine)
-    start = plane.local(control.programmed)
-    if distance(start[:2], end) < SAME_POINT / 1000.0:
-        end = start[:2]
+        angle = changed(angle, value, incremental)
+    end = point_at(polar.origin, plane.local(control.programmed)[:2], radius, angle)
     target[:3] = plane.world(*end, plane.local(target).height)
     polar.radius, polar.angle = radius, angle
     return target

@@ -1,5 +1,7 @@
 """Mirror, scale and rotation of the Fagor CNC 8070, and the same for the compiled tier."""
 
+import math
+
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_words import BlockWords
@@ -8,8 +10,8 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.polar import forget_polar
-from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE, rotated, stretched
-from twin.nc.geometry.planes import Vector
+from twin.nc.geometry.frame import composed
+from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
 from twin.nc.text.blocks import Word
 
 
@@ -90,10 +92,9 @@ def _update(control: Control) -> None:
     if control.path.compensating:
         message = "mirror, scale and rotation cannot change while compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
-    matrix = stretched(memory.signs, memory.scale)
-    shift: Vector = (0.0, 0.0, 0.0)
-    if memory.rotation is not None:
-        matrix, shift = rotated(matrix, control.modal.plane.directions, *memory.rotation)
+    angle, center = (math.nan, (0.0, 0.0)) if memory.rotation is None else memory.rotation
+    plane = control.modal.plane.directions
+    matrix, shift = composed(memory.signs, memory.scale, plane, angle, center)
     frame.set_matrix(matrix)
     frame.set_shift("rotation", [*shift, *([0.0] * (len(control.settings.axes) - 3))])
     control.reframed()

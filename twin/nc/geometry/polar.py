@@ -1,0 +1,35 @@
+"""Polar coordinates in a plane: R and Q as they were programmed last, and where they lead."""
+
+from twin.compilation.compilable import compilable
+from twin.nc.geometry.arcs import SAME_POINT, Point, angle_of, direction, distance
+
+
+@compilable
+def seen_from(origin: Point, here: Point, radius: float, angle: float) -> tuple[float, float]:
+    """R and Q of a point: as programmed last, else measured.
+
+    Args:
+        origin: The polar origin [mm].
+        here: The point [mm].
+        radius: R as programmed last, or NaN [mm].
+        angle: Q as programmed last, or NaN [deg].
+    """
+    if radius != radius:
+        radius = distance(origin, here)
+    if angle != angle:
+        angle = angle_of(here, origin)
+    return radius, angle
+
+
+@compilable
+def changed(old: float, value: float, incremental: bool) -> float:
+    """R or Q with the value of a word."""
+    return old + value if incremental else value
+
+
+@compilable
+def point_at(origin: Point, here: Point, radius: float, angle: float) -> Point:
+    """Where R and Q lead [mm]: to where the tool stands already, if that is the same but for rounding."""
+    cosine, sine = direction(angle)
+    end = (origin[0] + radius * cosine, origin[1] + radius * sine)
+    return here if distance(here, end) < SAME_POINT / 1000.0 else end
