@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -80,3 +81,9 @@ def test_a_folder_is_seen_at_a_glance() -> None:
     folders = {path.parent for path in MODULES.values()}
     crowded = {folder.name: n for folder in folders if (n := len(list(folder.glob("*.py")))) > 22}
     assert not crowded, f"folders that want rooms of their own: {crowded}"
+
+
+def test_no_two_files_of_tests_have_one_name():
+    # Tests are no packages, so that pytest knows their files by name alone.
+    names = Counter(path.name for path in Path(__file__).parent.rglob("test_*.py"))
+    assert [name for name, count in names.items() if count > 1] == []

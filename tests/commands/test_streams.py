@@ -34,6 +34,22 @@ def test_a_closed_pipe_ends_the_command_without_a_complaint(long_program: str):
     assert process.wait() == 141
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_a_full_disk_behind_the_output_is_told_and_loses_no_file(tmp_path: Path):
+    (tmp_path / "part.nc").write_text("N10 G00 X1\n", encoding="utf-8")
+    command = ["check", "part.nc", "--dialect", "mefi", "--junit", "twin.xml"]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "twin", *command], cwd=tmp_path, stdout=full,
+            stderr=subprocess.PIPE, text=True, check=False,
+            env=os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])},
+        )  # fmt: skip
+    assert done.returncode == 2
+    assert "the standard output: No space left on device" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert (tmp_path / "twin.xml").read_text("utf-8").count("<testcase") == 1
+
+
 def test_a_narrow_encoding_shows_what_it_can():
     process = twin("explain", "no-feed", PYTHONIOENCODING="ascii")
     out, err = process.communicate()

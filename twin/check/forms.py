@@ -9,7 +9,6 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 from twin.check.outcome import CheckOutcome, Finding
-from twin.files.atomic import write_text
 
 _HEADINGS = ("program", "verdict", "contour error", "line", "cycle time")
 
@@ -189,8 +188,3 @@ def _quality(severity: str, finding: Finding, root: Path) -> dict[str, Any]:
         "severity": severity,
         "location": {"path": file, "lines": {"begin": max(finding.line, 1)}},
     }
-
-
-def write_junit(path: Path, outcomes: Sequence[CheckOutcome]) -> None:
-    """Write JUnit XML, complete or not at all."""
-    write_text(path, junit_xml(outcomes))

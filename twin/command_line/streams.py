@@ -15,17 +15,27 @@ _ERRORS = "mill-twin-plain"
 
 
 class _Pipe(io.FileIO):
-    """Ends the process when the reader of the pipe has gone (``twin interpret ... | head``)."""
+    """Ends the process when the reader of the pipe has gone (``twin interpret ... | head``).
+
+    Where nothing can be written for another reason, a full disk say, that is raised once.
+    """
 
     def write(self, data: object, /) -> int | None:
         try:
             return super().write(data)  # pyright: ignore[reportArgumentType] (a buffer of any kind)
         except BrokenPipeError:
-            # What is still in the buffers goes nowhere, without a complaint of Python's.
-            nowhere = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(nowhere, self.fileno())
-            os.close(nowhere)
+            self._write_nowhere()
             raise SystemExit(CLOSED_PIPE) from None
+        except OSError as error:
+            self._write_nowhere()
+            name = "the standard output" if self.fileno() == 1 else "the standard error"
+            raise OSError(error.errno, error.strerror, name) from None
+
+    def _write_nowhere(self) -> None:
+        """What is still in the buffers is lost, without a complaint of Python's."""
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, self.fileno())
+        os.close(nowhere)
 
 
 def prepare_streams() -> None:

@@ -72,6 +72,8 @@ def check_and_print(
     outcomes.sort(key=lambda outcome: order[outcome.program])
     if settings.baseline is not None and not settings.update_baseline:
         outcomes += map(_without_program, baselines_without_programs(settings.baseline))
+    # Before the table, so that a terminal that went away loses no file.
+    unwritten = _write(outcomes, junit, json_file)
     _print(outcomes, to_stderr=STDOUT in (junit, json_file))
     if jobless := without_jobs(programs):
         names = ", ".join(map(str, jobless))
@@ -82,14 +84,30 @@ def check_and_print(
         )
     if interrupted:
         typer.echo(f"interrupted: {len(outcomes)} of {len(programs)} programs checked", err=True)
-    if junit is not None:
-        forms.write_junit(junit, outcomes)
-    if json_file is not None:
-        write_text(json_file, forms.json_text(outcomes))
+    if unwritten is not None:
+        raise unwritten
     _tell_server(outcomes, environment)
     if interrupted:
         raise KeyboardInterrupt
     return _exit_code(outcomes)
+
+
+def _write(
+    outcomes: Sequence[CheckOutcome], junit: Path | None, json_file: Path | None
+) -> OSError | None:
+    """Write each file that was asked for; what keeps one from being written keeps no other.
+
+    Returns:
+        The first reason why one could not be written.
+    """
+    reason = None
+    for file, text in ((junit, forms.junit_xml), (json_file, forms.json_text)):
+        try:
+            if file is not None:
+                write_text(file, text(outcomes))
+        except OSError as error:
+            reason = reason or error
+    return reason
 
 
 def _require_outputs(settings: CheckSettings, junit: Path | None, json_file: Path | None) -> None:

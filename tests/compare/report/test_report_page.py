@@ -7,7 +7,7 @@ import pytest
 from browsers import CHROMIUM, QUIET
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from tests.compare.test_report import MOVES, report_of
+from tests.compare.report.test_report import MOVES, report_of
 from twin.compare.report.report import write_report
 
 pytestmark = pytest.mark.skipif(

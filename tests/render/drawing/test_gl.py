@@ -79,12 +79,12 @@ def test_osmesa_draws_the_same_scene(tmp_path: Path) -> None:
         "import sys, pytest; "
         "sys.exit(pytest.main(['-q', '-p', 'no:cacheprovider', "
         f"'--basetemp={tmp_path / 'osmesa'}', "
-        "'tests/render/test_stage.py::test_tool_tip_is_where_the_recording_says']))"
+        "'tests/render/scene/test_stage.py::test_tool_tip_is_where_the_recording_says']))"
     )
     done = subprocess.run(
         [sys.executable, "-c", code],
         env={"MUJOCO_GL": "osmesa", "PYTHONPATH": ":".join(sys.path), "PATH": "/usr/bin:/bin"},
-        cwd=Path(__file__).parents[2],
+        cwd=Path(__file__).parents[3],
         capture_output=True,
         text=True,
         check=False,
