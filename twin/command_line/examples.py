@@ -31,7 +31,11 @@ EXAMPLES = {
     "dialects": ("twin dialects", "twin dialects fagor8070"),
     "explain": ("twin explain arc-radius",),
     "view": ("twin view out/part/recording.h5", "twin view part.toml --port 8081"),
-    "serve": ("twin serve part.toml", "twin serve part.toml --port 5001 --speed 10"),
+    "serve": (
+        "twin serve part.toml",
+        "twin serve part.toml --port 5001 --speed 10",
+        "twin serve --scene fagor_first_steps",
+    ),
     "machine list": ("twin machine list", "twin machine list --format json"),
     "machine show": ("twin machine show mill4 --feed 3000", "twin machine show ./my_machine.toml"),
     "machine check": ("twin machine check mill4", "twin machine check ./my_machine.toml"),

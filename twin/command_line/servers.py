@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from twin.command_line.options import DialectOption, MachineOption, ProgramOrJob
+from twin.command_line.options import DialectOption, MachineOption
+from twin.errors import UsageError
 
 
 def train(
@@ -65,7 +66,15 @@ def view(
 
 
 def serve(
-    job: ProgramOrJob,
+    job: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="PROGRAM|JOB.toml", help="Made again and again.", show_default=False
+        ),
+    ] = None,
+    scene: Annotated[
+        str | None, typer.Option("--scene", help="A training room instead; it opens.")
+    ] = None,
     host: Annotated[str, typer.Option("--host", help="Address to listen at.")] = "127.0.0.1",
     port: Annotated[
         int, typer.Option("--port", min=0, max=65535, help="0: the first free from 5000.")
@@ -77,8 +86,13 @@ def serve(
     dialect: DialectOption = None,
     machine: MachineOption = None,
 ) -> None:
-    """Tell monitors over MTConnect of a machine that runs a job again and again."""
+    """Tell monitors over MTConnect of a machine that runs a job again and again, or of a room."""
     from twin.commands import serve as agent
 
-    code = agent.serve(job, host=host, port=port, speed=speed, dialect=dialect, machine=machine)
-    raise typer.Exit(code)
+    source = agent.Source(host=host, port=port, speed=speed, dialect=dialect, machine=machine)
+    if (job is None) == (scene is None):
+        raise UsageError("give a program or a job, or --scene and a training scene")
+    if scene is not None:
+        raise typer.Exit(agent.serve_scene(scene, source))
+    assert job is not None
+    raise typer.Exit(agent.serve_job(job, source))

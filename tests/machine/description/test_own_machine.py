@@ -163,7 +163,7 @@ def test_a_wrong_file_is_refused_with_place_and_hint(tmp_path, old, new, message
         ("rotary_table", "turner", "has no body 'rotary_table'"),
         ('mass="5"', 'mass="0"', "mass and inertia of moving bodies"),
         ('type="box"', 'type="mesh" mesh="cast"', "mesh 'cast' not found"),
-        ("<worldbody>", '<asset><mesh name="c" file="c.stl"/></asset><worldbody>', "'c.stl'"),
+        ("<worldbody>", '<asset><mesh name="c" file="c.stl"/></asset><worldbody>', "c.stl'"),
         ('name="plate"', 'name="tool_nut"', "repeated name 'tool_nut'"),
         ("</mujoco>", "", "is not an MJCF model"),
         (MODEL, "", "is not an MJCF model"),

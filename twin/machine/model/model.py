@@ -52,6 +52,7 @@ def build_spec(machine: Machine, tool: ToolShape | None = None) -> mujoco.MjSpec
     _require(machine, "site", SPINDLE_NOSE, [site.name for site in spec.sites])
     _require(machine, "site", TABLE_TOP, [site.name for site in spec.sites])
     _require(machine, "body", ROTARY_TABLE, [body.name for body in spec.bodies])
+    _require_mesh_files(spec, machine)
     try:
         _complete(spec, machine, tool)
     except ValueError as error:
@@ -75,6 +76,14 @@ def _require(machine: Machine, what: str, name: str, known: list[str]) -> None:
         raise ConfigError(
             f"{machine.model_path}: has no {what} '{name}'; it has {', '.join(filter(None, known))}"
         )
+
+
+def _require_mesh_files(spec: mujoco.MjSpec, machine: Machine) -> None:
+    """The lean model that is compiled first looks at no mesh that is only seen."""
+    folder = machine.model_path.parent / spec.meshdir
+    for mesh in spec.meshes:
+        if mesh.file and not (folder / mesh.file).is_file():
+            raise ConfigError(f"{machine.model_path}: there is no mesh '{folder / mesh.file}'")
 
 
 def _set_clock(spec: mujoco.MjSpec, machine: Machine) -> None:
