@@ -84,8 +84,12 @@ def shipped(path: Path) -> Interpretation:
     job = read_job(path)
     assert job.file.dialect is not None
     dialect = dialect_named(job.file.dialect)
+    zero = job.file.part_zero
     settings = dataclasses.replace(
-        SETTINGS, start=job.file.start, default_feed=job.file.default_feed or 1000.0
+        SETTINGS,
+        start=job.file.start,
+        default_feed=job.file.default_feed or 1000.0,
+        machine_zero={name: -value for name, value in zero.items()} if "Z" in zero else None,
     )
     return Interpretation(read_source(path, dialect), dialect, settings)
 

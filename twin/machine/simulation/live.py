@@ -17,7 +17,7 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 
-_STANDSTILL = 0.01
+STANDSTILL = 0.01
 """Speed below which an axis counts as standing [mm/s or deg/s]."""
 _BUILT_IN = ("joint", "kind", "direction", "periodic")
 """Fields of an axis that no fault can change."""
@@ -181,7 +181,7 @@ class LiveMachine:
         Raises:
             AlarmStandsError: An axis still moves.
         """
-        moving = np.abs(self.velocity) > _STANDSTILL
+        moving = np.abs(self.velocity) > STANDSTILL
         if moving.any():
             name = self.machine.axes.names[int(np.argmax(moving))]
             raise AlarmStandsError(f"{name} still moves: an alarm is cleared at rest")

@@ -13,7 +13,7 @@ from twin.cutting.tools import default_cell
 from twin.errors import TwinError, UsageError
 from twin.job.job_file import StockTable
 from twin.machine.model.model import spindle_over_table_mm
-from twin.machine.simulation.live import LiveMachine
+from twin.machine.simulation.live import STANDSTILL, LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
@@ -35,8 +35,6 @@ from twin.training.session.workpiece import Workpiece
 SLICE = 10
 """Servo periods between two looks at the panel: 10 ms at 1 kHz. Time goes on by whole slices, so that
 a session that is lived again has its commands, its cuts and its ends at the same borders."""
-STANDSTILL = 0.05
-"""Speed below which an axis counts as standing for the panel [mm/s or deg/s]."""
 
 
 class Room:
