@@ -196,3 +196,8 @@ def test_a_number_with_a_colon_is_a_label() -> None:
     source = source_from_text("$GOTO N20\nG0 X1\nN20: G0 X2\nM30")
     interpretation = Interpretation(source, dialect_named("fagor8070"), WITH_TABLES)
     assert [x for chunk in interpretation.chunks() for x in chunk.moves.end[:, 0]] == [2.0]
+
+
+def test_a_code_without_effect_is_told_at_its_own_place() -> None:
+    (notice,) = good("G90 G51 A45 E0.002\nM30", "fagor8070").warnings
+    assert (notice.code, notice.column, notice.width) == ("passed-over", 5, 3)

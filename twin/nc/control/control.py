@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from twin.nc.canonical import Corner, Motion
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
+from twin.nc.control.state import SPINDLE_CODES
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
 from twin.nc.geometry.planes import Plane, Vector
@@ -18,7 +19,7 @@ LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 
 
-_SPINDLE = {"M3": True, "M4": True, "M5": False}
+_SPINDLE = {f"M{number}": turns for number, turns in SPINDLE_CODES.items()}
 """Whether the spindle turns behind these functions."""
 
 

@@ -203,8 +203,9 @@ class Executor(Control):
                 "unknown-m",
                 f"{word.text} is unknown to {self.dialect.name}",
                 word,
-                hint=f"known: {known}; one of the machine's builder is declared in the job or the "
-                f'machine file: [m_functions] M{max(number, 0)} = "what it does"',
+                hint=f"known: {known}; one of the machine's builder is declared in the job by "
+                f'[m_functions] M{max(number, 0)} = "what it does", in the machine file under '
+                "[control.m_functions]",
             )
         return code
 

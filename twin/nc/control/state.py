@@ -21,7 +21,8 @@ from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
 
-_SPINDLE_CODES = frozenset((3, 4, 5))
+SPINDLE_CODES = {3: True, 4: True, 5: False}
+"""Whether the spindle turns behind these M codes."""
 _FEED_PER_REVOLUTION = re.compile(rb"G[ \t]*0*95(?![0-9])")
 
 
@@ -137,7 +138,9 @@ class ControlState:
         self.spindle_turns = False
         waiting = {number for number, each in settings.m_functions.items() if each.dwell > 0.0}
         counts = source.lines.any_holds(_FEED_PER_REVOLUTION)
-        self.interpreted_functions = frozenset(waiting | (_SPINDLE_CODES if counts else set()))
+        self.interpreted_functions = frozenset(
+            waiting | (SPINDLE_CODES.keys() if counts else set())
+        )
         self.axis_limits: dict[int, float] = {}
         self.axis_accelerations: dict[int, float] = {}
         self.axis_decelerations: dict[int, float] = {}

@@ -156,11 +156,12 @@ def _refused(meaning: str, reason: str, numbers: Mapping[int, None] | range) -> 
     return dict.fromkeys(numbers, code)
 
 
-def _passed_over(meaning: str, letters: str) -> GCode:
+def _passed_over(number: int, meaning: str, letters: str) -> GCode:
     """A code whose words change nothing of the path here."""
 
     def perform(control: Control) -> None:
-        word = control.block.words[0]
+        word = control.code_word(number)
+        assert word is not None
         for letter in letters:
             control.take(letter)
         message = f"{word.text} does not change the path here: {meaning}"
@@ -248,7 +249,7 @@ CODES: dict[int, GCode] = {
     ),
     **_refused("tangential control", "the twin has no axis that turns the tool", range(45, 46)),
     50: _g("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
-    51: _passed_over("look-ahead of the CNC 8055: tolerance E and angle A", "AE"),
+    51: _passed_over(51, "look-ahead of the CNC 8055: tolerance E and angle A", "AE"),
     53: _do("offsets cancelled", forget_polar_values(offsets.cancel_offset), group="offset"),
     **{
         number: _do(
@@ -337,7 +338,7 @@ CODES: dict[int, GCode] = {
     262: _g("centre relative to the start", "centre", center_absolute=False),
     264: _g("arc centre not corrected", "centre correction", correct_center=False),
     265: _g("arc centre corrected", "centre correction", correct_center=True),
-    500: _passed_over("high-speed machining off", ""),
-    501: _passed_over("high-speed machining on: tolerance, acceleration, frequency", "AEJM"),
+    500: _passed_over(500, "high-speed machining off", ""),
+    501: _passed_over(501, "high-speed machining on: tolerance, acceleration, frequency", "AEJM"),
     266: GCode(meaning="feed override at 100 %", refused=_UNKNOWN, ground="manual"),
 }
