@@ -75,7 +75,9 @@ def test_every_followed_code_has_its_golden_file(name: str) -> None:
     paths = {float(path.stem[1:]): path for path in (GOLDEN / name / "codes").glob("G*.nc")}
     assert followed == set(paths)
     for number, path in paths.items():
-        assert re.search(rf"G0*{re.escape(f'{number:g}')}(?![0-9])", path.read_text(encoding="utf-8")), path
+        assert re.search(
+            rf"G0*{re.escape(f'{number:g}')}(?![0-9])", path.read_text(encoding="utf-8")
+        ), path
 
 
 @pytest.mark.parametrize("name", DIALECTS)
