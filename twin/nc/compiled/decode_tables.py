@@ -135,6 +135,8 @@ class DecodeTables:
         group = np.zeros(CODES, np.int64)
         cycle = np.full(CODES, UNSUPPORTED, np.int64)
         for number, code in dialect.g.items():
+            if not isinstance(number, int):
+                continue
             group[number] = self.groups.index(code.group)
             if "cycle" in code.sets:
                 cycle[number] = self._number_of_cycle(code.sets["cycle"])

@@ -13,7 +13,6 @@ from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode, MCode, Vocabulary
 from twin.nc.control.control import Control
-from twin.nc.control.state import integer_of
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import Expression
@@ -152,7 +151,7 @@ class BlockCompiler:
         """The G codes among words, as far as the dialect knows them."""
         for word in words:
             if word.address == "G" and not isinstance(word.value, Expression):
-                code = self.vocabulary.g.get(integer_of(word.value))
+                code = self.vocabulary.g.get(word.value)
                 if code is not None:
                     yield code
 
@@ -165,7 +164,7 @@ class BlockCompiler:
             if isinstance(word.value, Expression):
                 continue
             if word.address == "G":
-                code = self.vocabulary.g.get(int(word.value))
+                code = self.vocabulary.g.get(word.value)
                 if code is not None and code.compiler is not None:
                     return True
             elif word.address == "M":

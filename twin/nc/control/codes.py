@@ -111,7 +111,7 @@ class Vocabulary(Protocol):
         ...
 
     @property
-    def g(self) -> Mapping[int, GCode]:
+    def g(self) -> Mapping[float, GCode]:
         """G codes by number."""
         ...
 

@@ -47,7 +47,7 @@ class Dialect:
         code_page: Legacy code page of its programs.
         syntax: How blocks are written.
         groups: Modal groups in the order in which they take effect.
-        g: G codes by number.
+        g: G codes by number, such as 54 or 54.1; those with a point run at the interpreter tier.
         start: G codes in force when a program starts.
         m: M codes by number.
         instead: What to write in place of G codes that other controls have, by number.
@@ -95,10 +95,10 @@ class Dialect:
     code_page: str
     syntax: Syntax
     groups: tuple[str, ...]
-    g: Mapping[int, GCode]
-    start: tuple[int, ...]
+    g: Mapping[float, GCode]
+    start: tuple[float, ...]
     m: Mapping[int, MCode]
-    instead: Mapping[int, str] = dataclasses.field(default_factory=dict)
+    instead: Mapping[float, str] = dataclasses.field(default_factory=dict)
     any_m: bool = False
     axis_letters: frozenset[str] = frozenset("XYZABCUVW")
     motion_words: frozenset[str] = frozenset("XYZABCUVWIJKR")
@@ -138,5 +138,5 @@ class Dialect:
 
     def refusal(self, code: float) -> str | None:
         """Why a G code that the control knows is refused, given its number; None: it is not."""
-        declared = self.g.get(int(code)) if code == int(code) else None
+        declared = self.g.get(code)
         return None if declared is None or not declared.refused else declared.refusal

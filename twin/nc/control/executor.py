@@ -12,7 +12,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import ModalChanges
 from twin.nc.control.settings import ControlSettings
-from twin.nc.control.state import integer_of, number_of
+from twin.nc.control.state import code_number, integer_of, number_of
 from twin.nc.text.blocks import Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError
 from twin.nc.text.source import Source
@@ -33,7 +33,7 @@ class Executor(Control):
         for number in dialect.start:
             self.put_into_force(number, dialect.g[number])
 
-    def put_into_force(self, number: int, code: GCode) -> None:
+    def put_into_force(self, number: float, code: GCode) -> None:
         """Apply a modal code."""
         self.modal.apply(code.sets)
         if self.modal.cycle is None:
@@ -132,7 +132,7 @@ class Executor(Control):
                 restore.append(self.modal.values(code.sets))
             if code.alone and len(self.block.words) > 1:
                 self.fail("alone", f"{word.text} must stand alone in its block", word)
-            self.put_into_force(int(number_of(word)), code)
+            self.put_into_force(code_number(number_of(word)), code)
         return restore
 
     def _sort_words(self, block: Block) -> list[tuple[Word, MCode]]:
@@ -168,14 +168,14 @@ class Executor(Control):
     def _takes_m(self, block: Block) -> bool:
         """Whether M is a word of one of the block's G codes, and no machine function."""
         numbers = (word.value for word in block.words if word.address == "G")
-        codes = (self.dialect.g.get(integer_of(n)) for n in numbers if isinstance(n, float))
+        codes = (self.dialect.g.get(n) for n in numbers if isinstance(n, float))
         return any(code is not None and "M" in code.takes for code in codes)
 
     def _has_switch(self, block: Block) -> bool:
         return any(word.address == self.dialect.series[0] for word in block.words)
 
     def _g_code(self, word: Word) -> GCode:
-        number = integer_of(number_of(word))
+        number = number_of(word)
         code = self.dialect.g.get(number)
         if code is None:
             known = ", ".join(f"G{number}" for number in sorted(self.dialect.g))

@@ -83,4 +83,4 @@ class SavedModal(NamedTuple):
     """
 
     modal: Modal
-    active: dict[str, int]
+    active: dict[str, float]
