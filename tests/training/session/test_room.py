@@ -319,12 +319,12 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
     assert len(session.log) == 4
 
 
-def test_of_the_stock_a_copy_keeps_only_the_tiles_that_were_cut():
+def test_of_the_stock_a_copy_keeps_only_thetiles_that_were_cut():
     heights = np.zeros((150, 200))
     first = checkpoints.KeptHeights(heights, None)
     heights[140, 10] = -1.0
     second = checkpoints.KeptHeights(heights, first)
-    own = [a is not b for a, b in zip(first._tiles, second._tiles, strict=True)]
+    own = [a is not b for a, b in zip(first.tiles, second.tiles, strict=True)]
     assert own.count(True) == 1
     assert np.array_equal(copy.deepcopy(second), heights)
     assert not copy.deepcopy(first).any()

@@ -37,7 +37,11 @@ _SHARED = (Scene, Machine, Source, mujoco.MjModel, HeadShape, RelativeMotion, Ou
 
 
 class KeptHeights:
-    """Heights of the stock as they were: tiles that had not changed are those of the copy before."""
+    """Heights of the stock as they were: tiles that had not changed are those of the copy before.
+
+    Attributes:
+        tiles: Row by row.
+    """
 
     def __init__(self, heights: FloatArray, before: "KeptHeights | None") -> None:
         """Keep heights.
@@ -47,8 +51,8 @@ class KeptHeights:
             before: Of the same stock, as it was earlier; None: nothing is shared.
         """
         self._shape = heights.shape
-        known = [None] * len(list(self._places())) if before is None else before._tiles
-        self._tiles = [
+        known = [None] * len(list(self._places())) if before is None else before.tiles
+        self.tiles = [
             old
             if old is not None and np.array_equal(old, heights[place])
             else heights[place].copy()
@@ -64,7 +68,7 @@ class KeptHeights:
     def __deepcopy__(self, _memo: dict[int, Any]) -> FloatArray:
         """The heights, to be cut again."""
         heights = np.zeros(self._shape)
-        for place, tile in zip(self._places(), self._tiles, strict=True):
+        for place, tile in zip(self._places(), self.tiles, strict=True):
             heights[place] = tile
         return heights
 
