@@ -66,7 +66,11 @@ class KeptHeights:
                 yield slice(row, row + TILE), slice(column, column + TILE)
 
     def __deepcopy__(self, _memo: dict[int, Any]) -> FloatArray:
-        """The heights, to be cut again."""
+        """In a room that goes on the heights stand in its place."""
+        return self.laid_out()
+
+    def laid_out(self) -> FloatArray:
+        """The heights, to be cut again, shape (ny, nx) [mm]."""
         heights = np.zeros(self._shape)
         for place, tile in zip(self._places(), self.tiles, strict=True):
             heights[place] = tile
