@@ -28,6 +28,7 @@ class Executor(Control):
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
         super().__init__(dialect, settings, source)
         self.dialect = dialect
+        self._pointless = dialect.pointless(settings)
         self._codes: list[tuple[Word, GCode]] = []
         self.modal.apply(dialect.start_state)
         for number in dialect.start:
@@ -49,8 +50,10 @@ class Executor(Control):
         """
         self.block = block
         self.report.line = block.line
-        if block.skippable and self.settings.block_skip:
+        if self.settings.skips(block):
             return
+        if self._pointless:
+            block = self.block = self.dialect.count(self, block)
         if self.dialect.repeat_word:
             block = self._repeated(block)
         if block.statement is not None:
@@ -144,6 +147,8 @@ class Executor(Control):
         for word in block.words:
             if isinstance(word.value, Expression) and word.address not in dialect.references:
                 word = word._replace(value=self.evaluate(word.value, word))
+                if word.value != word.value:
+                    continue  # computed of a vacant variable: the word is not there
             if word.address in dialect.signed and number_of(word) < 0.0:
                 word = word._replace(address=f"{word.address}-")
             address = word.address

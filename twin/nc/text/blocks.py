@@ -22,6 +22,7 @@ class Word(NamedTuple):
         column: First character in the line, from 0.
         width: Characters from the address to the end of the value.
         incremental: The word alone is incremental (``X20I``).
+        pointless: A number without a decimal point.
     """
 
     address: str
@@ -29,6 +30,7 @@ class Word(NamedTuple):
     column: int
     width: int
     incremental: bool = False
+    pointless: bool = False
 
     @property
     def text(self) -> str:
@@ -63,6 +65,7 @@ class Block(NamedTuple):
         words: Its words without N, in the order of the text.
         statement: What it says besides words, or None.
         skippable: It begins with a slash.
+        skip_level: Number behind that slash, 1 where there is none.
         name: Its label in brackets, or empty.
     """
 
@@ -73,3 +76,4 @@ class Block(NamedTuple):
     statement: Statement | None = None
     skippable: bool = False
     name: str = ""
+    skip_level: int = 1

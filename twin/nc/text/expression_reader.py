@@ -10,9 +10,11 @@ from twin.nc.text.expressions import (
     Expression,
     ExpressionError,
     ExpressionSyntax,
+    FunctionOf,
     Negative,
     Number,
     NumberedVariable,
+    OrZero,
     Prefixed,
     Tree,
     Variable,
@@ -42,6 +44,7 @@ class ExpressionReader:
         self._number = re.compile(NUMBER)
         self._variable = re.compile(syntax.variable, re.IGNORECASE)
         self._name = re.compile(r"[A-Z_][A-Z_0-9]*", re.IGNORECASE)
+        self._quotient = re.compile(rf"[ \t]*/[ \t]*(?={re.escape(syntax.brackets[0])})")
 
     def read(self, text: str, start: int) -> tuple[Expression, int]:
         """Read the longest expression that begins at ``start``; return it with its end.
@@ -63,6 +66,10 @@ class ExpressionReader:
         reading = _Reading(self._syntax, self, text, start)
         tree = reading.operand(0)
         return Expression(text[start : reading.at].strip(), tree), reading.at
+
+    def read_word(self, text: str, start: int) -> tuple[Expression, int]:
+        """Read the value of a word, as far as the dialect lets it reach without brackets."""
+        return (self.read_operand if self._syntax.single else self.read)(text, start)
 
     def read_list(self, text: str, start: int) -> tuple[list[Expression], int]:
         """Read expressions separated by commas; return them with the end of the last."""
@@ -86,6 +93,10 @@ class ExpressionReader:
     def variable_at(self, text: str, at: int) -> re.Match[str] | None:
         """The variable that comes next, or None."""
         return self._variable.match(text, at)
+
+    def quotient_at(self, text: str, at: int) -> re.Match[str] | None:
+        """A slash before a bracket that comes next, or None."""
+        return self._quotient.match(text, at)
 
     def name_at(self, text: str, at: int) -> re.Match[str] | None:
         """The name that comes next, or None."""
@@ -115,16 +126,29 @@ class _Reading:
         """Operands joined by operators that bind at least as tightly as ``lowest``."""
         if depth > _DEEPEST:
             self._fail("expression-depth", f"more than {_DEEPEST} brackets within brackets")
-        left = self.operand(depth)
+        left, exclusive = self.operand(depth), False
         while (match := self._reader.operator_at(self._text, self.at)) is not None:
             operator = self._syntax.operators[match[1].upper()]
             if operator.precedence < lowest:
                 break
             self._count()
+            symbol = match[1].upper()
+            if exclusive and symbol in self._syntax.exclusive:
+                self._fail("expression", f"{symbol} needs brackets around what it compares")
+            exclusive = symbol in self._syntax.exclusive
             self.at = match.end()
             right = self.operation(operator.precedence + 1, depth + 1)
-            left = Computed(match[1].upper(), operator.compute, (left, right))
+            operands = (left, right)
+            if symbol not in self._syntax.of_vacant:
+                operands = (self._or_zero(left), self._or_zero(right))
+            left = Computed(symbol, operator.compute, operands)
         return left
+
+    def _or_zero(self, tree: Tree) -> Tree:
+        """A value of which something is computed."""
+        if self._syntax.vacant and isinstance(tree, Variable | NumberedVariable):
+            return OrZero(tree)
+        return tree
 
     def operand(self, depth: int) -> Tree:
         """A value without operators behind it."""
@@ -137,7 +161,7 @@ class _Reading:
             if depth > _DEEPEST:
                 self._fail("expression-depth", f"more than {_DEEPEST} signs in a row")
             inner = self.operand(depth + 1)
-            return inner if character == "+" else Negative(inner)
+            return inner if character == "+" else Negative(self._or_zero(inner))
         if character == opening:
             self.at += 1
             inner = self.operation(0, depth + 1)
@@ -148,8 +172,25 @@ class _Reading:
             return Number(self._number(match[0]))
         return self._named(depth)
 
+    def _numbered(self, depth: int) -> Tree:
+        """A variable by its number, behind the character that begins one."""
+        begin, name = self.at, self._syntax.numbered
+        self.at += len(name)
+        self._count()
+        if self._text[self.at : self.at + 1] in ("+", "-"):
+            self._fail("expression", f"the number of a variable must stand behind {name}")
+        number = self.operand(depth + 1)
+        if not isinstance(number, Number):
+            return NumberedVariable(name, self._or_zero(number))
+        if number.value != int(number.value):
+            self.at = begin
+            self._fail("expression", "the number of a variable must be a whole one")
+        return Variable(f"{name}{int(number.value)}")
+
     def _named(self, depth: int) -> Tree:
         opening = self._syntax.brackets[0]
+        if self._syntax.numbered and self._text.startswith(self._syntax.numbered, self.at):
+            return self._numbered(depth)
         if (match := self._reader.variable_at(self._text, self.at)) is not None:
             self.at = match.end()
             return Variable(match[0].upper())
@@ -176,22 +217,39 @@ class _Reading:
             known = ", ".join(sorted(self._syntax.functions))
             self._fail("unknown-function", f"'{name}' is no function here", f"functions: {known}")
         function = self._syntax.functions[name]
+        divided = self._syntax.divided.get(name)
+        if divided is not None:
+            return self._divided(name, after, function, divided, depth)
         arguments = self._arguments(name, after, function.arguments, depth)
         return Computed(name, function.compute, tuple(arguments))
 
-    def _arguments(self, name: str, at: int, count: int, depth: int) -> list[Tree]:
+    def _divided(
+        self, name: str, at: int, function: FunctionOf, divided: FunctionOf, depth: int
+    ) -> Tree:
+        """``ATAN[1]/[2]``, ``ATAN[1,2]`` or ``ATAN[1]``."""
+        arguments = self._arguments(name, at, None, depth)
+        behind = self._reader.quotient_at(self._text, self.at)
+        if len(arguments) == 1 and behind is not None:
+            arguments += self._arguments(name, behind.end(), 1, depth)
+        wanted = function if len(arguments) == 1 else divided
+        if len(arguments) != wanted.arguments:
+            given = len(arguments)
+            self._fail("expression", f"{name} takes {wanted.arguments} values, not {given}")
+        return Computed(name, wanted.compute, tuple(arguments))
+
+    def _arguments(self, name: str, at: int, count: int | None, depth: int) -> list[Tree]:
         self._count()
         self.at = at
         opening, closing = self._syntax.brackets
         self._skip_blanks()
         self._expect(opening)
-        arguments = [self.operation(0, depth + 1)]
+        arguments = [self._or_zero(self.operation(0, depth + 1))]
         self._skip_blanks()
         while self._text[self.at : self.at + 1] == ",":
             self.at += 1
-            arguments.append(self.operation(0, depth + 1))
+            arguments.append(self._or_zero(self.operation(0, depth + 1)))
             self._skip_blanks()
-        if len(arguments) != count:
+        if count is not None and len(arguments) != count:
             self._fail("expression", f"{name} takes {count} values, not {len(arguments)}")
         self._expect(closing)
         return arguments

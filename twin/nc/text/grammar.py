@@ -29,7 +29,8 @@ class Grammar:
         continues = "[0-9.]"
         if syntax.expressions is not None:
             operators = sorted(syntax.expressions.operators, key=len, reverse=True)
-            continues += rf"|[ \t]*(?:=|{'|'.join(map(operator_pattern, operators))})"
+            joined = [] if syntax.expressions.single else map(operator_pattern, operators)
+            continues += rf"|[ \t]*(?:{'|'.join(['=', *joined])})"
         self.unfinished = _unfinished(syntax.expressions) if syntax.expressions else None
         suffix = r"(I(?![ \t]*[-+.0-9=\[P])|)" if syntax.incremental_suffix else "()"
         self.word = _compiled(

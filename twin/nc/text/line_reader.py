@@ -17,6 +17,7 @@ LARGEST_LABEL = 4_294_967_295
 _STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
 _GARBLED = re.compile(r"[-+.0-9]{1,20}")
 """What looks like a number and was not read as one."""
+_SKIP_LEVEL = re.compile(r"[1-9](?=[ \t]*[A-Z#/])", re.IGNORECASE)
 _LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
@@ -48,6 +49,7 @@ class LineReader:
         self._number = NO_BLOCK_NUMBER
         self._name = ""
         self._skippable = False
+        self._skip_level = 1
 
     def blocks(self) -> tuple[Block, ...]:
         """The line's blocks.
@@ -84,7 +86,8 @@ class LineReader:
             if not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
             name = address if address in _LETTERS else name_of(address)
-            self._words.append(Word(name, value, begin, at - begin, bool(suffix)))
+            pointless = "." not in number
+            self._words.append(Word(name, value, begin, at - begin, bool(suffix), pointless))
         self._at = at
         return False
 
@@ -135,6 +138,9 @@ class LineReader:
             return False
         self._skippable = True
         self._at += 1
+        level = _SKIP_LEVEL.match(self._line, self._at) if self._syntax.skip_levels else None
+        if level is not None:
+            self._skip_level, self._at = int(level[0]), level.end()
         return True
 
     def _label_colon(self) -> bool:
@@ -176,6 +182,8 @@ class LineReader:
         if self._syntax.several_blocks and (label := _NEXT_LABEL.search(self._line, start, end)):
             end = label.start()
         text = self._line[start:end]
+        if self._syntax.inner_comments:
+            return self._without_comments(text, start)
         for comment in self._syntax.comments:
             if comment.closing and text.rstrip().endswith(comment.closing):
                 opening = text.rfind(comment.opening)
@@ -185,6 +193,19 @@ class LineReader:
                     and not self._wants_value(text[:opening], comment.opening)
                 ):
                     return text[:opening] + " " * (len(text) - opening)
+        return text
+
+    def _without_comments(self, text: str, start: int) -> str:
+        """A statement's text with blanks in place of its comments in brackets."""
+        for comment in self._syntax.comments:
+            while comment.closing and (opening := text.find(comment.opening)) >= 0:
+                end = text.find(comment.closing, opening + len(comment.opening))
+                if end < 0:
+                    message = f"the comment is not closed by '{comment.closing}'"
+                    hint = "close it on its own line"
+                    self._fail("open-comment", message, start + opening, hint=hint)
+                end += len(comment.closing)
+                text = text[:opening] + " " * (end - opening) + text[end:]
         return text
 
     def _wants_value(self, text: str, opening: str) -> bool:
@@ -202,7 +223,7 @@ class LineReader:
         begin = match.start(1)
         self._refuse_late_skip(match)
         try:
-            expression, end = reader.read(self._line, match.end())
+            expression, end = reader.read_word(self._line, match.end())
         except ExpressionError as error:
             if self._prose():
                 return True
@@ -276,6 +297,7 @@ class LineReader:
                 statement,
                 self._skippable,
                 self._name,
+                self._skip_level,
             )
         )
 
