@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text.expressions import Expression
+from twin.nc.text.expressions import Expression, NumberedVariable, Variable
 
 
 class Location(NamedTuple):
@@ -53,6 +53,22 @@ class Statement(NamedTuple):
     text_column: int
 
 
+class Assignment(NamedTuple):
+    """A variable that a block gives a value.
+
+    Attributes:
+        target: Which one.
+        value: What it becomes.
+        column: Where the variable begins, from 0.
+        width: Characters up to the end of the value.
+    """
+
+    target: Variable | NumberedVariable
+    value: Expression
+    column: int
+    width: int
+
+
 class Block(NamedTuple):
     """One block of a program.
 
@@ -64,6 +80,7 @@ class Block(NamedTuple):
         statement: What it says besides words, or None.
         skippable: It begins with a slash.
         name: Its label in brackets, or empty.
+        assignments: Variables that get new values when all words have been read.
     """
 
     line: int
@@ -73,3 +90,4 @@ class Block(NamedTuple):
     statement: Statement | None = None
     skippable: bool = False
     name: str = ""
+    assignments: tuple[Assignment, ...] = ()

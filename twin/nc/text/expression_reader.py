@@ -64,6 +64,10 @@ class ExpressionReader:
         tree = reading.operand(0)
         return Expression(text[start : reading.at].strip(), tree), reading.at
 
+    def read_value(self, text: str, start: int) -> tuple[Expression, int]:
+        """Read the value of a word or an assignment, as far as the dialect lets it go."""
+        return (self.read_operand if self._syntax.bracketed else self.read)(text, start)
+
     def read_list(self, text: str, start: int) -> tuple[list[Expression], int]:
         """Read expressions separated by commas; return them with the end of the last."""
         expressions = []
@@ -96,7 +100,7 @@ def operator_pattern(symbol: str) -> str:
     """Regular expression of an operator; two slashes begin a comment."""
     if symbol == "/":
         return "/(?!/)"
-    return re.escape(symbol) + (r"\b" if symbol[-1].isalpha() else "")
+    return re.escape(symbol) + (r"(?![A-Z_])" if symbol[-1].isalpha() else "")
 
 
 class _Reading:
@@ -152,7 +156,12 @@ class _Reading:
         opening = self._syntax.brackets[0]
         if (match := self._reader.variable_at(self._text, self.at)) is not None:
             self.at = match.end()
-            return Variable(match[0].upper())
+            return Variable(self._syntax.spelled(match[0]))
+        indirect = self._syntax.indirect
+        if indirect and self._text[self.at : self.at + 1] == indirect:
+            self._count()
+            self.at += 1
+            return NumberedVariable(indirect, self.operand(depth + 1))
         match = self._reader.name_at(self._text, self.at)
         if match is None:
             foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
@@ -172,12 +181,20 @@ class _Reading:
         if name in self._syntax.constants:
             self.at = after
             return Number(self._syntax.constants[name])
+        if name in self._syntax.quotients:
+            return self._quotient(name, after, depth)
         if name not in self._syntax.functions:
             known = ", ".join(sorted(self._syntax.functions))
             self._fail("unknown-function", f"'{name}' is no function here", f"functions: {known}")
         function = self._syntax.functions[name]
         arguments = self._arguments(name, after, function.arguments, depth)
         return Computed(name, function.compute, tuple(arguments))
+
+    def _quotient(self, name: str, at: int, depth: int) -> Tree:
+        (first,) = self._arguments(name, at, 1, depth)
+        self._expect("/")
+        (second,) = self._arguments(name, self.at, 1, depth)
+        return Computed(name, self._syntax.quotients[name], (first, second))
 
     def _arguments(self, name: str, at: int, count: int, depth: int) -> list[Tree]:
         self._count()

@@ -106,6 +106,11 @@ class ExpressionSyntax:
         brackets: Opening and closing character.
         existence: Functions that tell whether their value is defined.
         prefixes: Operators before one value, besides + and -.
+        spelled: One spelling for all ways to write a variable's name.
+        indirect: Character before a value that is a variable's number, such as ``#[#1+2]``; empty:
+            there is none.
+        quotients: Functions of two values, each in brackets, with a slash between them.
+        bracketed: Operators stand within brackets only, so that a word's value is one operand.
     """
 
     operators: Mapping[str, Operator]
@@ -116,6 +121,12 @@ class ExpressionSyntax:
     indexed: tuple[str, ...] = ()
     existence: tuple[str, ...] = ()
     prefixes: Mapping[str, Callable[[float], float]] = dataclasses.field(default_factory=dict)
+    spelled: Callable[[str], str] = str.upper
+    indirect: str = ""
+    quotients: Mapping[str, Callable[[float, float], float]] = dataclasses.field(
+        default_factory=dict
+    )
+    bracketed: bool = False
 
 
 def checked(value: float) -> float:

@@ -40,6 +40,8 @@ class Syntax:
         named_labels: ``[NAME]`` at its begin names a block.
         incremental_suffix: ``X20I`` makes one word incremental.
         aliases: Addresses that mean another one.
+        assigned: Character that begins an assignment among the words, such as ``#1=5``; empty: there
+            is none.
         excused: Why a line that cannot be read may be left out, given it and the line before:
             code of the warning, or None.
     """
@@ -53,6 +55,7 @@ class Syntax:
     named_labels: bool = False
     incremental_suffix: bool = False
     aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    assigned: str = ""
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
 
 
