@@ -16,7 +16,7 @@ from twin.nc.control.codes import (
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ModalChanges
 from twin.nc.control.settings import ControlSettings
-from twin.nc.text.blocks import Block
+from twin.nc.text.blocks import Assignment, Block
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Mark, Syntax
 
@@ -73,6 +73,10 @@ class Dialect:
         memory: Makes the object that holds what only this dialect remembers.
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
+        write_variable: Gives a variable a value, told its name, its index and the assignment; None:
+            variables are written as they are named.
+        words_first: F, S, T and early M functions take effect before what G codes do besides the
+            modal state that they set.
         is_local: Whether calls with variables of their own have a variable of this name anew.
         given_variable: The value of a variable among those of the job, or None.
         live_variables: Variables that no memory holds: the dialect knows their value itself.
@@ -123,6 +127,8 @@ class Dialect:
     memory: Callable[[], object] = object
     before_motion: Callable[[Control, bool], None] | None = None
     read_variable: Callable[[Control, str, float | None], float] | None = None
+    write_variable: Callable[[Control, str, float | None, float, Assignment], None] | None = None
+    words_first: bool = False
     is_local: Callable[[str], bool] = lambda _name: False
     given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
         given.get(name)

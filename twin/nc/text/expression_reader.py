@@ -10,7 +10,6 @@ from twin.nc.text.expressions import (
     Expression,
     ExpressionError,
     ExpressionSyntax,
-    FunctionOf,
     Negative,
     Number,
     NumberedVariable,
@@ -67,9 +66,9 @@ class ExpressionReader:
         tree = reading.operand(0)
         return Expression(text[start : reading.at].strip(), tree), reading.at
 
-    def read_word(self, text: str, start: int) -> tuple[Expression, int]:
-        """Read the value of a word, as far as the dialect lets it reach without brackets."""
-        return (self.read_operand if self._syntax.single else self.read)(text, start)
+    def read_value(self, text: str, start: int) -> tuple[Expression, int]:
+        """Read the value of a word or an assignment, as far as the dialect lets it go."""
+        return (self.read_operand if self._syntax.bracketed else self.read)(text, start)
 
     def read_list(self, text: str, start: int) -> tuple[list[Expression], int]:
         """Read expressions separated by commas; return them with the end of the last."""
@@ -107,7 +106,7 @@ def operator_pattern(symbol: str) -> str:
     """Regular expression of an operator; two slashes begin a comment."""
     if symbol == "/":
         return "/(?!/)"
-    return re.escape(symbol) + (r"\b" if symbol[-1].isalpha() else "")
+    return re.escape(symbol) + (r"(?![A-Z_])" if symbol[-1].isalpha() else "")
 
 
 class _Reading:
@@ -172,28 +171,16 @@ class _Reading:
             return Number(self._number(match[0]))
         return self._named(depth)
 
-    def _numbered(self, depth: int) -> Tree:
-        """A variable by its number, behind the character that begins one."""
-        begin, name = self.at, self._syntax.numbered
-        self.at += len(name)
-        self._count()
-        if self._text[self.at : self.at + 1] in ("+", "-"):
-            self._fail("expression", f"the number of a variable must stand behind {name}")
-        number = self.operand(depth + 1)
-        if not isinstance(number, Number):
-            return NumberedVariable(name, self._or_zero(number))
-        if number.value != int(number.value):
-            self.at = begin
-            self._fail("expression", "the number of a variable must be a whole one")
-        return Variable(f"{name}{int(number.value)}")
-
     def _named(self, depth: int) -> Tree:
         opening = self._syntax.brackets[0]
-        if self._syntax.numbered and self._text.startswith(self._syntax.numbered, self.at):
-            return self._numbered(depth)
         if (match := self._reader.variable_at(self._text, self.at)) is not None:
             self.at = match.end()
-            return Variable(match[0].upper())
+            return Variable(self._syntax.spelled(match[0]))
+        indirect = self._syntax.indirect
+        if indirect and self._text[self.at : self.at + 1] == indirect:
+            self._count()
+            self.at += 1
+            return NumberedVariable(indirect, self._or_zero(self.operand(depth + 1)))
         match = self._reader.name_at(self._text, self.at)
         if match is None:
             foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
@@ -213,29 +200,29 @@ class _Reading:
         if name in self._syntax.constants:
             self.at = after
             return Number(self._syntax.constants[name])
+        if name in self._syntax.quotients:
+            return self._quotient(name, after, depth)
         if name not in self._syntax.functions:
             known = ", ".join(sorted(self._syntax.functions))
             self._fail("unknown-function", f"'{name}' is no function here", f"functions: {known}")
         function = self._syntax.functions[name]
-        divided = self._syntax.divided.get(name)
-        if divided is not None:
-            return self._divided(name, after, function, divided, depth)
         arguments = self._arguments(name, after, function.arguments, depth)
         return Computed(name, function.compute, tuple(arguments))
 
-    def _divided(
-        self, name: str, at: int, function: FunctionOf, divided: FunctionOf, depth: int
-    ) -> Tree:
-        """``ATAN[1]/[2]``, ``ATAN[1,2]`` or ``ATAN[1]``."""
-        arguments = self._arguments(name, at, None, depth)
-        behind = self._reader.quotient_at(self._text, self.at)
-        if len(arguments) == 1 and behind is not None:
-            arguments += self._arguments(name, behind.end(), 1, depth)
-        wanted = function if len(arguments) == 1 else divided
-        if len(arguments) != wanted.arguments:
-            given = len(arguments)
-            self._fail("expression", f"{name} takes {wanted.arguments} values, not {given}")
-        return Computed(name, wanted.compute, tuple(arguments))
+    def _quotient(self, name: str, at: int, depth: int) -> Tree:
+        """``ATAN[1]/[2]``; where the dialect has them ``ATAN[1,2]`` and ``ATAN[1]``."""
+        function = self._syntax.functions.get(name)
+        arguments = self._arguments(name, at, 1 if function is None else None, depth)
+        slash = self._reader.quotient_at(self._text, self.at)
+        if slash is not None:
+            arguments += self._arguments(name, slash.end(), 1, depth)
+        elif function is None:
+            self._expect("/")
+        if len(arguments) == 2:
+            return Computed(name, self._syntax.quotients[name], tuple(arguments))
+        if function is None or len(arguments) != function.arguments:
+            self._fail("expression", f"{name} does not take {len(arguments)} values")
+        return Computed(name, function.compute, tuple(arguments))
 
     def _arguments(self, name: str, at: int, count: int | None, depth: int) -> list[Tree]:
         self._count()

@@ -107,11 +107,11 @@ class ExpressionSyntax:
         brackets: Opening and closing character.
         existence: Functions that tell whether their value is defined.
         prefixes: Operators before one value, besides + and -.
-        numbered: Character before the number of a variable: ``#5``, ``#[#5+1]``, ``##5``; empty:
-            variables have names.
-        single: A computed word is one number, variable, function or bracket; operators stand in
-            brackets only.
-        divided: Functions of two values that may be written ``ATAN[1]/[2]``.
+        spelled: One spelling for all ways to write a variable's name.
+        indirect: Character before a value that is a variable's number, such as ``#[#1+2]``; empty:
+            there is none.
+        quotients: Functions of two values, each in brackets, with a slash between them.
+        bracketed: Operators stand within brackets only, so that a word's value is one operand.
         vacant: A variable without a value counts as 0 where something is computed of it; alone it
             leaves its word out.
         of_vacant: Operators that see that a variable has no value.
@@ -126,9 +126,12 @@ class ExpressionSyntax:
     indexed: tuple[str, ...] = ()
     existence: tuple[str, ...] = ()
     prefixes: Mapping[str, Callable[[float], float]] = dataclasses.field(default_factory=dict)
-    numbered: str = ""
-    single: bool = False
-    divided: Mapping[str, FunctionOf] = dataclasses.field(default_factory=dict)
+    spelled: Callable[[str], str] = str.upper
+    indirect: str = ""
+    quotients: Mapping[str, Callable[[float, float], float]] = dataclasses.field(
+        default_factory=dict
+    )
+    bracketed: bool = False
     vacant: bool = False
     of_vacant: tuple[str, ...] = ()
     exclusive: tuple[str, ...] = ()

@@ -27,10 +27,9 @@ class Grammar:
         self.syntax = syntax
         self.reader = ExpressionReader(syntax.expressions) if syntax.expressions else None
         continues = "[0-9.]"
-        if syntax.expressions is not None:
+        if syntax.expressions is not None and not syntax.expressions.bracketed:
             operators = sorted(syntax.expressions.operators, key=len, reverse=True)
-            joined = [] if syntax.expressions.single else map(operator_pattern, operators)
-            continues += rf"|[ \t]*(?:{'|'.join(['=', *joined])})"
+            continues += rf"|[ \t]*(?:=|{'|'.join(map(operator_pattern, operators))})"
         self.unfinished = _unfinished(syntax.expressions) if syntax.expressions else None
         suffix = r"(I(?![ \t]*[-+.0-9=\[P])|)" if syntax.incremental_suffix else "()"
         self.word = _compiled(

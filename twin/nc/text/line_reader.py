@@ -6,8 +6,13 @@ import unicodedata
 from typing import NoReturn
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text.blocks import Block, Statement, Word
-from twin.nc.text.expressions import LARGEST_NUMBER, ExpressionError
+from twin.nc.text.blocks import Assignment, Block, Statement, Word
+from twin.nc.text.expressions import (
+    LARGEST_NUMBER,
+    ExpressionError,
+    NumberedVariable,
+    Variable,
+)
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.reporter import Reporter
 
@@ -22,6 +27,7 @@ _LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
 _BLANKS = re.compile(r"[ \t]*")
+_EQUALS = re.compile(r"[ \t]*=")
 _PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t,;:'-]+[^\W\d_]+)+[ \t]*[.!?:]?[ \t]*(?=$|N[ \t]*[0-9])")
 """At least two words of letters alone, up to the end of the line or the next block."""
 _NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re.IGNORECASE)
@@ -46,6 +52,7 @@ class LineReader:
         self._at = 0
         self._done: list[Block] = []
         self._words: list[Word] = []
+        self._assignments: list[Assignment] = []
         self._number = NO_BLOCK_NUMBER
         self._name = ""
         self._skippable = False
@@ -103,7 +110,7 @@ class LineReader:
                 not comment.whole_line or not self._line[: self._at].strip()
             ):
                 return self._comment(comment.opening, comment.closing)
-        if self._block_skip() or self._named_label() or self._label_colon():
+        if self._block_skip() or self._named_label() or self._label_colon() or self._assignment():
             return True
         if not self._computed_word():
             self._refuse(self._at)
@@ -223,7 +230,7 @@ class LineReader:
         begin = match.start(1)
         self._refuse_late_skip(match)
         try:
-            expression, end = reader.read_word(self._line, match.end())
+            expression, end = reader.read_value(self._line, match.end())
         except ExpressionError as error:
             if self._prose():
                 return True
@@ -236,6 +243,27 @@ class LineReader:
         assert suffix is not None
         self._at = suffix.end()
         self._words.append(Word(name, expression, begin, self._at - begin, bool(suffix[1])))
+        return True
+
+    def _assignment(self) -> bool:
+        """Read ``#1=5`` where the dialect has assignments among words."""
+        begin, reader = self._at, self._grammar.reader
+        if reader is None or self._line[begin] != (self._syntax.assigned or None):
+            return False
+        try:
+            target, at = reader.read_operand(self._line, begin)
+            sign = _EQUALS.match(self._line, at)
+            if sign is None:
+                message = f"'{target.text}' is no word: it is assigned by =, or follows a letter"
+                self._fail("assignment", message, begin, width=at - begin)
+            read = reader.read if self._syntax.open_assignments else reader.read_value
+            value, end = read(self._line, sign.end())
+        except ExpressionError as error:
+            self._refuse_value(begin, error)
+        tree = target.evaluate
+        assert isinstance(tree, (Variable, NumberedVariable))
+        self._assignments.append(Assignment(tree, value, begin, end - begin))
+        self._at = end
         return True
 
     def _refuse_late_skip(self, address: re.Match[str]) -> None:
@@ -285,7 +313,7 @@ class LineReader:
     def _start_block(self, number: int) -> None:
         self._number = number
         self._name = ""
-        self._words = []
+        self._words, self._assignments = [], []
 
     def _finish_block(self, statement: Statement | None = None) -> None:
         self._done.append(
@@ -297,12 +325,13 @@ class LineReader:
                 statement,
                 self._skippable,
                 self._name,
+                tuple(self._assignments),
                 self._skip_level,
             )
         )
 
     def _close(self) -> None:
-        if self._words or self._number != NO_BLOCK_NUMBER or self._name:
+        if self._words or self._assignments or self._number != NO_BLOCK_NUMBER or self._name:
             self._finish_block()
 
     def _refuse(self, at: int) -> NoReturn:

@@ -42,6 +42,9 @@ class Syntax:
         inner_comments: Comments in brackets may stand anywhere within a statement.
         incremental_suffix: ``X20I`` makes one word incremental.
         aliases: Addresses that mean another one.
+        assigned: Character that begins an assignment among the words, such as ``#1=5``; empty: there
+            is none.
+        open_assignments: What is assigned needs no brackets around its operators.
         excused: Why a line that cannot be read may be left out, given it and the line before:
             code of the warning, or None.
     """
@@ -57,6 +60,8 @@ class Syntax:
     inner_comments: bool = False
     incremental_suffix: bool = False
     aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    assigned: str = ""
+    open_assignments: bool = False
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
 
 
