@@ -13,7 +13,6 @@ from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode, MCode, Vocabulary
 from twin.nc.control.control import Control
-from twin.nc.control.state import integer_of
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import Expression
@@ -105,7 +104,7 @@ class BlockCompiler:
         Raises:
             UnsupportedError: It is left to the interpreter tier.
         """
-        if block.statement is not None:
+        if block.statement is not None or block.assignments:
             raise UnsupportedError
         self.words(block.words)
 
@@ -129,14 +128,18 @@ class BlockCompiler:
             raise UnsupportedError
         if performing and any(code.begins_cycle for _, code in acting):
             raise UnsupportedError
+        reserved = performing[0].takes if performing else ""
+        if self.vocabulary.words_first:
+            self._modal_words(block, reserved)
+            self._functions(functions, block, late=False)
         for word, code in acting:
             if code.group and not code.begins_cycle:
                 self.assembler.emit(opcodes.ACTIVATE, _number(word))
             if code.perform is None:
                 self._compile(code, block)
-        reserved = performing[0].takes if performing else ""
-        self._modal_words(block, reserved)
-        self._functions(functions, block, late=False)
+        if not self.vocabulary.words_first:
+            self._modal_words(block, reserved)
+            self._functions(functions, block, late=False)
         feed = block.words.get("F")
         moving = [] if feed is None or "F" in reserved else [block.words.pop("F")]
         if performing:
@@ -152,7 +155,7 @@ class BlockCompiler:
         """The G codes among words, as far as the dialect knows them."""
         for word in words:
             if word.address == "G" and not isinstance(word.value, Expression):
-                code = self.vocabulary.g.get(integer_of(word.value))
+                code = self.vocabulary.g.get(word.value)
                 if code is not None:
                     yield code
 
@@ -165,7 +168,7 @@ class BlockCompiler:
             if isinstance(word.value, Expression):
                 continue
             if word.address == "G":
-                code = self.vocabulary.g.get(int(word.value))
+                code = self.vocabulary.g.get(word.value)
                 if code is not None and code.compiler is not None:
                     return True
             elif word.address == "M":

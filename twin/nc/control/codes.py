@@ -111,7 +111,7 @@ class Vocabulary(Protocol):
         ...
 
     @property
-    def g(self) -> Mapping[int, GCode]:
+    def g(self) -> Mapping[float, GCode]:
         """G codes by number."""
         ...
 
@@ -133,6 +133,11 @@ class Vocabulary(Protocol):
     @property
     def word_compilers(self) -> Mapping[str, Compiler]:
         """The compilers of those that have one."""
+        ...
+
+    @property
+    def words_first(self) -> bool:
+        """F, S, T and early M functions take effect before the actions of G codes."""
         ...
 
     @property
