@@ -2,8 +2,9 @@
 
 import abc
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.canonical import Corner, Motion
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
 from twin.nc.control.state import SPINDLE_CODES
@@ -208,6 +209,17 @@ class Control(ControlWords):
     @abc.abstractmethod
     def run(self, block: Block) -> None:
         """Run one block, also one that stands within a statement."""
+
+    @abc.abstractmethod
+    def perform(
+        self, write: Callable[[Assembler], None], span: tuple[int, int] | None = None
+    ) -> None:
+        """Do at once what is said as instructions.
+
+        Args:
+            write: Says it.
+            span: Column and width of what is blamed; None: the block's last code or first word.
+        """
 
     @abc.abstractmethod
     def place_switches(self, length: float) -> None:

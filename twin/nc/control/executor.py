@@ -5,12 +5,15 @@ early M functions, the motion or what stands in its place, late M functions, jum
 be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
 """
 
+from collections.abc import Callable
 from typing import NoReturn
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import ModalChanges
+from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import integer_of, number_of
 from twin.nc.text.blocks import Block, Statement, Word
@@ -308,6 +311,12 @@ class Executor(Control):
 
     def _meaning_of(self, address: str) -> str:
         return f"{address} in {self.dialect.name}: {self.dialect.word_meanings[address]}"
+
+    def perform(
+        self, write: Callable[[Assembler], None], span: tuple[int, int] | None = None
+    ) -> None:
+        """Do at once what is said as instructions."""
+        perform(self, write, self._blamed(None) if span is None else span)
 
     def place_switches(self, length: float) -> None:
         """Report the block's switch points, told the length of its move."""

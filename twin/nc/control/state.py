@@ -120,9 +120,7 @@ class ControlState:
         self.tools = Tools(settings.tools, any_tool=settings.any_tool)
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
         lexer = Lexer(language, self.report)
-        self.program_counter = ProgramCounter(
-            source, lexer, settings.step_limit, self.report, self.restore_modal
-        )
+        self.program_counter = ProgramCounter(source, lexer, settings.step_limit, self.report)
         self.variables = Variables(
             language.is_local,
             lambda name: language.given_variable(settings.variables, name),
