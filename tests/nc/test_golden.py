@@ -72,10 +72,12 @@ def test_every_golden_file_has_its_program() -> None:
 @pytest.mark.parametrize("name", DIALECTS)
 def test_every_followed_code_has_its_golden_file(name: str) -> None:
     followed = {number for number, code in DIALECTS[name].g.items() if not code.refused}
-    paths = {int(path.stem[1:]): path for path in (GOLDEN / name / "codes").glob("G*.nc")}
+    paths = {float(path.stem[1:]): path for path in (GOLDEN / name / "codes").glob("G*.nc")}
     assert followed == set(paths)
     for number, path in paths.items():
-        assert re.search(rf"G0*{number}(?![0-9])", path.read_text(encoding="utf-8")), path
+        assert re.search(
+            rf"G0*{re.escape(f'{number:g}')}(?![0-9])", path.read_text(encoding="utf-8")
+        ), path
 
 
 @pytest.mark.parametrize("name", DIALECTS)

@@ -16,6 +16,7 @@ from twin.nc.text.expressions import (
     Negative,
     Number,
     NumberedVariable,
+    OrZero,
     Prefixed,
     Tree,
     Variable,
@@ -168,6 +169,8 @@ class BytecodeAssembler(Assembler):
                 self._number_variables(name)
                 self.value(index)
                 self._add(opcodes.LOAD_NUMBERED)
+            case OrZero(operand):  # a variable without a value stops the block before
+                self.value(operand)
             case Negative(operand):
                 self.value(operand)
                 self._add(opcodes.NEGATE)

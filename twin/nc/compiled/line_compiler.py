@@ -39,7 +39,7 @@ class LineCompiler:
             for letter, token_kind in tables.token_kinds.items()
             if token_kind not in _MEANINGS
         ]
-        self._templates = LineTemplates({*letters, *tables.cycle_letters})
+        self._templates = LineTemplates({*letters, *tables.cycle_letters}, tables.pointed)
         self._assembler = BytecodeAssembler(
             self.bytecode,
             control.variables,
@@ -117,7 +117,7 @@ class LineCompiler:
         control.block = block
         try:
             self._assembler.begin(block)
-            if not (block.skippable and control.settings.block_skip):
+            if not control.settings.skips(block):
                 control.dialect.compile_block(self._compiler, block)
         except (UnsupportedError, ProgramError):
             return False

@@ -14,7 +14,6 @@ from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
 from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode, MCode, StatementEffect, Vocabulary
 from twin.nc.control.control import Control
-from twin.nc.control.state import integer_of
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import Expression
@@ -110,6 +109,8 @@ class BlockCompiler:
             UnsupportedError: It is left to the interpreter tier.
         """
         statement, vocabulary = block.statement, self.vocabulary
+        if block.assignments:
+            raise UnsupportedError
         if statement is None:
             self.words(block.words)
             return
@@ -138,14 +139,18 @@ class BlockCompiler:
             raise UnsupportedError
         if performing and any(code.begins_cycle for _, code in acting):
             raise UnsupportedError
+        reserved = performing[0].takes if performing else ""
+        if self.vocabulary.words_first:
+            self._modal_words(block, reserved)
+            self._functions(functions, block, late=False)
         for word, code in acting:
             if code.group and not code.begins_cycle:
                 self.assembler.emit(opcodes.ACTIVATE, _number(word))
             if code.perform is None:
                 self._compile(code, block)
-        reserved = performing[0].takes if performing else ""
-        self._modal_words(block, reserved)
-        self._functions(functions, block, late=False)
+        if not self.vocabulary.words_first:
+            self._modal_words(block, reserved)
+            self._functions(functions, block, late=False)
         feed = block.words.get("F")
         moving = [] if feed is None or "F" in reserved else [block.words.pop("F")]
         if performing:
@@ -162,7 +167,7 @@ class BlockCompiler:
         """The G codes among words, as far as the dialect knows them."""
         for word in words:
             if word.address == "G" and not isinstance(word.value, Expression):
-                code = self.vocabulary.g.get(integer_of(word.value))
+                code = self.vocabulary.g.get(word.value)
                 if code is not None:
                     yield code
 
@@ -175,7 +180,7 @@ class BlockCompiler:
             if isinstance(word.value, Expression):
                 continue
             if word.address == "G":
-                code = self.vocabulary.g.get(int(word.value))
+                code = self.vocabulary.g.get(word.value)
                 if code is not None and code.writer is not None:
                     return True
             elif word.address == "M":

@@ -159,7 +159,7 @@ class Vocabulary(Protocol):
         ...
 
     @property
-    def g(self) -> Mapping[int, GCode]:
+    def g(self) -> Mapping[float, GCode]:
         """G codes by number."""
         ...
 
@@ -191,6 +191,11 @@ class Vocabulary(Protocol):
     @property
     def other_statement(self) -> StatementAction | None:
         """What the others do, which begin with a name."""
+        ...
+
+    @property
+    def words_first(self) -> bool:
+        """F, S, T and early M functions take effect before the actions of G codes."""
         ...
 
     @property

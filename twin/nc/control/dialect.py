@@ -15,7 +15,8 @@ from twin.nc.control.codes import (
 )
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ModalChanges
-from twin.nc.text.blocks import Block
+from twin.nc.control.settings import ControlSettings
+from twin.nc.text.blocks import Assignment, Block
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Mark, Syntax
 
@@ -47,7 +48,7 @@ class Dialect:
         code_page: Legacy code page of its programs.
         syntax: How blocks are written.
         groups: Modal groups in the order in which they take effect.
-        g: G codes by number.
+        g: G codes by number, such as 54 or 54.1; those with a point run at the interpreter tier.
         start: G codes in force when a program starts.
         m: M codes by number.
         instead: What to write in place of G codes that other controls have, by number.
@@ -72,11 +73,17 @@ class Dialect:
         memory: Makes the object that holds what only this dialect remembers.
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
+        write_variable: Gives a variable a value, told its name, its index and the assignment; None:
+            variables are written as they are named.
+        words_first: F, S, T and early M functions take effect before what G codes do besides the
+            modal state that they set.
         is_local: Whether calls with variables of their own have a variable of this name anew.
         given_variable: The value of a variable among those of the job, or None.
         live_variables: Variables that no memory holds: the dialect knows their value itself.
         place_switches: Reports the block's switch points, told the length of its move.
         library: Adds files that the program calls, looked for in the folder of the program.
+        pointless: Addresses whose numbers without a decimal point ``count`` must look at.
+        count: Gives words without a decimal point their value in the units of the others.
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
@@ -95,10 +102,10 @@ class Dialect:
     code_page: str
     syntax: Syntax
     groups: tuple[str, ...]
-    g: Mapping[int, GCode]
-    start: tuple[int, ...]
+    g: Mapping[float, GCode]
+    start: tuple[float, ...]
     m: Mapping[int, MCode]
-    instead: Mapping[int, str] = dataclasses.field(default_factory=dict)
+    instead: Mapping[float, str] = dataclasses.field(default_factory=dict)
     any_m: bool = False
     axis_letters: frozenset[str] = frozenset("XYZABCUVW")
     motion_words: frozenset[str] = frozenset("XYZABCUVWIJKR")
@@ -120,6 +127,8 @@ class Dialect:
     memory: Callable[[], object] = object
     before_motion: Callable[[Control, bool], None] | None = None
     read_variable: Callable[[Control, str, float | None], float] | None = None
+    write_variable: Callable[[Control, str, float | None, float, Assignment], None] | None = None
+    words_first: bool = False
     is_local: Callable[[str], bool] = lambda _name: False
     given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
         given.get(name)
@@ -127,6 +136,8 @@ class Dialect:
     live_variables: Container[str] = frozenset()
     place_switches: Callable[[Control, float], None] | None = None
     library: Callable[[Source, Path], Source] | None = None
+    pointless: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
+    count: Callable[[Control, Block], Block] = lambda _control, block: block
     prepare: Action | None = None
     after_motion: Action | None = None
     finish: Action | None = None
@@ -138,5 +149,5 @@ class Dialect:
 
     def refusal(self, code: float) -> str | None:
         """Why a G code that the control knows is refused, given its number; None: it is not."""
-        declared = self.g.get(int(code)) if code == int(code) else None
+        declared = self.g.get(code)
         return None if declared is None or not declared.refused else declared.refusal

@@ -15,9 +15,9 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import ModalChanges
 from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
-from twin.nc.control.state import integer_of, number_of
-from twin.nc.text.blocks import Block, Statement, Word
-from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.control.state import code_number, integer_of, number_of
+from twin.nc.text.blocks import Assignment, Block, Statement, Word
+from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
 from twin.nc.text.source import Source
 
 
@@ -31,12 +31,13 @@ class Executor(Control):
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
         super().__init__(dialect, settings, source)
         self.dialect = dialect
+        self._pointless = dialect.pointless(settings)
         self._codes: list[tuple[Word, GCode]] = []
         self.modal.apply(dialect.start_state)
         for number in dialect.start:
             self.put_into_force(number, dialect.g[number])
 
-    def put_into_force(self, number: int, code: GCode) -> None:
+    def put_into_force(self, number: float, code: GCode) -> None:
         """Apply a modal code."""
         self.modal.apply(code.sets)
         if self.modal.cycle is None:
@@ -52,26 +53,29 @@ class Executor(Control):
         """
         self.block = block
         self.report.line = block.line
-        if block.skippable and self.settings.block_skip:
+        if self.settings.skips(block):
             return
+        if self._pointless:
+            block = self.block = self.dialect.count(self, block)
         if self.dialect.repeat_word:
             block = self._repeated(block)
         if block.statement is not None:
             self._run_statement(block.statement)
             return
         functions = self._sort_words(block)
+        if block.assignments:
+            self._assign(block.assignments)
         codes = self._codes
         restore = self._apply_codes()
-        instead = None
+        instead = next((code for _, code in codes if code.perform is not None), None)
+        words_first, reserved = self.dialect.words_first, "" if instead is None else instead.takes
+        if words_first:
+            self._run_words(functions, reserved)
         for _, code in codes:
             if code.action is not None:
                 code.action(self)
-            if code.perform is not None:
-                instead = code
-        self._run_modal_words("" if instead is None else instead.takes)
-        for word, function in functions:
-            if not function.late:
-                self._run_function(word, function)
+        if not words_first:
+            self._run_words(functions, reserved)
         if instead is not None and instead.perform is not None:
             instead.perform(self)
         else:
@@ -86,6 +90,31 @@ class Executor(Control):
             self._refuse_unused()
         for replaced in restore:
             self.modal.apply(replaced)
+
+    def _run_words(self, functions: list[tuple[Word, MCode]], reserved: str) -> None:
+        self._run_modal_words(reserved)
+        for word, function in functions:
+            if not function.late:
+                self._run_function(word, function)
+
+    def _assign(self, assignments: tuple[Assignment, ...]) -> None:
+        """Give variables their values, all of them computed before the first is given."""
+        given: list[tuple[Assignment, str, float | None, float]] = []
+        for each in assignments:
+            span, target, index = (each.column, each.width), each.target, None
+            try:
+                if isinstance(target, NumberedVariable):
+                    index = float(target.index(self))
+                value = float(each.value.evaluate(self))
+            except ExpressionError as error:
+                self.report.fail(error.code, str(error), *span, error.hint)
+            given.append((each, target.name, index, value))
+        write = self.dialect.write_variable
+        for each, name, index, value in given:
+            if write is not None:
+                write(self, name, index, value, each)
+            else:
+                self.variables.write(name if index is None else f"{name}{index:g}", value)
 
     def prepare(self) -> None:
         """The program begins."""
@@ -135,7 +164,7 @@ class Executor(Control):
                 restore.append(self.modal.values(code.sets))
             if code.alone and len(self.block.words) > 1:
                 self.fail("alone", f"{word.text} must stand alone in its block", word)
-            self.put_into_force(int(number_of(word)), code)
+            self.put_into_force(code_number(number_of(word)), code)
         return restore
 
     def _sort_words(self, block: Block) -> list[tuple[Word, MCode]]:
@@ -147,6 +176,8 @@ class Executor(Control):
         for word in block.words:
             if isinstance(word.value, Expression) and word.address not in dialect.references:
                 word = word._replace(value=self.evaluate(word.value, word))
+                if word.value != word.value:
+                    continue  # computed of a vacant variable: the word is not there
             if word.address in dialect.signed and number_of(word) < 0.0:
                 word = word._replace(address=f"{word.address}-")
             address = word.address
@@ -171,14 +202,14 @@ class Executor(Control):
     def _takes_m(self, block: Block) -> bool:
         """Whether M is a word of one of the block's G codes, and no machine function."""
         numbers = (word.value for word in block.words if word.address == "G")
-        codes = (self.dialect.g.get(integer_of(n)) for n in numbers if isinstance(n, float))
+        codes = (self.dialect.g.get(n) for n in numbers if isinstance(n, float))
         return any(code is not None and "M" in code.takes for code in codes)
 
     def _has_switch(self, block: Block) -> bool:
         return any(word.address == self.dialect.series[0] for word in block.words)
 
     def _g_code(self, word: Word) -> GCode:
-        number = integer_of(number_of(word))
+        number = number_of(word)
         code = self.dialect.g.get(number)
         if code is None:
             known = ", ".join(f"G{number}" for number in sorted(self.dialect.g))

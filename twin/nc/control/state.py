@@ -105,7 +105,7 @@ class ControlState:
         self.axis_index = {name: index for index, name in enumerate(settings.axes.names)}
         self.linear = tuple(kind == "linear" for kind in settings.axes.kinds)
         self.modal = Modal()
-        self.active: dict[str, int] = {}
+        self.active: dict[str, float] = {}
         self.memory = language.memory()
         self.axis_letters = language.axis_letters
         self.frame = Frame(len(settings.axes))
@@ -160,7 +160,7 @@ class ControlState:
         """Put back what ``saved_modal`` gave."""
         self.modal, self.active = saved
 
-    def code_word(self, number: int) -> Word | None:
+    def code_word(self, number: float) -> Word | None:
         """Where the block writes a G code, for diagnostics."""
         return next((word for word, _ in self.codes if number_of(word) == number), None)
 
@@ -209,6 +209,11 @@ def number_of(word: Word) -> float:
     """The value of a word that has been computed."""
     assert isinstance(word.value, float)
     return word.value
+
+
+def code_number(value: float) -> float:
+    """A G code's number as a dialect's table has it: 54, or 54.1."""
+    return int(value) if value == int(value) else value
 
 
 def integer_of(value: float) -> int:

@@ -69,7 +69,7 @@ def _comments(dialect: Dialect) -> str:
     )
 
 
-def _g_table(codes: dict[int, GCode]) -> str:
+def _g_table(codes: dict[float, GCode]) -> str:
     rows = [
         (
             f"G{number}",
@@ -116,7 +116,7 @@ def _expression_sections(dialect: Dialect) -> list[str]:
     ]
 
 
-def _refused_table(codes: dict[int, GCode]) -> str:
+def _refused_table(codes: dict[float, GCode]) -> str:
     if not codes:
         return "None."
     rows = [(f"G{number}", code.meaning, code.refused) for number, code in sorted(codes.items())]
