@@ -46,7 +46,7 @@ RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
 
-CODES: dict[int, GCode] = {
+CODES: dict[float, GCode] = {
     0: _motion("positioning in a straight line; FF is its feed", RAPID),
     1: _motion("straight line", base.FEED, seed=True),
     2: _motion("arc clockwise", CLOCKWISE, seed=True),
@@ -212,7 +212,7 @@ CODES: dict[int, GCode] = {
     ),
 }
 
-INSTEAD = {
+INSTEAD: dict[float, str] = {
     **dict.fromkeys(range(80, 90), "there are no canned cycles: write their moves"),
     **dict.fromkeys((57, 58, 59), "shifts are G54 and G55 with their distances"),
     **dict.fromkeys((94, 95), "F counts units per second"),
