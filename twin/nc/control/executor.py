@@ -13,6 +13,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import ModalChanges
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import code_number, integer_of, number_of
+from twin.nc.functions import turns_behind
 from twin.nc.text.blocks import Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError
 from twin.nc.text.source import Source
@@ -251,8 +252,9 @@ class Executor(Control):
             code.action(self)
         if code.silent:
             return
-        arguments = self.take_function_arguments(word)
-        self.function(f"M{integer_of(number_of(word))}", arguments)
+        arguments, number = self.take_function_arguments(word), integer_of(number_of(word))
+        self.spindle_turns = turns_behind(number, self.spindle_turns) != 0.0
+        self.function(f"M{number}", arguments)
         if code.dwell > 0.0:
             self.dwell(code.dwell)
         if code.ends:
