@@ -15,6 +15,7 @@ from twin.nc.text.expressions import (
     Negative,
     Number,
     NumberedVariable,
+    OrZero,
     Prefixed,
     Tree,
     Variable,
@@ -170,6 +171,8 @@ class Assembler:
                 self._number_variables(name)
                 self.value(index)
                 self._add(opcodes.LOAD_NUMBERED)
+            case OrZero(operand):  # a variable without a value stops the block before
+                self.value(operand)
             case Negative(operand):
                 self.value(operand)
                 self._add(opcodes.NEGATE)

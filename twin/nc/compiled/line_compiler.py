@@ -38,7 +38,7 @@ class LineCompiler:
             for letter, token_kind in tables.token_kinds.items()
             if token_kind not in _MEANINGS
         ]
-        self._templates = LineTemplates({*letters, *tables.cycle_letters})
+        self._templates = LineTemplates({*letters, *tables.cycle_letters}, tables.pointed)
         self._assembler = Assembler(
             self.bytecode,
             control.variables,
@@ -116,7 +116,7 @@ class LineCompiler:
         control.block = block
         try:
             self._assembler.begin(block)
-            if not (block.skippable and control.settings.block_skip):
+            if not control.settings.skips(block):
                 control.dialect.compile_block(self._compiler, block)
         except (UnsupportedError, ProgramError):
             return False

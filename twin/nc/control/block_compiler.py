@@ -104,7 +104,7 @@ class BlockCompiler:
         Raises:
             UnsupportedError: It is left to the interpreter tier.
         """
-        if block.statement is not None:
+        if block.statement is not None or block.assignments:
             raise UnsupportedError
         self.words(block.words)
 
@@ -128,14 +128,18 @@ class BlockCompiler:
             raise UnsupportedError
         if performing and any(code.begins_cycle for _, code in acting):
             raise UnsupportedError
+        reserved = performing[0].takes if performing else ""
+        if self.vocabulary.words_first:
+            self._modal_words(block, reserved)
+            self._functions(functions, block, late=False)
         for word, code in acting:
             if code.group and not code.begins_cycle:
                 self.assembler.emit(opcodes.ACTIVATE, _number(word))
             if code.perform is None:
                 self._compile(code, block)
-        reserved = performing[0].takes if performing else ""
-        self._modal_words(block, reserved)
-        self._functions(functions, block, late=False)
+        if not self.vocabulary.words_first:
+            self._modal_words(block, reserved)
+            self._functions(functions, block, late=False)
         feed = block.words.get("F")
         moving = [] if feed is None or "F" in reserved else [block.words.pop("F")]
         if performing:

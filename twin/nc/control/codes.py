@@ -136,6 +136,11 @@ class Vocabulary(Protocol):
         ...
 
     @property
+    def words_first(self) -> bool:
+        """F, S, T and early M functions take effect before the actions of G codes."""
+        ...
+
+    @property
     def function_letters(self) -> str:
         """Addresses that belong to an M function of their block."""
         ...

@@ -140,6 +140,8 @@ class Control(ControlWords):
             )
         elif mode is FeedMode.SECONDS_PER_BLOCK:
             return length / self.feed * 60.0
+        elif mode is FeedMode.BLOCKS_PER_MINUTE:
+            return length * self.feed
         factor = FEED_FACTORS.get(mode, self.spindle)
         if self.feed is not None and mode not in FEED_FACTORS:
             self._refuse_standing_spindle()
