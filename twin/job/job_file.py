@@ -281,8 +281,11 @@ class JobFile(Table):
     m_functions: MachineFunctions = Field(default_factory=dict)
     """M codes of the machine's builder that the program holds, beside those of the machine file:
     ``M10 = "clamp the table"``, with a time ``M22 = { meaning = "pallet", dwell = 4.0 }``."""
-    block_skip: bool = False
-    """Blocks that begin with a slash are left out."""
+    block_skip: bool | tuple[Annotated[int, Field(ge=1, le=9)], ...] = False
+    """Blocks that begin with a slash are left out; ``[1, 3]``: those with ``/``, ``/1`` and ``/3``."""
+    decimal_point: Literal["calculator", "increments"] | None = None
+    """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments"); missing: as
+    the machine file says, else as the control does when it comes from its maker."""
     step_limit: Annotated[int, Field(gt=0)] = 20_000
     """Blocks that may be run again through jumps and loops before the program counts as endless."""
     expect: Annotated[str, Field(pattern="^[a-z0-9_-]+$")] | None = None

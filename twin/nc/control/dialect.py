@@ -15,7 +15,8 @@ from twin.nc.control.codes import (
 )
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ModalChanges
-from twin.nc.text.blocks import Block
+from twin.nc.control.settings import ControlSettings
+from twin.nc.text.blocks import Assignment, Block
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Mark, Syntax
 
@@ -72,11 +73,17 @@ class Dialect:
         memory: Makes the object that holds what only this dialect remembers.
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
+        write_variable: Gives a variable a value, told its name, its index and the assignment; None:
+            variables are written as they are named.
+        words_first: F, S, T and early M functions take effect before what G codes do besides the
+            modal state that they set.
         is_local: Whether calls with variables of their own have a variable of this name anew.
         given_variable: The value of a variable among those of the job, or None.
         live_variables: Variables that no memory holds: the dialect knows their value itself.
         place_switches: Reports the block's switch points, told the length of its move.
         library: Adds files that the program calls, looked for in the folder of the program.
+        pointless: Addresses whose numbers without a decimal point ``count`` must look at.
+        count: Gives words without a decimal point their value in the units of the others.
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
         finish: Done when the program ends without an end code.
@@ -120,6 +127,8 @@ class Dialect:
     memory: Callable[[], object] = object
     before_motion: Callable[[Control, bool], None] | None = None
     read_variable: Callable[[Control, str, float | None], float] | None = None
+    write_variable: Callable[[Control, str, float | None, float, Assignment], None] | None = None
+    words_first: bool = False
     is_local: Callable[[str], bool] = lambda _name: False
     given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
         given.get(name)
@@ -127,6 +136,8 @@ class Dialect:
     live_variables: Container[str] = frozenset()
     place_switches: Callable[[Control, float], None] | None = None
     library: Callable[[Source, Path], Source] | None = None
+    pointless: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
+    count: Callable[[Control, Block], Block] = lambda _control, block: block
     prepare: Action | None = None
     after_motion: Action | None = None
     finish: Action | None = None

@@ -5,16 +5,20 @@ early M functions, the motion or what stands in its place, late M functions, jum
 be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
 """
 
+from collections.abc import Callable
 from typing import NoReturn
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import ModalChanges
+from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import code_number, integer_of, number_of
-from twin.nc.text.blocks import Block, Statement, Word
-from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.functions import turns_behind
+from twin.nc.text.blocks import Assignment, Block, Statement, Word
+from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
 from twin.nc.text.source import Source
 
 
@@ -28,6 +32,7 @@ class Executor(Control):
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
         super().__init__(dialect, settings, source)
         self.dialect = dialect
+        self._pointless = dialect.pointless(settings)
         self._codes: list[tuple[Word, GCode]] = []
         self.modal.apply(dialect.start_state)
         for number in dialect.start:
@@ -49,26 +54,29 @@ class Executor(Control):
         """
         self.block = block
         self.report.line = block.line
-        if block.skippable and self.settings.block_skip:
+        if self.settings.skips(block):
             return
+        if self._pointless:
+            block = self.block = self.dialect.count(self, block)
         if self.dialect.repeat_word:
             block = self._repeated(block)
         if block.statement is not None:
             self._run_statement(block.statement)
             return
         functions = self._sort_words(block)
+        if block.assignments:
+            self._assign(block.assignments)
         codes = self._codes
         restore = self._apply_codes()
-        instead = None
+        instead = next((code for _, code in codes if code.perform is not None), None)
+        words_first, reserved = self.dialect.words_first, "" if instead is None else instead.takes
+        if words_first:
+            self._run_words(functions, reserved)
         for _, code in codes:
             if code.action is not None:
                 code.action(self)
-            if code.perform is not None:
-                instead = code
-        self._run_modal_words("" if instead is None else instead.takes)
-        for word, function in functions:
-            if not function.late:
-                self._run_function(word, function)
+        if not words_first:
+            self._run_words(functions, reserved)
         if instead is not None and instead.perform is not None:
             instead.perform(self)
         else:
@@ -83,6 +91,31 @@ class Executor(Control):
             self._refuse_unused()
         for replaced in restore:
             self.modal.apply(replaced)
+
+    def _run_words(self, functions: list[tuple[Word, MCode]], reserved: str) -> None:
+        self._run_modal_words(reserved)
+        for word, function in functions:
+            if not function.late:
+                self._run_function(word, function)
+
+    def _assign(self, assignments: tuple[Assignment, ...]) -> None:
+        """Give variables their values, all of them computed before the first is given."""
+        given: list[tuple[Assignment, str, float | None, float]] = []
+        for each in assignments:
+            span, target, index = (each.column, each.width), each.target, None
+            try:
+                if isinstance(target, NumberedVariable):
+                    index = float(target.index(self))
+                value = float(each.value.evaluate(self))
+            except ExpressionError as error:
+                self.report.fail(error.code, str(error), *span, error.hint)
+            given.append((each, target.name, index, value))
+        write = self.dialect.write_variable
+        for each, name, index, value in given:
+            if write is not None:
+                write(self, name, index, value, each)
+            else:
+                self.variables.write(name if index is None else f"{name}{index:g}", value)
 
     def prepare(self) -> None:
         """The program begins."""
@@ -144,6 +177,8 @@ class Executor(Control):
         for word in block.words:
             if isinstance(word.value, Expression) and word.address not in dialect.references:
                 word = word._replace(value=self.evaluate(word.value, word))
+                if word.value != word.value:
+                    continue  # computed of a vacant variable: the word is not there
             if word.address in dialect.signed and number_of(word) < 0.0:
                 word = word._replace(address=f"{word.address}-")
             address = word.address
@@ -251,8 +286,9 @@ class Executor(Control):
             code.action(self)
         if code.silent:
             return
-        arguments = self.take_function_arguments(word)
-        self.function(f"M{integer_of(number_of(word))}", arguments)
+        arguments, number = self.take_function_arguments(word), integer_of(number_of(word))
+        self.spindle_turns = turns_behind(number, self.spindle_turns) != 0.0
+        self.function(f"M{number}", arguments)
         if code.dwell > 0.0:
             self.dwell(code.dwell)
         if code.ends:
@@ -308,6 +344,12 @@ class Executor(Control):
 
     def _meaning_of(self, address: str) -> str:
         return f"{address} in {self.dialect.name}: {self.dialect.word_meanings[address]}"
+
+    def perform(
+        self, write: Callable[[Assembler], None], span: tuple[int, int] | None = None
+    ) -> None:
+        """Do at once what is said as instructions."""
+        perform(self, write, self._blamed(None) if span is None else span)
 
     def place_switches(self, length: float) -> None:
         """Report the block's switch points, told the length of its move."""

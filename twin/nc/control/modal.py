@@ -16,6 +16,7 @@ class FeedMode(enum.Enum):
     PER_SECOND = "per second"
     SECONDS_PER_BLOCK = "seconds per block"
     PER_REVOLUTION = "per revolution of the spindle"
+    BLOCKS_PER_MINUTE = "blocks per minute, the inverse of a block's time"
 
 
 FEED_FACTORS = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
@@ -25,7 +26,7 @@ FEED_FACTORS = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
 class ModalChanges(TypedDict, total=False):
     """Fields of ``Modal`` and what they become, as a G code sets them."""
 
-    interpolation: MotionMode
+    interpolation: MotionMode | None
     cycle: MotionMode | None
     return_to_reference: bool
     plane: Plane

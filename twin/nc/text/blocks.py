@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text.expressions import Expression
+from twin.nc.text.expressions import Expression, NumberedVariable, Variable
 
 
 class Location(NamedTuple):
@@ -22,6 +22,7 @@ class Word(NamedTuple):
         column: First character in the line, from 0.
         width: Characters from the address to the end of the value.
         incremental: The word alone is incremental (``X20I``).
+        pointless: A number without a decimal point.
     """
 
     address: str
@@ -29,6 +30,7 @@ class Word(NamedTuple):
     column: int
     width: int
     incremental: bool = False
+    pointless: bool = False
 
     @property
     def text(self) -> str:
@@ -53,6 +55,22 @@ class Statement(NamedTuple):
     text_column: int
 
 
+class Assignment(NamedTuple):
+    """A variable that a block gives a value.
+
+    Attributes:
+        target: Which one.
+        value: What it becomes.
+        column: Where the variable begins, from 0.
+        width: Characters up to the end of the value.
+    """
+
+    target: Variable | NumberedVariable
+    value: Expression
+    column: int
+    width: int
+
+
 class Block(NamedTuple):
     """One block of a program.
 
@@ -64,6 +82,8 @@ class Block(NamedTuple):
         statement: What it says besides words, or None.
         skippable: It begins with a slash.
         name: Its label in brackets, or empty.
+        assignments: Variables that get new values when all words have been read.
+        skip_level: Number behind the slash, 1 where there is none.
     """
 
     line: int
@@ -73,3 +93,5 @@ class Block(NamedTuple):
     statement: Statement | None = None
     skippable: bool = False
     name: str = ""
+    assignments: tuple[Assignment, ...] = ()
+    skip_level: int = 1

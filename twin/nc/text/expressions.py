@@ -49,7 +49,8 @@ class Scope(Protocol):
         """Value of a variable; ``index`` is the computed one of ``P[...]``, else None.
 
         Raises:
-            ExpressionError: There is no such variable, or it has no value.
+            ExpressionError: There is no such variable, or it has no value; where the syntax knows
+                vacant variables, the value of one is NaN.
         """
         ...
 
@@ -106,6 +107,15 @@ class ExpressionSyntax:
         brackets: Opening and closing character.
         existence: Functions that tell whether their value is defined.
         prefixes: Operators before one value, besides + and -.
+        spelled: One spelling for all ways to write a variable's name.
+        indirect: Character before a value that is a variable's number, such as ``#[#1+2]``; empty:
+            there is none.
+        quotients: Functions of two values, each in brackets, with a slash between them.
+        bracketed: Operators stand within brackets only, so that a word's value is one operand.
+        vacant: A variable without a value counts as 0 where something is computed of it; alone it
+            leaves its word out.
+        of_vacant: Operators that see that a variable has no value.
+        exclusive: Operators that need brackets where one follows another.
     """
 
     operators: Mapping[str, Operator]
@@ -116,6 +126,15 @@ class ExpressionSyntax:
     indexed: tuple[str, ...] = ()
     existence: tuple[str, ...] = ()
     prefixes: Mapping[str, Callable[[float], float]] = dataclasses.field(default_factory=dict)
+    spelled: Callable[[str], str] = str.upper
+    indirect: str = ""
+    quotients: Mapping[str, Callable[[float, float], float]] = dataclasses.field(
+        default_factory=dict
+    )
+    bracketed: bool = False
+    vacant: bool = False
+    of_vacant: tuple[str, ...] = ()
+    exclusive: tuple[str, ...] = ()
 
 
 def checked(value: float) -> float:
@@ -182,6 +201,18 @@ class NumberedVariable:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
+class OrZero:
+    """A variable, or 0 where it has no value."""
+
+    operand: "Variable | NumberedVariable"
+
+    def __call__(self, scope: Scope) -> float:
+        """Its value."""
+        value = self.operand(scope)
+        return 0.0 if math.isnan(value) else value
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class Negative:
     """A value with a minus before it."""
 
@@ -237,4 +268,4 @@ class Exists:
         return 1.0
 
 
-Tree = Number | Variable | NumberedVariable | Negative | Prefixed | Computed | Exists
+Tree = Number | Variable | NumberedVariable | OrZero | Negative | Prefixed | Computed | Exists

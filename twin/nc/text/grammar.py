@@ -27,7 +27,7 @@ class Grammar:
         self.syntax = syntax
         self.reader = ExpressionReader(syntax.expressions) if syntax.expressions else None
         continues = "[0-9.]"
-        if syntax.expressions is not None:
+        if syntax.expressions is not None and not syntax.expressions.bracketed:
             operators = sorted(syntax.expressions.operators, key=len, reverse=True)
             continues += rf"|[ \t]*(?:=|{'|'.join(map(operator_pattern, operators))})"
         self.unfinished = _unfinished(syntax.expressions) if syntax.expressions else None

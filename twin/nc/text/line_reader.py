@@ -6,8 +6,13 @@ import unicodedata
 from typing import NoReturn
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text.blocks import Block, Statement, Word
-from twin.nc.text.expressions import LARGEST_NUMBER, ExpressionError
+from twin.nc.text.blocks import Assignment, Block, Statement, Word
+from twin.nc.text.expressions import (
+    LARGEST_NUMBER,
+    ExpressionError,
+    NumberedVariable,
+    Variable,
+)
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.reporter import Reporter
 
@@ -17,10 +22,12 @@ LARGEST_LABEL = 4_294_967_295
 _STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
 _GARBLED = re.compile(r"[-+.0-9]{1,20}")
 """What looks like a number and was not read as one."""
+_SKIP_LEVEL = re.compile(r"[1-9](?=[ \t]*[A-Z#/])", re.IGNORECASE)
 _LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
 _BLANKS = re.compile(r"[ \t]*")
+_EQUALS = re.compile(r"[ \t]*=")
 _PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t,;:'-]+[^\W\d_]+)+[ \t]*[.!?:]?[ \t]*(?=$|N[ \t]*[0-9])")
 """At least two words of letters alone, up to the end of the line or the next block."""
 _NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re.IGNORECASE)
@@ -45,9 +52,11 @@ class LineReader:
         self._at = 0
         self._done: list[Block] = []
         self._words: list[Word] = []
+        self._assignments: list[Assignment] = []
         self._number = NO_BLOCK_NUMBER
         self._name = ""
         self._skippable = False
+        self._skip_level = 1
 
     def blocks(self) -> tuple[Block, ...]:
         """The line's blocks.
@@ -84,7 +93,8 @@ class LineReader:
             if not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
             name = address if address in _LETTERS else name_of(address)
-            self._words.append(Word(name, value, begin, at - begin, bool(suffix)))
+            pointless = "." not in number
+            self._words.append(Word(name, value, begin, at - begin, bool(suffix), pointless))
         self._at = at
         return False
 
@@ -100,7 +110,7 @@ class LineReader:
                 not comment.whole_line or not self._line[: self._at].strip()
             ):
                 return self._comment(comment.opening, comment.closing)
-        if self._block_skip() or self._named_label() or self._label_colon():
+        if self._block_skip() or self._named_label() or self._label_colon() or self._assignment():
             return True
         if not self._computed_word():
             self._refuse(self._at)
@@ -135,6 +145,9 @@ class LineReader:
             return False
         self._skippable = True
         self._at += 1
+        level = _SKIP_LEVEL.match(self._line, self._at) if self._syntax.skip_levels else None
+        if level is not None:
+            self._skip_level, self._at = int(level[0]), level.end()
         return True
 
     def _label_colon(self) -> bool:
@@ -176,6 +189,8 @@ class LineReader:
         if self._syntax.several_blocks and (label := _NEXT_LABEL.search(self._line, start, end)):
             end = label.start()
         text = self._line[start:end]
+        if self._syntax.inner_comments:
+            return self._without_comments(text, start)
         for comment in self._syntax.comments:
             if comment.closing and text.rstrip().endswith(comment.closing):
                 opening = text.rfind(comment.opening)
@@ -185,6 +200,19 @@ class LineReader:
                     and not self._wants_value(text[:opening], comment.opening)
                 ):
                     return text[:opening] + " " * (len(text) - opening)
+        return text
+
+    def _without_comments(self, text: str, start: int) -> str:
+        """A statement's text with blanks in place of its comments in brackets."""
+        for comment in self._syntax.comments:
+            while comment.closing and (opening := text.find(comment.opening)) >= 0:
+                end = text.find(comment.closing, opening + len(comment.opening))
+                if end < 0:
+                    message = f"the comment is not closed by '{comment.closing}'"
+                    hint = "close it on its own line"
+                    self._fail("open-comment", message, start + opening, hint=hint)
+                end += len(comment.closing)
+                text = text[:opening] + " " * (end - opening) + text[end:]
         return text
 
     def _wants_value(self, text: str, opening: str) -> bool:
@@ -202,7 +230,7 @@ class LineReader:
         begin = match.start(1)
         self._refuse_late_skip(match)
         try:
-            expression, end = reader.read(self._line, match.end())
+            expression, end = reader.read_value(self._line, match.end())
         except ExpressionError as error:
             if self._prose():
                 return True
@@ -215,6 +243,27 @@ class LineReader:
         assert suffix is not None
         self._at = suffix.end()
         self._words.append(Word(name, expression, begin, self._at - begin, bool(suffix[1])))
+        return True
+
+    def _assignment(self) -> bool:
+        """Read ``#1=5`` where the dialect has assignments among words."""
+        begin, reader = self._at, self._grammar.reader
+        if reader is None or self._line[begin] != (self._syntax.assigned or None):
+            return False
+        try:
+            target, at = reader.read_operand(self._line, begin)
+            sign = _EQUALS.match(self._line, at)
+            if sign is None:
+                message = f"'{target.text}' is no word: it is assigned by =, or follows a letter"
+                self._fail("assignment", message, begin, width=at - begin)
+            read = reader.read if self._syntax.open_assignments else reader.read_value
+            value, end = read(self._line, sign.end())
+        except ExpressionError as error:
+            self._refuse_value(begin, error)
+        tree = target.evaluate
+        assert isinstance(tree, (Variable, NumberedVariable))
+        self._assignments.append(Assignment(tree, value, begin, end - begin))
+        self._at = end
         return True
 
     def _refuse_late_skip(self, address: re.Match[str]) -> None:
@@ -264,7 +313,7 @@ class LineReader:
     def _start_block(self, number: int) -> None:
         self._number = number
         self._name = ""
-        self._words = []
+        self._words, self._assignments = [], []
 
     def _finish_block(self, statement: Statement | None = None) -> None:
         self._done.append(
@@ -276,11 +325,13 @@ class LineReader:
                 statement,
                 self._skippable,
                 self._name,
+                tuple(self._assignments),
+                self._skip_level,
             )
         )
 
     def _close(self) -> None:
-        if self._words or self._number != NO_BLOCK_NUMBER or self._name:
+        if self._words or self._assignments or self._number != NO_BLOCK_NUMBER or self._name:
             self._finish_block()
 
     def _refuse(self, at: int) -> NoReturn:
