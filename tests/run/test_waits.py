@@ -13,7 +13,10 @@ from twin.nc.canonical import Axes, Chunk, Dwell, Event, Function, Moves
 from twin.run.waits import with_waits
 
 AXES = Axes(("X", "Y", "Z"), ("linear",) * 3)
-TOOLS = [ToolTable(number=1, diameter=10.0), ToolTable(number=2, diameter=6.0, speed=4500.0)]
+TOOLS = (
+    ToolTable(number=1, diameter=10.0),
+    ToolTable(number=2, diameter=6.0, speed=4500.0),
+)
 SPINDLE = SpindleTable(tool_change_s=4.0, acceleration=6000.0)
 
 
