@@ -74,7 +74,8 @@ def _cycle_start(room: Room, _command: c.CycleStart) -> None:
 
 def _start_program(room: Room) -> None:
     dry = DRY_RUN_FEED if room.switches.dry_run else None
-    whole = room.searched == 0 and dry is None
+    # Where the part tells, it is no matter from which block on it was made.
+    whole = dry is None and (room.searched == 0 or room.scene.file.part is not None)
     options = RunOptions(dry_feed=dry, search=room.searched)
     room.start_run(room.program, "program", options)
     room.judge.note_start(whole=whole)
