@@ -81,5 +81,5 @@ def log_of(logger: Logger, seconds: float = 4.0) -> MachineLog:
         given = np.gradient(speed, STEP_S) + FRICTION_PER_S * speed
         more["current"] = given[::every] / ACCELERATION_PER_A
     axis = AxisLog("linear", told, shown, more, COLUMNS)
-    clock = np.arange(len(told)) * logger.period_s
+    clock = np.asarray(np.arange(len(told)) * logger.period_s, np.float64)
     return MachineLog("other.csv", clock, {"X": axis}, np.zeros(len(told), np.int64))
