@@ -272,15 +272,16 @@ def test_a_malformed_command_changes_nothing(session):
     assert session.snapshot().position == before.position
 
 
-def test_a_spindle_start_without_a_speed_turns_at_the_last_one_or_at_one_nobody_has_said(session):
+def test_a_spindle_starts_at_its_last_speed_and_without_one_not_at_all(session):
     room = session.room
     do(session, "mode", mode="mdi")
-    for text, speed in (("M3", None), ("S1500 M4", 1500.0), ("M5", None), ("M3", 1500.0)):
+    for text, turns, speed in (
+        ("M3", False, 0.0), ("S1500 M4", True, 1500.0), ("M5", False, 1500.0), ("M3", True, 1500.0),
+    ):  # fmt: skip
         do(session, "mdi", text=text)
         do(session, "cycle_start")
         rest(session)
-        assert room.spindle.turns == (text != "M5")
-        assert room.spindle.speed == (speed if room.spindle.turns else 1500.0)
+        assert (room.spindle.turns, room.spindle.speed) == (turns, speed)
     do(session, "spindle", on=False)
     assert not room.spindle.turns
     do(session, "spindle", on=True)
@@ -301,6 +302,7 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
     room = session.room
     assert room.work is not None
     place, removed = room.machine.position, room.work.removed
+    heights = room.work.map.heights.copy()
     later = []
     for _ in range(2):
         session.advance(80)
@@ -312,8 +314,20 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
         assert np.array_equal(back.machine.position, place)
         assert back.work is not None
         assert back.work.removed == removed
+        assert np.array_equal(back.work.map.heights, heights)
     assert np.array_equal(later[0], later[1])
     assert len(session.log) == 4
+
+
+def test_of_the_stock_a_copy_keeps_only_thetiles_that_were_cut():
+    heights = np.zeros((150, 200))
+    first = checkpoints.KeptHeights(heights, None)
+    heights[140, 10] = -1.0
+    second = checkpoints.KeptHeights(heights, first)
+    own = [a is not b for a, b in zip(first.tiles, second.tiles, strict=True)]
+    assert own.count(True) == 1
+    assert np.array_equal(second.laid_out(), heights)
+    assert not first.laid_out().any()
 
 
 def test_going_far_back_restores_a_checkpoint_without_living_it_again(session, monkeypatch):
