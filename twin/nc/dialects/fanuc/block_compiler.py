@@ -1,0 +1,58 @@
+"""Blocks of a Fanuc control as instructions for the compiled tier."""
+
+from twin.nc.bytecode.assembler import UnsupportedError
+from twin.nc.control.block_compiler import BlockCompiler
+from twin.nc.dialects.fanuc import decimal_point, programs
+from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.text.blocks import Block, Location, Word
+from twin.nc.text.expressions import Expression
+
+_CALL, _RETURN = 98.0, 99.0
+
+
+def compile_block(compiler: BlockCompiler, block: Block) -> None:
+    """Write a block.
+
+    Raises:
+        UnsupportedError: It is left to the interpreter tier.
+    """
+    functions = [word for word in block.words if word.address == "M"]
+    if any(word.value == _CALL for word in functions):
+        _call(compiler, block)
+    elif any(word.value == _RETURN for word in functions):
+        _return(compiler, block)
+    else:
+        _refuse_counted(compiler, block.words)
+        compiler.block(block)
+
+
+def _refuse_counted(compiler: BlockCompiler, words: tuple[Word, ...]) -> None:
+    """Numbers without a point count what the state at run time says."""
+    looked_at = decimal_point.pointless(compiler.control.settings)
+    for word in words:
+        if word.address in looked_at and (word.address == "P" or word.pointless) and word.value:
+            raise UnsupportedError
+
+
+def _call(compiler: BlockCompiler, block: Block) -> None:
+    if {word.address for word in block.words} != {"M", "P"} or len(block.words) != 2:
+        raise UnsupportedError
+    (number,) = (word.value for word in block.words if word.address == "P")
+    if isinstance(number, Expression) or number != int(number):
+        raise UnsupportedError
+    program, count = programs.called(compiler.control, int(number), None)
+    if count != 1:
+        raise UnsupportedError
+    line = programs.line_of(compiler.control, program, None)
+    deepest = memory_of(compiler.control).variant.deepest_call
+    compiler.assembler.call(Location(line, 0), deepest)
+
+
+def _return(compiler: BlockCompiler, block: Block) -> None:
+    rest = tuple(word for word in block.words if word.address != "M" or word.value != _RETURN)
+    if len(rest) != len(block.words) - 1 or any(word.address == "P" for word in rest):
+        raise UnsupportedError
+    _refuse_counted(compiler, rest)
+    compiler.assembler.check_return()
+    compiler.words(rest)
+    compiler.assembler.end_call()
