@@ -3,8 +3,9 @@
 import numpy as np
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.assembler import UnsupportedError
 from twin.nc.bytecode.bytecode import INTERPRETED, LARGEST_PART, Bytecode
+from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
 from twin.nc.bytecode.token_kinds import CODE, FUNCTION, NUMBER
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.entries import Kernels, page_columns
@@ -39,7 +40,7 @@ class LineCompiler:
             if token_kind not in _MEANINGS
         ]
         self._templates = LineTemplates({*letters, *tables.cycle_letters}, tables.pointed)
-        self._assembler = Assembler(
+        self._assembler = BytecodeAssembler(
             self.bytecode,
             control.variables,
             tables.token_kinds,

@@ -5,14 +5,18 @@ early M functions, the motion or what stands in its place, late M functions, jum
 be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
 """
 
+from collections.abc import Callable
 from typing import NoReturn
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import ModalChanges
+from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import code_number, integer_of, number_of
+from twin.nc.functions import turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
 from twin.nc.text.source import Source
@@ -282,8 +286,9 @@ class Executor(Control):
             code.action(self)
         if code.silent:
             return
-        arguments = self.take_function_arguments(word)
-        self.function(f"M{integer_of(number_of(word))}", arguments)
+        arguments, number = self.take_function_arguments(word), integer_of(number_of(word))
+        self.spindle_turns = turns_behind(number, self.spindle_turns) != 0.0
+        self.function(f"M{number}", arguments)
         if code.dwell > 0.0:
             self.dwell(code.dwell)
         if code.ends:
@@ -339,6 +344,12 @@ class Executor(Control):
 
     def _meaning_of(self, address: str) -> str:
         return f"{address} in {self.dialect.name}: {self.dialect.word_meanings[address]}"
+
+    def perform(
+        self, write: Callable[[Assembler], None], span: tuple[int, int] | None = None
+    ) -> None:
+        """Do at once what is said as instructions."""
+        perform(self, write, self._blamed(None) if span is None else span)
 
     def place_switches(self, length: float) -> None:
         """Report the block's switch points, told the length of its move."""
