@@ -3,6 +3,7 @@
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.nc.running import WITH_TABLES, bad, good
@@ -196,3 +197,148 @@ def test_both_arc_words_take_the_radius() -> None:
 
 def test_h_without_a_tool_is_refused() -> None:
     assert bad("O1\nG43 H7 Z1.\nM30", "fanuc", tools=WITH_TABLES.tools).code == "no-such-tool"
+
+
+# --- macros
+
+
+def value(expression: str, before: str = "", **changes: object) -> float:
+    """What an expression comes to."""
+    return good(f"O1\n{before}\n#100={expression}\nG0 X#100\nM30", "fanuc", **changes).position["X"]
+
+
+@pytest.mark.parametrize(
+    ("expression", "result"),
+    [
+        ("2+3*4", 14.0),
+        ("[2+3]*4", 20.0),
+        ("7 MOD 3", 1.0),
+        ("-7 MOD 3", -1.0),
+        ("12 AND 10", 8.0),
+        ("12 OR 10", 14.0),
+        ("12 XOR 10", 6.0),
+        ("SIN[30]*2", 1.0),
+        ("ACOS[0.5]", 60.0),
+        ("ATAN[1]/[-1]", 135.0),
+        ("ATAN[-1]/[1]", 315.0),
+        ("ATAN[-1,1]", 315.0),
+        ("ATAN[-1]", -45.0),
+        ("SQRT[16]+SQR[9]", 7.0),
+        ("ABS[-2.5]", 2.5),
+        ("ROUND[2.5]", 3.0),
+        ("ROUND[-2.5]", -3.0),
+        ("FIX[-1.2]", -1.0),
+        ("FIX[1.2]", 1.0),
+        ("FUP[1.2]", 2.0),
+        ("FUP[-1.2]", -2.0),
+        ("LN[EXP[2]]", 2.0),
+        ("POW[2,10]", 1024.0),
+        ("BIN[16]", 10.0),
+        ("BCD[10]", 16.0),
+        ("-[3-5]", 2.0),
+    ],
+)
+def test_operators_and_functions(expression: str, result: float) -> None:
+    assert value(expression) == pytest.approx(result, abs=1e-12)
+
+
+def test_round_in_a_word_goes_to_the_least_increment() -> None:
+    assert good("O1\n#1=1.23456\nG0 X[ROUND[#1]]\nM30", "fanuc").position["X"] == pytest.approx(
+        1.235
+    )
+    inch = good("O1\nG20\n#1=1.23456\nG0 X[ROUND[#1]]\nM30", "fanuc").position["X"]
+    assert inch == pytest.approx(1.2346 * 25.4)
+
+
+def test_arguments_of_both_kinds() -> None:
+    sub = "M30\nO9\nG0 X#{} Y#{} Z#{}\nM99"
+    letters = good("O1\nG65 P9 A1. I2. Z3.\n" + sub.format(1, 4, 26), "fanuc").position
+    assert (letters["X"], letters["Y"], letters["Z"]) == (1.0, 2.0, 3.0)
+    groups = good("O1\nG65 P9 I1. J2. I3. K4. I5.\n" + sub.format(7, 9, 10), "fanuc").position
+    assert (groups["X"], groups["Y"], groups["Z"]) == (3.0, 4.0, 5.0)
+    later = good("O1\nG65 P9 I1. I2. D5.\n" + sub.format(7, 4, 9), "fanuc").position
+    assert (later["X"], later["Y"]) == (5.0, 1.0)
+
+
+def test_an_argument_without_a_point_counts_increments() -> None:
+    text = "O1\nG65 P9 A1000 D7\nM30\nO9\nG0 X#1 Y#7\nM99"
+    outcome = good(text, "fanuc")
+    assert (outcome.position["X"], outcome.position["Y"]) == (1.0, 7.0)
+    assert good(text, "fanuc", decimal_point="calculator").position["X"] == 1000.0
+
+
+def test_a_macro_gives_the_path_of_its_unrolled_program() -> None:
+    macro = (
+        "O1\n#1=0\nWHILE [#1 LT 360] DO1\n#1=#1+45\nG1 X[20*COS[#1]] Y[20*SIN[#1]] F100.\nEND1\nM30"
+    )
+    rows = [
+        (20.0 * math.cos(math.radians(a)), 20.0 * math.sin(math.radians(a)))
+        for a in range(45, 361, 45)
+    ]
+    assert np.allclose(good(macro, "fanuc").moves.end[:, :2], rows, rtol=0.0, atol=1e-12)
+
+
+def test_a_modal_call_runs_behind_each_move_of_its_program() -> None:
+    text = "O1\nG66 P9 Z2.\nG0 X1.\nX2.\nG67\nX3.\nM30\nO9\nG91 G0 Z#26\nG90\nM99"
+    outcome = good(text, "fanuc")
+    assert (outcome.position["X"], outcome.position["Z"]) == (3.0, 4.0)
+
+
+def test_goto_takes_the_next_block_of_its_number_else_the_first() -> None:
+    assert good("O1\nN1 G0 X1.\nGOTO 1\nN1 Y1.\nM30", "fanuc").position["Y"] == 1.0
+    text = "O1\nN1 #1=#1+1\nIF [#1 LT 3] GOTO 1\nG0 X#1\nM30"
+    assert good(text, "fanuc").position["X"] == 3.0
+
+
+ZEROED = {"machine_zero": {"X": -100.0, "Y": 0.0, "Z": 50.0}}
+
+
+def test_positions_are_read() -> None:
+    tools = {1: ToolData(5.0, 60.0), 2: ToolData(5.0, 70.0)}
+    text = "G54\nG0 X10. Y5.\nG43 Z20. H2"
+    offsets = {"G54": {"X": 3.0}}
+    for variable, wanted in (("#5001", 10.0), ("#5021", 113.0), ("#5043", 30.0), ("#5083", 10.0)):
+        made = value(variable, text, tools=tools, offsets=offsets, **ZEROED)
+        assert made - 3.0 == pytest.approx(wanted), variable
+
+
+def test_offsets_are_read_and_written_from_machine_zero() -> None:
+    assert value("#5221", offsets={"G54": {"X": 3.0}}, **ZEROED) - 3.0 == pytest.approx(103.0)
+    made = good("O1\n#5241=-90.\nG55 G0 X1.\nM30", "fanuc", **ZEROED)
+    assert made.position["X"] == pytest.approx(-100.0 - 90.0 + 1.0)
+    made = good("O1\n#7002=7.\nG54.1 P1 G0 Y1.\nM30", "fanuc", **ZEROED)
+    assert made.position["Y"] == pytest.approx(8.0)
+
+
+def test_modal_codes_and_words_are_read() -> None:
+    before = "G91\nG55\nG90 F250. S900 T1"
+    offsets = {"G55": {"X": 0.0}}
+    wanted = {
+        "#4003": 90.0,
+        "#4014": 55.0,
+        "#4109": 250.0,
+        "#4119": 900.0,
+        "#4120": 1.0,
+        "#4115": 1.0,
+    }
+    for variable, result in wanted.items():
+        assert value(variable, before, offsets=offsets) == result, variable
+
+
+def test_tool_offsets_are_read_and_written() -> None:
+    tools = {1: ToolData(5.0, 60.0), 2: ToolData(4.0, 70.0)}
+    assert value("#11002", tools=tools) == 70.0
+    assert value("#13002", tools=tools) == 4.0
+    made = good("O1\n#10002=0.5\nG43 G0 Z0. H2\nM30", "fanuc", tools=tools)
+    assert made.position["Z"] == pytest.approx(10.5)
+
+
+def test_what_the_job_gives_is_read() -> None:
+    assert value("#1005", variables={"#1005": 4.0}) == 4.0
+    assert value("#500", variables={"#500": 8.0}) == 8.0
+
+
+def test_a_program_raises_its_own_alarm() -> None:
+    error = bad("O1\nIF [#1 EQ #0] THEN #3000=5 (NO VALUE)\nM30", "fanuc")
+    assert error.code == "program-alarm"
+    assert "3005: NO VALUE" in error.message

@@ -2,8 +2,7 @@
 
 from twin.nc.bytecode.assembler import UnsupportedError
 from twin.nc.control.block_compiler import BlockCompiler
-from twin.nc.dialects.fanuc import decimal_point, programs
-from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc import decimal_point, programs, variables
 from twin.nc.text.blocks import Block, Location, Word
 from twin.nc.text.expressions import Expression
 
@@ -21,6 +20,11 @@ def compile_block(compiler: BlockCompiler, block: Block) -> None:
         _call(compiler, block)
     elif any(word.value == _RETURN for word in functions):
         _return(compiler, block)
+    elif block.assignments:
+        (*others, assignment) = block.assignments
+        if others or block.words:
+            raise UnsupportedError
+        variables.compile_assignment(compiler.assembler, assignment)
     else:
         _refuse_counted(compiler, block.words)
         compiler.block(block)
@@ -32,20 +36,26 @@ def _refuse_counted(compiler: BlockCompiler, words: tuple[Word, ...]) -> None:
     for word in words:
         if word.address in looked_at and (word.address == "P" or word.pointless) and word.value:
             raise UnsupportedError
+        if isinstance(word.value, Expression) and variables.rounds(word.value.evaluate):
+            raise UnsupportedError
 
 
 def _call(compiler: BlockCompiler, block: Block) -> None:
-    if {word.address for word in block.words} != {"M", "P"} or len(block.words) != 2:
+    values = {word.address: word.value for word in block.words}
+    if not {"M", "P"} <= values.keys() <= {"M", "P", "L"} or len(values) != len(block.words):
         raise UnsupportedError
-    (number,) = (word.value for word in block.words if word.address == "P")
-    if isinstance(number, Expression) or number != int(number):
+    number, often = values["P"], values.get("L")
+    if isinstance(number, Expression) or isinstance(often, Expression):
         raise UnsupportedError
-    program, count = programs.called(compiler.control, int(number), None)
-    if count != 1:
+    repeats = None if often is None else int(often)
+    if number != int(number) or often != repeats:
         raise UnsupportedError
-    line = programs.line_of(compiler.control, program, None)
-    deepest = memory_of(compiler.control).variant.deepest_call
-    compiler.assembler.call(Location(line, 0), deepest)
+    control = compiler.control
+    program, count = programs.called(control, int(number), repeats)
+    if count < 1:
+        raise UnsupportedError
+    line = programs.line_of(control, program, None)
+    programs.compile_call(control, Location(line, 0), count, compiler.assembler)
 
 
 def _return(compiler: BlockCompiler, block: Block) -> None:

@@ -8,6 +8,7 @@ from twin.nc.control.codes import Action, Compiler, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode, ModalChanges
 from twin.nc.dialects.fanuc import (
+    macro_calls,
     motion,
     offsets,
     programs,
@@ -185,12 +186,16 @@ _FEEDS: Mapping[float, GCode] = {
     94: _g("feed per minute", "feed", feed_mode=FeedMode.PER_MINUTE),
     95: _g("feed per revolution", "feed", feed_mode=FeedMode.PER_REVOLUTION),
     97: _g("constant spindle speed", "spindle"),
+    65: _do("macro call: P L and arguments", macro_calls.refuse_late_call),
+    66: _modal("modal macro call behind every move", "modal call", macro_calls.refuse_late_call),
+    67: _modal("modal macro call off", "modal call", macro_calls.end_modal_call),
 }
 _REFUSED: Mapping[float, GCode] = {
     **refused("smooth and spline interpolation", _UNKNOWN, 5, 5.4, 6.1, 6.2),
     **refused("helical and spiral interpolation in space", _UNKNOWN, 2.2, 3.2, 2.3, 3.3, 2.4, 3.4),
     **refused("polar coordinate interpolation", "a lathe's, of a rotating part", 12.1, 13.1),
     **refused("stored stroke check", _LIMITS, 22, 23),
+    **refused("modal macro call in every block", _UNKNOWN, 66.1),
     **refused("skip until a signal", _NO_PROBE, 31, 31.8),
     **refused("threading", _NO_ANGLE, 33),
     **refused("tool length measurement", _NO_PROBE, 37),
@@ -235,12 +240,13 @@ GROUPS = (
     "mirror",
     "rotation",
     "length",
+    "modal call",
     "return plane",
     "compensation",
     "motion",
     "cycle",
 )
-START = (0, 15, 17, 21, 40, 49, 50, 50.1, 54, 64, 69, 80, 90, 94, 97, 98)
+START = (0, 15, 17, 21, 40, 49, 50, 50.1, 54, 64, 67, 69, 80, 90, 94, 97, 98)
 
 INSTEAD: Mapping[float, str] = {
     70: "inches are G20",

@@ -11,6 +11,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.variables import rounding_to, rounds
 from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import Computed, Expression, Number
@@ -37,7 +38,17 @@ def pointless(settings: ControlSettings) -> frozenset[str]:
 
 
 def count(control: Control, block: Block) -> Block:
-    """Give the words of a block the value that their numbers without a point count."""
+    """Give the words of a block the value that their numbers without a point count.
+
+    Raises:
+        ProgramError: An assignment does not stand alone in its block.
+    """
+    *others, second = block.assignments or (None,)
+    if second is not None and (others or block.words):
+        message = "an assignment stands alone in its block"
+        control.report.line = block.line
+        control.report.fail("assignment", message, second.column, second.width, "write two blocks")
+    block = _rounded(control, block)
     looked_at = pointless(control.settings)
     if not any(word.address in looked_at for word in block.words):
         return block
@@ -69,6 +80,30 @@ def _counted(control: Control, word: Word, codes: set[float | Expression]) -> Wo
         hint=f'write {word.text}. for whole units, or decimal_point = "calculator" into the job',
     )
     return word._replace(value=value)
+
+
+def is_counted(control: Control, word: Word) -> bool:
+    """Whether an argument of a macro counts increments."""
+    letters = LENGTHS | ANGLES
+    counts = control.settings.decimal_point != "calculator"
+    return counts and word.pointless and word.address in letters and word.value != 0.0
+
+
+def argument(control: Control, word: Word) -> Word:
+    """An argument of a macro: without a point it counts the increments of its address (manual)."""
+    return _counted(control, word, set()) if is_counted(control, word) else word
+
+
+def _rounded(control: Control, block: Block) -> Block:
+    """ROUND in a word goes to the least increment of its address."""
+    words: list[Word] = []
+    for word in block.words:
+        value = word.value
+        if isinstance(value, Expression) and rounds(value.evaluate):
+            increment, _ = _increment(control, word.address, set())
+            word = word._replace(value=rounding_to(value, increment))
+        words.append(word)
+    return block if words == list(block.words) else block._replace(words=tuple(words))
 
 
 def _increment(control: Control, address: str, codes: set[float | Expression]) -> tuple[float, str]:

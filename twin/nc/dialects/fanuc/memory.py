@@ -6,6 +6,7 @@ from typing import NamedTuple
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import Vector
+from twin.nc.text.blocks import Word
 
 
 class Variant(NamedTuple):
@@ -17,6 +18,7 @@ class Variant(NamedTuple):
         repeats_in_p: P of M98 may hold how often the subprogram runs: P21000 is O1000, twice.
         deepest_call: Programs that may call each other.
         counting: Address that says how often a cycle's block drills.
+        tool_variables: First and last system variable of each column of the offset memory.
         machine_by_motion: G53 moves by the motion code in force, not always rapidly.
     """
 
@@ -26,6 +28,14 @@ class Variant(NamedTuple):
     deepest_call: int = 10
     counting: str = "K"
     machine_by_motion: bool = False
+    tool_variables: tuple[tuple[int, int, str], ...] = (
+        (2001, 2200, "length_wear"),
+        (2201, 2400, "length"),
+        (10001, 10999, "length_wear"),
+        (11001, 11999, "length"),
+        (12001, 12999, "radius_wear"),
+        (13001, 13999, "radius"),
+    )
 
 
 FANUC = Variant()
@@ -36,7 +46,46 @@ HAAS = Variant(
     deepest_call=9,
     counting="L",
     machine_by_motion=True,
+    tool_variables=(
+        (2001, 2200, "length"),
+        (2201, 2400, "length_wear"),
+        (2401, 2600, "radius"),
+        (2601, 2800, "radius_wear"),
+    ),
 )
+
+
+class ModalCall(NamedTuple):
+    """What G66 or G65 asks for.
+
+    Attributes:
+        line: First line of the program, from 0.
+        often: How many times it runs.
+        values: Its arguments by their variables.
+        word: That names the program.
+    """
+
+    line: int
+    often: int
+    values: dict[str, float]
+    word: Word
+
+
+@dataclasses.dataclass(slots=True)
+class Loop:
+    """A loop from DO to END.
+
+    Attributes:
+        number: Behind DO.
+        begin: Its first line, from 0.
+        end: Its last line; None where it has none.
+        depth: Loops around it, and itself.
+    """
+
+    number: int
+    begin: int
+    end: int | None
+    depth: int
 
 
 @dataclasses.dataclass(slots=True)
@@ -81,6 +130,10 @@ class FanucMemory:
         scale: Factors of X, Y and Z, and their centre [mm].
         mirror: Coordinates of the axes of mirror images by column [mm].
         rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
+        loops: By their first and last lines, from 0; None before they were asked for.
+        modal_call: G66 in force.
+        modal_depth: Programs that were being run for callers when it was called.
+        extended_number: P of the last G54.1.
     """
 
     variant: Variant = FANUC
@@ -103,6 +156,10 @@ class FanucMemory:
     scale: tuple[Vector, Vector] | None = None
     mirror: dict[int, float] = dataclasses.field(default_factory=dict)
     rotation: tuple[float, Point] | None = None
+    loops: dict[int, Loop] | None = None
+    modal_call: ModalCall | None = None
+    modal_depth: int = 0
+    extended_number: int = 0
 
 
 def memory_of(control: Control) -> FanucMemory:
@@ -112,6 +169,6 @@ def memory_of(control: Control) -> FanucMemory:
 
 
 def acts_on_plain_blocks(control: Control) -> bool:
-    """Polar coordinates or a scale in force: plain blocks heed them."""
+    """Polar coordinates, a scale or a modal call in force: plain blocks heed them."""
     memory = memory_of(control)
-    return memory.polar or memory.scale is not None
+    return memory.polar or memory.scale is not None or memory.modal_call is not None

@@ -51,6 +51,7 @@ def extended_offset(control: Control) -> None:
     if not 1 <= number <= LARGEST_EXTENDED:
         control.fail("no-offset", f"there is no work offset P{number}", word)
     select(control, extended(number), word)
+    memory_of(control).extended_number = number
 
 
 def numbered_code(number: int, pair: int) -> Action:

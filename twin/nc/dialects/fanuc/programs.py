@@ -8,9 +8,9 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.frames import AGAIN, CALLS
 from twin.nc.control.control import Control
-from twin.nc.control.program_counter import CallFrame
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.text.blocks import Location, Word
 from twin.nc.text.library import named_files, with_called_files
@@ -201,8 +201,25 @@ def run_part(control: Control, first: Location, count: int, word: Word) -> None:
     """
     if count < 1:
         control.fail("repeat-count", "a subprogram runs once at least", word)
+
+    def write(assembler: Assembler) -> None:
+        compile_call(control, first, count, assembler)
+
+    control.perform(write, (word.column, word.width))
+
+
+def compile_call(control: Control, first: Location, count: int, assembler: Assembler) -> None:
+    """The same as instructions."""
+    if count > 1:
+        assembler.constant(float(count))
     deepest = memory_of(control).variant.deepest_call
-    control.program_counter.call(CallFrame(first, count - 1), deepest, word.column, word.width)
+    assembler.call(first, deepest, often=count > 1)
+
+
+def compile_return(assembler: Assembler) -> None:
+    """M99 as instructions."""
+    assembler.check_return()
+    assembler.end_call()
 
 
 def return_(control: Control) -> None:
@@ -211,10 +228,10 @@ def return_(control: Control) -> None:
     In the main program M99 P jumps, and M99 alone, by which a control begins anew for ever, ends.
     """
     target, counter = control.take("P"), control.program_counter
-    if target is not None and counter.is_calling:
-        counter.calls[counter.progress[CALLS] - 1, AGAIN] = 0
     if counter.is_calling:
-        counter.leave()
+        if target is not None:
+            counter.calls[counter.progress[CALLS] - 1, AGAIN] = 0
+        control.perform(compile_return)
         around = _lines_around(control, counter.location.line)
     elif target is None:
         message = "M99 in the main program begins it anew, for ever: here it ends"
