@@ -175,14 +175,14 @@ _TOOL: Mapping[float, GCode] = {
     49: _modal("tool length off", "length", tool_offsets.end_length),
 }
 _TRANSFORMATIONS: Mapping[float, GCode] = {
-    50: _transforming("scale off", "scale", transformations.end_scale),
+    50: _modal("scale off", "scale", transformations.end_scale),
     51: _transforming("scale about X Y Z: P, or I J K", "scale", transformations.scale),
     50.1: _transforming("mirror off", "mirror", transformations.end_mirror),
     51.1: _transforming("mirror the axes at the places named", "mirror", transformations.mirror),
     68: _transforming(
         "rotation by R about a point of the plane", "rotation", transformations.rotate
     ),
-    69: _transforming("rotation off", "rotation", transformations.end_rotation),
+    69: _modal("rotation off", "rotation", transformations.end_rotation),
 }
 _FEEDS: Mapping[float, GCode] = {
     93: _g("feed as blocks per minute", "feed", feed_mode=FeedMode.BLOCKS_PER_MINUTE),
