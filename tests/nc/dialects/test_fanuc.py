@@ -291,7 +291,7 @@ def test_goto_takes_the_next_block_of_its_number_else_the_first() -> None:
     assert good(text, "fanuc").position["X"] == 3.0
 
 
-ZEROED = {"machine_zero": {"X": -100.0, "Y": 0.0, "Z": 50.0}}
+ZEROED: dict[str, Any] = {"machine_zero": {"X": -100.0, "Y": 0.0, "Z": 50.0}}
 
 
 def test_positions_are_read() -> None:
