@@ -169,6 +169,28 @@ class SpindleTable(Table):
 
     flange_diameter: Positive = 63.0
     """Of the holder's flange [mm]; 63 is a BT40 taper's (JIS B 6339)."""
+    power: tuple[tuple[Positive, Positive], ...] = ()
+    """What the drive gives for long by speed: pairs of 1/min and W, rising in speed; below the first the
+    torque is constant, above the last the power. None: nothing stalls it."""
+    max_speed: Positive | None = None
+    """Never exceeded [1/min]; none: not limited."""
+    acceleration_time_s: NonNegative = 0.0
+    """From rest to ``max_speed`` without a cut [s]; 0: at once."""
+    braking_time_s: NonNegative = 0.0
+    """From ``max_speed`` to rest [s]; 0: at once."""
+    overload: Positive = 1.5
+    """What it gives for a short time, as a share of what it gives for long."""
+    overload_time_s: Positive = 5.0
+    """Alarm when the load is above 100 % for this long [s]."""
+
+    @pydantic.model_validator(mode="after")
+    def _spindle_fits(self) -> "SpindleTable":
+        speeds = [speed for speed, _ in self.power]
+        if speeds != sorted(set(speeds)):
+            raise ValueError("spindle.power must rise in speed")
+        if (self.acceleration_time_s or self.braking_time_s) and self.max_speed is None:
+            raise ValueError("spindle.acceleration_time_s and braking_time_s need max_speed")
+        return self
 
 
 class CollisionTable(Table):
