@@ -12,8 +12,7 @@ from twin.machine.description.config import SpindleTable
 TABLE = SpindleTable(
     power=((1500.0, 11000.0), (6000.0, 11000.0), (12000.0, 7500.0)),
     max_speed=12000.0,
-    acceleration_time_s=1.5,
-    braking_time_s=0.5,
+    acceleration=8000.0,
 )
 PERIOD = 1e-3
 
@@ -46,10 +45,10 @@ def test_below_the_first_speed_the_torque_is_constant() -> None:
 def test_it_takes_its_time_up_and_down(sense: float) -> None:
     up = np.array(speeds(sense * 100.0, 0.0, 0.0, 1000))
     assert int(np.argmax(np.abs(up) >= 100.0)) == pytest.approx(750, abs=1)
-    down = np.array(speeds(0.0, sense * 100.0, 0.0, 400))
-    assert int(np.argmax(down == 0.0)) == pytest.approx(250, abs=1)
-    turned = np.array(speeds(-sense * 100.0, sense * 100.0, 0.0, 1100))
-    assert int(np.argmax(turned * sense <= -100.0)) == pytest.approx(1000, abs=2)
+    down = np.array(speeds(0.0, sense * 100.0, 0.0, 800))
+    assert int(np.argmax(down == 0.0)) == pytest.approx(750, abs=1)
+    turned = np.array(speeds(-sense * 100.0, sense * 100.0, 0.0, 1600))
+    assert int(np.argmax(turned * sense <= -100.0)) == pytest.approx(1500, abs=2)
 
 
 def test_nothing_goes_beyond_the_fastest() -> None:
@@ -60,7 +59,7 @@ def test_a_cut_within_the_short_torque_is_borne_and_one_beyond_it_stalls() -> No
     short = 1.5 * lasting_torque(spindle_drive(TABLE), 20.0)
     assert speeds(20.0, 20.0, 0.99 * short, 100)[-1] == 20.0
     stalling = speeds(20.0, 20.0, 2.0 * short, 400)
-    # J = M / (2 pi rise): twice the torque brakes as fast as the drive comes to speed.
+    # J = M / (2 pi rate): twice the torque brakes as fast as the drive comes to speed.
     assert stalling[100] == pytest.approx(20.0 - 100 * PERIOD * 200.0 / 1.5, rel=1e-6)
     assert stalling[-1] == 0.0
 

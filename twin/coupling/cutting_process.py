@@ -84,6 +84,11 @@ class Turning(NamedTuple):
 class Operation(Protocol):
     """Who knows what is in the spindle when."""
 
+    @property
+    def speed_at_start(self) -> float:
+        """How fast the spindle turns when the machine begins to move [1/min], signed."""
+        ...
+
     def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
         """Split setpoints where the tool changes."""
         ...
@@ -124,9 +129,9 @@ class CuttingProcess:
         self._table = spindle
         self._drive = spindle_drive(spindle)
         self._memory = _memory(0)
+        self._memory.numbers[SPEED] = operation.speed_at_start / SECONDS_PER_MINUTE
         self._tool: ToolTable | None = None
         self._overloaded_s = 0.0
-        self._turned = False
 
     def begin(self, position: FloatArray) -> None:
         """Begin with the machine at rest; see ``Process``."""
@@ -155,10 +160,6 @@ class CuttingProcess:
             rows, tool = turning.rows, turning.tool
             self._mount(tool)
             cut = self._cut(turning)
-            if not self._turned and np.isfinite(turning.speed[0]):
-                # It was switched on before the machine began to move.
-                self._turned = True
-                self._memory.numbers[SPEED] = turning.speed[0] / SECONDS_PER_MINUTE
             follow_cutting(
                 physics,
                 controls[rows],
@@ -242,17 +243,13 @@ def spindle_drive(table: SpindleTable) -> SpindleDrive:
     """The drive of a machine file's spindle."""
     curve = np.array(table.power, np.float64).reshape(-1, 2)
     fastest = math.inf if table.max_speed is None else table.max_speed / SECONDS_PER_MINUTE
-    rise, fall = (
-        fastest / seconds if seconds else math.inf
-        for seconds in (table.acceleration_time_s, table.braking_time_s)
-    )
+    rate = table.acceleration / SECONDS_PER_MINUTE if table.acceleration else math.inf
     return SpindleDrive(
         np.ascontiguousarray(curve[:, 0]) / SECONDS_PER_MINUTE,
         np.ascontiguousarray(curve[:, 1]),
         table.overload,
         fastest,
-        rise,
-        fall,
+        rate,
     )
 
 

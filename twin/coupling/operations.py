@@ -26,9 +26,15 @@ class ProgramOperation:
         self._speed = np.array([_known(speed) for speed in summary.spindle.values])
         self._silent = len(self._speed) == 1
 
+    @property
+    def speed_at_start(self) -> float:
+        """A program that never speaks of the spindle finds it turning."""
+        return (self._tools.tools[0].speed or 0.0) if self._silent else 0.0
+
     def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
         """Split setpoints where the tool changes; see ``Operation``."""
-        move = np.maximum(setpoints.move, 0)
+        # At the end of a move's path the spindle has heard what comes before the next one.
+        move = np.maximum(setpoints.move + (setpoints.fraction >= 1.0), 0)
         speed = self._speed[np.searchsorted(self._first_move, move, side="right") - 1]
         for rows, tool in self._tools.runs(setpoints.move):
             told = np.full(rows.stop - rows.start, _known(tool.speed))
@@ -50,6 +56,11 @@ class OperatorOperation:
         self.tool = tool
         self.longer = 0.0
         self.speed: float | None = 0.0
+
+    @property
+    def speed_at_start(self) -> float:
+        """As it was told before."""
+        return self.speed or 0.0
 
     def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
         """All setpoints at once; see ``Operation``."""

@@ -18,16 +18,14 @@ class SpindleDrive(NamedTuple):
         powers: What it gives for long there, shape (m,) [W].
         overload: What it gives for a short time, as a share of that.
         fastest: Never exceeded [turns/s].
-        rise: How fast it comes to speed without a cut [turns/s²].
-        fall: How fast it brakes [turns/s²].
+        rate: How fast it changes its speed without a cut [turns/s²].
     """
 
     speeds: FloatArray
     powers: FloatArray
     overload: float
     fastest: float
-    rise: float
-    fall: float
+    rate: float
 
 
 @kernel
@@ -55,7 +53,7 @@ def next_speed(
     """Speed of the spindle a period later.
 
     What the cut leaves of the drive's torque turns the spindle up; the moment of inertia is what the
-    time to speed tells, J = M/(2 pi rise) with the short torque at rest. A cut that takes more than
+    time to speed tells, J = M/(2 pi rate) with the short torque at rest. A cut that takes more than
     the drive can give slows it down.
 
     Args:
@@ -68,7 +66,7 @@ def next_speed(
     target = min(max(commanded, -drive.fastest), drive.fastest)
     sign = 1.0 if speed > 0.0 or (speed == 0.0 and target >= 0.0) else -1.0
     turns, wanted = sign * speed, sign * target
-    rise, fall = drive.rise * period_s, drive.fall * period_s
+    rise = fall = drive.rate * period_s
     if len(drive.speeds):
         short = drive.overload * lasting_torque(drive, turns)
         at_rest = drive.overload * lasting_torque(drive, 0.0)
