@@ -156,6 +156,32 @@ _FORMS = (
         7,
     ),
     (
+        "WHILE, points of a circle",
+        "fanuc",
+        (
+            "O1\n#1=0\nG90 G1 F1000\nWHILE [#1 LT ROUNDS] DO1\nG1 X[50*COS[#1]] Y[50*SIN[#1]]\n#1=#1+1\n"
+            "END1\nM30\n"
+        ),
+        (
+            "#101=0\nG90 G1 F1000\no110 while [#101 lt ROUNDS]\nG1 X[50*cos[#101]] Y[50*sin[#101]]\n"
+            "#101=[#101+1]\no110 endwhile\nM2\n"
+        ),
+        4,
+    ),
+    (
+        "WHILE, G65 with arguments",
+        "fanuc",
+        (
+            "O1\n#1=0\nG90 G1 F1000\nWHILE [#1 LT ROUNDS] DO1\n#1=#1+1\nG65 P2 A[#1*0.1] B3.\nEND1\nM30\n"
+            "O2\nG1 X[#1+#2]\nM99\n"
+        ),
+        (
+            "o100 sub\nG1 X[#1+#2]\no100 endsub\n#101=0\nG90 G1 F1000\no110 while [#101 lt ROUNDS]\n"
+            "#101=[#101+1]\no100 call [#101*0.1] [3]\no110 endwhile\nM2\n"
+        ),
+        6,
+    ),
+    (
         "G73, a jump with repeat",
         "mefi",
         "N5 G91 G1 F1000\nN10 G1 X1 Y2\nN20 G2 X10 Y0 I5\nN30 G1 X-11 Y-2 G73 L10 QROUNDS\nN40 M30\n",

@@ -130,6 +130,7 @@ class FanucMemory:
         scale: Factors of X, Y and Z, and their centre [mm].
         mirror: Coordinates of the axes of mirror images by column [mm].
         rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
+        cylinder: Column of the rotary axis and radius [mm] of G107, or None.
         loops: By their first and last lines, from 0; None before they were asked for.
         modal_call: G66 in force.
         modal_depth: Programs that were being run for callers when it was called.
@@ -156,6 +157,7 @@ class FanucMemory:
     scale: tuple[Vector, Vector] | None = None
     mirror: dict[int, float] = dataclasses.field(default_factory=dict)
     rotation: tuple[float, Point] | None = None
+    cylinder: tuple[int, float] | None = None
     loops: dict[int, Loop] | None = None
     modal_call: ModalCall | None = None
     modal_depth: int = 0
@@ -169,6 +171,7 @@ def memory_of(control: Control) -> FanucMemory:
 
 
 def acts_on_plain_blocks(control: Control) -> bool:
-    """Polar coordinates, a scale or a modal call in force: plain blocks heed them."""
+    """Polar coordinates, a scale, a modal call or a cylinder in force: plain blocks heed them."""
     memory = memory_of(control)
-    return memory.polar or memory.scale is not None or memory.modal_call is not None
+    remembered = (memory.scale, memory.modal_call, memory.cylinder)
+    return memory.polar or any(each is not None for each in remembered)
