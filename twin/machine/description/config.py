@@ -83,7 +83,8 @@ class AxisTable(Table):
     lugre: LuGreTable | None = None
     """Refines ``dry_friction``; none: Coulomb's law."""
     backlash: NonNegative = 0.0
-    """Free play between motor and axis [mm or deg]; the position loop closes at the motor."""
+    """Free play between motor and axis [mm or deg]; the position loop closes at the motor. Nothing holds an
+    axis within it but friction, load and its own inertia."""
     stiffness: NonNegative = 0.0
     """Of screw, nut and bearings between motor and axis [N/mm or N m/deg]; 0: rigid. With backlash
     rigid walls are springs that half a servo period just follows (1000 N/µm on the X of ``mill4``)."""
