@@ -175,7 +175,7 @@ class Assembler:
                 self._add(opcodes.NEGATE)
             case Prefixed(compute, operand):
                 self.value(operand)
-                self._compute(compute, 1)
+                self.compute(compute, 1)
             case Exists(Variable(name)):
                 self._add(opcodes.DEFINED, self._slot(name))
             case Exists():
@@ -183,13 +183,22 @@ class Assembler:
             case Computed(_, compute, operands):
                 for operand in operands:
                     self.value(operand)
-                self._compute(compute, len(operands))
+                self.compute(compute, len(operands))
 
     def constant(self, value: float) -> None:
         """Put a number on the stack."""
         self._add(opcodes.CONSTANT, 0, value)
 
-    def _compute(self, compute: Callable[..., float], values: int) -> None:
+    def load(self, name: str) -> None:
+        """Put a variable on the stack."""
+        self._add(opcodes.LOAD, self._slot(name))
+
+    def compute(self, compute: Callable[..., float], values: int) -> None:
+        """Replace the topmost values by an operator or a function of them.
+
+        Raises:
+            UnsupportedError: The compiled tier does not know it.
+        """
         number = self._functions[values - 1].get(compute)
         if number is None:
             raise UnsupportedError
@@ -224,7 +233,7 @@ class Assembler:
         """The topmost value changes a variable: an operator's result for the old and this value."""
         slot = self._slot(name)
         self._add(opcodes.LOAD_BELOW, slot)
-        self._compute(compute, 2)
+        self.compute(compute, 2)
         self._store(opcodes.STORE, slot)
 
     def assign_numbered(self, name: str, compute: Callable[..., float] | None = None) -> None:
@@ -232,7 +241,7 @@ class Assembler:
         self._number_variables(name)
         if compute is not None:
             self._add(opcodes.LOAD_NUMBERED_BELOW)
-            self._compute(compute, 2)
+            self.compute(compute, 2)
         self._store(opcodes.STORE_NUMBERED)
 
     def begin_for(self, name: str, behind: Location) -> None:

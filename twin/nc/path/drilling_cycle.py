@@ -123,6 +123,8 @@ class Cycle(NamedTuple):
         dwells: It waits at the bottom.
         clearance: Where its words give none [mm].
         retract: A ``Retract``.
+        repeats_only: The compiled tier drills the holes behind the call, in absolute coordinates; all
+            else is for the interpreter tier.
     """
 
     lasting: bool
@@ -132,6 +134,7 @@ class Cycle(NamedTuple):
     dwells: bool = True
     clearance: float = CHIP_CLEARANCE
     retract: int = int(Retract.RAPID)
+    repeats_only: bool = False
 
 
 class Hole(NamedTuple):
