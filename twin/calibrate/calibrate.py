@@ -8,6 +8,7 @@ import numpy as np
 from twin.calibrate.fit.parameters import Parameters, coordinates, of_base
 from twin.calibrate.fit.ramps import axes_with_ramps, find_cycle, find_ramps, predict_ramp
 from twin.calibrate.fit.slow import SlowLog, fit_slow, slow_force
+from twin.calibrate.fit.solve import on_one_thread
 from twin.calibrate.fit.stages import AxisFit, fit_axis
 from twin.calibrate.fit.stretch import Stretch, predict, stretches_of
 from twin.calibrate.health import SLOW_S, Finding, Health, look_at_axis, look_at_clock
@@ -35,6 +36,7 @@ class _Log:
     cycle_s: float
 
 
+@on_one_thread
 def calibrate(
     machine: Machine,
     logs: Sequence[MachineLog],

@@ -172,10 +172,17 @@ def _control_settings(job: Job, machine: Machine, *, strict: bool) -> ControlSet
         },
         recalculate_on_rapid=control.recalculate_on_rapid,
         module_rotary=control.module_rotary,
-        block_skip=job.file.block_skip,
+        block_skip=job.file.block_skip is True,
+        block_skip_levels=_block_skip_levels(job.file),
+        decimal_point=job.file.decimal_point or control.decimal_point,
         step_limit=job.file.step_limit,
         strict=strict,
     )
+
+
+def _block_skip_levels(file: JobFile) -> frozenset[int]:
+    """Numbers behind the slash of blocks that are left out."""
+    return frozenset() if isinstance(file.block_skip, bool) else frozenset(file.block_skip)
 
 
 def _machine_zero(job: Job, machine: Machine) -> dict[str, float] | None:

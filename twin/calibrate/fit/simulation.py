@@ -24,6 +24,8 @@ LONGEST_STEP_S = 1e-3
 _POLYLINE_LOSS = 1.0 / 12.0
 """As in ``twin.machine.simulation.sampling``: a setpoint drawn as a polyline loses this, in units of (W h)²."""
 _SPEED = 1
+_HELD = slice(1, 3)
+"""Inputs that stand still over a step: velocity and acceleration."""
 _FASTEST_FILTER_S = 1e-6
 """A filter faster than this is none [s]."""
 _STANDS = 1e-3
@@ -135,21 +137,56 @@ def simulate_axis(parameters: Parameters, command: Command) -> Motion:
     system = _system(parameters, inertia)
     step = command.step_s
     transition, now, then = _discrete(system.rates, system.forward, step)
+    now[:, _HELD] += then[:, _HELD]
+    then[:, _HELD] = 0.0
     told = np.column_stack([command.position, (command.push + parameters.constant_force) / inertia])
-    inputs = told.copy()
-    inputs[:, 0] -= _POLYLINE_LOSS * step**2 * told[:, 2]
+    inputs = _held(told, step)
     start = _start_state(parameters, system, told[0], command.start)
     dry = parameters.dry_friction / inertia
     push = now[:, 3] + then[:, 3]
     states = step_axis(transition, now, then, push, inputs, start, dry, _SPEED)
     width = system.width
     drive = states @ system.force[:width] + told @ system.force[width:]
+    drive -= _POLYLINE_LOSS * step**2 * _bulge(parameters, system) * told[:, 2]
     shown = system.places.get("measuring_filter")
     position, rate = states[:, 0], states[:, 1]
     if shown is not None:
         position = states[:, shown]
         rate = (states[:, 0] - position) / parameters.measuring_filter
     return Motion(position=position, velocity=rate, speed=states[:, 1], force=drive * inertia)
+
+
+def _held(told: FloatArray, step: float) -> FloatArray:
+    """What the drive is told, as it holds it between inputs.
+
+    Args:
+        told: Setpoint, its velocity and acceleration, and what pushes, shape (n, 4).
+        step: Between inputs [s].
+
+    Returns:
+        Shape (n, 4): the setpoint's polyline at the inputs, the velocity along it and the mean
+        acceleration of the step that follows, and what pushes.
+    """
+    inputs = told.copy()
+    inputs[:, 0] -= _POLYLINE_LOSS * step**2 * told[:, 2]
+    inputs[:-1, 1] = np.diff(inputs[:, 0]) / step
+    inputs[:-1, 2] = np.diff(told[:, 1]) / step
+    return inputs
+
+
+def _bulge(parameters: Parameters, system: "_System") -> float:
+    """Of the force at an input over its mean around it: per commanded acceleration, in units of h²/12.
+
+    The speed that is told stands still over a step: of the speed that it makes the inputs see the lowest,
+    and of the integral of the trail that it stands for the highest.
+    """
+    loop = kv_per_second(parameters.kv)
+    damping = 4.0 * parameters.damping_ratio**2 * loop
+    bulge = parameters.velocity_feedforward * damping**2
+    if "reset_time_s" in system.places:
+        trail = (1.0 - parameters.velocity_feedforward) / loop
+        bulge += system.law[system.places["reset_time_s"]] * trail
+    return bulge
 
 
 _OPTIONAL = (

@@ -12,6 +12,7 @@ from twin.calibrate.fit.solve import (
     Interval,
     Problem,
     Solution,
+    on_one_thread,
     promised_costs,
     solve,
 )
@@ -61,6 +62,7 @@ class AxisFit:
     correlations: FloatArray
 
 
+@on_one_thread
 def fit_axis(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters) -> AxisFit:
     """Fit one axis.
 

@@ -189,6 +189,8 @@ class ControlTable(Table):
     """``gost``: G102 also relabels the start of G0 blocks."""
     module_rotary: bool = False
     """``fagor8070``: the sign of an absolute rotary target is the direction of rotation."""
+    decimal_point: Literal["calculator", "increments"] | None = None
+    """``fanuc``, ``haas``: ``X10`` is 10 mm ("calculator"), or 0.010 mm ("increments")."""
     m_functions: MachineFunctions = Field(default_factory=dict)
     """M codes of the machine's builder: ``M10 = "clamp the table"``."""
 

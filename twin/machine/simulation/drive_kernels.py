@@ -172,7 +172,11 @@ def read_states(
             push -= drives.velocity_gain[axis] * (speed + bulge) * scale
             push += _told(drives, axis, points.velocity[row, axis], points.acceleration[row, axis])
             if drives.integral[axis] >= 0:
-                push += drives.integral_gain[axis] * states[row, drives.integral[axis]]
+                # Its input trails the polyline, whose nodes the setpoint passes at h²/12 a.
+                node_loss = drives.trail[axis] * (drives.period**2 / 12)
+                off = node_loss * (points.acceleration[row, axis] * scale)
+                integral = states[row, drives.integral[axis]] - off
+                push += drives.integral_gain[axis] * integral
             force[row, axis] = min(max(push * np.sign(scale), -limit), limit)
             if drives.give_qpos[axis] >= 0:
                 motor += states[row, drives.give_qpos[axis]] / scale

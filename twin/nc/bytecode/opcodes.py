@@ -20,168 +20,164 @@ LOAD = 4
 """Put the variable with the slot ``operand`` on the stack."""
 LOAD_NUMBERED = 5
 """Put the variable with the number on the stack in its place."""
-LOAD_BELOW = 6
-"""Put the variable with the slot ``operand`` below the topmost value."""
-LOAD_NUMBERED_BELOW = 7
-"""Put the variable whose number lies below the topmost value in that number's place."""
-DEFINED = 8
+DEFINED = 6
 """Put on the stack whether the variable with the slot ``operand`` has a value."""
-NEGATE = 9
+NEGATE = 7
 """Change the sign."""
-UNARY = 10
+UNARY = 8
 """Replace the topmost value by the function ``operand`` of it."""
-BINARY = 11
+BINARY = 9
 """Replace the two topmost values by the operator ``operand`` between them."""
-TERNARY = 12
+TERNARY = 10
 """Replace the three topmost values by the function ``operand`` of them."""
-DROP = 13
+DROP = 11
 """Take the topmost value off the stack."""
 
 # --- variables
 
-STORE = 14
+STORE = 12
 """Give the variable with the slot ``operand`` the topmost value."""
-STORE_DECLARED = 15
+STORE_DECLARED = 13
 """Store the topmost value in the slot ``operand``, if that variable has a value of its own already."""
-STORE_NUMBERED = 16
+STORE_NUMBERED = 14
 """Store the topmost value in the variable whose number lies below it."""
 
 # --- words and moves
 
-WORD = 17
+WORD = 15
 """The topmost value becomes a word of the token kind ``operand``."""
-WORD_CONSTANT = 18
+WORD_CONSTANT = 16
 """``immediate`` becomes a word of the token kind ``operand``."""
-RUN = 19
+RUN = 17
 """Execute the block's words."""
-RUN_REPEATEDLY = 20
+RUN_REPEATEDLY = 18
 """Execute the block's words as often as the topmost value says, at most ``immediate`` times."""
-RUN_CODES = 21
+RUN_CODES = 19
 """Execute the block's words so far, and drop them except N."""
-RUN_POLAR = 22
+RUN_POLAR = 20
 """Execute the block's words, on a straight line to where R (``operand`` 1), Q (2) or both (3) lead,
 whose values are the topmost."""
 
 # --- the registers' snapshot, radius compensation
 
-SNAPSHOT = 23
+SNAPSHOT = 21
 """What follows changes more than variables: keep a snapshot of the registers."""
-COMPENSATE = 24
+COMPENSATE = 22
 """Radius compensation begins, of the topmost value, left (``operand`` 1) or right (-1)."""
-END_COMPENSATION = 25
+END_COMPENSATION = 23
 """Radius compensation ends."""
 
 # --- jumps
 
-JUMP = 26
+JUMP = 24
 """Jump to the location ``operand``."""
-JUMP_IF = 27
+JUMP_IF = 25
 """Jump to the location ``operand`` if the topmost value is not 0."""
-JUMP_UNLESS = 28
+JUMP_UNLESS = 26
 """Jump to the location ``operand`` if the topmost value is 0."""
-JUMP_CASE = 29
+JUMP_CASE = 27
 """Jump to the location ``operand`` if the topmost value equals the one below, which stays."""
 
 # --- counted loops
 
-BEGIN_FOR = 30
+BEGIN_FOR = 28
 """First, last and step become whether first lies beyond last, and first."""
-STEP_FOR = 31
+STEP_FOR = 29
 """First, last, step and value become whether the next value is in reach, and that value."""
-COUNT_DOWN = 32
+COUNT_DOWN = 30
 """Put on the stack whether the counter with the slot ``operand``, which begins at ``immediate``,
 is not 0 yet, and take 1 from it; at 0 it is forgotten."""
 
 # --- calls
 
-CHECK_CALL = 33
+CHECK_CALL = 31
 """At most ``operand`` parts may call each other."""
-OWN_VARIABLES = 34
+OWN_VARIABLES = 32
 """The part that is called next has local variables of its own."""
-RESTORE_CODES = 35
+RESTORE_CODES = 33
 """The end of the part that is called next restores the codes that are active now."""
-CALL = 36
+CALL = 34
 """Run the part that begins at the location ``operand``."""
-RANGE = 37
+RANGE = 35
 """The range that is repeated next ends at the location ``operand``."""
-REPEAT = 38
+REPEAT = 36
 """Run the range that begins at the location ``operand`` as often as the topmost value says."""
-CHECK_RETURN = 39
+CHECK_RETURN = 37
 """There must be a part that can be returned from."""
-RETURN = 40
+RETURN = 38
 """Go back behind the call."""
 
 # --- codes and events
 
-ACTIVATE = 41
+ACTIVATE = 39
 """The G code ``operand`` becomes active."""
-FUNCTION = 42
+FUNCTION = 40
 """Report the M function ``operand``."""
-SPINDLE_FUNCTION = 43
+SPINDLE_FUNCTION = 41
 """Report the M function ``operand`` together with the spindle's speed."""
-SPEED = 44
+SPEED = 42
 """The spindle's speed is the topmost value; ``operand`` 1: report it."""
-TOOL = 45
+TOOL = 43
 """The topmost value is the number of the tool to prepare; ``operand`` 1: it must be one of the job's."""
-AUXILIARY = 46
+AUXILIARY = 44
 """Report H with the topmost value."""
-DWELL = 47
+DWELL = 45
 """Wait as many seconds as the topmost value."""
 
 # --- tools
 
-CHANGE_TOOL = 48
+CHANGE_TOOL = 46
 """The tool that was prepared last becomes the tool in use."""
-OFFSET_ON = 49
+OFFSET_ON = 47
 """``operand`` 1: tool offsets apply; 0: they do not."""
-TOOL_LENGTH = 50
+TOOL_LENGTH = 48
 """Shift Z by the length of the tool in use, if its offset applies."""
-TOOL_RADIUS = 51
+TOOL_RADIUS = 49
 """Put the radius of the tool in use on the stack; ``operand`` 1: 0 where it has no offset."""
-PROGRAMMED_RADIUS = 52
+PROGRAMMED_RADIUS = 50
 """The topmost value is the radius that the program gives the tool; ``operand`` 0: put on the
 stack what it gave last."""
 
 # --- shifts of coordinates
 
-SHIFT = 53
+SHIFT = 51
 """The topmost values, one for each axis, are the shift ``operand``."""
-REFRAME = 54
+REFRAME = 52
 """The shifts have changed."""
-BEGIN_TARGET = 55
+BEGIN_TARGET = 53
 """Begin to set new coordinates for the present position: until set, each axis keeps its own."""
-TARGET = 56
+TARGET = 54
 """The topmost value is the new coordinate of the axis ``operand``."""
-SET_POSITION = 57
+SET_POSITION = 55
 """The new coordinates hold from here on, by the shift ``operand``."""
-TO_MILLIMETRES = 58
+TO_MILLIMETRES = 56
 """Convert the topmost value from the active unit, as one of the axis ``operand``."""
 
 # --- plane and polar coordinates
 
-PLANE = 59
+PLANE = 57
 """The plane ``operand`` becomes active: 0 to 2."""
-POLAR_ORIGIN = 60
+POLAR_ORIGIN = 58
 """``operand`` 2: the two topmost values are the polar origin; 0: the present position is."""
-FORGET_POLAR = 61
+FORGET_POLAR = 59
 """The last R and Q are no longer modal."""
 
 # --- drilling cycles
 
-NO_PECKS = 62
+NO_PECKS = 60
 """No drilling cycle with pecks may be in force."""
-CYCLE_WORD = 63
+CYCLE_WORD = 61
 """The topmost value is that of the drilling cycle's word for ``operand``."""
 
 # --- mirror, scale, rotation
 
-MIRROR = 64
+MIRROR = 62
 """The topmost value, -1 or 1, is the sign of the axis ``operand``."""
-SCALE = 65
+SCALE = 63
 """The topmost value is the scale."""
-ROTATE = 66
+ROTATE = 64
 """The topmost values are angle, abscissa and ordinate of the rotation, which must be the only one."""
-END_ROTATION = 67
+END_ROTATION = 65
 """The rotation ends."""
-TRANSFORM = 68
+TRANSFORM = 66
 """Mirror, scale and rotation have changed."""

@@ -40,16 +40,17 @@ MODAL = 10
     ROTATION_ORDINATE,
     TURNED,
     RADIUS_GIVEN,
-) = range(15)
-SIGNS = 15
-CYCLE_STATE = 18
+    SPINDLE_TURNS,
+) = range(16)
+SIGNS = 16
+CYCLE_STATE = 19
 CYCLE_WORDS = CYCLE_STATE + VALUES
 MATRIX = CYCLE_WORDS + VALUES
 REGISTERS = MATRIX + 9
 """Places in the registers: F; S; the tool that comes next and the one that is in use; whether it has
 its offset; the polar origin, the last R and Q; the scale; angle and centre of the rotation in the
-plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; the
-signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
+plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; whether
+M3 or M4 is in force; the signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
 ``drilling_cycle`` counts it, and the same of the words of the block; the matrix, row by row. NaN: none."""
 BAILOUT = -3
 """An instruction or a move is left to the interpreter tier; neither ``UNSUPPORTED`` nor ``NO_ROOM``."""

@@ -24,9 +24,11 @@ class LineTables(NamedTuple):
         openings: First bytes of each kind of comment, 0 where there is none, shape (c, 2).
         closings: First bytes of what ends a comment of each kind; 0, 0: the end of the line.
         whole_line: It can only begin its line, shape (c,).
+        pointed: Numbers of the letter are plain with a decimal point only, unless 0, shape (26,).
     """
 
     token_kinds: IntArray
     openings: ByteArray
     closings: ByteArray
     whole_line: npt.NDArray[np.bool_]
+    pointed: npt.NDArray[np.bool_]

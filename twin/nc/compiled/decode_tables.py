@@ -4,7 +4,8 @@ Nothing is said here of any dialect: a code, a letter or an interpolation that t
 not describe completely is not plain.
 """
 
-from collections.abc import Iterable, Mapping
+import string
+from collections.abc import Container, Iterable, Mapping
 
 import numpy as np
 
@@ -76,6 +77,7 @@ class DecodeTables:
         blocks: What blocks mean.
         groups: The modal groups in the order of their numbers in ``blocks``.
         token_kinds: What the letters of plain words are.
+        pointed: Letters whose numbers are plain with a decimal point only.
     """
 
     def __init__(
@@ -88,7 +90,8 @@ class DecodeTables:
         self._cycles = _cycles(dialect)
         self._interpreted = [number for number in interpreted if number < CODES]
         self.token_kinds = _token_kinds(dialect, settings)
-        self.lines = _line_tables(dialect, self.token_kinds)
+        self.pointed = dialect.pointless(settings)
+        self.lines = _line_tables(dialect, self.token_kinds, self.pointed)
         self.blocks = self._block_tables(dialect, settings)
 
     def modal(self, modal: Modal) -> FloatArray:
@@ -231,7 +234,9 @@ def _kind(interpolation: MotionMode | None) -> int:
     return RAPID_LINE if interpolation.rapid else FEED_LINE
 
 
-def _line_tables(dialect: Dialect, token_kinds: Mapping[str, int]) -> LineTables:
+def _line_tables(
+    dialect: Dialect, token_kinds: Mapping[str, int], pointed: Container[str]
+) -> LineTables:
     by_letter = np.full(26, OTHER, np.int64)
     for letter, token_kind in token_kinds.items():
         by_letter[ord(letter) - ord("A")] = token_kind
@@ -241,6 +246,7 @@ def _line_tables(dialect: Dialect, token_kinds: Mapping[str, int]) -> LineTables
         _marks([comment.opening for comment in comments]),
         _marks([comment.closing for comment in comments]),
         _whole_line(comments),
+        np.array([letter in pointed for letter in string.ascii_uppercase]),
     )
 
 

@@ -3,8 +3,9 @@
 import numpy as np
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.assembler import UnsupportedError
 from twin.nc.bytecode.bytecode import INTERPRETED, LARGEST_PART, Bytecode
+from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
 from twin.nc.bytecode.token_kinds import CODE, FUNCTION, NUMBER
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.entries import Kernels, page_columns
@@ -38,8 +39,8 @@ class LineCompiler:
             for letter, token_kind in tables.token_kinds.items()
             if token_kind not in _MEANINGS
         ]
-        self._templates = LineTemplates({*letters, *tables.cycle_letters})
-        self._assembler = Assembler(
+        self._templates = LineTemplates({*letters, *tables.cycle_letters}, tables.pointed)
+        self._assembler = BytecodeAssembler(
             self.bytecode,
             control.variables,
             tables.token_kinds,
@@ -116,7 +117,7 @@ class LineCompiler:
         control.block = block
         try:
             self._assembler.begin(block)
-            if not (block.skippable and control.settings.block_skip):
+            if not control.settings.skips(block):
                 control.dialect.compile_block(self._compiler, block)
         except (UnsupportedError, ProgramError):
             return False

@@ -6,7 +6,7 @@ an expression would cost more than running it.
 
 import dataclasses
 import re
-from collections.abc import Iterable
+from collections.abc import Set
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from twin.nc.text.expressions import LARGEST_NUMBER, NUMBER
 _LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)
 _SHARED = (opcodes.SNAPSHOT, opcodes.CYCLE_WORD)
 """Opcodes of lines that may share a template, besides those that compute and move."""
+_POINTED = r"(?:[0-9]+\.[0-9]*|\.[0-9]+)"
+"""An unsigned number with a decimal point."""
 _MOST_TEMPLATES = 1000
 """Templates that are kept: a program that has more gains nothing by them."""
 
@@ -43,16 +45,20 @@ class Template:
 class LineTemplates:
     """The templates of one program's lines."""
 
-    def __init__(self, letters: Iterable[str]) -> None:
+    def __init__(self, letters: Set[str], pointed: Set[str] = frozenset()) -> None:
         """Know no template yet.
 
         Args:
             letters: Those of words whose value does not change what the block is.
+            pointed: Those of words whose number does so where it has no decimal point.
         """
         # A word with its number, or a number that belongs to no name.
+        plain, others = "".join(letters - pointed), "".join(letters & pointed)
+        word = [rf"[{plain}][ \t]*[-+]?{NUMBER}"] if plain else []
+        if others:
+            word.append(rf"[{others}][ \t]*[-+]?{_POINTED}")
         self._number = re.compile(
-            rf"((?<![\w.$#])[{''.join(letters)}][ \t]*[-+]?{NUMBER}|(?<![\w.$#]){NUMBER})",
-            re.IGNORECASE,
+            rf"((?<![\w.$#])(?:{'|'.join(word)})|(?<![\w.$#]){NUMBER})", re.IGNORECASE
         )
         self._templates: dict[tuple[str, ...], Template] = {}
 

@@ -40,6 +40,7 @@ from twin.nc.bytecode.registers import (
     SELECTED,
     SIGNS,
     SPINDLE,
+    SPINDLE_TURNS,
     TURNED,
     Constants,
     Machine,
@@ -243,6 +244,7 @@ class VirtualMachine:
         )
         registers[SCALE], registers[ROTATION], registers[SIGNS:CYCLE_STATE] = 1.0, math.nan, 1.0
         registers[TURNED] = not control.frame.is_identity
+        registers[SPINDLE_TURNS] = control.spindle_turns
         registers[MATRIX:] = np.ravel(control.frame.matrix)
         tools = control.tools
         for place, value in (
@@ -263,6 +265,7 @@ class VirtualMachine:
             for place in (PROGRAMMED_FEED, SPINDLE, SELECTED, IN_SPINDLE)
         )
         control.spindle = speed
+        control.spindle_turns = registers[SPINDLE_TURNS] != 0.0
         control.tools.selected = None if selected is None else int(selected)
         control.tools.spindle = None if in_spindle is None else int(in_spindle)
         control.dialect.take_registers(control, registers)

@@ -9,9 +9,10 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.assembler import UnsupportedError
+from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
 from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import GCode, MCode, Vocabulary
+from twin.nc.control.codes import GCode, MCode, StatementEffect, Vocabulary
 from twin.nc.control.control import Control
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.text.blocks import Block, Word
@@ -41,7 +42,9 @@ class BlockCompiler:
         assembler: Takes the instructions.
     """
 
-    def __init__(self, control: Control, vocabulary: Vocabulary, assembler: Assembler) -> None:
+    def __init__(
+        self, control: Control, vocabulary: Vocabulary, assembler: BytecodeAssembler
+    ) -> None:
         self.control = control
         self.vocabulary = vocabulary
         self.assembler = assembler
@@ -72,6 +75,7 @@ class BlockCompiler:
                 raise UnsupportedError
             else:
                 others[word.address] = word
+        self.control.words, self.control.codes = others, codes
         order = {group: rank for rank, group in enumerate(vocabulary.groups)}
         codes.sort(key=lambda pair: order.get(pair[1].group, len(order)))
         return SortedBlock(
@@ -99,14 +103,21 @@ class BlockCompiler:
         return code
 
     def block(self, block: Block) -> None:
-        """Compile a block that holds nothing but words.
+        """Compile a block.
 
         Raises:
             UnsupportedError: It is left to the interpreter tier.
         """
-        if block.statement is not None or block.assignments:
+        statement, vocabulary = block.statement, self.vocabulary
+        if block.assignments:
             raise UnsupportedError
-        self.words(block.words)
+        if statement is None:
+            self.words(block.words)
+            return
+        effect = vocabulary.statements.get(statement.keyword, vocabulary.other_statement)
+        if not isinstance(effect, StatementEffect):
+            raise UnsupportedError
+        effect.write(self.control, statement, self.assembler)
 
     def words(self, words: Iterable[Word]) -> None:
         """Compile a block of words.
@@ -119,12 +130,12 @@ class BlockCompiler:
             self.assembler.words(words)
             return
         codes, functions, block = self.sorted(words)
-        acting = [(word, code) for word, code in codes if code.compiler is not None]
-        moving_codes = [word for word, code in codes if code.compiler is None or code.begins_cycle]
+        acting = [(word, code) for word, code in codes if code.writer is not None]
+        moving_codes = [word for word, code in codes if code.writer is None or code.begins_cycle]
         if any(code.after is not None or code.once or code.alone for _, code in acting):
             raise UnsupportedError
         performing = [code for _, code in codes if code.perform is not None]
-        if len(performing) > 1 or (performing and performing[0].compiler is None):
+        if len(performing) > 1 or (performing and performing[0].writer is None):
             raise UnsupportedError
         if performing and any(code.begins_cycle for _, code in acting):
             raise UnsupportedError
@@ -143,7 +154,8 @@ class BlockCompiler:
         feed = block.words.get("F")
         moving = [] if feed is None or "F" in reserved else [block.words.pop("F")]
         if performing:
-            self.assembler.codes([*moving_codes, *moving])
+            if moving_codes or moving:
+                self.assembler.codes([*moving_codes, *moving])
             self._compile(performing[0], block)
             if block.words:
                 raise UnsupportedError
@@ -169,19 +181,20 @@ class BlockCompiler:
                 continue
             if word.address == "G":
                 code = self.vocabulary.g.get(word.value)
-                if code is not None and code.compiler is not None:
+                if code is not None and code.writer is not None:
                     return True
             elif word.address == "M":
                 function = self.vocabulary.m.get(int(word.value))
                 functions += 1
-                if function is not None and function.compiler is not None:
+                if function is not None and function.writer is not None:
                     return True
         return functions > 1
 
     def _compile(self, code: GCode | MCode, block: BlockWords) -> None:
-        if code.compiler is None:
+        writer = code.writer
+        if writer is None:
             raise UnsupportedError
-        code.compiler(block, self.assembler)
+        writer(block, self.assembler)
 
     def _modal_words(self, block: BlockWords, reserved: str) -> None:
         compilers = self.vocabulary.word_compilers
@@ -195,12 +208,13 @@ class BlockCompiler:
         for number, code in functions:
             if code.late != late:
                 continue
-            if code.ends or code.silent or (code.action is not None and code.compiler is None):
+            if code.ends or code.silent or (code.action is not None and code.writer is None):
                 raise UnsupportedError
             if any(letter in block.words for letter in self.vocabulary.function_letters):
                 raise UnsupportedError
-            if code.compiler is not None:
-                code.compiler(block, self.assembler)
+            writer = code.writer
+            if writer is not None:
+                writer(block, self.assembler)
             starts = f"M{number}" in SPINDLE_STARTS
             self.assembler.emit(opcodes.SPINDLE_FUNCTION if starts else opcodes.FUNCTION, number)
 

@@ -17,6 +17,38 @@ StatementAction = Callable[[Control, Statement], None]
 Compiler = Callable[[BlockWords, Assembler], None]
 """Writes as instructions what a code or a word does, taking the words that belong to it."""
 
+CodeWriter = Callable[[Control, Assembler], None]
+StatementWriter = Callable[[Control, Statement, Assembler], None]
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Effect:
+    """The action of a code that is said as instructions, for both tiers.
+
+    Attributes:
+        write: Says it, taking the words that belong to it. It may look at the program and at the
+            settings, but not at what the control remembers: that is for the instructions.
+    """
+
+    write: CodeWriter
+
+    def __call__(self, control: Control) -> None:
+        """Do it."""
+        control.perform(lambda assembler: self.write(control, assembler))
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class StatementEffect:
+    """The action of a statement that is said as instructions; as ``Effect``."""
+
+    write: StatementWriter
+
+    def __call__(self, control: Control, statement: Statement) -> None:
+        """Do it."""
+        span = statement.column, len(statement.keyword)
+        control.perform(lambda assembler: self.write(control, statement, assembler), span)
+
+
 Ground = Literal["seed", "manual", "decision"]
 """On what a code's meaning rests: the control's own page, its manuals, or this project."""
 
@@ -65,6 +97,11 @@ class GCode:
     ground: Ground = "decision"
 
     @property
+    def writer(self) -> Compiler | None:
+        """Says what it does as instructions; None: it has no compiled form."""
+        return _writer(self.action or self.perform, self.compiler)
+
+    @property
     def refusal(self) -> str:
         """Meaning and reason of a code that is refused."""
         return f"({self.meaning}): {self.refused}"
@@ -101,6 +138,17 @@ class MCode:
     compiler: Compiler | None = None
     ground: Ground = "decision"
 
+    @property
+    def writer(self) -> Compiler | None:
+        """Says what it does as instructions; None: it has no compiled form."""
+        return _writer(self.action, self.compiler)
+
+
+def _writer(action: Action | None, compiler: Compiler | None) -> Compiler | None:
+    if isinstance(action, Effect):
+        return lambda block, assembler: action.write(block.control, assembler)
+    return compiler
+
 
 class Vocabulary(Protocol):
     """What compiling words needs to know of a dialect; attributes as in ``Dialect``."""
@@ -133,6 +181,16 @@ class Vocabulary(Protocol):
     @property
     def word_compilers(self) -> Mapping[str, Compiler]:
         """The compilers of those that have one."""
+        ...
+
+    @property
+    def statements(self) -> Mapping[str, StatementAction]:
+        """Keywords of statements, and what they do."""
+        ...
+
+    @property
+    def other_statement(self) -> StatementAction | None:
+        """What the others do, which begin with a name."""
         ...
 
     @property

@@ -2,11 +2,11 @@
 
 import abc
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.canonical import Corner, Motion
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
-from twin.nc.control.state import SPINDLE_CODES
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
 from twin.nc.geometry.planes import Plane, Vector
@@ -17,10 +17,6 @@ from twin.nc.text.blocks import Block
 
 LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
-
-
-_SPINDLE = {f"M{number}": turns for number, turns in SPINDLE_CODES.items()}
-"""Whether the spindle turns behind these functions."""
 
 
 class Control(ControlWords):
@@ -177,8 +173,6 @@ class Control(ControlWords):
 
     def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
         """Report a function at this place of the path."""
-        if word in _SPINDLE:
-            self.spindle_turns = _SPINDLE[word]
         line, given = self.block.line, dict(arguments)
         self.path.event(lambda columns: columns.function(line, word, given, at))
 
@@ -210,6 +204,17 @@ class Control(ControlWords):
     @abc.abstractmethod
     def run(self, block: Block) -> None:
         """Run one block, also one that stands within a statement."""
+
+    @abc.abstractmethod
+    def perform(
+        self, write: Callable[[Assembler], None], span: tuple[int, int] | None = None
+    ) -> None:
+        """Do at once what is said as instructions.
+
+        Args:
+            write: Says it.
+            span: Column and width of what is blamed; None: the block's last code or first word.
+        """
 
     @abc.abstractmethod
     def place_switches(self, length: float) -> None:

@@ -5,14 +5,18 @@ early M functions, the motion or what stands in its place, late M functions, jum
 be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
 """
 
+from collections.abc import Callable
 from typing import NoReturn
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import ModalChanges
+from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import code_number, integer_of, number_of
+from twin.nc.functions import turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
 from twin.nc.text.source import Source
@@ -28,6 +32,7 @@ class Executor(Control):
     def __init__(self, dialect: Dialect, settings: ControlSettings, source: Source) -> None:
         super().__init__(dialect, settings, source)
         self.dialect = dialect
+        self._pointless = dialect.pointless(settings)
         self._codes: list[tuple[Word, GCode]] = []
         self.modal.apply(dialect.start_state)
         for number in dialect.start:
@@ -49,8 +54,10 @@ class Executor(Control):
         """
         self.block = block
         self.report.line = block.line
-        if block.skippable and self.settings.block_skip:
+        if self.settings.skips(block):
             return
+        if self._pointless:
+            block = self.block = self.dialect.count(self, block)
         if self.dialect.repeat_word:
             block = self._repeated(block)
         if block.statement is not None:
@@ -170,6 +177,8 @@ class Executor(Control):
         for word in block.words:
             if isinstance(word.value, Expression) and word.address not in dialect.references:
                 word = word._replace(value=self.evaluate(word.value, word))
+                if word.value != word.value:
+                    continue  # computed of a vacant variable: the word is not there
             if word.address in dialect.signed and number_of(word) < 0.0:
                 word = word._replace(address=f"{word.address}-")
             address = word.address
@@ -277,8 +286,9 @@ class Executor(Control):
             code.action(self)
         if code.silent:
             return
-        arguments = self.take_function_arguments(word)
-        self.function(f"M{integer_of(number_of(word))}", arguments)
+        arguments, number = self.take_function_arguments(word), integer_of(number_of(word))
+        self.spindle_turns = turns_behind(number, self.spindle_turns) != 0.0
+        self.function(f"M{number}", arguments)
         if code.dwell > 0.0:
             self.dwell(code.dwell)
         if code.ends:
@@ -335,6 +345,12 @@ class Executor(Control):
 
     def _meaning_of(self, address: str) -> str:
         return f"{address} in {self.dialect.name}: {self.dialect.word_meanings[address]}"
+
+    def perform(
+        self, write: Callable[[Assembler], None], span: tuple[int, int] | None = None
+    ) -> None:
+        """Do at once what is said as instructions."""
+        perform(self, write, self._blamed(None) if span is None else span)
 
     def place_switches(self, length: float) -> None:
         """Report the block's switch points, told the length of its move."""

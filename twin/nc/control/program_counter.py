@@ -2,32 +2,21 @@
 
 import re
 from collections.abc import Callable, Container, Iterator
-from typing import NamedTuple, NoReturn
+from typing import NoReturn
 
 import numpy as np
 
-from twin.nc.bytecode.bytecode import PART_BITS, number_of_location
+from twin.nc.bytecode.bytecode import PART_BITS
 from twin.nc.bytecode.frames import (
-    AGAIN,
-    BACK,
     CALL_COLUMNS,
     CALLS,
-    FIRST,
     FURTHEST,
     INSTRUCTION_BUDGET,
-    LAST,
     LINE,
     MOST_CALLS,
-    NO_LOCATION,
-    NOTHING_RESTORED,
-    OWNS_SCOPE,
     PART,
     PROGRESS,
-    RESTORED_BY_CONTROL,
-    RESTORES,
-    end_part,
     end_parts,
-    innermost,
 )
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.control.modal import SavedModal
@@ -41,24 +30,6 @@ from twin.nc.text.source import Source
 _LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
 _CACHED_LINES = 10_000
 """Lines whose blocks are remembered once a program has jumped."""
-
-
-class CallFrame(NamedTuple):
-    """A part of the program that is called, and what happens when it ends.
-
-    Attributes:
-        first: Where it begins.
-        again: How often it runs anew before the program goes on behind the call.
-        last: Its last block where it ends by its location; None where it ends by a word.
-        owns_scope: It has local variables of its own, which its end forgets.
-        restores: What is put back into force at its end; None: nothing.
-    """
-
-    first: Location
-    again: int = 0
-    last: Location | None = None
-    owns_scope: bool = False
-    restores: SavedModal | None = None
 
 
 class ProgramCounter:
@@ -76,7 +47,6 @@ class ProgramCounter:
         lexer: Lexer,
         step_limit: int,
         report: Reporter,
-        restore: Callable[[SavedModal], None],
     ) -> None:
         """Stand before the program.
 
@@ -85,12 +55,10 @@ class ProgramCounter:
             lexer: Reads its lines.
             step_limit: Blocks that may be run again.
             report: Where diagnostics go.
-            restore: Puts back into force what a called part has saved.
         """
         self._lines = source.lines
         self._lexer = lexer
         self._report = report
-        self._restore = restore
         self._step_limit = step_limit
         self.progress = np.zeros(PROGRESS, np.int64)
         self._now = self.progress.data
@@ -182,38 +150,6 @@ class ProgramCounter:
         if blocks:
             self._here, self._here_line = blocks, line
         return blocks
-
-    def call(self, call: CallFrame, deepest: int, column: int, width: int) -> None:
-        """Run a part of the program for the block that asks for it.
-
-        Raises:
-            ProgramError: More than ``deepest`` parts call each other.
-        """
-        now = self._now
-        number = now[CALLS]
-        if number >= deepest:
-            message = f"more than {deepest} calls within calls"
-            self._report.fail("call-depth", message, column, width)
-        row = self.calls[number]
-        row[BACK] = number_of_location(self.location)
-        row[FIRST], row[AGAIN] = number_of_location(call.first), call.again
-        row[LAST] = NO_LOCATION if call.last is None else number_of_location(call.last)
-        row[OWNS_SCOPE], row[RESTORES] = call.owns_scope, NOTHING_RESTORED
-        if call.restores is not None:
-            row[RESTORES], self.saved[number] = RESTORED_BY_CONTROL, call.restores
-        now[CALLS] = number + 1
-        self.go(call.first)
-
-    def leave(self) -> bool:
-        """Go back behind the innermost call that a word ends; False where there is none."""
-        called = innermost(self.calls, self._now[CALLS])
-        if called == 0:
-            return False
-        self._now[CALLS] = called
-        end_part(self.progress, self.calls)
-        if self.calls[called - 1, RESTORES] == RESTORED_BY_CONTROL:
-            self._restore(self.saved.pop(called - 1))
-        return True
 
     def go(self, location: Location) -> None:
         """Go on at a location."""

@@ -2,8 +2,10 @@
 
 import dataclasses
 from collections.abc import Mapping
+from typing import Literal
 
 from twin.nc.canonical import Axes
+from twin.nc.text.blocks import Block
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -81,5 +83,16 @@ class ControlSettings:
     block_skip: bool = False
     """Blocks that begin with a slash are left out."""
 
+    block_skip_levels: frozenset[int] = frozenset()
+    """Those whose slash has one of these numbers are left out."""
+
     step_limit: int = 20_000
     """Blocks that may be run again through jumps and loops before a program counts as endless."""
+
+    decimal_point: Literal["calculator", "increments"] | None = None
+    """What a number without a point counts: whole units, or least increments (0.001 mm); None: as
+    the control does when it comes from its maker."""
+
+    def skips(self, block: Block) -> bool:
+        """Whether a block is left out."""
+        return block.skippable and (self.block_skip or block.skip_level in self.block_skip_levels)

@@ -21,10 +21,6 @@ from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
 
-SPINDLE_CODES = {3: True, 4: True, 5: False}
-"""Whether the spindle turns behind these M codes."""
-_FEED_PER_REVOLUTION = re.compile(rb"G[ \t]*0*95(?![0-9])")
-
 
 class ControlLanguage(Language, Protocol):
     """What a control needs to know of a dialect; attributes as in ``Dialect``."""
@@ -88,9 +84,9 @@ class ControlState:
         rapid_acceleration: Acceleration of rapids where the program sets their own [mm/s²]; NaN:
             that of the path.
         rapid_deceleration: Deceleration of rapids, likewise [mm/s²].
-        spindle_turns: M3 or M4 is in force.
-        interpreted_functions: M codes that only the interpreter tier may run: those that wait, and
-            where a feed counts revolutions those of the spindle.
+        spindle_turns: M3 or M4 of the program is in force; what a cycle does with the spindle at a hole
+            ends with the hole.
+        interpreted_functions: M codes that only the interpreter tier may run: those that wait.
         axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
         axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
         axis_decelerations: Their largest deceleration [mm/s² or deg/s²].
@@ -120,9 +116,7 @@ class ControlState:
         self.tools = Tools(settings.tools, any_tool=settings.any_tool)
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
         lexer = Lexer(language, self.report)
-        self.program_counter = ProgramCounter(
-            source, lexer, settings.step_limit, self.report, self.restore_modal
-        )
+        self.program_counter = ProgramCounter(source, lexer, settings.step_limit, self.report)
         self.variables = Variables(
             language.is_local,
             lambda name: language.given_variable(settings.variables, name),
@@ -136,10 +130,8 @@ class ControlState:
         self.series: list[Word] = []
         self.rapid_feed = NAN
         self.spindle_turns = False
-        waiting = {number for number, each in settings.m_functions.items() if each.dwell > 0.0}
-        counts = source.lines.any_holds(_FEED_PER_REVOLUTION)
         self.interpreted_functions = frozenset(
-            waiting | (SPINDLE_CODES.keys() if counts else set())
+            number for number, each in settings.m_functions.items() if each.dwell > 0.0
         )
         self.axis_limits: dict[int, float] = {}
         self.axis_accelerations: dict[int, float] = {}

@@ -6,7 +6,7 @@ Its own page (seed) says all about G09, G10, G73 and G98; the rest is the base o
 import dataclasses
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import UnsupportedError
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
@@ -14,7 +14,7 @@ from twin.nc.control.dialect import Decision, Dialect
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso import base, shared_decisions
 from twin.nc.iso.circular import arc_rule, iso_arc_center, start_and_end
-from twin.nc.text.blocks import Block
+from twin.nc.text.blocks import Block, Location, Word
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 
@@ -66,48 +66,44 @@ def switch_off(control: Control) -> None:
     _dragging(control).on = False
 
 
-def repeat_counter(block: Block) -> str:
-    """The variable that holds how many jumps of a G73 block are left."""
-    return f"G73 {block.line}.{block.part}"
-
-
 def jump_with_repeat(control: Control) -> None:
-    """G73: after the block's own motion go on at block L, Q times.
+    """G73: after the block's own motion go on at block L, Q times."""
+    target, count = control.take("L"), control.take("Q")
+    control.perform(lambda assembler: _jump(control, target, count, assembler))
+
+
+def _jump(control: Control, target: Word | None, count: Word | None, assembler: Assembler) -> None:
+    """Write the jump of G73.
 
     Raises:
         ProgramError: L is missing or names no block; Q is no count.
     """
-    target, count = control.take("L"), control.take("Q")
     if target is None:
         numbers = ", ".join(f"N{label}" for label in list(control.program_counter.labels())[:12])
         code = control.code_word(73)
         control.fail(
             "jump-target", "G73 needs L: the block to jump to", code, hint=f"blocks here: {numbers}"
         )
-    wanted = 1.0 if count is None else control.number(count)
+    wanted = 1.0 if count is None else assembler.known(count)
     if not (wanted >= 0.0 and wanted == int(wanted)):
         control.fail("repeat-count", "Q must count jumps", count)
-    counter = repeat_counter(control.block)
-    left = control.variables.read(counter)
-    if left is None:
-        left = wanted
-    if left == 0.0:
-        control.variables.forget(counter)
-        return
-    control.variables.write(counter, left - 1.0)
+    counter = f"G73 {control.block.line}.{control.block.part}"
+    assembler.jump_counted(lambda: _destination(control, target), counter, wanted)
+
+
+def _destination(control: Control, target: Word) -> Location:
     number = control.number(target)
     if number != int(number):
         control.fail("jump-target", f"{target.text} is no block number", target)
-    control.program_counter.jump(int(number), (target.column, target.width), "L")
+    return control.program_counter.find_label(int(number), (target.column, target.width), "L")
 
 
 def compile_block(compiler: BlockCompiler, block: Block) -> None:
-    """Write a block as instructions for the compiled tier, with its jump as ``jump_with_repeat`` does.
+    """Write a block as instructions for the compiled tier, its jump behind all else.
 
     Raises:
         UnsupportedError: It is left to the interpreter tier.
     """
-    control, assembler = compiler.control, compiler.assembler
     jumps = [word for word in block.words if word.address == "G" and word.value == 73.0]
     targets = [word for word in block.words if jumps and word.address == "L"]
     counts = [word for word in block.words if jumps and word.address == "Q"]
@@ -115,17 +111,11 @@ def compile_block(compiler: BlockCompiler, block: Block) -> None:
     if counts:  # a cycle with pecks would take Q as its own
         if any(code.begins_cycle for code in compiler.known_codes(block.words)):
             raise UnsupportedError
-        assembler.emit(opcodes.NO_PECKS)
+        compiler.assembler.emit(opcodes.NO_PECKS)
     compiler.words(word for word in block.words if word not in taken)
     if jumps:
-        times = control.number(counts[0]) if counts else 1.0
-        if not targets or times < 0.0 or times != int(times):
-            raise UnsupportedError
-        number, span = control.number(targets[0]), (targets[0].column, targets[0].width)
-        if number != int(number):
-            raise UnsupportedError
-        target = control.program_counter.find_label(int(number), span, "L")
-        assembler.jump_counted(target, repeat_counter(block), times)
+        target, count = (*targets, None)[0], (*counts, None)[0]
+        _jump(compiler.control, target, count, compiler.assembler)
 
 
 def _arc(control: Control, *, clockwise: bool) -> None:

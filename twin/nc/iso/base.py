@@ -184,7 +184,7 @@ FEEDS = {
     ),
 }
 
-INSTEAD = {
+INSTEAD: dict[float, str] = {
     20: "inches are G70",
     21: "millimetres are G71",
     28: "write G53 and the axes",

@@ -59,11 +59,12 @@ def machine_zero(control: Control, code: str) -> Mapping[str, float]:
     return zero
 
 
-def shift_by(control: Control, values: Mapping[str, float]) -> None:
+def shift_by(control: Control, values: Mapping[str, float], *, ends_preset: bool = True) -> None:
     """Put a work offset by its values into force, 0 for axes that it leaves out [mm or deg]."""
     names = control.settings.axes.names
     control.frame.set_shift("offset", [values.get(name, 0.0) for name in names])
-    control.frame.set_shift("preset", [0.0] * len(names))
+    if ends_preset:
+        control.frame.set_shift("preset", [0.0] * len(names))
     control.reframed()
 
 

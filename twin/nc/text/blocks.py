@@ -22,6 +22,7 @@ class Word(NamedTuple):
         column: First character in the line, from 0.
         width: Characters from the address to the end of the value.
         incremental: The word alone is incremental (``X20I``).
+        pointless: A number without a decimal point.
     """
 
     address: str
@@ -29,6 +30,7 @@ class Word(NamedTuple):
     column: int
     width: int
     incremental: bool = False
+    pointless: bool = False
 
     @property
     def text(self) -> str:
@@ -81,6 +83,7 @@ class Block(NamedTuple):
         skippable: It begins with a slash.
         name: Its label in brackets, or empty.
         assignments: Variables that get new values when all words have been read.
+        skip_level: Number behind the slash, 1 where there is none.
     """
 
     line: int
@@ -91,3 +94,4 @@ class Block(NamedTuple):
     skippable: bool = False
     name: str = ""
     assignments: tuple[Assignment, ...] = ()
+    skip_level: int = 1

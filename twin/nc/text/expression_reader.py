@@ -13,6 +13,7 @@ from twin.nc.text.expressions import (
     Negative,
     Number,
     NumberedVariable,
+    OrZero,
     Prefixed,
     Tree,
     Variable,
@@ -42,6 +43,7 @@ class ExpressionReader:
         self._number = re.compile(NUMBER)
         self._variable = re.compile(syntax.variable, re.IGNORECASE)
         self._name = re.compile(r"[A-Z_][A-Z_0-9]*", re.IGNORECASE)
+        self._quotient = re.compile(rf"[ \t]*/[ \t]*(?={re.escape(syntax.brackets[0])})")
 
     def read(self, text: str, start: int) -> tuple[Expression, int]:
         """Read the longest expression that begins at ``start``; return it with its end.
@@ -91,6 +93,10 @@ class ExpressionReader:
         """The variable that comes next, or None."""
         return self._variable.match(text, at)
 
+    def quotient_at(self, text: str, at: int) -> re.Match[str] | None:
+        """A slash before a bracket that comes next, or None."""
+        return self._quotient.match(text, at)
+
     def name_at(self, text: str, at: int) -> re.Match[str] | None:
         """The name that comes next, or None."""
         return self._name.match(text, at)
@@ -119,16 +125,29 @@ class _Reading:
         """Operands joined by operators that bind at least as tightly as ``lowest``."""
         if depth > _DEEPEST:
             self._fail("expression-depth", f"more than {_DEEPEST} brackets within brackets")
-        left = self.operand(depth)
+        left, exclusive = self.operand(depth), False
         while (match := self._reader.operator_at(self._text, self.at)) is not None:
             operator = self._syntax.operators[match[1].upper()]
             if operator.precedence < lowest:
                 break
             self._count()
+            symbol = match[1].upper()
+            if exclusive and symbol in self._syntax.exclusive:
+                self._fail("expression", f"{symbol} needs brackets around what it compares")
+            exclusive = symbol in self._syntax.exclusive
             self.at = match.end()
             right = self.operation(operator.precedence + 1, depth + 1)
-            left = Computed(match[1].upper(), operator.compute, (left, right))
+            operands = (left, right)
+            if symbol not in self._syntax.of_vacant:
+                operands = (self._or_zero(left), self._or_zero(right))
+            left = Computed(symbol, operator.compute, operands)
         return left
+
+    def _or_zero(self, tree: Tree) -> Tree:
+        """A value of which something is computed."""
+        if self._syntax.vacant and isinstance(tree, Variable | NumberedVariable):
+            return OrZero(tree)
+        return tree
 
     def operand(self, depth: int) -> Tree:
         """A value without operators behind it."""
@@ -141,7 +160,7 @@ class _Reading:
             if depth > _DEEPEST:
                 self._fail("expression-depth", f"more than {_DEEPEST} signs in a row")
             inner = self.operand(depth + 1)
-            return inner if character == "+" else Negative(inner)
+            return inner if character == "+" else Negative(self._or_zero(inner))
         if character == opening:
             self.at += 1
             inner = self.operation(0, depth + 1)
@@ -161,7 +180,7 @@ class _Reading:
         if indirect and self._text[self.at : self.at + 1] == indirect:
             self._count()
             self.at += 1
-            return NumberedVariable(indirect, self.operand(depth + 1))
+            return NumberedVariable(indirect, self._or_zero(self.operand(depth + 1)))
         match = self._reader.name_at(self._text, self.at)
         if match is None:
             foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
@@ -191,24 +210,33 @@ class _Reading:
         return Computed(name, function.compute, tuple(arguments))
 
     def _quotient(self, name: str, at: int, depth: int) -> Tree:
-        (first,) = self._arguments(name, at, 1, depth)
-        self._expect("/")
-        (second,) = self._arguments(name, self.at, 1, depth)
-        return Computed(name, self._syntax.quotients[name], (first, second))
+        """``ATAN[1]/[2]``; where the dialect has them ``ATAN[1,2]`` and ``ATAN[1]``."""
+        function = self._syntax.functions.get(name)
+        arguments = self._arguments(name, at, 1 if function is None else None, depth)
+        slash = self._reader.quotient_at(self._text, self.at)
+        if slash is not None:
+            arguments += self._arguments(name, slash.end(), 1, depth)
+        elif function is None:
+            self._expect("/")
+        if len(arguments) == 2:
+            return Computed(name, self._syntax.quotients[name], tuple(arguments))
+        if function is None or len(arguments) != function.arguments:
+            self._fail("expression", f"{name} does not take {len(arguments)} values")
+        return Computed(name, function.compute, tuple(arguments))
 
-    def _arguments(self, name: str, at: int, count: int, depth: int) -> list[Tree]:
+    def _arguments(self, name: str, at: int, count: int | None, depth: int) -> list[Tree]:
         self._count()
         self.at = at
         opening, closing = self._syntax.brackets
         self._skip_blanks()
         self._expect(opening)
-        arguments = [self.operation(0, depth + 1)]
+        arguments = [self._or_zero(self.operation(0, depth + 1))]
         self._skip_blanks()
         while self._text[self.at : self.at + 1] == ",":
             self.at += 1
-            arguments.append(self.operation(0, depth + 1))
+            arguments.append(self._or_zero(self.operation(0, depth + 1)))
             self._skip_blanks()
-        if len(arguments) != count:
+        if count is not None and len(arguments) != count:
             self._fail("expression", f"{name} takes {count} values, not {len(arguments)}")
         self._expect(closing)
         return arguments

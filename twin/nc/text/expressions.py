@@ -49,7 +49,8 @@ class Scope(Protocol):
         """Value of a variable; ``index`` is the computed one of ``P[...]``, else None.
 
         Raises:
-            ExpressionError: There is no such variable, or it has no value.
+            ExpressionError: There is no such variable, or it has no value; where the syntax knows
+                vacant variables, the value of one is NaN.
         """
         ...
 
@@ -111,6 +112,10 @@ class ExpressionSyntax:
             there is none.
         quotients: Functions of two values, each in brackets, with a slash between them.
         bracketed: Operators stand within brackets only, so that a word's value is one operand.
+        vacant: A variable without a value counts as 0 where something is computed of it; alone it
+            leaves its word out.
+        of_vacant: Operators that see that a variable has no value.
+        exclusive: Operators that need brackets where one follows another.
     """
 
     operators: Mapping[str, Operator]
@@ -127,6 +132,9 @@ class ExpressionSyntax:
         default_factory=dict
     )
     bracketed: bool = False
+    vacant: bool = False
+    of_vacant: tuple[str, ...] = ()
+    exclusive: tuple[str, ...] = ()
 
 
 def checked(value: float) -> float:
@@ -193,6 +201,18 @@ class NumberedVariable:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
+class OrZero:
+    """A variable, or 0 where it has no value."""
+
+    operand: "Variable | NumberedVariable"
+
+    def __call__(self, scope: Scope) -> float:
+        """Its value."""
+        value = self.operand(scope)
+        return 0.0 if math.isnan(value) else value
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class Negative:
     """A value with a minus before it."""
 
@@ -248,4 +268,4 @@ class Exists:
         return 1.0
 
 
-Tree = Number | Variable | NumberedVariable | Negative | Prefixed | Computed | Exists
+Tree = Number | Variable | NumberedVariable | OrZero | Negative | Prefixed | Computed | Exists

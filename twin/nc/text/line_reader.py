@@ -22,6 +22,7 @@ LARGEST_LABEL = 4_294_967_295
 _STATEMENT = re.compile(r"[#$][A-Z]\w*", re.IGNORECASE)
 _GARBLED = re.compile(r"[-+.0-9]{1,20}")
 """What looks like a number and was not read as one."""
+_SKIP_LEVEL = re.compile(r"[1-9](?=[ \t]*[A-Z#/])", re.IGNORECASE)
 _LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
@@ -55,6 +56,7 @@ class LineReader:
         self._number = NO_BLOCK_NUMBER
         self._name = ""
         self._skippable = False
+        self._skip_level = 1
 
     def blocks(self) -> tuple[Block, ...]:
         """The line's blocks.
@@ -91,7 +93,8 @@ class LineReader:
             if not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
             name = address if address in _LETTERS else name_of(address)
-            self._words.append(Word(name, value, begin, at - begin, bool(suffix)))
+            pointless = "." not in number
+            self._words.append(Word(name, value, begin, at - begin, bool(suffix), pointless))
         self._at = at
         return False
 
@@ -142,6 +145,9 @@ class LineReader:
             return False
         self._skippable = True
         self._at += 1
+        level = _SKIP_LEVEL.match(self._line, self._at) if self._syntax.skip_levels else None
+        if level is not None:
+            self._skip_level, self._at = int(level[0]), level.end()
         return True
 
     def _label_colon(self) -> bool:
@@ -183,6 +189,8 @@ class LineReader:
         if self._syntax.several_blocks and (label := _NEXT_LABEL.search(self._line, start, end)):
             end = label.start()
         text = self._line[start:end]
+        if self._syntax.inner_comments:
+            return self._without_comments(text, start)
         for comment in self._syntax.comments:
             if comment.closing and text.rstrip().endswith(comment.closing):
                 opening = text.rfind(comment.opening)
@@ -192,6 +200,19 @@ class LineReader:
                     and not self._wants_value(text[:opening], comment.opening)
                 ):
                     return text[:opening] + " " * (len(text) - opening)
+        return text
+
+    def _without_comments(self, text: str, start: int) -> str:
+        """A statement's text with blanks in place of its comments in brackets."""
+        for comment in self._syntax.comments:
+            while comment.closing and (opening := text.find(comment.opening)) >= 0:
+                end = text.find(comment.closing, opening + len(comment.opening))
+                if end < 0:
+                    message = f"the comment is not closed by '{comment.closing}'"
+                    hint = "close it on its own line"
+                    self._fail("open-comment", message, start + opening, hint=hint)
+                end += len(comment.closing)
+                text = text[:opening] + " " * (end - opening) + text[end:]
         return text
 
     def _wants_value(self, text: str, opening: str) -> bool:
@@ -235,7 +256,8 @@ class LineReader:
             if sign is None:
                 message = f"'{target.text}' is no word: it is assigned by =, or follows a letter"
                 self._fail("assignment", message, begin, width=at - begin)
-            value, end = reader.read_value(self._line, sign.end())
+            read = reader.read if self._syntax.open_assignments else reader.read_value
+            value, end = read(self._line, sign.end())
         except ExpressionError as error:
             self._refuse_value(begin, error)
         tree = target.evaluate
@@ -304,6 +326,7 @@ class LineReader:
                 self._skippable,
                 self._name,
                 tuple(self._assignments),
+                self._skip_level,
             )
         )
 

@@ -38,10 +38,13 @@ class Syntax:
         trailing_prose: Words of prose behind a block's words are left out with a warning.
         several_blocks: A further N begins a further block on the same line.
         named_labels: ``[NAME]`` at its begin names a block.
+        skip_levels: A digit may stand behind the slash of a block that can be skipped.
+        inner_comments: Comments in brackets may stand anywhere within a statement.
         incremental_suffix: ``X20I`` makes one word incremental.
         aliases: Addresses that mean another one.
         assigned: Character that begins an assignment among the words, such as ``#1=5``; empty: there
             is none.
+        open_assignments: What is assigned needs no brackets around its operators.
         excused: Why a line that cannot be read may be left out, given it and the line before:
             code of the warning, or None.
     """
@@ -53,9 +56,12 @@ class Syntax:
     trailing_prose: bool = False
     several_blocks: bool = False
     named_labels: bool = False
+    skip_levels: bool = False
+    inner_comments: bool = False
     incremental_suffix: bool = False
     aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
     assigned: str = ""
+    open_assignments: bool = False
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
 
 

@@ -6,6 +6,15 @@ Each does what ``opcodes`` says of it; opcodes of one kind have a function.
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import PART_BITS, BytecodeTable, Instruction
+from twin.nc.bytecode.flow import (
+    Transfer,
+    arrive,
+    count_loop,
+    going_to,
+    jumps,
+    straight_on,
+    transfer,
+)
 from twin.nc.bytecode.frames import (
     DEPTH,
     FULL,
@@ -14,25 +23,21 @@ from twin.nc.bytecode.frames import (
     LINE,
     MADE,
     PART,
+    RESTORED_BY_CONTROL,
+    RESTORED_HERE,
+    RESTORES,
     TRAPPED,
     ExecutionState,
     Scratch,
+    innermost,
 )
-from twin.nc.bytecode.registers import Machine, copy_state
+from twin.nc.bytecode.registers import Machine, State, copy_active_codes, copy_state
+from twin.nc.bytecode.variables import undo_stores
 from twin.nc.compiled.kernels.block import BlockBegin, run_words
 from twin.nc.compiled.kernels.cycle import NO_ROOM
 from twin.nc.compiled.kernels.effects import BlockPlace, run_effect
 from twin.nc.compiled.kernels.expression import compute
 from twin.nc.compiled.kernels.frame import begin_compensation
-from twin.nc.compiled.kernels.program_counter import (
-    arrive,
-    count_loop,
-    going_to,
-    jumps,
-    straight_on,
-    transfer,
-)
-from twin.nc.compiled.kernels.variables import undo_stores
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import OFF, STAGE
 from twin.nc.path.compensation.lookahead import hold_events
@@ -105,8 +110,8 @@ def dispatch_loop(
         elif opcodes.BEGIN_FOR <= opcode <= opcodes.COUNT_DOWN:
             top = count_loop(instruction, stack, top, to.depth, memory)
         elif opcodes.CHECK_CALL <= opcode <= opcodes.RETURN:
-            known, to = transfer(instruction, stack, top, to, state, execution)
-            if not known:
+            known, to = transfer(instruction, stack[top - 1], to, execution.calls, memory.local)
+            if not known or not _keep_codes(opcode, to, state, execution):
                 break
         elif opcode == opcodes.TRAP:
             break
@@ -122,3 +127,27 @@ def dispatch_loop(
         contour.counts[STAGE] = OFF
     undo_stores(progress[DEPTH], memory, scratch)
     return why
+
+
+@inlined
+def _keep_codes(opcode: int, to: Transfer, state: State, execution: ExecutionState) -> bool:
+    """Save the active codes at a call whose end restores them, and put them back at its end.
+
+    Returns:
+        Whether the end of the part can put them back here.
+    """
+    saved = execution.saved
+    if opcode == opcodes.CHECK_RETURN:
+        part = innermost(execution.calls, to.called)
+        return execution.calls[part - 1, RESTORES] != RESTORED_BY_CONTROL
+    if to.restores == RESTORED_HERE and opcode == opcodes.RETURN:
+        called = to.called
+        copy_active_codes(
+            saved.modal[called], saved.active_codes[called], state.modal, state.active_codes
+        )
+    elif to.restores == RESTORED_HERE and opcode >= opcodes.CALL:
+        called = to.called - 1
+        copy_active_codes(
+            state.modal, state.active_codes, saved.modal[called], saved.active_codes[called]
+        )
+    return True

@@ -30,6 +30,7 @@ from twin.nc.bytecode.registers import (
     SELECTED,
     SIGNS,
     SPINDLE,
+    SPINDLE_TURNS,
     UNIT,
     Constants,
     Machine,
@@ -38,6 +39,7 @@ from twin.nc.bytecode.registers import (
 from twin.nc.canonical import FloatArray
 from twin.nc.compiled.kernels.frame import add_up, reframe, to_part, transform
 from twin.nc.control.control import LARGEST_COORDINATE
+from twin.nc.functions import turns_behind
 from twin.nc.geometry import polar
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
@@ -115,6 +117,8 @@ def _report_effect(
     registers, constants = machine.state.registers, machine.constants
     value = stack[top - 1] if top > 0 else 0.0
     kind, number, amount = FUNCTION_ALONE, operand, np.nan
+    if opcode in (opcodes.FUNCTION, opcodes.SPINDLE_FUNCTION):
+        registers[SPINDLE_TURNS] = turns_behind(operand, registers[SPINDLE_TURNS])
     if opcode == opcodes.SPINDLE_FUNCTION:
         kind, amount = FUNCTION_WITH_SPEED, registers[SPINDLE]
     elif opcode == opcodes.SPEED:

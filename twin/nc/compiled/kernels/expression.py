@@ -13,8 +13,8 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import Instruction
 from twin.nc.bytecode.frames import WORDS, Scratch, VariableStore
 from twin.nc.bytecode.registers import BAILOUT
+from twin.nc.bytecode.variables import NO_SLOT, assign, load, slot_of_number
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.compiled.kernels.variables import NO_SLOT, assign, load, slot_of_number
 from twin.nc.text import arithmetic
 from twin.nc.text.expressions import LARGEST_NUMBER
 
@@ -184,16 +184,6 @@ def _evaluate(
         if np.isnan(value):
             return BAILOUT
         stack[top - 1] = value
-    elif opcode in (opcodes.LOAD_BELOW, opcodes.LOAD_NUMBERED_BELOW):
-        slot = operand
-        if opcode == opcodes.LOAD_NUMBERED_BELOW:
-            slot = slot_of_number(numbered, stack[top - 2])
-        value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
-        if np.isnan(value):
-            return BAILOUT
-        stack[top] = stack[top - 1]
-        stack[top - 1] = value
-        top += 1
     elif opcode == opcodes.DEFINED:
         stack[top] = 0.0 if np.isnan(load(memory, depth, operand)) else 1.0
         top += 1

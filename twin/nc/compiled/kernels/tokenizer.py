@@ -73,8 +73,10 @@ def read_words(
         token_kind = tables.token_kinds[letter - _LETTER_A]
         if token_kind == OTHER or count == MOST_WORDS or (token_kind == NUMBER and count > 0):
             return UNSUPPORTED
-        value, at = _read_number(data, skip_blanks(data, at + 1, end), end)
+        value, pointed, at = _read_number(data, skip_blanks(data, at + 1, end), end)
         if at == UNSUPPORTED:
+            return UNSUPPORTED
+        if not pointed and value != 0.0 and tables.pointed[letter - _LETTER_A]:
             return UNSUPPORTED
         token_kinds[count], values[count] = token_kind, value
         count += 1
@@ -89,8 +91,11 @@ def skip_blanks(data: ByteArray, at: int, end: int) -> int:
 
 
 @compilable
-def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
-    """A number and the place behind it; ``UNSUPPORTED`` where there is none or it is very long."""
+def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, bool, int]:
+    """A number, whether it has a point, and the place behind it.
+
+    That place is ``UNSUPPORTED`` where there is no number or it is very long.
+    """
     negative = at < end and data[at] == _MINUS
     if negative or (at < end and data[at] == _PLUS):
         at += 1
@@ -99,11 +104,11 @@ def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
         byte = int(data[at])
         if byte == _POINT:
             if fraction:
-                return 0.0, UNSUPPORTED
+                return 0.0, True, UNSUPPORTED
             fraction = True
         elif _DIGIT_0 <= byte <= _DIGIT_9:
             if mantissa > _EXACT_MANTISSA:
-                return 0.0, UNSUPPORTED
+                return 0.0, fraction, UNSUPPORTED
             mantissa = 10 * mantissa + byte - _DIGIT_0
             digits += 1
             decimals += fraction
@@ -111,9 +116,9 @@ def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, int]:
             break
         at += 1
     if digits == 0 or decimals >= len(_POWERS):
-        return 0.0, UNSUPPORTED
+        return 0.0, fraction, UNSUPPORTED
     value = mantissa / _POWERS[decimals]
-    return (-value if negative else value), at
+    return (-value if negative else value), fraction, at
 
 
 @compilable

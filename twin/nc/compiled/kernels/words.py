@@ -22,6 +22,7 @@ from twin.nc.bytecode.registers import (
     POLAR_RADIUS,
     PROGRAMMED_FEED,
     RAPID_LINE,
+    SPINDLE_TURNS,
     UNIT,
     BlockTables,
     Machine,
@@ -43,6 +44,7 @@ from twin.nc.compiled.kernels.effects import is_whole, report
 from twin.nc.compiled.kernels.frame import turn_place
 from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
 from twin.nc.control.control import LARGEST_COORDINATE
+from twin.nc.functions import turns_behind
 from twin.nc.path.event_columns import FUNCTION_ALONE
 from twin.nc.path.moves import feed_per_minute, line_length, only_turns
 from twin.nc.path.rows import copy
@@ -95,7 +97,7 @@ def execute_block(
         return UNSUPPORTED
     early = function != UNSUPPORTED and tables.function[function] == EARLY
     if early:
-        report(rows, state, row, line, FUNCTION_ALONE, function, np.nan)
+        _report_function(function, machine, row, line)
     after = row
     if drills and moves:
         after = drill(block, (begins, anew), tables, machine.constants, state, rows, row)
@@ -105,7 +107,7 @@ def execute_block(
         state.event_count[0] = event_count
         return after
     if function != UNSUPPORTED and not early:
-        report(rows, state, after, line, FUNCTION_ALONE, function, np.nan)
+        _report_function(function, machine, after, line)
     _activate(block, tables, state)
     if moves:
         if drills:
@@ -117,6 +119,14 @@ def execute_block(
         if in_plane:
             state.registers[POLAR_RADIUS] = state.registers[POLAR_ANGLE] = np.nan
     return after
+
+
+@inlined
+def _report_function(function: int, machine: Machine, row: int, line: int) -> None:
+    """An M function that does nothing to the path."""
+    registers = machine.state.registers
+    registers[SPINDLE_TURNS] = turns_behind(function, registers[SPINDLE_TURNS])
+    report(machine.rows, machine.state, row, line, FUNCTION_ALONE, function, np.nan)
 
 
 @inlined

@@ -1,10 +1,10 @@
 """CODESYS SoftMotion CNC (DIN 66025 with SoftMotion's own codes)."""
 
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import MCode
+from twin.nc.control.codes import MCode, StatementEffect
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.modal import FeedMode
-from twin.nc.dialects.codesys import actions, block_compiler, program, subprograms, words
+from twin.nc.dialects.codesys import actions, program, subprograms, words
 from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
@@ -65,12 +65,12 @@ CODESYS = Dialect(
         },
     },
     statements={
-        "LET": program.let,
+        "LET": StatementEffect(program.let),
         "SUBPROGRAM": subprograms.define,
-        "END_SUBPROGRAM": subprograms.leave_subprogram,
-        "RETURN": subprograms.leave_subprogram,
+        "END_SUBPROGRAM": StatementEffect(subprograms.leave),
+        "RETURN": StatementEffect(subprograms.leave),
     },
-    other_statement=subprograms.assign_or_call,
+    other_statement=StatementEffect(subprograms.assign_or_call),
     word_meanings={
         "N": "block number",
         "G": "preparatory code",
@@ -132,7 +132,6 @@ CODESYS = Dialect(
     place_switches=words.place_switches,
     rapid_feed=words.own_rapid_feed,
     library=subprograms.with_files,
-    compile_block=block_compiler.compile_block,
     disturbed=program.acts_on_plain_blocks,
     registers=program.registers,
     take_registers=program.take_registers,

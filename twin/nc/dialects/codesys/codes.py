@@ -1,6 +1,6 @@
 """G codes of CODESYS SoftMotion."""
 
-from twin.nc.control.codes import GCode, Interpolation
+from twin.nc.control.codes import Effect, GCode, Interpolation
 from twin.nc.control.interpolation import LineRule
 from twin.nc.dialects.codesys import actions, jumps, program
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
@@ -46,7 +46,7 @@ RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
 
-CODES: dict[int, GCode] = {
+CODES: dict[float, GCode] = {
     0: _motion("positioning in a straight line; FF is its feed", RAPID),
     1: _motion("straight line", base.FEED, seed=True),
     2: _motion("arc clockwise", CLOCKWISE, seed=True),
@@ -74,20 +74,20 @@ CODES: dict[int, GCode] = {
     19: _plane("3D mode, plane Y Z", YZ),
     20: GCode(
         meaning="jump to L (or the label L? behind) when K is not 0",
-        perform=jumps.conditional_jump,
+        perform=Effect(jumps.conditional_jump),
         takes="L!",
         ground="manual",
     ),
     31: GCode(meaning="probe", perform=actions.probe, ground="manual"),
     36: GCode(
         meaning="write D to the variable O",
-        perform=program.write_variable,
+        perform=Effect(program.write_variable),
         takes="D",
         ground="manual",
     ),
     37: GCode(
         meaning="add D to the variable O",
-        perform=program.add_to_variable,
+        perform=Effect(program.add_to_variable),
         takes="D",
         ground="manual",
     ),
@@ -212,7 +212,7 @@ CODES: dict[int, GCode] = {
     ),
 }
 
-INSTEAD = {
+INSTEAD: dict[float, str] = {
     **dict.fromkeys(range(80, 90), "there are no canned cycles: write their moves"),
     **dict.fromkeys((57, 58, 59), "shifts are G54 and G55 with their distances"),
     **dict.fromkeys((94, 95), "F counts units per second"),

@@ -5,6 +5,7 @@ import math
 import re
 from collections.abc import Mapping
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.registers import RADIUS_GIVEN
 from twin.nc.control.control import Control
 from twin.nc.geometry.planes import Vector
@@ -14,11 +15,14 @@ from twin.nc.text.blocks import Statement, Word
 from twin.nc.text.expressions import (
     ARITHMETIC,
     COMPARISON,
+    Computed,
     Expression,
     ExpressionError,
     ExpressionSyntax,
     FunctionOf,
+    Number,
     Operator,
+    Variable,
 )
 
 COUNTER = "$"
@@ -165,7 +169,7 @@ def given_variable(given: Mapping[str, float], name: str) -> float | None:
     return None
 
 
-def declaration(control: Control, statement: Statement) -> tuple[str, Expression | None, int]:
+def _declaration(control: Control, statement: Statement) -> tuple[str, Expression | None, int]:
     """What LET declares: name, value or None, and where that stands.
 
     Raises:
@@ -185,31 +189,29 @@ def declaration(control: Control, statement: Statement) -> tuple[str, Expression
     return match[1].upper(), value, column
 
 
-def let(control: Control, statement: Statement) -> None:
+def let(control: Control, statement: Statement, assembler: Assembler) -> None:
     """LET: declare a local variable, 0 unless it is given a value."""
-    name, value, column = declaration(control, statement)
-    control.variables.write(name, 0.0 if value is None else control.compute(value, column))
+    name, value, column = _declaration(control, statement)
+    if value is None:
+        assembler.constant(0.0)
+    else:
+        assembler.value(value, column)
+    assembler.assign(name)
 
 
-def assigned(control: Control, statement: Statement) -> tuple[str, Expression, int]:
-    """What ``#x := value`` assigns: name, value, and where that stands."""
-    text, column = statement.text.lstrip()[2:], statement.text_column + 2
-    return statement.keyword.strip(), control.expression(text, column), column
-
-
-def assign(control: Control, statement: Statement) -> None:
+def assign(control: Control, statement: Statement, assembler: Assembler) -> None:
     """``#x := value``."""
     name = statement.keyword.strip()
-    if control.variables.read(name) is None:
-        hint = f"write LET {name} : LREAL"
-        control.report.fail(
-            "unknown-variable", f"{name} is not declared", statement.column, len(name), hint
-        )
-    _, value, column = assigned(control, statement)
-    control.variables.write(name, control.compute(value, column))
+    text, column = statement.text.lstrip()[2:], statement.text_column + 2
+    assembler.value(control.expression(text, column), column)
+    assembler.assign(name, undeclared=_hint(name))
 
 
-def reference(control: Control, word: Word | None) -> str:
+def _hint(name: str) -> str:
+    return f"write LET {name} : LREAL"
+
+
+def _reference(control: Control, word: Word | None) -> str:
     """The variable that O names; without O the internal one."""
     if word is None:
         return COUNTER
@@ -219,27 +221,24 @@ def reference(control: Control, word: Word | None) -> str:
     return name
 
 
-def _store(control: Control, name: str, change: float, *, add: bool) -> None:
-    must_exist = add or name.startswith("#")
-    try:
-        before = read_variable(control, name, None) if must_exist else 0.0
-    except ExpressionError as error:
-        control.fail(error.code, str(error), None, error.hint)
-    control.variables.write(name, before + change if add else change)
-
-
-def write_variable(control: Control) -> None:
+def write_variable(control: Control, assembler: Assembler) -> None:
     """G36: variable O, or the internal one, gets the value D."""
-    _change(control, add=False)
+    name = _reference(control, control.take("O"))
+    assembler.word_value(_value_word(control))
+    assembler.assign(name, undeclared=_hint(name) if name.startswith("#") else None)
 
 
-def add_to_variable(control: Control) -> None:
+def add_to_variable(control: Control, assembler: Assembler) -> None:
     """G37: D is added to variable O, or to the internal one."""
-    _change(control, add=True)
+    name, word = _reference(control, control.take("O")), _value_word(control)
+    change = word.value.evaluate if isinstance(word.value, Expression) else Number(word.value)
+    total = Computed("+", arithmetic.add, (Variable(name), change))
+    assembler.word_value(word._replace(value=Expression(name, total)))
+    assembler.assign(name)
 
 
-def _change(control: Control, *, add: bool) -> None:
-    name, word = reference(control, control.take("O")), control.take("D")
+def _value_word(control: Control) -> Word:
+    word = control.take("D")
     if word is None:
         control.fail("variable-value", "the code needs its value D")
-    _store(control, name, control.number(word), add=add)
+    return word

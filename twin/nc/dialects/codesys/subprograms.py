@@ -4,11 +4,10 @@ import re
 from collections.abc import Container, Iterator
 from pathlib import Path
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
-from twin.nc.control.program_counter import CallFrame
 from twin.nc.dialects.codesys.program import Subprogram, assign, variables
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Expression
 from twin.nc.text.library import named_files, with_called_files
 from twin.nc.text.source import Source
 
@@ -99,8 +98,8 @@ def define(control: Control, statement: Statement) -> None:
     control.program_counter.next()
 
 
-def called(control: Control, statement: Statement) -> tuple[Subprogram, list[Expression], int]:
-    """The subprogram that ``Name{values}`` calls, its values, and where these begin.
+def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """``Name{values}``: run a subprogram with its own variables.
 
     Raises:
         ProgramError: There is none, or it takes others.
@@ -128,34 +127,21 @@ def called(control: Control, statement: Statement) -> tuple[Subprogram, list[Exp
             statement.column,
             len(name),
         )
-    return subprogram, values, column
+    for each in values:
+        assembler.value(each, column)
+    begin = Location(subprogram.lines.start, 0)
+    assembler.call(begin, DEEPEST_CALL, subprogram.formals, restores=subprogram.restores)
 
 
-def call(control: Control, statement: Statement) -> None:
-    """``Name{values}``: run a subprogram with its own variables."""
-    subprogram, expressions, column = called(control, statement)
-    values = [control.compute(each, column) for each in expressions]
-    part = CallFrame(
-        Location(subprogram.lines.start, 0),
-        owns_scope=True,
-        restores=control.saved_modal() if subprogram.restores else None,
-    )
-    control.program_counter.call(
-        part, DEEPEST_CALL, statement.column, len(statement.keyword.strip())
-    )
-    control.variables.enter(dict(zip(subprogram.formals, values, strict=True)))
-
-
-def assign_or_call(control: Control, statement: Statement) -> None:
+def assign_or_call(control: Control, statement: Statement, assembler: Assembler) -> None:
     """A statement that begins with a name."""
     if statement.keyword.startswith("#"):
-        assign(control, statement)
+        assign(control, statement, assembler)
     else:
-        call(control, statement)
+        _call(control, statement, assembler)
 
 
-def leave_subprogram(control: Control, statement: Statement) -> None:
+def leave(_control: Control, _statement: Statement, assembler: Assembler) -> None:
     """RETURN or END_SUBPROGRAM."""
-    if not control.program_counter.leave():
-        message = f"{statement.keyword} stands outside a subprogram"
-        control.report.fail("return-outside", message, statement.column, len(statement.keyword))
+    assembler.check_return()
+    assembler.end_call()

@@ -175,7 +175,7 @@ _LEAD = "where its arc begins is not documented well enough; write the lead as a
 _LIMITS = "the limits are the machine file's"
 _UNKNOWN = "its effect on the path is not documented well enough to be followed"
 
-INSTEAD = {
+INSTEAD: dict[float, str] = {
     21: "millimetres are G71",
     28: "write G53 G00 and the axes",
     43: "D1 brings the tool's length",
@@ -186,7 +186,7 @@ INSTEAD = {
 }
 """Codes of other controls, and what this one has for them."""
 
-CODES: dict[int, GCode] = {
+CODES: dict[float, GCode] = {
     0: _motion("rapid positioning", arcs.RAPID),
     1: _motion("straight line", arcs.FEED),
     2: _motion("arc clockwise, Cartesian or polar", arcs.CLOCKWISE, seed=True),

@@ -2,14 +2,15 @@
 
 import re
 
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.structure import structure_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
-from twin.nc.dialects.fagor8070.variables import read_variable, refuse
+from twin.nc.dialects.fagor8070.variables import refuse
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Expression
 
 _PLACE = re.compile(r"[ \t]*(?:N[ \t]*([0-9]+)|\[[ \t]*([A-Z_]\w*)[ \t]*\])[ \t]*", re.IGNORECASE)
 
@@ -47,35 +48,7 @@ def statement_at(control: Control, line: int) -> Statement:
     return block.statement
 
 
-def value_of(control: Control, statement: Statement) -> Expression:
-    """The value behind a keyword."""
-    return control.expression(statement.text, statement.text_column)
-
-
-def _compute(control: Control, statement: Statement) -> float:
-    return control.compute(value_of(control, statement), statement.text_column)
-
-
-def if_(control: Control, statement: Statement) -> None:
-    """$IF: run the first branch whose condition holds; or jump, with $GOTO on the same line."""
-    head, goto, target = statement.text.partition("$")
-    value = control.compute(control.expression(head, statement.text_column), statement.text_column)
-    if goto:
-        jump = jump_behind_condition(control, statement, head, target)
-        if value:
-            control.program_counter.go(destination(control, jump))
-        return
-    construct = construct_of(control, statement)
-    if value:
-        return
-    for branch in construct.branches:
-        if branch.keyword == "$ELSE" or _compute(control, statement_at(control, branch.line)):
-            control.program_counter.go(Location(branch.line + 1, 0))
-            return
-    control.program_counter.go(behind(construct))
-
-
-def jump_behind_condition(
+def _jump_behind_condition(
     control: Control, statement: Statement, head: str, target: str
 ) -> Statement:
     """The jump of ``$IF condition $GOTO``, given the texts before and behind its dollar."""
@@ -91,108 +64,7 @@ def behind(construct: Construct) -> Location:
     return Location(construct.end + 1, 0)
 
 
-def else_(control: Control, statement: Statement) -> None:
-    """$ELSEIF, $ELSE reached from the branch before: go on behind $ENDIF."""
-    control.program_counter.go(behind(construct_of(control, statement)))
-
-
-def while_(control: Control, statement: Statement) -> None:
-    """$WHILE: run the body as long as the condition holds."""
-    construct = construct_of(control, statement)
-    if not _compute(control, statement):
-        control.program_counter.go(behind(construct))
-
-
-def again(control: Control, statement: Statement) -> None:
-    """$ENDWHILE: look at the condition again."""
-    control.program_counter.go(Location(construct_of(control, statement).begin, 0))
-
-
-def nothing(control: Control, statement: Statement) -> None:
-    """$DO, $ENDIF, $ENDSWITCH: only mark a place, which must have its counterpart."""
-    construct_of(control, statement)
-
-
-def end_do(control: Control, statement: Statement) -> None:
-    """$ENDDO condition: run the body again as long as it holds."""
-    construct = construct_of(control, statement)
-    if _compute(control, statement):
-        control.program_counter.go(Location(construct.begin + 1, 0))
-
-
-def for_(control: Control, statement: Statement) -> None:
-    """$FOR P1 = first, last, step."""
-    construct = construct_of(control, statement)
-    name, first, last, step = _for_values(control, statement)
-    control.variables.write(name, first)
-    if (first - last) * step > 0.0:
-        control.program_counter.go(behind(construct))
-
-
-def end_for(control: Control, statement: Statement) -> None:
-    """$ENDFOR: step on, and run the body again until the last value is passed."""
-    construct = construct_of(control, statement)
-    line = control.block.line
-    name, _, last, step = _for_values(control, statement_at(control, construct.begin))
-    value = read_variable(control, name, None) + step
-    control.variables.write(name, value)
-    control.report.line = line
-    if (value - last) * step <= 0.0:
-        control.program_counter.go(Location(construct.begin + 1, 0))
-
-
-def for_values(control: Control, statement: Statement) -> tuple[str, list[Expression], int]:
-    """Parameter of a $FOR, its three values, and where these begin."""
-    variable = control.program_counter.lexer.expressions.variable_at(statement.text.lstrip(), 0)
-    name, equals, values = statement.text.partition("=")
-    if variable is None or not equals:
-        refuse(control, statement, "structure", "$FOR needs its parameter", "$FOR P1=0,10,1")
-    column = statement.text_column + len(name) + 1
-    return variable[0].upper(), control.expressions(values, column, 3), column
-
-
-def _for_values(control: Control, statement: Statement) -> tuple[str, float, float, float]:
-    name, values, column = for_values(control, statement)
-    first, last, step = (control.compute(each, column) for each in values)
-    if step == 0.0:
-        refuse(control, statement, "structure", "a step of 0 never ends")
-    return name, first, last, step
-
-
-def switch(control: Control, statement: Statement) -> None:
-    """$SWITCH: go to the $CASE with the same value, else to $DEFAULT."""
-    construct, value = construct_of(control, statement), _compute(control, statement)
-    for branch in construct.branches:
-        if branch.keyword == "$DEFAULT" or value == _compute(
-            control, statement_at(control, branch.line)
-        ):
-            control.program_counter.go(Location(branch.line + 1, 0))
-            return
-    control.program_counter.go(behind(construct))
-
-
-def case(control: Control, statement: Statement) -> None:
-    """$CASE or $DEFAULT reached from the case before, which is not documented.
-
-    Raises:
-        ProgramError: Always.
-    """
-    refuse(control, statement, "missing-break", "the case before has no $BREAK")
-
-
-def leave_construct(control: Control, statement: Statement) -> None:
-    """$BREAK: go on behind the innermost loop or $SWITCH."""
-    control.program_counter.go(behind(enclosing(control, statement, ("$IF",))))
-
-
-def next_round(control: Control, statement: Statement) -> None:
-    """$CONTINUE: go to the end of the innermost loop."""
-    construct = enclosing(control, statement, ("$IF", "$SWITCH"))
-    assert construct.end is not None
-    control.program_counter.go(Location(construct.end, 0))
-
-
-def enclosing(control: Control, statement: Statement, without: tuple[str, ...]) -> Construct:
+def _enclosing(control: Control, statement: Statement, without: tuple[str, ...]) -> Construct:
     """The innermost construct around the block that is of no kind left out."""
     around = [
         construct
@@ -202,11 +74,6 @@ def enclosing(control: Control, statement: Statement, without: tuple[str, ...]) 
     if not around:
         refuse(control, statement, "structure", f"{statement.keyword} stands outside a loop")
     return around[-1]
-
-
-def go_to(control: Control, statement: Statement) -> None:
-    """$GOTO N10 or $GOTO [NAME]."""
-    control.program_counter.go(destination(control, statement))
 
 
 def destination(control: Control, statement: Statement) -> Location:
@@ -234,3 +101,152 @@ def destination(control: Control, statement: Statement) -> Location:
 def label_of(match: re.Match[str]) -> int | str:
     """The N number or the name that was read."""
     return int(match[1]) if match[1] else match[2].upper()
+
+
+# --- what the statements do
+
+
+def _if(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$IF: run the first branch whose condition holds; or jump, with $GOTO on the same line."""
+    head, goto, target = statement.text.partition("$")
+    column = statement.text_column
+    assembler.value(control.expression(head, column), column)
+    if goto:
+        jump = _jump_behind_condition(control, statement, head, target)
+        assembler.jump_if(lambda: destination(control, jump))
+        return
+    construct = construct_of(control, statement)
+    assembler.jump_if(Location(control.block.line, 0))
+    for branch in construct.branches:
+        if branch.keyword == "$ELSE":
+            assembler.jump(Location(branch.line + 1, 0))
+            return
+        _value(control, statement_at(control, branch.line), assembler)
+        assembler.jump_if(Location(branch.line + 1, 0))
+    assembler.jump(behind(construct))
+
+
+def _else(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$ELSEIF, $ELSE reached from the branch before: go on behind $ENDIF."""
+    assembler.jump(behind(construct_of(control, statement)))
+
+
+def _nothing(control: Control, statement: Statement, _assembler: Assembler) -> None:
+    """$DO, $ENDIF, $ENDSWITCH: only mark a place, which must have its counterpart."""
+    construct_of(control, statement)
+
+
+def _while(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$WHILE: run the body as long as the condition holds."""
+    construct = construct_of(control, statement)
+    _value(control, statement, assembler)
+    assembler.jump_unless(behind(construct))
+
+
+def _again(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$ENDWHILE: look at the condition again."""
+    assembler.jump(Location(construct_of(control, statement).begin, 0))
+
+
+def _end_do(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$ENDDO condition: run the body again as long as it holds."""
+    construct = construct_of(control, statement)
+    _value(control, statement, assembler)
+    assembler.jump_if(Location(construct.begin + 1, 0))
+
+
+def _for(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$FOR P1 = first, last, step."""
+    construct = construct_of(control, statement)
+    name = _for_values(control, statement, assembler)
+    assembler.begin_for(name, behind(construct))
+
+
+def _end_for(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$ENDFOR: step on, and run the body again until the last value is passed."""
+    construct = construct_of(control, statement)
+    name = _for_values(control, statement_at(control, construct.begin), assembler)
+    assembler.step_for(name, Location(construct.begin + 1, 0))
+
+
+def _for_values(control: Control, statement: Statement, assembler: Assembler) -> str:
+    """Put first, last and step on the stack; the parameter."""
+    variable = control.program_counter.lexer.expressions.variable_at(statement.text.lstrip(), 0)
+    name, equals, values = statement.text.partition("=")
+    if variable is None or not equals:
+        refuse(control, statement, "structure", "$FOR needs its parameter", "$FOR P1=0,10,1")
+    column = statement.text_column + len(name) + 1
+    for each in control.expressions(values, column, 3):
+        assembler.value(each, column)
+    return variable[0].upper()
+
+
+def _switch(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$SWITCH: go to the $CASE with the same value, else to $DEFAULT."""
+    construct = construct_of(control, statement)
+    _value(control, statement, assembler)
+    for branch in construct.branches:
+        if branch.keyword == "$DEFAULT":
+            assembler.jump(Location(branch.line + 1, 0))
+            return
+        _value(control, statement_at(control, branch.line), assembler)
+        assembler.jump_case(Location(branch.line + 1, 0))
+    assembler.jump(behind(construct))
+
+
+def case(control: Control, statement: Statement) -> None:
+    """$CASE or $DEFAULT reached from the case before, which is not documented.
+
+    Raises:
+        ProgramError: Always.
+    """
+    refuse(control, statement, "missing-break", "the case before has no $BREAK")
+
+
+def _break(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$BREAK: go on behind the innermost loop or $SWITCH."""
+    assembler.jump(behind(_enclosing(control, statement, ("$IF",))))
+
+
+def _continue(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$CONTINUE: go to the end of the innermost loop."""
+    construct = _enclosing(control, statement, ("$IF", "$SWITCH"))
+    assert construct.end is not None
+    assembler.jump(Location(construct.end, 0))
+
+
+def _go_to(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """$GOTO N10 or $GOTO [NAME]."""
+    assembler.jump(destination(control, statement))
+
+
+def _value(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """Put the value behind a keyword on the stack."""
+    column = statement.text_column
+    assembler.value(control.expression(statement.text, column), column)
+
+
+STATEMENTS: dict[str, StatementAction] = {
+    **{
+        keyword: StatementEffect(write)
+        for keyword, write in {
+            "$IF": _if,
+            "$ELSEIF": _else,
+            "$ELSE": _else,
+            "$ENDIF": _nothing,
+            "$WHILE": _while,
+            "$ENDWHILE": _again,
+            "$DO": _nothing,
+            "$ENDDO": _end_do,
+            "$FOR": _for,
+            "$ENDFOR": _end_for,
+            "$SWITCH": _switch,
+            "$ENDSWITCH": _nothing,
+            "$BREAK": _break,
+            "$CONTINUE": _continue,
+            "$GOTO": _go_to,
+        }.items()
+    },
+    "$CASE": case,
+    "$DEFAULT": case,
+}

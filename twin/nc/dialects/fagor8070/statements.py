@@ -1,8 +1,11 @@
 """Statements of the Fagor CNC 8070: those that are not flow, and the table of all."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070 import flow, subroutines
 from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER, REFUSED
@@ -16,13 +19,11 @@ _ROUNDED = (1, 4)
 _QUOTED = re.compile(r"[^\"]*\"([^\"]*)\".*")
 
 
-def dwell(control: Control, statement: Statement) -> None:
+def _dwell(control: Control, statement: Statement, assembler: Assembler) -> None:
     """#TIME [s]."""
     column = statement.text_column
-    seconds = control.compute(control.expression(statement.text, column), column)
-    if seconds < 0.0:
-        refuse(control, statement, "dwell", "a dwell cannot be negative")
-    control.dwell(seconds)
+    assembler.value(control.expression(statement.text, column), column)
+    assembler.emit(opcodes.DWELL)
 
 
 def skip_comment(control: Control, statement: Statement) -> None:
@@ -141,34 +142,10 @@ def warn_of_missing_end(control: Control) -> None:
     control.report.warn("no-end", "the program ends without M30", hint="write M30 at its end")
 
 
-STATEMENTS: dict[str, Callable[[Control, Statement], None]] = {
-    "%": subroutines.heading,
-    "$IF": flow.if_,
-    "$ELSEIF": flow.else_,
-    "$ELSE": flow.else_,
-    "$ENDIF": flow.nothing,
-    "$WHILE": flow.while_,
-    "$ENDWHILE": flow.again,
-    "$DO": flow.nothing,
-    "$ENDDO": flow.end_do,
-    "$FOR": flow.for_,
-    "$ENDFOR": flow.end_for,
-    "$SWITCH": flow.switch,
-    "$CASE": flow.case,
-    "$DEFAULT": flow.case,
-    "$ENDSWITCH": flow.nothing,
-    "$BREAK": flow.leave_construct,
-    "$CONTINUE": flow.next_round,
-    "$GOTO": flow.go_to,
-    "#RPT": subroutines.repeat_range,
-    "#TIME": dwell,
-    "#CALL": subroutines.call_any,
-    "LL": subroutines.call_local,
-    "L": subroutines.call_global,
-    "#PCALL": subroutines.call_with_parameters,
-    "#MCALL": subroutines.call_modally,
-    "#MDOFF": subroutines.end_modal_call,
-    "#RET": subroutines.return_statement,
+STATEMENTS: dict[str, StatementAction] = {
+    **flow.STATEMENTS,
+    **subroutines.STATEMENTS,
+    "#TIME": StatementEffect(_dwell),
     "#COMMENT BEGIN": skip_comment,
     "#COMMENT END": stray_comment_end,
     "#MCS": machine_coordinates,
@@ -202,6 +179,15 @@ PATTERN = _pattern(STATEMENTS)
 """What begins a statement."""
 
 
-def other_statement(control: Control, statement: Statement) -> None:
-    """An assignment, or a comment's mark written with other blanks."""
-    STATEMENTS.get(_words(statement), assign)(control, statement)
+def _other(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """An assignment, or a statement written with other blanks."""
+    known = STATEMENTS.get(_words(statement))
+    if known is None:
+        assign(control, statement, assembler)
+    elif isinstance(known, StatementEffect):
+        known.write(control, statement, assembler)
+    else:
+        assembler.interpreted(lambda: known(control, statement))
+
+
+other_statement = StatementEffect(_other)

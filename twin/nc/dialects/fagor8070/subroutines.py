@@ -4,8 +4,9 @@ import dataclasses
 import re
 from collections.abc import Iterator, Mapping
 
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.control import Control
-from twin.nc.control.program_counter import CallFrame
 from twin.nc.dialects.fagor8070.library import MARK
 from twin.nc.dialects.fagor8070.memory import memory_of
 from twin.nc.dialects.fagor8070.variables import refuse
@@ -71,14 +72,11 @@ def range_of(control: Control, statement: Statement) -> Range:
     return Range(first, last, control.expression(match[3], column), column)
 
 
-def repeat_range(control: Control, statement: Statement) -> None:
+def _repeat(control: Control, statement: Statement, assembler: Assembler) -> None:
     """#RPT[N10,N20,3]: run the blocks from one label to another, 3 times."""
     asked = range_of(control, statement)
-    count = control.compute(asked.count, asked.column)
-    if count < 1.0 or count != int(count):
-        refuse(control, statement, "repeat-range", _NO_RANGE)
-    part = CallFrame(asked.first, int(count) - 1, asked.last)
-    control.program_counter.call(part, DEEPEST_CALL, *_span(statement))
+    assembler.value(asked.count, asked.column)
+    assembler.repeat(asked.first, asked.last, DEEPEST_CALL)
 
 
 def _range_label(text: str) -> int | str:
@@ -140,22 +138,12 @@ def heading(control: Control, statement: Statement) -> None:
         refuse(control, statement, "heading", message, hint)
 
 
-def call_local(control: Control, statement: Statement) -> None:
-    """LL: run a local subroutine with the caller's parameters."""
-    _call(control, statement, called_line(control, statement))
+def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """LL, L, #CALL: run a local or a global subroutine, or either, with the caller's parameters."""
+    assembler.call(Location(_called_line(control, statement), 0), DEEPEST_CALL)
 
 
-def call_global(control: Control, statement: Statement) -> None:
-    """L: run a global subroutine, a file of its own, with the caller's parameters."""
-    _call(control, statement, called_line(control, statement))
-
-
-def call_any(control: Control, statement: Statement) -> None:
-    """#CALL: run a local or global subroutine with the caller's parameters."""
-    _call(control, statement, called_line(control, statement))
-
-
-def called_line(control: Control, statement: Statement) -> int:
+def _called_line(control: Control, statement: Statement) -> int:
     """First line, from 0, of the subroutine that LL, L or #CALL names."""
     name, memory = _only_name(control, statement), memory_of(control)
     tables = {"LL": memory.subroutines, "L": memory.library}
@@ -169,10 +157,14 @@ def _only_name(control: Control, statement: Statement) -> str:
     return match[1].upper()
 
 
-def call_with_parameters(control: Control, statement: Statement) -> None:
+def _call_with_parameters(control: Control, statement: Statement, assembler: Assembler) -> None:
     """#PCALL NAME A1 B2: run a local subroutine with parameters of its own."""
-    name, values = _computed_arguments(control, statement)
-    _call(control, statement, _line_of(control, statement, name), values)
+    name, parameters = _name_of(control, statement), list[str]()
+    for parameter, value, column in _arguments(control, statement):
+        assembler.value(value, column)
+        parameters.append(parameter)
+    line = _line_of(control, statement, name)
+    assembler.call(Location(line, 0), DEEPEST_CALL, parameters)
 
 
 def call_modally(control: Control, statement: Statement) -> None:
@@ -189,25 +181,28 @@ def end_modal_call(control: Control, _statement: Statement) -> None:
 def call_after_motion(control: Control) -> None:
     """The modal subroutine, when a block has moved."""
     memory = memory_of(control)
-    if memory.modal_call is not None and not control.program_counter.is_calling:
-        name, values, statement = memory.modal_call
-        _call(control, statement, _line_of(control, statement, name), values)
+    if memory.modal_call is None or control.program_counter.is_calling:
+        return
+    name, values, statement = memory.modal_call
+
+    def write(assembler: Assembler) -> None:
+        line = _line_of(control, statement, name)
+        for value in values.values():
+            assembler.constant(value)
+        assembler.call(Location(line, 0), DEEPEST_CALL, values)
+
+    control.perform(write, _span(statement))
 
 
 def _computed_arguments(control: Control, statement: Statement) -> tuple[str, dict[str, float]]:
     values: dict[str, float] = {}
-    name = name_of(control, statement)
-    for parameter, expression, column in arguments(control, statement):
+    name = _name_of(control, statement)
+    for parameter, expression, column in _arguments(control, statement):
         values[parameter] = control.compute(expression, column)
     return name, values
 
 
-def pcalled_line(control: Control, statement: Statement) -> int:
-    """First line, from 0, of the subroutine that #PCALL names."""
-    return _line_of(control, statement, name_of(control, statement))
-
-
-def name_of(control: Control, statement: Statement) -> str:
+def _name_of(control: Control, statement: Statement) -> str:
     """The name behind #PCALL or #MCALL."""
     match = _NAME.match(statement.text)
     if match is None:
@@ -215,7 +210,7 @@ def name_of(control: Control, statement: Statement) -> str:
     return match[1].upper()
 
 
-def arguments(control: Control, statement: Statement) -> Iterator[tuple[str, Expression, int]]:
+def _arguments(control: Control, statement: Statement) -> Iterator[tuple[str, Expression, int]]:
     """Parameters that #PCALL or #MCALL sets, their values, and where these stand."""
     match = _NAME.match(statement.text)
     at = 0 if match is None else match.end()
@@ -253,24 +248,25 @@ def _line_of(
     return line
 
 
-def _call(
-    control: Control,
-    statement: Statement,
-    line: int,
-    values: Mapping[str, float] | None = None,
-) -> None:
-    part = CallFrame(Location(line, 0), owns_scope=values is not None)
-    control.program_counter.call(part, DEEPEST_CALL, *_span(statement))
-    if values is not None:
-        control.variables.enter(values)
+def _return(_control: Control, _statement: Statement, assembler: Assembler) -> None:
+    """#RET: back to the caller."""
+    assembler.check_return()
+    assembler.end_call()
 
 
 def return_(control: Control) -> None:
-    """M17, M29, #RET: back to the caller."""
-    if not control.program_counter.leave():
-        control.fail("return-outside", "there is no subroutine to return from")
+    """M17, M29: back to the caller."""
+    control.perform(lambda assembler: _return(control, Statement("", "", 0, 0), assembler))
 
 
-def return_statement(control: Control, _statement: Statement) -> None:
-    """#RET."""
-    return_(control)
+STATEMENTS: dict[str, StatementAction] = {
+    "%": heading,
+    "#RPT": StatementEffect(_repeat),
+    "#CALL": StatementEffect(_call),
+    "LL": StatementEffect(_call),
+    "L": StatementEffect(_call),
+    "#PCALL": StatementEffect(_call_with_parameters),
+    "#MCALL": call_modally,
+    "#MDOFF": end_modal_call,
+    "#RET": StatementEffect(_return),
+}

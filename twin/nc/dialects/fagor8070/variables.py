@@ -5,6 +5,7 @@ import math
 import re
 from typing import NoReturn
 
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.control_variables import is_live, read_live, write_live
 from twin.nc.text import arithmetic
@@ -17,8 +18,10 @@ from twin.nc.text.expressions import (
     ExpressionError,
     ExpressionSyntax,
     FunctionOf,
-    Number,
+    NumberedVariable,
     Operator,
+    Tree,
+    Variable,
 )
 
 LOCAL_PARAMETERS = 26
@@ -185,30 +188,43 @@ def _read(
         control.report.fail(error.code, str(error), column, 1, error.hint)
 
 
-def assign(control: Control, statement: Statement) -> None:
+def assign(control: Control, statement: Statement, assembler: Assembler) -> None:
     """Give variables their values, one after the other."""
     every, rest = assignments(control, statement)
     for each in every:
-        name = each.name
+        if is_live(each.name):
+            assembler.interpreted(lambda each=each: _write_live(control, statement, each))
+            continue
         if each.index is not None:
-            index = control.compute(each.index, each.index_column)
-            if index < 0.0 or index != int(index):
-                message = f"there is no parameter P[{index:g}]"
-                refuse(control, statement, "parameter-number", message)
-            name = f"P{int(index)}"
-        value = control.compute(each.value, each.column)
-        if each.operator:
-            old = _old_value(control, statement, name)
-            value = control.compute(_combined(old, each.operator, value), each.column)
-        _write(control, statement, name, value)
+            assembler.value(each.index, each.index_column)
+        assembler.value(_new_value(each), each.column)
+        if each.index is not None:
+            assembler.assign_numbered("P")
+        else:
+            assembler.assign(each.name)
     if rest is not None:
-        control.run(rest)
+        assembler.interpreted(lambda: control.run(rest))
 
 
-def _write(control: Control, statement: Statement, name: str, value: float) -> None:
-    if not is_live(name):
-        control.variables.write(name, value)
-        return
+def _new_value(assignment: Assignment) -> Expression:
+    """What a variable becomes, its old value joined to the new one."""
+    value, operator, index = assignment.value, assignment.operator, assignment.index
+    if not operator:
+        return value
+    old: Tree = Variable(assignment.name)
+    if index is not None:
+        old = NumberedVariable(assignment.name, index.evaluate)
+    compute = EXPRESSIONS.operators[operator].compute
+    return Expression(value.text, Computed(operator, compute, (old, value.evaluate)))
+
+
+def _write_live(control: Control, statement: Statement, assignment: Assignment) -> None:
+    """Write a variable of the control.
+
+    Raises:
+        ProgramError: The twin does not simulate it.
+    """
+    name, value = assignment.name, control.compute(_new_value(assignment), assignment.column)
     try:
         written = write_live(control, name, value)
     except ExpressionError as error:
@@ -217,16 +233,3 @@ def _write(control: Control, statement: Statement, name: str, value: float) -> N
         message = f"{name} belongs to the control, and the twin does not simulate it"
         hint = "programs write V.P and V.S variables and the offsets V.A.ORGT[1].X"
         refuse(control, statement, "control-variable", message, hint)
-
-
-def _combined(old: float, operator: str, value: float) -> Expression:
-    compute = EXPRESSIONS.operators[operator].compute
-    tree = Computed(operator, compute, (Number(old), Number(value)))
-    return Expression(f"{old:g}{operator}{value:g}", tree)
-
-
-def _old_value(control: Control, statement: Statement, name: str) -> float:
-    try:
-        return read_variable(control, name, None)
-    except ExpressionError as error:
-        refuse(control, statement, error.code, str(error), error.hint)

@@ -21,17 +21,17 @@ from twin.nc.bytecode.frames import (
     NOTHING_RESTORED,
     OWNS_SCOPE,
     PART,
-    RESTORED_BY_CONTROL,
     RESTORED_HERE,
     RESTORES,
-    ExecutionState,
     VariableStore,
     go_to,
     innermost,
 )
-from twin.nc.bytecode.registers import BAILOUT, State, copy_active_codes
+from twin.nc.bytecode.registers import BAILOUT
+from twin.nc.bytecode.variables import own_value, store
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.compiled.kernels.variables import own_value, store
+
+Stack = list[float] | FloatArray
 
 
 class Transfer(NamedTuple):
@@ -44,7 +44,7 @@ class Transfer(NamedTuple):
         called: Parts that are being run for a caller then.
         range_end: Where the range ends that is repeated next, or ``NO_LOCATION``.
         owns_scope: The part that is called next has local variables of its own.
-        restores: What its end puts back into force.
+        restores: What its end puts back into force; behind ``RETURN``: what the end of the part does.
     """
 
     going: int
@@ -84,7 +84,7 @@ def arrive(to: Transfer, here: int, progress: IntArray) -> None:
 
 
 @inlined
-def jumps(instruction: Instruction, stack: FloatArray, top: int) -> bool:
+def jumps(instruction: Instruction, stack: Stack, top: int) -> bool:
     """Whether a jump is taken, given how many values there are."""
     if instruction.opcode == opcodes.JUMP:
         return True
@@ -95,7 +95,7 @@ def jumps(instruction: Instruction, stack: FloatArray, top: int) -> bool:
 
 @inlined
 def count_loop(
-    instruction: Instruction, stack: FloatArray, top: int, depth: int, memory: VariableStore
+    instruction: Instruction, stack: Stack, top: int, depth: int, memory: VariableStore
 ) -> int:
     """Run one of the instructions of counted loops.
 
@@ -134,28 +134,21 @@ def count_loop(
 
 @inlined
 def transfer(
-    instruction: Instruction,
-    stack: FloatArray,
-    top: int,
-    to: Transfer,
-    state: State,
-    execution: ExecutionState,
+    instruction: Instruction, value: float, to: Transfer, calls: IntArray, local: FloatArray
 ) -> tuple[bool, Transfer]:
     """Run one of the instructions that call parts of the program or go back.
 
     Args:
         instruction: One from ``CHECK_CALL`` to ``RETURN``.
-        stack: Values.
-        top: How many there are.
+        value: The topmost value.
         to: Where the block leads so far.
-        state: Its codes in force are saved and restored.
-        execution: How far the program has come; its calls are written to.
+        calls: The parts that are being run; written to.
+        local: Local variables of all calls.
 
     Returns:
-        Whether nothing about it is doubtful, and where the block leads.
+        Whether nothing about it is wrong, and where the block leads.
     """
     opcode, operand = instruction.opcode, instruction.operand
-    calls, saved, local = execution.calls, execution.saved, execution.memory.local
     going, depth, called = to.going, to.depth, to.called
     range_end, owns_scope, restores = to.range_end, to.owns_scope, to.restores
     known = True
@@ -170,27 +163,19 @@ def transfer(
     elif opcode == opcodes.RANGE:
         range_end = operand
     elif opcode == opcodes.CHECK_RETURN:
-        part = innermost(calls, called)
-        known = part > 0 and calls[part - 1, RESTORES] != RESTORED_BY_CONTROL
+        known = innermost(calls, called) > 0
     elif opcode == opcodes.RETURN:
         called = innermost(calls, called) - 1
         depth -= calls[called, OWNS_SCOPE]
         going = calls[called, BACK]
-        if calls[called, RESTORES] == RESTORED_HERE:
-            copy_active_codes(
-                saved.modal[called], saved.active_codes[called], state.modal, state.active_codes
-            )
+        restores = calls[called, RESTORES]
     else:
-        again = stack[top - 1] - 1.0 if opcode == opcodes.REPEAT else 0.0
+        again = value - 1.0 if opcode == opcodes.REPEAT else 0.0
         known = again >= 0.0 and again == np.floor(again)
         if known:
             call = calls[called]
             call[BACK], call[FIRST], call[AGAIN] = to.behind, operand, int(again)
             call[LAST], call[OWNS_SCOPE], call[RESTORES] = range_end, owns_scope, restores
-            if restores == RESTORED_HERE:
-                copy_active_codes(
-                    state.modal, state.active_codes, saved.modal[called], saved.active_codes[called]
-                )
             called += 1
             going = operand
     return known, Transfer(going, to.behind, depth, called, range_end, owns_scope, restores)

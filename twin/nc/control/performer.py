@@ -1,0 +1,196 @@
+"""Does at once what codes, words and statements say as instructions: the interpreter tier's assembler.
+
+What goes wrong has its message here; what an instruction does, ``bytecode`` says for both tiers.
+"""
+
+import contextlib
+from collections.abc import Callable
+from typing import NoReturn
+
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler, Target, found
+from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
+from twin.nc.bytecode.flow import Transfer, count_loop, jumps, transfer
+from twin.nc.bytecode.frames import (
+    CALLS,
+    DEPTH,
+    NO_LOCATION,
+    NOTHING_RESTORED,
+    RESTORED_BY_CONTROL,
+    go_to,
+)
+from twin.nc.bytecode.variables import store
+from twin.nc.control.control import Control
+from twin.nc.text.blocks import Word
+from twin.nc.text.expressions import Expression, Tree
+
+
+class _Gone(Exception):  # noqa: N818 (nothing is wrong)
+    """The program goes on elsewhere: what the block says behind that is not done."""
+
+
+def perform(control: Control, write: Callable[[Assembler], None], span: tuple[int, int]) -> None:
+    """Do at once what a block says as instructions.
+
+    Args:
+        control: Whose block it is.
+        write: Says it.
+        span: Column and width of what is blamed where nothing else is to blame.
+    """
+    with contextlib.suppress(_Gone):
+        write(Performer(control, span))
+
+
+class Performer(Assembler):
+    """Runs the instructions of one block; arguments as for ``perform``."""
+
+    def __init__(self, control: Control, span: tuple[int, int]) -> None:
+        counter = control.program_counter
+        here, progress = number_of_location(counter.location), counter.progress
+        self._span = span
+        self._control = control
+        self._stack = [0.0] * MOST_VALUES
+        self._top = 0
+        self._to = Transfer(
+            here,
+            here,
+            int(progress[DEPTH]),
+            int(progress[CALLS]),
+            NO_LOCATION,
+            0,
+            NOTHING_RESTORED,
+        )
+
+    def _slot(self, name: str) -> int:
+        return self._control.variables.slot(name)
+
+    def _push(self, value: float) -> None:
+        self._stack[self._top] = value
+        self._top += 1
+
+    def _pop(self) -> float:
+        self._top -= 1
+        return self._stack[self._top]
+
+    def value(self, expression: Expression | Tree, column: int = 0) -> None:
+        """Put a value on the stack; it stands in this column."""
+        if not isinstance(expression, Expression):
+            expression = Expression("", expression)
+        self._push(self._control.compute(expression, column))
+
+    def word_value(self, word: Word | None, default: float = 0.0) -> None:
+        """Put the value of a word on the stack, or of a missing one a default."""
+        if word is None:
+            self._push(default)
+        elif isinstance(word.value, Expression):
+            self._push(self._control.evaluate(word.value, word))
+        else:
+            self._push(word.value)
+
+    def known(self, word: Word) -> float:
+        """The value of a word."""
+        return self._control.number(word)
+
+    def interpreted(self, action: Callable[[], None]) -> None:
+        """Do what has no instruction."""
+        action()
+
+    def assign(self, name: str, *, undeclared: str | None = None) -> None:
+        """The topmost value goes to a variable.
+
+        Raises:
+            ProgramError: It must have a value already, and has none.
+        """
+        if undeclared is not None and self._control.variables.read(name) is None:
+            self._fail("unknown-variable", f"{name} is not declared", undeclared)
+        super().assign(name)
+
+    def assign_numbered(self, name: str) -> None:
+        """The topmost value goes to the variable whose number lies below it.
+
+        Raises:
+            ProgramError: That is no number of a variable.
+        """
+        value, index = self._pop(), self._pop()
+        if index < 0.0 or index != int(index):
+            self._fail("parameter-number", f"there is no parameter {name}[{index:g}]")
+        self._control.variables.write(f"{name}{int(index)}", value)
+
+    def jump_if(self, location: Target) -> None:
+        """Jump to a location, which is looked for only now, if the topmost value is true."""
+        if self._pop():
+            self.jump(found(location))
+
+    def emit(self, opcode: int, operand: int = 0) -> None:
+        """Run one of the instructions that do more than compute, move and jump."""
+        self._add(opcode, operand)
+
+    def _add(self, opcode: int, operand: int = 0, immediate: float = 0.0) -> None:
+        instruction = Instruction(opcode, operand, immediate)
+        if opcode == opcodes.CONSTANT:
+            self._push(immediate)
+        elif opcode == opcodes.DROP:
+            self._top -= 1
+        elif opcode == opcodes.STORE:
+            store(self._control.variables.columns, self._to.depth, operand, self._pop())
+        elif opcodes.JUMP <= opcode <= opcodes.JUMP_CASE:
+            if jumps(instruction, self._stack, self._top):
+                go_to(operand, self._control.program_counter.progress)
+                raise _Gone
+            self._top -= 1
+        elif opcode == opcodes.DWELL:
+            self._dwell()
+        elif opcodes.BEGIN_FOR <= opcode <= opcodes.COUNT_DOWN:
+            self._count_loop(instruction)
+        else:
+            self._transfer(instruction)
+
+    def _dwell(self) -> None:
+        seconds = self._pop()
+        if seconds < 0.0:
+            self._fail("dwell", "a dwell cannot be negative")
+        self._control.dwell(seconds)
+
+    def _count_loop(self, instruction: Instruction) -> None:
+        columns, depth = self._control.variables.columns, self._to.depth
+        self._top = count_loop(instruction, self._stack, self._top, depth, columns)
+        if self._top < 0:
+            self._fail("structure", "a step of 0 never ends")
+
+    def _transfer(self, instruction: Instruction) -> None:
+        """Run one of the instructions that call parts of the program or go back."""
+        control, opcode = self._control, instruction.opcode
+        counter, variables = control.program_counter, control.variables
+        if opcode == opcodes.CHECK_CALL:
+            variables.make_room(self._to.depth + 1)
+        value, local = self._stack[self._top - 1], variables.columns.local
+        known, to = transfer(instruction, value, self._to, counter.calls, local)
+        if not known:
+            self._refuse_transfer(instruction)
+        if opcode == opcodes.RESTORE_CODES:
+            to = to._replace(restores=RESTORED_BY_CONTROL)
+        self._to = to
+        if opcode not in (opcodes.CALL, opcodes.REPEAT, opcodes.RETURN):
+            return
+        go_to(to.going, counter.progress)
+        counter.progress[DEPTH], counter.progress[CALLS] = to.depth, to.called
+        if to.restores == RESTORED_BY_CONTROL and opcode == opcodes.RETURN:
+            control.restore_modal(counter.saved.pop(to.called))
+        elif to.restores == RESTORED_BY_CONTROL:
+            counter.saved[to.called - 1] = control.saved_modal()
+        raise _Gone
+
+    def _refuse_transfer(self, instruction: Instruction) -> NoReturn:
+        """Say why the program cannot go on there.
+
+        Raises:
+            ProgramError: Always.
+        """
+        if instruction.opcode == opcodes.CHECK_CALL:
+            self._fail("call-depth", f"more than {instruction.operand} calls within calls")
+        if instruction.opcode == opcodes.CHECK_RETURN:
+            self._fail("return-outside", "there is no subroutine to return from")
+        self._fail("repeat-range", "the range or the number of runs is none")
+
+    def _fail(self, code: str, message: str, hint: str | None = None) -> NoReturn:
+        self._control.report.fail(code, message, *self._span, hint)
