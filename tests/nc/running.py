@@ -89,6 +89,7 @@ def shipped(path: Path) -> Interpretation:
         SETTINGS,
         start=job.file.start,
         default_feed=job.file.default_feed or 1000.0,
+        tools={each.number: ToolData(each.diameter / 2.0, each.length) for each in job.file.tools},
         machine_zero={name: -value for name, value in zero.items()} if "Z" in zero else None,
     )
     return Interpretation(read_source(path, dialect), dialect, settings)

@@ -59,8 +59,8 @@ def test_words_of_two_dialects_ask() -> None:
 
 
 def test_an_unknown_dialect_names_the_known() -> None:
-    with pytest.raises(UsageError, match="gost, codesys, fagor8070, mefi"):
-        dialect_named("fanuc")
+    with pytest.raises(UsageError, match="gost, codesys, fagor8070, mefi, linuxcnc"):
+        dialect_named("heidenhain")
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "tests/golden").glob("*/*/*.nc")), ids=str)

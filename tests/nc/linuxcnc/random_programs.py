@@ -79,8 +79,10 @@ class Author:
                 u = v = 0.0
             self.lines += [
                 f"{plane} G91",
-                f"{code} {axes[0]}{u:.8f} {axes[1]}{v:.8f} {centers[0]}{i:.8f} {centers[1]}{j:.8f}"
-                f"{rise}{turns}",
+                (
+                    f"{code} {axes[0]}{u:.8f} {axes[1]}{v:.8f} {centers[0]}{i:.8f} {centers[1]}{j:.8f}"
+                    f"{rise}{turns}"
+                ),
                 "G90",
             ]
         else:
@@ -132,13 +134,15 @@ class Author:
             "G92.2",
             "G92.3",
             f"G52 {self.point('XYZ')}",
-            f"T{self.random.choice([1, 2, 99])} M6\nG43",
+            f"G21\nT{self.random.choice([1, 2, 99])} M6\nG43",
             f"G43 H{self.random.choice([1, 2, 99])}",
             f"G43.1 Z{self.number(0, 20)}",
             "G49",
             f"G43.2 H{self.random.choice([1, 2])}",
-            f"G10 L{self.random.choice([1, 10, 11])} P{self.random.choice([1, 2])}"
-            f" Z{self.number(0, 20)}",
+            (
+                f"G10 L{self.random.choice([1, 10, 11])} P{self.random.choice([1, 2])}"
+                f" Z{self.number(0, 20)}"
+            ),
         ]
         self.lines.append(texts[choice])
 
@@ -181,7 +185,9 @@ class Author:
 
     def assignment(self) -> None:
         """Parameters, alone and beside words that use them."""
-        target = self.random.choice(["#1", "#2", "#3", "#4", "#5", "#[1+2]", "#<x>", "#<_g>", "#31"])
+        target = self.random.choice(
+            ["#1", "#2", "#3", "#4", "#5", "#[1+2]", "#<x>", "#<_g>", "#31"]
+        )
         value = self.expression()
         if self.random.random() < 0.3:
             self.lines.append(f"#1={value} G0 X#1 Y[#1 MOD 7]")

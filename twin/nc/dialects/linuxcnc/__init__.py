@@ -20,10 +20,14 @@ from twin.nc.iso import base
 from twin.nc.path.drilling_cycle import START as CALL_HEIGHT
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
+_WITH_PITCH = (33, 33.1)
+"""Codes whose feed follows from the spindle's speed."""
+
 
 def _before_motion(control: Control, rapid: bool) -> None:
     memory, number = memory_of(control), control.active.get("motion")
-    motion.check_feed(control, rapid)
+    if number not in _WITH_PITCH:
+        motion.check_feed(control, rapid)
     if number != 5:
         memory.spline_end = None
     if memory.control_points and number != 5.2:
@@ -98,7 +102,7 @@ LINUXCNC = Dialect(
     },
     word_compilers={"S": base.compile_spindle},
     words_first=True,
-    statements={"O": flow.run_o_word, "%": flow.percent},
+    statements={"O": flow.O_WORD, "%": flow.percent},
     word_meanings={
         "N": "line number",
         "G": "preparatory code",

@@ -1,10 +1,15 @@
 """O-words of LinuxCNC: conditions, loops, subroutines; M98 and M99."""
 
+import re
+from collections.abc import Callable
 from typing import NoReturn
 
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.bytecode import number_of_location
+from twin.nc.control.codes import StatementEffect
 from twin.nc.control.constructs import Construct
 from twin.nc.control.control import Control
-from twin.nc.control.program_counter import CallFrame
 from twin.nc.control.state import integer_of
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.parameters import LOCAL_PARAMETERS
@@ -19,8 +24,16 @@ from twin.nc.dialects.linuxcnc.structure import (
     scope,
     structure,
 )
+from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Location, Statement
-from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.text.expressions import (
+    Computed,
+    Expression,
+    ExpressionError,
+    Number,
+    Tree,
+    Variable,
+)
 
 WITH_VALUES = ("CALL", "RETURN", "ENDSUB", "IF", "ELSEIF", "WHILE", "REPEAT")
 """Keywords that values may follow."""
@@ -56,8 +69,13 @@ def values_of(control: Control, word: OWord, statement: Statement) -> list[tuple
     return found
 
 
-def condition_of(control: Control, word: OWord, statement: Statement) -> tuple[Expression, int]:
-    """The one value behind IF, ELSEIF, WHILE or REPEAT.
+def _condition(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    """Put the one value behind IF, ELSEIF or WHILE on the stack."""
+    assembler.value(*_condition_of(control, statement, word))
+
+
+def _condition_of(control: Control, statement: Statement, word: OWord) -> tuple[Expression, int]:
+    """The one value behind a keyword, and its column.
 
     Raises:
         ProgramError: There is none, or more than one.
@@ -70,11 +88,7 @@ def condition_of(control: Control, word: OWord, statement: Statement) -> tuple[E
     return found[0]
 
 
-def _computed(control: Control, word: OWord, statement: Statement) -> float:
-    return control.compute(*condition_of(control, word, statement))
-
-
-def construct_of(control: Control, statement: Statement, word: OWord) -> Construct:
+def _construct_of(control: Control, statement: Statement, word: OWord) -> Construct:
     """The construct that a line belongs to.
 
     Raises:
@@ -88,13 +102,13 @@ def construct_of(control: Control, statement: Statement, word: OWord) -> Constru
     return construct
 
 
-def behind(construct: Construct) -> Location:
+def _behind(construct: Construct) -> Location:
     """The place behind a construct."""
     assert construct.end is not None
     return Location(construct.end + 1, 0)
 
 
-def line_of(control: Control, line: int) -> tuple[Statement, OWord]:
+def _line_of(control: Control, line: int) -> tuple[Statement, OWord]:
     """The O-word of another line, from 0; errors are that line's from now on."""
     control.report.line = line + 1
     (block,) = control.program_counter.lexer.blocks(control.program_counter.lines[line], line + 1)
@@ -104,86 +118,103 @@ def line_of(control: Control, line: int) -> tuple[Statement, OWord]:
     return block.statement, word
 
 
-def _declare(control: Control, statement: Statement, word: OWord) -> None:
-    """A label is given once in its subroutine.
+def _declare(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    """A label is given once in its subroutine, as far as the program comes to it.
 
     Raises:
         ProgramError: Another line has it.
     """
     line = control.block.line - 1
-    key = f"{scope(control, line)}{word.label}"
-    before = memory_of(control).labels.setdefault(key, line)
-    if before != line:
-        _, other = control.program_counter.lines[before], before + 1
-        message = f"o{word.label} is the label of line {other} already"
-        refuse(control, statement, "ambiguous-label", message, "give each its own label")
-
-
-def _if(control: Control, statement: Statement, word: OWord) -> None:
-    _declare(control, statement, word)
-    construct = construct_of(control, statement, word)
-    if _computed(control, word, statement):
+    own = scope(control, line)
+    same = [
+        each
+        for each in structure(control).constructs
+        if each.name == word.label and scope(control, each.begin) == own
+    ]
+    if len(same) == 1:
         return
+
+    def declare() -> None:
+        before = memory_of(control).labels.setdefault(f"{own}{word.label}", line)
+        if before != line:
+            message = f"o{word.label} is the label of line {before + 1} already"
+            refuse(control, statement, "ambiguous-label", message, "give each its own label")
+
+    assembler.interpreted(declare)
+
+
+def _if(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    _declare(control, statement, word, assembler)
+    construct = _construct_of(control, statement, word)
+    _condition(control, statement, word, assembler)
+    assembler.jump_if(Location(control.block.line, 0))
     for branch in construct.branches:
-        at = line_of(control, branch.line)
-        if branch.keyword == "ELSE" or _computed(control, at[1], at[0]):
-            control.program_counter.go(Location(branch.line + 1, 0))
+        if branch.keyword == "ELSE":
+            assembler.jump(Location(branch.line + 1, 0))
             return
-    control.program_counter.go(behind(construct))
+        _condition(control, *_line_of(control, branch.line), assembler)
+        assembler.jump_if(Location(branch.line + 1, 0))
+    assembler.jump(_behind(construct))
 
 
-def _leave(control: Control, statement: Statement, word: OWord) -> None:
-    control.program_counter.go(behind(construct_of(control, statement, word)))
+def _leave(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    assembler.jump(_behind(_construct_of(control, statement, word)))
 
 
-def _nothing(control: Control, statement: Statement, word: OWord) -> None:
-    construct_of(control, statement, word)
+def _nothing(control: Control, statement: Statement, word: OWord, _assembler: Assembler) -> None:
+    _construct_of(control, statement, word)
 
 
-def _while(control: Control, statement: Statement, word: OWord) -> None:
-    construct = construct_of(control, statement, word)
-    value = _computed(control, word, statement)
+def _while(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    construct = _construct_of(control, statement, word)
     if construct.keyword == "DO":
-        if value:
-            control.program_counter.go(Location(construct.begin + 1, 0))
+        _condition(control, statement, word, assembler)
+        assembler.jump_if(Location(construct.begin + 1, 0))
         return
-    _declare(control, statement, word)
-    if not value:
-        control.program_counter.go(behind(construct))
+    _declare(control, statement, word, assembler)
+    _condition(control, statement, word, assembler)
+    assembler.jump_unless(_behind(construct))
 
 
-def _do(control: Control, statement: Statement, word: OWord) -> None:
-    _declare(control, statement, word)
-    construct_of(control, statement, word)
+def _do(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    _declare(control, statement, word, assembler)
+    _construct_of(control, statement, word)
 
 
-def _again(control: Control, statement: Statement, word: OWord) -> None:
-    control.program_counter.go(Location(construct_of(control, statement, word).begin, 0))
+def _again(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    assembler.jump(Location(_construct_of(control, statement, word).begin, 0))
 
 
-def counter_of(construct: Construct) -> str:
+def _counter_of(construct: Construct) -> Variable:
     """The variable that counts the rounds of a REPEAT; no program can name it."""
-    return f"#repeat {construct.begin}"
+    return Variable(f"#repeat {construct.begin}")
 
 
-def _repeat(control: Control, statement: Statement, word: OWord) -> None:
-    _declare(control, statement, word)
-    construct = construct_of(control, statement, word)
-    count = float(round(_computed(control, word, statement)))
-    control.variables.write(counter_of(construct), count)
-    if count <= 0.0:
-        control.program_counter.go(behind(construct))
+def _is_positive(value: Tree) -> Tree:
+    return Computed("GT", arithmetic.greater, (value, Number(0.0)))
 
 
-def _end_repeat(control: Control, statement: Statement, word: OWord) -> None:
-    construct = construct_of(control, statement, word)
-    left = (control.variables.read(counter_of(construct)) or 0.0) - 1.0
-    control.variables.write(counter_of(construct), left)
-    if left > 0.0:
-        control.program_counter.go(Location(construct.begin + 1, 0))
+def _repeat(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    _declare(control, statement, word, assembler)
+    construct = _construct_of(control, statement, word)
+    value, column = _condition_of(control, statement, word)
+    counter = _counter_of(construct)
+    assembler.value(Computed("ROUND", arithmetic.nearest_whole_away, (value.evaluate,)), column)
+    assembler.assign(counter.name)
+    assembler.value(_is_positive(counter))
+    assembler.jump_unless(_behind(construct))
 
 
-def enclosing(control: Control, statement: Statement, word: OWord) -> Construct:
+def _end_repeat(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    construct = _construct_of(control, statement, word)
+    counter = _counter_of(construct)
+    assembler.value(Computed("-", arithmetic.subtract, (counter, Number(1.0))))
+    assembler.assign(counter.name)
+    assembler.value(_is_positive(counter))
+    assembler.jump_if(Location(construct.begin + 1, 0))
+
+
+def _enclosing(control: Control, statement: Statement, word: OWord) -> Construct:
     """The loop with the label that BREAK or CONTINUE names.
 
     Raises:
@@ -193,27 +224,28 @@ def enclosing(control: Control, statement: Statement, word: OWord) -> Construct:
         if each.keyword in LOOPS and each.name == word.label:
             if each.keyword == "REPEAT":
                 hint = "count by a while loop that is left"
-                message = f"the control leaves while and do loops by {word.keyword.lower()}, no repeat"
+                leave = word.keyword.lower()
+                message = f"the control leaves while and do loops by {leave}, no repeat"
                 refuse(control, statement, "open-structure", message, hint)
             return each
     message = f"no loop o{word.label} lies around this line"
     refuse(control, statement, "open-structure", message)
 
 
-def _break(control: Control, statement: Statement, word: OWord) -> None:
-    control.program_counter.go(behind(enclosing(control, statement, word)))
+def _break(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    assembler.jump(_behind(_enclosing(control, statement, word)))
 
 
-def _continue(control: Control, statement: Statement, word: OWord) -> None:
-    construct = enclosing(control, statement, word)
+def _continue(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    construct = _enclosing(control, statement, word)
     assert construct.end is not None
-    control.program_counter.go(Location(construct.end, 0))
+    assembler.jump(Location(construct.end, 0))
 
 
 # --- subroutines
 
 
-def subroutine_line(control: Control, name: str, *, here: int) -> int | None:
+def _subroutine_line(control: Control, name: str, *, here: int) -> int | None:
     """The line, from 0, of a subroutine's definition; None where there is none.
 
     Args:
@@ -223,31 +255,31 @@ def subroutine_line(control: Control, name: str, *, here: int) -> int | None:
     """
     structure(control)
     lines = memory_of(control).subroutines.get(name, [])
-    behind_program = first_file(control)
-    before = [line for line in lines if line < min(here, behind_program)]
-    files = [line for line in lines if line >= behind_program]
-    later = [line for line in lines if here <= line < behind_program]
+    files_from = _first_file(control)
+    before = [line for line in lines if line < min(here, files_from)]
+    files = [line for line in lines if line >= files_from]
+    later = [line for line in lines if here <= line < files_from]
     return next(iter((*before[-1:], *files[:1], *later[:1])), None)
 
 
-def first_file(control: Control) -> int:
+def _first_file(control: Control) -> int:
     """The line, from 0, before the first file behind the program."""
     parts = control.report.parts
     return parts[0][0] - 2 if parts else len(control.program_counter.lines)
 
 
-def called_line(control: Control, statement: Statement, word: OWord) -> int:
+def _called_line(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> int:
     """First line, from 0, of the subroutine that CALL names.
 
     Raises:
         ProgramError: There is none, or it is one for M98.
     """
-    name = word.label
+    name, here = word.label, control.block.line - 1
     if name[0] in "#[":
+        assembler.interpreted(lambda: None)
         column = statement.text_column + len(statement.text) - len(statement.text.lstrip())
-        value = control.compute(control.expression(name, column), column)
-        name = str(integer_of(value))
-    line = subroutine_line(control, name, here=control.block.line - 1)
+        name = str(integer_of(control.compute(control.expression(name, column), column)))
+    line = _subroutine_line(control, name, here=here)
     if line is None:
         known = ", ".join(f"o{each}" for each in memory_of(control).subroutines) or "none"
         message = f"there is no subroutine {name}"
@@ -258,59 +290,79 @@ def called_line(control: Control, statement: Statement, word: OWord) -> int:
     if line not in structure(control).by_line:
         message = f"O{name} is a program for M98, and no subroutine"
         refuse(control, statement, "unknown-subprogram", message, f"write M98 P{name}")
+    if here <= line < _first_file(control):
+        assembler.interpreted(lambda: memory_of(control).called.add(name))
     return line
 
 
-def arguments(control: Control, statement: Statement, word: OWord) -> list[tuple[Expression, int]]:
-    """The values that CALL gives to #1, #2 and so on."""
-    found = values_of(control, word, statement)
-    if len(found) > LOCAL_PARAMETERS:
+def _call(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    line = _called_line(control, statement, word, assembler)
+    values = values_of(control, word, statement)
+    if len(values) > LOCAL_PARAMETERS:
         message = f"a call gives {LOCAL_PARAMETERS} values at most"
         refuse(control, statement, "call-values", message)
-    return found
+    for value, column in values:
+        assembler.value(value, column)
+    names = [f"#{number}" for number in range(1, len(values) + 1)]
+    assembler.call(Location(line + 1, 0), DEEPEST_CALL, names)
 
 
-def _call(control: Control, statement: Statement, word: OWord) -> None:
-    line = called_line(control, statement, word)
-    values = {
-        f"#{number}": control.compute(value, column)
-        for number, (value, column) in enumerate(arguments(control, statement, word), 1)
-    }
-    memory_of(control).called.add(structure(control).by_line[line].name)
-    span = statement.column, len(statement.text) + 1
-    frame = CallFrame(Location(line + 1, 0), owns_scope=True)
-    control.program_counter.call(frame, DEEPEST_CALL, *span)
-    control.variables.enter(values)
+def _sub(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    """A definition that the program comes to: it goes on behind it."""
+    _declare(control, statement, word, assembler)
+    construct = _construct_of(control, statement, word)
+
+    def define() -> None:
+        if control.program_counter.is_calling:
+            message = "a subroutine cannot be defined within another"
+            hint = "end the one before by its endsub"
+            refuse(control, statement, "open-structure", message, hint)
+        if word.label in memory_of(control).called:
+            message = f"o{word.label} was called before this line, which defines it again"
+            refuse(
+                control, statement, "ambiguous-label", message, "end the program by M2 before it"
+            )
+
+    assembler.interpreted(define)
+    assembler.jump(_behind(construct))
 
 
-def _sub(control: Control, statement: Statement, word: OWord) -> None:
-    construct = construct_of(control, statement, word)
-    if control.program_counter.is_calling:
-        message = "a subroutine cannot be defined within another"
-        refuse(control, statement, "open-structure", message, "end the one before by its endsub")
-    if word.label in memory_of(control).called:
-        message = f"o{word.label} was called before this line, where the program defines it again"
-        refuse(control, statement, "ambiguous-label", message, "end the program by M2 before it")
-    _declare(control, statement, word)
-    control.program_counter.go(behind(construct))
+_TELLS = re.compile(rb"_value|_call_level|M[ \t]*0*7[0-3]", re.IGNORECASE)
+"""What tells of a call's end, or acts at it."""
 
 
-def _return(control: Control, statement: Statement, word: OWord) -> None:
-    memory, found = memory_of(control), values_of(control, word, statement)
-    value = control.compute(*found[0]) if found else 0.0
-    if not control.program_counter.is_calling:
-        refuse(control, statement, "return-outside", "no subroutine is being run here")
-    memory.returned = (value, bool(found))
-    restore_at_return(control)
-    control.program_counter.leave()
+def _is_told(control: Control) -> bool:
+    """The program reads what a call has given, or puts aside what is in force around it."""
+    memory = memory_of(control)
+    if memory.tells_calls is None:
+        memory.tells_calls = control.program_counter.lines.any_holds(_TELLS)
+    return memory.tells_calls
 
 
-def program_for_m98(control: Control, statement: Statement, _word: OWord) -> None:
+def _return(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    values = values_of(control, word, statement)
+    if len(values) > 1:
+        refuse(control, statement, "o-word", "a subroutine gives one value back")
+
+    def tell() -> None:
+        value = control.compute(*values[0]) if values else 0.0
+        memory_of(control).returned = (value, bool(values))
+        restore_at_return(control)
+
+    assembler.check_return()
+    if values or _is_told(control):
+        assembler.interpreted(tell)
+    assembler.end_call()
+
+
+def _program_for_m98(
+    control: Control, statement: Statement, word: OWord, assembler: Assembler
+) -> None:
     """O100 alone: a program that M98 calls, and that the flow may run into."""
-    del control, statement
+    del control, statement, word, assembler
 
 
-ACTIONS = {
+_WORDS: dict[str, Callable[[Control, Statement, OWord, Assembler], None]] = {
     "SUB": _sub,
     "ENDSUB": _return,
     "CALL": _call,
@@ -326,34 +378,28 @@ ACTIONS = {
     "ENDREPEAT": _end_repeat,
     "BREAK": _break,
     "CONTINUE": _continue,
-    "": program_for_m98,
+    "": _program_for_m98,
 }
 
 
-def run_o_word(control: Control, statement: Statement) -> None:
+def _o_word(control: Control, statement: Statement, assembler: Assembler) -> None:
     """A line that begins with an O-word."""
     word = o_word(statement)
     if word is None:
         refuse(control, statement, "o-word", "O needs a label", "write o100 or o<name>")
-    action = ACTIONS.get(word.keyword)
-    if action is None:
+    write = _WORDS.get(word.keyword)
+    if write is None:
         known = ", ".join(KEYWORDS).lower()
         refuse(control, statement, "o-word", f"'{word.keyword.lower()}' follows no O", known)
     if word.label[0] in "#[" and word.keyword != "CALL":
         refuse(control, statement, "o-word", "only call can compute its label")
-    check_rest(control, statement, word)
-    action(control, statement, word)
-
-
-def check_rest(control: Control, statement: Statement, word: OWord) -> None:
-    """Most keywords end their line.
-
-    Raises:
-        ProgramError: Something follows.
-    """
     if word.keyword not in WITH_VALUES and word.text.strip():
         message = f"nothing may follow o{word.label} {word.keyword.lower()}"
         refuse(control, statement, "o-word", message, "write it on a line of its own")
+    write(control, statement, word, assembler)
+
+
+O_WORD = StatementEffect(_o_word)
 
 
 def percent(control: Control, statement: Statement) -> None:
@@ -380,17 +426,30 @@ def call_program(control: Control) -> None:
     if count == 0:
         return
     name = name_of_label(str(integer_of(control.number(number))))
-    line = subroutine_line(control, name, here=control.block.line - 1)
+    line = _subroutine_line(control, name, here=control.block.line - 1)
     if line is None or line in structure(control).by_line:
         message = f"there is no program O{name}"
         hint = f"it begins with O{name} alone, here or in {name}.ngc beside the program"
         control.fail("unknown-subprogram", message, number, hint)
-    frame = CallFrame(Location(line + 1, 0), again=count - 1)
-    control.program_counter.call(frame, DEEPEST_CALL, number.column, number.width)
+    first = Location(line + 1, 0)
+
+    def write(assembler: Assembler) -> None:
+        assembler.constant(float(count))
+        assembler.emit(opcodes.CHECK_CALL, DEEPEST_CALL)
+        assembler.emit(opcodes.REPEAT, number_of_location(first))
+
+    control.perform(write, (number.column, number.width))
 
 
 def return_from_program(control: Control) -> None:
     """M99: back behind M98; in the main program from its beginning again."""
-    if not control.program_counter.leave():
+    if control.program_counter.is_calling:
+        control.perform(_end_program)
+    else:
         control.program_counter.go(Location(0, 0))
         memory_of(control).percent = False
+
+
+def _end_program(assembler: Assembler) -> None:
+    assembler.check_return()
+    assembler.end_call()

@@ -145,7 +145,9 @@ def _pitch_feed(control: Control, code: str) -> float:
     if pitch is None:
         control.fail("code-words", f"{code} needs K, the way of each turn")
     if not control.spindle_turns or not control.spindle:
-        control.fail("spindle-needed", f"{code} follows a spindle that turns", hint="write S and M3 before")
+        control.fail(
+            "spindle-needed", f"{code} follows a spindle that turns", hint="write S and M3 before"
+        )
     return abs(control.length(pitch)) * control.spindle
 
 

@@ -92,9 +92,8 @@ def known_system(control: Control, number: int) -> CoordinateSystem:
     if number not in memory.systems:
         known = ", ".join(SYSTEMS[each - 1] for each in sorted(memory.systems))
         message = f"neither the job nor the program gives a work offset {name}"
-        hint = f"write it under [offsets.{name.replace('.', '_')}] or by G10 L2; known: {known}"
-        if "." not in name:
-            hint = f"write it under [offsets.{name}], or by G10 L2; known: {known}"
+        key = f'"{name}"' if "." in name else name
+        hint = f"write it under [offsets.{key}], or by G10 L2; known: {known}"
         control.fail("no-offset", message, control.code_word(float(name[1:])), hint)
     return memory.systems[number]
 
@@ -181,7 +180,9 @@ def write_table(control: Control) -> None:
         control.fail("code-words", "G10 needs L1, L2, L10, L11 or L20", kind)
     number = control.take("P")
     if number is None or control.number(number) != int(control.number(number)):
-        control.fail("code-words", "G10 needs P, a whole number", number, "write the system or the tool")
+        control.fail(
+            "code-words", "G10 needs P, a whole number", number, "write the system or the tool"
+        )
     if value in (2, 20):
         _write_system(control, number, here=value == 20)
     else:
