@@ -25,7 +25,7 @@ def _assign(block: Block, assembler: Assembler) -> None:
     """One assignment that stands alone; several are computed before the first is given."""
     if block.words or len(block.assignments) > 1:
         raise UnsupportedError
-    (only,) = block.assignments
+    only = block.assignments[0]
     if isinstance(only.target, NumberedVariable):
         assembler.value(only.target.index)
         assembler.value(only.value)
