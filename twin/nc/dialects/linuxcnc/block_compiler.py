@@ -3,7 +3,7 @@
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.dialects.linuxcnc.parameters import LiveParameters
-from twin.nc.text.blocks import Block
+from twin.nc.text.blocks import Assignment, Block
 from twin.nc.text.expressions import NumberedVariable
 
 _LIVE = LiveParameters()
@@ -15,17 +15,17 @@ def compile_block(compiler: BlockCompiler, block: Block) -> None:
     Raises:
         UnsupportedError: It is left to the interpreter tier.
     """
-    if block.assignments:
-        _assign(block, compiler.assembler)
-    else:
+    if not block.assignments:
         compiler.block(block)
-
-
-def _assign(block: Block, assembler: Assembler) -> None:
-    """One assignment that stands alone; several are computed before the first is given."""
+        return
     if block.words or len(block.assignments) > 1:
         raise UnsupportedError
-    only = block.assignments[0]
+    for only in block.assignments:
+        _assign(only, compiler.assembler)
+
+
+def _assign(only: Assignment, assembler: Assembler) -> None:
+    """An assignment that stands alone; several are computed before the first is given."""
     if isinstance(only.target, NumberedVariable):
         assembler.value(only.target.index)
         assembler.value(only.value)
