@@ -7,6 +7,7 @@ from twin.errors import UsageError
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.fagor8070 import FAGOR8070
+from twin.nc.dialects.fanuc import FANUC
 from twin.nc.dialects.gost import GOST
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.dialects.mefi import MEFI
@@ -14,7 +15,7 @@ from twin.nc.dialects.outside import dialects_from_outside
 from twin.nc.text.source import Source
 
 OWN: Mapping[str, Dialect] = {
-    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, LINUXCNC)
+    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, LINUXCNC)
 }
 """Those of this package by name."""
 _OUTSIDE, _FAILED = dialects_from_outside(OWN)
