@@ -91,7 +91,7 @@ FANUC = Dialect(
     units='mm, inches (G20), degrees; numbers without a point count 0.001 mm, 0.0001 inch or 0.001 degree, unless decimal_point = "calculator"; F in mm/min',
     decisions=DECISIONS,
     marks=(
-        Mark(r"^[ \t]*O[ \t]*[0-9]{1,8}(?![0-9<])[ \t]*(?:$|[ (])", "O1000 (a program's number)"),
+        Mark(r"^[ \t]*O[ \t]*[0-9]{1,8}(?![0-9<])[ \t]*(?:$|\()", "O1000 (a program's number)"),
     ),
     start_state={"square_corners": True},
     memory=FanucMemory,
