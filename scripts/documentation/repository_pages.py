@@ -13,6 +13,7 @@ PAGES: Mapping[str, str] = {
     "twin/machine/README.md": "rooms/machine.md",
     "twin/compare/README.md": "rooms/compare.md",
     "twin/cutting/README.md": "rooms/cutting.md",
+    "twin/coupling/README.md": "rooms/coupling.md",
     "twin/render/README.md": "rooms/render.md",
     "twin/check/README.md": "rooms/check.md",
     "twin/training/README.md": "rooms/training.md",
