@@ -96,7 +96,13 @@ def by_linuxcnc(text: str) -> Answer:
     command = [folder / "rs274", "-g", "-t", folder / "tools.tbl", "-v", parameters, program]
     own_home = {**os.environ, "HOME": str(folder)}  # the tool table in use lies there
     done = subprocess.run(
-        command, capture_output=True, text=True, timeout=30, errors="replace", env=own_home
+        command,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=30,
+        errors="replace",
+        env=own_home,
     )
     said = [each for each in done.stderr.splitlines() if not _CONVERSATION.match(each)]
     error = said[0] if done.returncode and said else ""
