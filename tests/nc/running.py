@@ -93,15 +93,12 @@ def shipped(path: Path) -> Interpretation:
         start=job.file.start,
         default_feed=job.file.default_feed or 1000.0,
         tools={each.number: ToolData(each.diameter / 2.0, each.length) for each in job.file.tools},
-<<<<<<< HEAD
-=======
         any_tool="tools" not in job.file.model_fields_set,
         offsets=job.file.offsets,
         m_functions={
             int(code[1:]): MachineFunction(each.meaning, each.dwell)
             for code, each in job.file.m_functions.items()
         },
->>>>>>> main
         machine_zero={name: -value for name, value in zero.items()} if "Z" in zero else None,
     )
     return Interpretation(read_source(path, dialect), dialect, settings)

@@ -14,13 +14,8 @@ from twin.nc.dialects.mefi import MEFI
 from twin.nc.dialects.outside import dialects_from_outside
 from twin.nc.text.source import Source
 
-<<<<<<< HEAD
 OWN: Mapping[str, Dialect] = {
-    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, LINUXCNC)
-=======
-DIALECTS: Mapping[str, Dialect] = {
-    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS)
->>>>>>> main
+    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC)
 }
 """Those of this package by name."""
 _OUTSIDE, _FAILED = dialects_from_outside(OWN)

@@ -110,9 +110,6 @@ FANUC = Dialect(
     units='mm, inches (G20), degrees; numbers without a point count 0.001 mm, 0.0001 inch or 0.001 degree, unless decimal_point = "calculator"; F in mm/min',
     decisions=DECISIONS,
     marks=(
-<<<<<<< HEAD
-        Mark(r"^[ \t]*O[ \t]*[0-9]{1,8}(?![0-9<])[ \t]*(?:$|\()", "O1000 (a program's number)"),
-=======
         *_FAMILY,
         Mark(r"\bG54\.1[ \t]*P|\bG54[ \t]*P[ \t]*[0-9]", "G54.1 P"),
         Mark(r"\bG0?5\.1[ \t]*Q|\bG0?8[ \t]*P[01]\b", "G5.1 Q, G8 P1"),
@@ -120,7 +117,6 @@ FANUC = Dialect(
         Mark(r"\bM98[ \t]*P[ \t]*[0-9]{6,}", "M98 P00021000"),
         Mark(r"\bG(?:107|0?7\.1)[ \t]*C", "G107 C, G7.1 C"),
         Mark(r"\bG43\.4\b|\bG68\.2\b", "G43.4, G68.2"),
->>>>>>> main
     ),
     start_state={"square_corners": True},
     memory=FanucMemory,
