@@ -29,26 +29,31 @@ class Computing(NamedTuple):
 def programs() -> Iterator[Computing]:
     """Every form that a dialect has, and long programs that compute now and then."""
     for task, dialect, ours, theirs, blocks in _FORMS:
-        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
+        filled = _filled(ours, theirs)
         yield Computing(task, dialect, *filled, blocks * ROUNDS)
     for task, ours, theirs, blocks in _IN_LOOPS:
         texts = (_WHILE.format(ours), _THEIR_WHILE.format(theirs))
-        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in texts)
+        filled = _filled(*texts)
         yield Computing(task, "fagor8070", *filled, blocks * ROUNDS)
-    holes = (text.replace("ROUNDS", str(ROUNDS)) for text in _HOLES)
+    holes = _filled(*_HOLES)
     yield Computing("a loop over holes of G83", "fagor8070", *holes, 4 * ROUNDS)
-    contour = (text.replace("ROUNDS", str(ROUNDS)) for text in _CONTOUR)
+    contour = _filled(*_CONTOUR)
     yield Computing("a contour under G41 in a loop", "fagor8070", *contour, 10 * ROUNDS)
     for task, dialect, ours, theirs, blocks in _CYCLES:
-        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
+        filled = _filled(ours, theirs)
         yield Computing(task, dialect, *filled, blocks * ROUNDS)
     for task, ours, theirs, blocks in _TURNED:
-        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
+        filled = _filled(ours, theirs)
         yield Computing(task, "fagor8070", *filled, blocks * ROUNDS)
     for task, dialect, start, ours, theirs in _NOW_AND_THEN:
         every = f"{LINES:,} lines, every tenth {task}"
         texts = (_long(start, ours), _long("#101=1\n", theirs).replace("M30", "M2"))
         yield Computing(every, dialect, *texts, LINES)
+
+
+def _filled(ours: str, theirs: str) -> tuple[str, str]:
+    """Both programs with the number of rounds."""
+    return ours.replace("ROUNDS", str(ROUNDS)), theirs.replace("ROUNDS", str(ROUNDS))
 
 
 def _long(start: str, tenth: str) -> str:

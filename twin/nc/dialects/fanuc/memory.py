@@ -1,12 +1,25 @@
 """What only a Fanuc control remembers from block to block."""
 
 import dataclasses
+import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import Vector
 from twin.nc.text.blocks import Word
+from twin.nc.text.lines import Lines
+
+
+def letter_patterns(letter: str, rest: bytes) -> tuple[re.Pattern[bytes], ...]:
+    """A letter of either case with what follows: two patterns, since each is found much faster alone."""
+    return tuple(re.compile(each.encode() + rest) for each in (letter.upper(), letter.lower()))
+
+
+def holds_any(lines: Lines, patterns: Iterable[re.Pattern[bytes]]) -> bool:
+    """Whether one of the patterns stands in any line."""
+    return any(lines.any_holds(pattern) for pattern in patterns)
 
 
 class Variant(NamedTuple):
