@@ -247,7 +247,9 @@ def _with_give(
     if give.stiffness is None:
         undetermined["stiffness"] = give.why
     elif "mass" in fit.fitted:
-        fitted["stiffness"] = give.stiffness
+        known = fit.fitted["mass"]
+        off = max(known.high - known.value, known.value - known.low) / known.value
+        fitted["stiffness"] = give.stiffness.widened(off * give.stiffness.value)
     else:
         conditional["stiffness"] = (give.stiffness, ("mass",))
         undetermined["stiffness"] = "only its ratio to the mass is told"

@@ -23,8 +23,8 @@ from twin.calibrate.fit.stretch import Stretch
 from twin.nc.canonical import FloatArray
 from twin.units import AxisKind, to_si
 
-_SMOOTHED_S = 0.01
-"""Accelerations are taken over this time [s]."""
+_SMOOTHED_S = (0.01, 0.02)
+"""Times over which accelerations are taken; what the second makes different widens intervals [s]."""
 _SETTLED_S = 0.03
 """So long after the push has come to a side the gap is taken as crossed [s]."""
 _LEAST = 0.3
@@ -63,14 +63,12 @@ def fit_give(
         carried: What lies behind the gap: mass [kg] or inertia [kg m²], motor and screw excluded.
         friction: Dry friction, as far as it is known; what it may be off moves the backlash.
     """
-    parts = [_columns(kind, stretch, parameters, carried) for stretch in stretches]
-    columns = np.vstack([part[0] for part in parts])
-    ahead = np.concatenate([part[1] for part in parts])
-    sides = columns[:, 1]
-    if min(np.count_nonzero(sides > 0.0), np.count_nonzero(sides < 0.0)) < _FEW:
+    fits = [_fit(kind, stretches, parameters, carried, over) for over in _SMOOTHED_S]
+    if fits[0] is None or fits[1] is None:
         return Give(None, None, "the axis is not pushed both ways for long enough")
-    batch = (np.arange(len(ahead)) * BATCHES // len(ahead)).astype(np.int64)
-    _, gap, softness = linear_intervals(columns, ahead, batch)
+    gap, softness = (
+        one.widened(abs(one.value - other.value)) for one, other in zip(*fits, strict=True)
+    )
     backlash = Interval(*(max(0.0, value) for value in dataclasses.astuple(gap)))
     if softness.low <= 0.0:
         least = 1.0 / softness.high if softness.high > 0.0 else float("inf")
@@ -83,13 +81,32 @@ def fit_give(
     return Give(backlash, stiffness, "")
 
 
+def _fit(
+    kind: AxisKind,
+    stretches: Sequence[Stretch],
+    parameters: Parameters,
+    carried: float,
+    smoothed_s: float,
+) -> tuple[Interval, Interval] | None:
+    """Backlash and softness, with accelerations taken over some time; None where a side is missing."""
+    parts = [_columns(kind, stretch, parameters, carried, smoothed_s) for stretch in stretches]
+    columns = np.vstack([part[0] for part in parts])
+    ahead = np.concatenate([part[1] for part in parts])
+    sides = columns[:, 1]
+    if min(np.count_nonzero(sides > 0.0), np.count_nonzero(sides < 0.0)) < _FEW:
+        return None
+    batch = (np.arange(len(ahead)) * BATCHES // len(ahead)).astype(np.int64)
+    _, gap, softness = linear_intervals(columns, ahead, batch)
+    return gap, softness
+
+
 def _columns(
-    kind: AxisKind, stretch: Stretch, parameters: Parameters, carried: float
+    kind: AxisKind, stretch: Stretch, parameters: Parameters, carried: float, smoothed_s: float
 ) -> tuple[FloatArray, FloatArray]:
     """One, half the side, the force, of samples whose side is known; and how far the motor is ahead."""
     assert stretch.load is not None
     period = stretch.command.step_s * stretch.command.every
-    window = max(5, 2 * round(_SMOOTHED_S / period / 2.0) + 1)
+    window = max(5, 2 * round(smoothed_s / period / 2.0) + 1)
     speed, change = (
         np.asarray(savgol_filter(stretch.load, window, 3, deriv=order, delta=period))
         for order in (1, 2)
