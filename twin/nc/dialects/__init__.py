@@ -1,4 +1,4 @@
-"""The four controls, one module each."""
+"""The controls, one module or folder each."""
 
 import re
 from collections.abc import Mapping
@@ -7,14 +7,20 @@ from twin.errors import UsageError
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.fagor8070 import FAGOR8070
+from twin.nc.dialects.fanuc import FANUC, HAAS
 from twin.nc.dialects.gost import GOST
+from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.dialects.mefi import MEFI
+from twin.nc.dialects.outside import dialects_from_outside
 from twin.nc.text.source import Source
 
-DIALECTS: Mapping[str, Dialect] = {
-    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI)
+OWN: Mapping[str, Dialect] = {
+    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC)
 }
-"""Every known dialect by name."""
+"""Those of this package by name."""
+_OUTSIDE, _FAILED = dialects_from_outside(OWN)
+DIALECTS: Mapping[str, Dialect] = {**OWN, **_OUTSIDE}
+"""Every known dialect by name, those of other packages behind."""
 
 
 def dialect_named(name: str) -> Dialect:
@@ -24,6 +30,8 @@ def dialect_named(name: str) -> Dialect:
         UsageError: There is none; the message lists the known ones.
     """
     dialect = DIALECTS.get(name)
+    if dialect is None and name in _FAILED:
+        raise UsageError(f"no dialect '{name}': {_FAILED[name]}")
     if dialect is None:
         raise UsageError(f"no dialect '{name}': known are {', '.join(DIALECTS)}")
     return dialect
@@ -33,12 +41,17 @@ def recognise(source: Source) -> Dialect:
     """Tell a program's dialect by its own words.
 
     Raises:
-        UsageError: No dialect's own words stand in it, or those of several.
+        UsageError: No dialect's own words stand in it, or those of several, none of which has all.
     """
     found = _marks_found(source)
     fitting = [name for name, marks in found.items() if marks]
-    if len(fitting) == 1:
-        return DIALECTS[fitting[0]]
+    everything = {mark for marks in found.values() for mark in marks}
+    complete = [name for name in fitting if everything <= set(found[name])]
+    if len(complete) == 1:
+        return DIALECTS[complete[0]]
+    if complete:
+        seen = ", ".join(found[complete[0]])
+        raise UsageError(f"{source.name}: could be {' or '.join(complete)} ({seen}); {_SAY}")
     if fitting:
         seen = _listed({name: found[name] for name in fitting})
         raise UsageError(
@@ -87,4 +100,4 @@ _VALUES = re.compile(r"(?<=[XYZABCIJKRUVWN])[-+]?[0-9.]+(?![0-9.]|[ \t]*=)", re.
 _MOST_SHAPES = 10_000
 
 
-__all__ = ["DIALECTS", "dialect_named", "recognise"]
+__all__ = ["DIALECTS", "OWN", "dialect_named", "recognise"]

@@ -39,6 +39,7 @@ def cycle_code(
     meaning: str,
     target: Callable[[Control], list[float]] = Control.target,
     ground: Ground = "decision",
+    repeats: str = "",
 ) -> GCode:
     """The code that calls a cycle.
 
@@ -47,6 +48,8 @@ def cycle_code(
         meaning: For people.
         target: Takes the words that name the hole; its programmed position, shape (k,).
         ground: On what the meaning rests.
+        repeats: Address that says how often a block drills, each hole as far from the last as the
+            block's increments say; 0: its words are taken and nothing is drilled. Empty: none.
     """
     cycle = rule.cycle
 
@@ -54,12 +57,20 @@ def cycle_code(
         axis = control.modal.plane.axes[2]
         begin(control.cycle_state, axis, control.programmed[axis], cycle.lasting)
         if not cycle.lasting:
-            _take_words(control, rule)
+            take_words(control, rule)
 
     def perform(control: Control) -> None:
-        if cycle.lasting:
-            _take_words(control, rule)
-        drill(control, _hole(control, rule), target(control))
+        count = _repeats(control, repeats)
+        given = dict(control.words)
+        if count == 0:
+            take_words(control, rule)
+            control.take_axis_words()
+        for number in range(count):
+            if number:
+                control.words = dict(given)
+            if cycle.lasting:
+                take_words(control, rule)
+            drill(control, _hole(control, rule), target(control))
 
     return GCode(
         meaning=meaning,
@@ -71,7 +82,23 @@ def cycle_code(
     )
 
 
-def _take_words(control: Control, rule: CycleRule) -> None:
+def _repeats(control: Control, address: str) -> int:
+    """How often the block drills; takes the word that says it.
+
+    Raises:
+        ProgramError: It is no count, or too large a one.
+    """
+    word = control.take(address) if address else None
+    if word is None:
+        return 1
+    given, most = control.number(word), control.settings.step_limit
+    if given < 0.0 or given != int(given) or given > most:
+        message = f"{word.address} must count holes, {most} at most"
+        control.fail("repeat-count", message, word)
+    return int(given)
+
+
+def take_words(control: Control, rule: CycleRule) -> None:
     """Take the cycle's words, and that of the axis across the plane."""
     cycle, given = rule.cycle, no_values()
     relative = dict.fromkeys((REFERENCE, BOTTOM), control.modal.incremental)

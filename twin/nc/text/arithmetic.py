@@ -13,6 +13,9 @@ import numpy as np
 
 from twin.compilation.compilable import compilable, compilable_as
 
+SAME_NUMBER = 0.0001
+"""RS274/NGC: numbers that differ by less are equal for EQ and NE (LinuxCNC)."""
+
 
 @compilable
 def add(a: float, b: float) -> float:
@@ -72,6 +75,57 @@ def equal(a: float, b: float) -> float:
 def unequal(a: float, b: float) -> float:
     """Whether they are different numbers."""
     return 1.0 if a != b else 0.0
+
+
+@compilable
+def nearly_equal(a: float, b: float) -> float:
+    """Whether they differ by less than ``SAME_NUMBER``."""
+    return 1.0 if abs(a - b) < SAME_NUMBER else 0.0
+
+
+@compilable
+def not_nearly_equal(a: float, b: float) -> float:
+    """Whether they differ by ``SAME_NUMBER`` or more."""
+    return 0.0 if abs(a - b) < SAME_NUMBER else 1.0
+
+
+@compilable
+def positive_remainder(a: float, b: float) -> float:
+    """The remainder of a division, never below 0."""
+    rest = math.fmod(a, b)
+    return rest + abs(b) if rest < 0.0 else rest
+
+
+@compilable
+def equal_or_vacant(a: float, b: float) -> float:
+    """Whether they are the same number, or neither has a value (NaN)."""
+    return 1.0 if a == b or (a != a and b != b) else 0.0
+
+
+@compilable
+def unequal_or_vacant(a: float, b: float) -> float:
+    """Whether they are different numbers, or one of them has no value (NaN)."""
+    return 0.0 if a == b or (a != a and b != b) else 1.0
+
+
+@compilable
+def remainder_of_wholes(a: float, b: float) -> float:
+    """The remainder of a division of whole numbers, to which both are rounded."""
+    return math.fmod(nearest_whole_away(a), nearest_whole_away(b))
+
+
+def from_binary_decimal(a: float) -> float:
+    """The number whose decimal digits stand in four bits each."""
+    if a < 0.0 or a != int(a):
+        raise ValueError(a)
+    return float(int(f"{int(a):x}"))
+
+
+def to_binary_decimal(a: float) -> float:
+    """A number with its decimal digits in four bits each."""
+    if a < 0.0 or a != int(a):
+        raise ValueError(a)
+    return float(int(f"{int(a)}", 16))
 
 
 @compilable
@@ -165,6 +219,26 @@ def direction_in_degrees(x: float, y: float) -> float:
 
 
 @compilable
+def direction_of_quotient(y: float, x: float) -> float:
+    """The direction of a vector, its ordinate first [deg]."""
+    return math.degrees(math.atan2(y, x))
+
+
+@compilable
+def direction_from_zero(y: float, x: float) -> float:
+    """The direction of a vector, its ordinate first, from 0 up to 360 [deg]."""
+    angle = math.degrees(math.atan2(y, x))
+    return angle + 360.0 if angle < 0.0 else angle
+
+
+@compilable
+def arc_sine_from_zero(a: float) -> float:
+    """The angle whose sine it is, from 270 over 0 to 90 [deg]."""
+    angle = math.degrees(math.asin(a))
+    return angle + 360.0 if angle < 0.0 else angle
+
+
+@compilable
 def square(a: float) -> float:
     """The number times itself."""
     return a * a
@@ -195,9 +269,27 @@ def nearest_whole(a: float) -> float:
 
 
 @compilable
+def nearest_whole_away(a: float) -> float:
+    """The nearest whole number; halves go away from 0."""
+    return float(math.floor(a + 0.5)) if a >= 0.0 else float(math.ceil(a - 0.5))
+
+
+@compilable
+def whole_below(a: float) -> float:
+    """The greatest whole number that is not above it."""
+    return float(math.floor(a))
+
+
+@compilable
 def next_whole(a: float) -> float:
     """The least whole number that is not below it."""
     return float(math.ceil(a))
+
+
+@compilable
+def whole_away(a: float) -> float:
+    """The nearest whole number that is not nearer to 0."""
+    return float(math.ceil(a)) if a >= 0.0 else float(math.floor(a))
 
 
 @compilable

@@ -35,6 +35,7 @@ from twin.nc.path.rows import Rows, copy
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
+_REPEATS_ONLY = Cycle._fields.index("repeats_only")
 MOST_STOPS = 500
 """Stops of a hole: its moves must fit into a chunk."""
 _UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
@@ -83,6 +84,9 @@ def drill(
         The number of rows after it, ``NO_ROOM``, or ``UNSUPPORTED`` with the cycle untouched.
     """
     plane = constants.planes[int(block.modal[PLANE])]
+    repeats_only = tables.cycles[int(block.modal[CYCLE])][_REPEATS_ONLY] != 0.0
+    if repeats_only and (called[0] or block.modal[INCREMENTAL] != 0.0):
+        return UNSUPPORTED
     taken, hole = _read_cycle(block, called, tables, constants, state)
     if hole.fault != 0 or hole.stops > MOST_STOPS:
         return UNSUPPORTED
@@ -122,7 +126,15 @@ def _read_cycle(
     modal, (begins, anew) = block.modal, called
     row = tables.cycles[int(modal[CYCLE])]
     cycle = Cycle(
-        row[0] != 0.0, int(row[1]), int(row[2]), int(row[3]), row[4] != 0.0, row[5], int(row[6])
+        row[0] != 0.0,
+        int(row[1]),
+        int(row[2]),
+        int(row[3]),
+        row[4] != 0.0,
+        row[5],
+        int(row[6]),
+        row[7],
+        row[8] != 0.0,
     )
     across = int(constants.planes[int(modal[PLANE])][2])
     remembered, given = constants.hole[0], constants.hole[1]

@@ -16,8 +16,8 @@ from twin.nc.bytecode.registers import (
     SCALE,
     SIGNS,
 )
+from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070.structure import Structure
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import Matrix
 from twin.nc.geometry.planes import Vector
