@@ -160,7 +160,6 @@ class DecodeTables:
             bounds=np.array([arc.bounds for arc in arcs]),
             fits_radius=np.array([arc.fits_radius for arc in arcs]),
             signed_radius=np.array([arc.signed_radius for arc in arcs]),
-            linear=np.array([kind == "linear" for kind in settings.axes.kinds]),
         )
 
     def _meaning(self, code: GCode) -> tuple[int, float] | None:

@@ -12,13 +12,16 @@ from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
 from twin.nc.geometry.planes import Plane, Vector
 from twin.nc.path.move_columns import NAN, Segment
-from twin.nc.path.moves import SMALLEST_MOVE, arc_length, feed_per_minute, line_length, only_turns
+from twin.nc.path.moves import (
+    LARGEST_COORDINATE,
+    SMALLEST_MOVE,
+    arc_length,
+    feed_per_minute,
+    line_length,
+    only_turns,
+)
 from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
-
-LARGEST_COORDINATE = 1e7
-"""Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
-
 
 _SPINDLE = {f"M{number}": turns for number, turns in SPINDLE_CODES.items()}
 """Whether the spindle turns behind these functions."""

@@ -12,6 +12,8 @@ from twin.nc.geometry.planes import Vector, along
 
 Position = list[float] | FloatArray
 
+LARGEST_COORDINATE = 1e7
+"""Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 SMALLEST_MOVE = 1e-9
 """A move that goes less far than this goes nowhere [mm or deg]: far below any resolution."""
 

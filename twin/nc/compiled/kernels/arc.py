@@ -15,7 +15,7 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.bytecode.token_kinds import AXIS, CENTER, RADIUS
-from twin.nc.compiled.kernels.frame import turn_arc
+from twin.nc.bytecode.coordinates import turn_arc
 from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import Bounds, Point

@@ -22,14 +22,13 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import Corner, FloatArray, Motion, Shape
-from twin.nc.compiled.kernels.effects import report
-from twin.nc.compiled.kernels.frame import turn_place
+from twin.nc.bytecode.effects import report
+from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
-from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
 from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
-from twin.nc.path.moves import line_length
+from twin.nc.path.moves import LARGEST_COORDINATE, line_length
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
@@ -90,10 +89,10 @@ def drill(
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
         return UNSUPPORTED
     if block.polar:
-        aim(plane, block, rest, state)
+        aim(constants, block, rest, state)
     target = constants.over
     for axis in range(len(state.part)):
-        target[axis] = axis_target(axis, block, rest, tables, state)
+        target[axis] = axis_target(axis, block, rest, constants, state)
         if not abs(target[axis]) <= LARGEST_COORDINATE:
             return UNSUPPORTED
     after = _emit_hole(block, hole, constants, state, rows, row)
