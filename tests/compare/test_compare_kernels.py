@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from tests.compare.paths import line, moves_of
-from twin.compare.circular.circle_kernels import collect_by_angle
+from twin.compare.circular.circle_kernels import (
+    collect_by_angle,
+    into_planes,
+    radial_equations,
+    radial_range,
+    widest_gap,
+)
 from twin.compare.contour.blocks import BlockCollector
 from twin.compare.contour.corner_kernels import pass_corners
 from twin.compare.statistics import RESOLUTION, Distribution
@@ -102,7 +108,7 @@ def test_points_around_a_circle_are_sorted_by_angle(count: int, seed: int):
     deviation = random.normal(0.0, 0.01, count)
     bins = 12
     filled, sums = np.zeros(bins, np.int64), np.zeros((2, bins))
-    least, greatest = np.full((bins, 2), np.inf), np.full((bins, 2), -np.inf)
+    least, greatest = np.full((bins, 3), np.inf), np.full((bins, 3), -np.inf)
     points = (25.0 + deviation)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
     collect_by_angle(points, 25.0, filled, sums[0], sums[1], least, greatest)
     for index in range(bins):
@@ -112,10 +118,9 @@ def test_points_around_a_circle_are_sorted_by_angle(count: int, seed: int):
         assert sums[1][index] == pytest.approx(deviation[own].sum(), abs=1e-12)
         if own.any():
             low, high = deviation[own].argmin(), deviation[own].argmax()
-            assert least[index] == pytest.approx([deviation[own][low], angle[own][low]], abs=1e-12)
-            assert greatest[index] == pytest.approx(
-                [deviation[own][high], angle[own][high]], abs=1e-12
-            )
+            for found, row in ((least, low), (greatest, high)):
+                assert found[index, 0] == pytest.approx(deviation[own][row], abs=1e-12)
+                assert found[index, 1:] == pytest.approx(points[own][row])
 
 
 @checked
@@ -140,3 +145,39 @@ def test_the_way_past_a_corner_is_that_to_the_nearest_stretch(count: int, seed: 
     assert nearest == pytest.approx(asked)
     # Two stretches share the sample between them.
     assert when == pytest.approx(asked_when, abs=1.1e-3)
+
+
+@checked
+@given(st.integers(3, 60), st.integers(0, 2**31))
+def test_the_equations_of_a_circle_are_those_of_least_squares(count: int, seed: int):
+    random = np.random.default_rng(seed)
+    angle = random.uniform(0.0, 2.0 * np.pi, count)
+    points = np.column_stack([np.cos(angle), np.sin(angle)]) * random.uniform(9, 11, (count, 1))
+    center = random.normal(0.0, 0.1, 2)
+    matrix, right = np.zeros((3, 3)), np.zeros(3)
+    radial_equations(points, center, 10.0, matrix, right)
+    away = points - center
+    distance = np.linalg.norm(away, axis=1)
+    slope = np.column_stack([away / distance[:, None], np.ones(count)])
+    assert matrix == pytest.approx(slope.T @ slope)
+    assert right == pytest.approx(slope.T @ (distance - 10.0), abs=1e-12)
+    assert radial_range(away, 10.0) == pytest.approx((distance.min() - 10, distance.max() - 10))
+
+
+@pytest.mark.parametrize(
+    ("filled", "gap"), [([], 12), ([4], 12), ([0, 6], 6), ([2, 3, 4], 10), (range(12), 1)]
+)
+def test_the_widest_gap_is_looked_for_around_the_turn(filled: list[int], gap: int):
+    count = np.zeros(12, np.int64)
+    count[list(filled)] = 1
+    assert widest_gap(count) == gap
+
+
+def test_points_are_seen_in_the_plane_of_their_own_arc():
+    random = np.random.default_rng(3)
+    point, center = random.normal(size=(20, 3)), random.normal(size=(2, 3))
+    across, run = random.normal(size=(2, 3, 2)), random.integers(0, 2, 20)
+    seen = np.zeros((20, 2))
+    into_planes(point, run, center, across, seen)
+    for row in range(20):
+        assert seen[row] == pytest.approx((point[row] - center[run[row]]) @ across[run[row]])

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import pickle
 import random
 
 import numpy as np
@@ -98,3 +99,14 @@ def test_of_very_many_gouges_the_deepest_are_told_of_in_order() -> None:
     events = log.events()
     assert [event.line for event in events] == sorted(np.argsort(depths)[-20:].tolist())
     assert log.forgotten > 200
+
+
+def test_what_comes_in_many_small_chunks_is_put_together() -> None:
+    chance = random.Random(3)  # noqa: S311 (the same)
+    cut_log = CutLog()
+    for _ in range(1000):
+        cut_log.add(*chunk(chance, [7, 8]))
+    size = len(pickle.dumps(cut_log))
+    for _ in range(1000):
+        cut_log.add(*chunk(chance, [7, 8]))
+    assert len(pickle.dumps(cut_log)) < 1.5 * size

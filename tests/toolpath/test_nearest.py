@@ -64,12 +64,12 @@ def any_move(draw: st.DrawFn) -> Moves:
 
 
 @settings(max_examples=60, derandomize=True, deadline=None)
-@given(any_move(), point3, fractions)
+@given(any_move(), point3, fractions, st.floats(0, 1))
 def test_nearest_point_agrees_with_brute_force(
-    moves: Moves, point: FloatArray, window: list[float]
+    moves: Moves, point: FloatArray, window: list[float], guess: float
 ):
     path = path_columns(moves, FRAME, PART_ZERO)
-    found, u = nearest_on_move(path, 0, window[0], window[1], *point)
+    found, u = nearest_on_move(path, 0, window[0], window[1], guess, *point)
     assert window[0] <= u <= window[1]
     here = FRAME.position(move_position(moves, 0, np.array([u])) + PART_ZERO)[0]
     assert np.linalg.norm(here - point) == pytest.approx(found, abs=1e-9)
@@ -120,8 +120,12 @@ def test_only_the_window_is_searched():
     frame = PartFrame(rotary=None, center=(0.0, 0.0))
     path = path_columns(moves_of(out, aside, back), frame, np.zeros(4))
     point = (2.0, 0.1, 0.0)
-    assert nearest_between(path, (0, 0.0), (2, 1.0), *point, 0.0) == pytest.approx((0.1, 0, 0.2))
-    assert nearest_between(path, (2, 0.0), (2, 1.0), *point, 0.0) == pytest.approx((0.9, 2, 0.8))
+    assert nearest_between(path, (0, 0.0), (2, 1.0), (1, 0.5), *point, 0.0) == pytest.approx(
+        (0.1, 0, 0.2)
+    )
+    assert nearest_between(path, (2, 0.0), (2, 1.0), (1, 0.5), *point, 0.0) == pytest.approx(
+        (0.9, 2, 0.8)
+    )
 
 
 def test_of_equal_places_the_last_is_taken():
@@ -129,9 +133,9 @@ def test_of_equal_places_the_last_is_taken():
     back = line(out["end"], np.zeros(4))
     frame = PartFrame(rotary=None, center=(0.0, 0.0))
     path = path_columns(moves_of(out, back), frame, np.zeros(4))
-    assert nearest_between(path, (0, 0.0), (1, 1.0), 4.0, 1.0, 0.0, 1e-9) == pytest.approx(
-        (1, 1, 0.6)
-    )
+    assert nearest_between(
+        path, (0, 0.0), (1, 1.0), (0, 0.5), 4.0, 1.0, 0.0, 1e-9
+    ) == pytest.approx((1, 1, 0.6))
 
 
 def test_points_without_a_direction_have_a_distance():
@@ -141,9 +145,9 @@ def test_points_without_a_direction_have_a_distance():
     frame = PartFrame(rotary=3, center=(0.0, 0.0))
     turning = line(zero, np.array([0.0, 0, 0, 360.0]))
     path = path_columns(moves_of(still, circle, turning), frame, np.zeros(4))
-    assert nearest_on_move(path, 0, 0.0, 1.0, 3.0, 4.0, 0.0)[0] == pytest.approx(5.0)
-    assert nearest_on_move(path, 1, 0.0, 1.0, 5.0, 0.0, 12.0)[0] == pytest.approx(13.0)
-    assert nearest_on_move(path, 2, 0.0, 1.0, 3.0, 4.0, 0.0)[0] == pytest.approx(5.0)
+    assert nearest_on_move(path, 0, 0.0, 1.0, 0.5, 3.0, 4.0, 0.0)[0] == pytest.approx(5.0)
+    assert nearest_on_move(path, 1, 0.0, 1.0, 0.5, 5.0, 0.0, 12.0)[0] == pytest.approx(13.0)
+    assert nearest_on_move(path, 2, 0.0, 1.0, 0.5, 3.0, 4.0, 0.0)[0] == pytest.approx(5.0)
 
 
 def test_joining_and_dropping_keep_the_rest():

@@ -8,7 +8,7 @@ from twin.compare.circular.arcs import ArcCollector
 from twin.compare.contour.blocks import BlockCollector
 from twin.compare.contour.corners import CornerCollector
 from twin.compare.contour.features import FeatureCollector
-from twin.compare.contour.follow_kernels import follow
+from twin.compare.contour.follow_kernels import Commanded, Followed, follow
 from twin.compare.figures import AxisTracking, ContourFigures, Figures, WorstPlace
 from twin.compare.statistics import Distribution
 from twin.errors import RecordingError
@@ -26,7 +26,7 @@ slowest position loop in use, 1 (m/min)/mm, lags by 0.06 s."""
 WORST_PLACES = 10
 DRIVES = "drives"
 """What of a contour error is none of the geometry's."""
-_ROWS = 4096
+_ROWS = 16384
 """Samples that are worked on at once: bounds how many arcs are open at a time."""
 
 
@@ -60,7 +60,7 @@ class Comparison:
         self._path = path_columns(self._moves, part_frame, self._part_zero)
         self._waiting: list[Moves] = []
         self._state = np.full(6, np.nan)
-        self._late = (np.zeros(0), np.zeros((0, 2)))
+        self._late = Commanded(np.zeros(0), np.zeros(0, np.int64), np.zeros(0))
         self._duration = 0.0
         self._axis_errors = [Distribution() for _ in axes.names]
         self._axis_worst = [(0, 0.0) for _ in axes.names]
@@ -171,32 +171,23 @@ class Comparison:
                 place = int(setpoint.line[row]), float(setpoint.time[row])
                 self._axis_worst[column] = place
 
-    def _follow(
-        self, samples: Samples, point: FloatArray
-    ) -> tuple[FloatArray, IntArray, FloatArray]:
-        setpoint = samples.setpoint
-        started = setpoint.move >= 0
-        command = np.column_stack(
-            [np.maximum(setpoint.move, 0), np.where(started, setpoint.fraction, 0.0)]
+    def _follow(self, samples: Samples, point: FloatArray) -> Followed:
+        setpoint, late = samples.setpoint, self._late
+        commanded = Commanded(
+            np.concatenate([late.time, setpoint.time]),
+            np.concatenate([late.move, setpoint.move]),
+            np.concatenate([late.fraction, setpoint.fraction]),
         )
-        time = np.concatenate([self._late[0], setpoint.time])
-        late = np.concatenate([self._late[1], command])
-        back_row = np.searchsorted(time, setpoint.time - REACH_S)
-        shift = np.array([self._first, 0.0])
         if np.isnan(self._state[0]):
             where = self._frame.position(setpoint.position[:1])[0]
-            self._state[:] = (*command[0], *where, 0.0)
+            started = setpoint.move[0] >= 0
+            place = (setpoint.move[0], setpoint.fraction[0]) if started else (0, 0.0)
+            self._state[:] = (*place, *where, 0.0)
         count = len(setpoint)
-        distance, fraction = np.zeros(count), np.zeros(count)
-        place = np.zeros(count, np.int64)
-        self._state[0] -= self._first
-        follow(
-            self._path, point, command - shift, late[back_row] - shift, self._state,
-            distance, place, fraction,
-        )  # fmt: skip
-        self._state[0] += self._first
-        self._late = time[back_row[-1] :], late[back_row[-1] :]
-        return distance, place, fraction
+        found = Followed(np.zeros(count), np.zeros(count, np.int64), np.zeros(count))
+        back = follow(self._path, self._first, point, commanded, REACH_S, self._state, found)
+        self._late = Commanded._make(column[back:] for column in commanded)
+        return found
 
     def _keep_worst(self, rows: IntArray, setpoint: Setpoints) -> None:
         """See whether the lines that the tool was in are among the worst now."""
@@ -216,7 +207,7 @@ class Comparison:
 
     def _drop_passed(self) -> None:
         """Let go of the moves that neither the tool nor the search can come back to."""
-        reached = min(int(self._state[0]), int(self._late[1][0, 0]))
+        reached = min(int(self._state[0]), max(int(self._late.move[0]), 0))
         self._arcs.finish(reached)
         passed = reached - self._first
         if passed > 0 and 2 * passed >= len(self._moves):

@@ -4,7 +4,7 @@ The bins are told from the bits of a float: its exponent and the leading bits of
 that finding one takes no logarithm.
 """
 
-from twin.compilation.kernel import array_kernel
+from twin.compilation.kernel import kernel
 
 MANTISSA_BITS = 10
 """Bins per octave are 2 to this power: none is wider than 0.1 % of the values in it."""
@@ -18,14 +18,14 @@ BINS = ((GREATEST_EXPONENT - LEAST_EXPONENT) << MANTISSA_BITS) + 1
 _SIGN_AWAY = 0x7FFF_FFFF_FFFF_FFFF
 
 
-@array_kernel
+@kernel
 def bin_of(bits):
     """The bin of a magnitude, from the 64 bits of its float."""
     index = ((bits & _SIGN_AWAY) >> SHIFT) - FIRST_CODE + 1
     return min(max(index, 0), BINS - 1)
 
 
-@array_kernel
+@kernel
 def tally(values, bits, histogram):
     """Count values into a histogram.
 

@@ -8,6 +8,7 @@ from twin.nc.canonical import Axes, FloatArray, IntArray
 from twin.recording.reader import Samples
 from twin.toolpath.part_frame import PartFrame
 
+_ERROR_COLUMN = 2
 _FIRST_AXIS_COLUMN = 6
 POINTS = 4000
 """A trace holds at least half and at most twice so many points."""
@@ -35,8 +36,9 @@ class Trace:
         self._part_zero = np.asarray(part_zero, np.float64)
         self._group = 1
         self._kept = np.zeros((0, _FIRST_AXIS_COLUMN + 3 * len(axes)))
-        self._pending: list[FloatArray] = []
-        self._pending_rows = 0
+        self._open = self._kept[:0]
+        self._open_count = 0
+        self._last = self._kept[:0]
 
     def add(self, samples: Samples, error_um: FloatArray) -> None:
         """Take in the next chunk.
@@ -45,41 +47,61 @@ class Trace:
             samples: n samples.
             error_um: Their contour errors, shape (n,) [µm].
         """
-        asked = samples.setpoint
-        rows = np.column_stack(
+        count = len(samples)
+        if not count:
+            return
+        head = min((self._group - self._open_count) % self._group, count)
+        if head:
+            self._put_into_open(self._of(samples, error_um, _greatest_of(error_um[:head])), head)
+        tail = head + (count - head) // self._group * self._group
+        worst = head + _worst_rows(error_um[head:tail], self._group)
+        whole = self._of(samples, error_um, worst)
+        if self._open_count == self._group:
+            whole = np.concatenate([self._open, whole])
+            self._open, self._open_count = self._open[:0], 0
+        self._kept = np.concatenate([self._kept, whole])
+        if tail < count:
+            row = tail + _greatest_of(error_um[tail:])
+            self._put_into_open(self._of(samples, error_um, row), count - tail)
+        self._last = self._of(samples, error_um, np.array([count - 1]))
+        while len(self._kept) > 2 * POINTS:
+            self._merge()
+
+    def _put_into_open(self, row: FloatArray, count: int) -> None:
+        """Let the worst row of some samples compete for the group that is not full yet."""
+        if not len(self._open) or row[0, _ERROR_COLUMN] > self._open[0, _ERROR_COLUMN]:
+            self._open = row
+        self._open_count += count
+
+    def _merge(self) -> None:
+        """Make one group of every two."""
+        if len(self._kept) % 2:
+            self._kept, last = self._kept[:-1], self._kept[-1:]
+            both = np.concatenate([last, self._open])
+            self._open = both[_greatest_of(both[:, _ERROR_COLUMN])]
+            self._open_count += self._group
+        self._kept = self._kept[_worst_rows(self._kept[:, _ERROR_COLUMN], 2)]
+        self._group *= 2
+
+    def _of(self, samples: Samples, error_um: FloatArray, rows: IntArray) -> FloatArray:
+        """What is kept of some samples."""
+        asked, joints = samples.setpoint, samples.joint_position[rows]
+        return np.column_stack(
             [
-                asked.time,
-                asked.line.astype(np.float64),
-                error_um,
-                self._frame.position(self._frame.real(samples.joint_position)) - self._origin,
-                samples.joint_position - self._part_zero,
-                asked.position - samples.joint_position,
-                asked.velocity,
+                asked.time[rows],
+                asked.line[rows].astype(np.float64),
+                error_um[rows],
+                self._frame.position(self._frame.real(joints)) - self._origin,
+                joints - self._part_zero,
+                asked.position[rows] - joints,
+                asked.velocity[rows],
             ]
         )
-        self._pending.append(rows)
-        self._pending_rows += len(rows)
-        if self._pending_rows >= self._group:
-            self._group_pending()
-
-    def _group_pending(self) -> None:
-        rows = np.concatenate(self._pending)
-        whole = len(rows) - len(rows) % self._group
-        self._kept = np.concatenate([self._kept, _worst_of(rows[:whole], self._group)])
-        self._pending, self._pending_rows = [rows[whole:]], len(rows) - whole
-        while len(self._kept) > 2 * POINTS:
-            if len(self._kept) % 2:
-                self._kept, last = self._kept[:-1], self._kept[-1:]
-                self._pending.insert(0, np.repeat(last, self._group, axis=0))
-                self._pending_rows += self._group
-            self._kept = _worst_of(self._kept, 2)
-            self._group *= 2
 
     def _rows(self) -> FloatArray:
-        rest = np.concatenate(self._pending) if self._pending_rows else self._kept[:0]
-        if len(rest) == 0:
+        if not self._open_count:
             return self._kept
-        return np.concatenate([self._kept, _worst_of(rest, len(rest)), rest[-1:]])
+        return np.concatenate([self._kept, self._open, self._last])
 
     @property
     def time(self) -> FloatArray:
@@ -94,7 +116,7 @@ class Trace:
     @property
     def error_um(self) -> FloatArray:
         """Contour error, shape (m,) [µm]."""
-        return self._rows()[:, 2]
+        return self._rows()[:, _ERROR_COLUMN]
 
     @property
     def tool(self) -> FloatArray:
@@ -126,10 +148,15 @@ class Trace:
         return self._rows()[:, _FIRST_AXIS_COLUMN + block * width :][:, :width]
 
 
-def _worst_of(rows: FloatArray, size: int) -> FloatArray:
+def _worst_rows(error: FloatArray, size: int) -> IntArray:
     """Of every ``size`` rows the one with the greatest error."""
-    groups = rows[:, 2].reshape(-1, size)
-    return rows[np.arange(len(groups)) * size + groups.argmax(axis=1)]
+    groups = error.reshape(-1, size)
+    return np.arange(len(groups)) * size + groups.argmax(axis=1)
+
+
+def _greatest_of(error: FloatArray) -> IntArray:
+    """The row with the greatest error, shape (1,)."""
+    return np.array([error.argmax()])
 
 
 def line_changes(trace: Trace) -> Iterator[tuple[float, int]]:

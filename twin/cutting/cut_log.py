@@ -17,6 +17,8 @@ FIRST_BIN_S = 0.01
 
 LINES_TOLD = 1000
 """Lines that are told of at most: those that took off the most or met the greatest force."""
+CHUNKS_FRESH = 64
+"""Chunks that are entered before they are put together: a live cut comes in thirty a second."""
 LINES_REMEMBERED = 1 << 14
 """Lines that are kept at least, where there are so many: 3 MB, and 16 times what is told of."""
 
@@ -124,7 +126,7 @@ class CutLog:
         self._latest = int(entries.line[-1])
         self._fresh.append(entries.each_once())
         self._fresh_lines += len(self._fresh[-1])
-        if self._fresh_lines > self._remembered:
+        if self._fresh_lines > self._remembered or len(self._fresh) > CHUNKS_FRESH:
             self._tidy()
 
     def _tidy(self) -> None:

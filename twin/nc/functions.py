@@ -2,6 +2,7 @@
 
 import dataclasses
 
+from twin.compilation.compilable import compilable
 from twin.nc.canonical import Function
 
 SPINDLE_CLOCKWISE = "M3"
@@ -18,6 +19,17 @@ PROGRAM_STOPS = frozenset({"M0", "M1"})
 """The operator starts the program again."""
 PROGRAM_ENDS = frozenset({"M2", "M30"})
 """The spindle and the coolant end with the program."""
+
+
+@compilable
+def turns_behind(function: int, turned: float) -> float:
+    """Whether the spindle turns behind an M code, where it did as told before; 0 or 1.
+
+    M19 is no stop here: whether a feed per revolution may follow it, no seed says.
+    """
+    if function in (3, 4):
+        return 1.0
+    return 0.0 if function == 5 else turned
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -247,6 +247,17 @@ def test_more_functions_than_a_chunk_has_moves() -> None:
     assert {before for before, _ in result.events} == {1, 2}
 
 
+@pytest.mark.parametrize("dialect", ["gost", "mefi", "fagor8070"])
+@pytest.mark.parametrize(("functions", "turns"), [("M3\nM8", True), ("M4\nM5", False)])
+def test_a_feed_per_revolution_knows_what_compiled_blocks_did_to_the_spindle(
+    dialect: str, functions: str, turns: bool
+) -> None:
+    """Its first word stands behind many blocks, so that the compiled run has met the spindle's."""
+    text = f"G1 X1 F100\nS500\n{functions}\n" + "X1\nX2\n" * 20 + "G95 F0.1\nX9\nM30"
+    result = assert_same(source_from_text(text), dialect, SETTINGS)
+    assert (result.error is None) == turns
+
+
 def test_a_run_without_moves_is_not_endless() -> None:
     """It comes back now and then, so that an interruption is heard, and goes on."""
     job = dataclasses.replace(SETTINGS, step_limit=10**6)

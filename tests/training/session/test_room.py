@@ -301,6 +301,7 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
     room = session.room
     assert room.work is not None
     place, removed = room.machine.position, room.work.removed
+    heights = room.work.map.heights.copy()
     later = []
     for _ in range(2):
         session.advance(80)
@@ -312,8 +313,20 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
         assert np.array_equal(back.machine.position, place)
         assert back.work is not None
         assert back.work.removed == removed
+        assert np.array_equal(back.work.map.heights, heights)
     assert np.array_equal(later[0], later[1])
     assert len(session.log) == 4
+
+
+def test_of_the_stock_a_copy_keeps_only_thetiles_that_were_cut():
+    heights = np.zeros((150, 200))
+    first = checkpoints.KeptHeights(heights, None)
+    heights[140, 10] = -1.0
+    second = checkpoints.KeptHeights(heights, first)
+    own = [a is not b for a, b in zip(first.tiles, second.tiles, strict=True)]
+    assert own.count(True) == 1
+    assert np.array_equal(second.laid_out(), heights)
+    assert not first.laid_out().any()
 
 
 def test_going_far_back_restores_a_checkpoint_without_living_it_again(session, monkeypatch):

@@ -6,6 +6,7 @@ import numpy as np
 
 from twin.compare.circular.bidirectional import DirectedCircle, PairCollector, directed_circle
 from twin.compare.circular.circle import CirclePath, circle_figures
+from twin.compare.circular.circle_kernels import into_planes
 from twin.compare.figures import ArcFigures, BidirectionalFigures
 from twin.nc.canonical import BoolArray, FloatArray, IntArray, Moves, Shape
 from twin.toolpath.nearest import PathColumns
@@ -163,8 +164,9 @@ def _in_their_planes(
     turned[:, 2, 2] = 1.0
     across = turned @ np.stack(plane_axes(moves.normal[runs]), axis=2)
     center = (turned @ path.origin[runs][:, :, None])[:, :, 0]
-    offset = point - np.repeat(center, length, axis=0)
-    return np.einsum("ni,nij->nj", offset, np.repeat(across, length, axis=0))
+    seen = np.zeros((len(point), 2))
+    into_planes(point, np.repeat(np.arange(len(runs)), length), center, across, seen)
+    return seen
 
 
 def _greatest(arcs: dict[int, ArcFigures]) -> dict[int, ArcFigures]:

@@ -20,8 +20,13 @@ import dataclasses
 
 import numpy as np
 
-from twin.compare.circular.circle_kernels import collect_by_angle
-from twin.nc.canonical import FloatArray, IntArray
+from twin.compare.circular.circle_kernels import (
+    collect_by_angle,
+    radial_equations,
+    radial_range,
+    widest_gap,
+)
+from twin.nc.canonical import FloatArray
 from twin.units import UM_PER_MM
 
 BINS_PER_TURN = 7200
@@ -54,9 +59,11 @@ class CirclePath:
 
     def add(self, points: FloatArray) -> None:
         """Take in points relative to the nominal centre, shape (n, 2) [mm]."""
-        deviation = np.sqrt((points * points).sum(axis=1)) - self.radius
-        self.radial_min = min(self.radial_min, float(deviation.min(initial=np.inf)))
-        self.radial_max = max(self.radial_max, float(deviation.max(initial=-np.inf)))
+        least, greatest = radial_range(points, self.radius)
+        self.radial_min, self.radial_max = (
+            min(self.radial_min, least),
+            max(self.radial_max, greatest),
+        )
         self._points.append(points)
         self._count += len(points)
         if self._count > BINS_PER_TURN:
@@ -79,16 +86,15 @@ class CirclePath:
         return self._binned().mean()
 
     def extremes(self) -> FloatArray:
-        """Angle [rad] and radial deviation [mm] of the kept points, shape (2 m, 2)."""
+        """The innermost and the outermost point of every filled bin, shape (2 m, 2) [mm]."""
         return self._binned().extremes()
 
     def covers_full_turn(self) -> bool:
         """Whether no gap in the angles is wider than ``FULL_TURN_GAP``."""
-        if self._bins is None:
-            points = np.concatenate([np.zeros((0, 2)), *self._points])
-            angle = np.sort(np.arctan2(points[:, 1], points[:, 0]))
-        else:
-            angle = self._binned().filled() * (2.0 * np.pi / BINS_PER_TURN)
+        if self._bins is not None:
+            return self._bins.widest_gap() <= FULL_TURN_GAP
+        points = np.concatenate([np.zeros((0, 2)), *self._points])
+        angle = np.sort(np.arctan2(points[:, 1], points[:, 0]))
         gaps = np.diff(np.append(angle, angle[:1] + 2.0 * np.pi))
         return bool(len(angle) >= 3 and np.degrees(gaps.max()) <= FULL_TURN_GAP)
 
@@ -100,16 +106,17 @@ class _Bins:
         self._count = np.zeros(BINS_PER_TURN, np.int64)
         self._angle = np.zeros(BINS_PER_TURN)
         self._deviation = np.zeros(BINS_PER_TURN)
-        self._least = np.full((BINS_PER_TURN, 2), np.inf)
-        self._greatest = np.full((BINS_PER_TURN, 2), -np.inf)
+        self._least = np.full((BINS_PER_TURN, 3), np.inf)
+        self._greatest = np.full((BINS_PER_TURN, 3), -np.inf)
 
     def add(self, points: FloatArray, radius: float) -> None:
         collect_by_angle(
             points, radius, self._count, self._angle, self._deviation, self._least, self._greatest
         )
 
-    def filled(self) -> IntArray:
-        return np.flatnonzero(self._count)
+    def widest_gap(self) -> float:
+        """Between neighbouring bins with points [deg]."""
+        return widest_gap(self._count) * (360.0 / BINS_PER_TURN)
 
     def mean(self) -> FloatArray:
         filled = self._count > 0
@@ -118,7 +125,7 @@ class _Bins:
 
     def extremes(self) -> FloatArray:
         filled = self._count > 0
-        return np.concatenate([self._least[filled], self._greatest[filled]])[:, ::-1]
+        return np.concatenate([self._least[filled, 1:], self._greatest[filled, 1:]])
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -153,9 +160,9 @@ def circle_figures(*paths: CirclePath) -> CircleFigures:
     width, mean_error = greatest - least, np.nan
     if all(path.covers_full_turn() for path in paths):
         means = np.concatenate([path.mean() for path in paths])
-        extremes = np.concatenate([path.extremes() for path in paths])
         center, mean_radius = _least_squares_circle(_points(means, radius))
-        width = np.ptp(np.linalg.norm(_points(extremes, radius) - center, axis=1))
+        ranges = [radial_range(path.extremes() - center, radius) for path in paths]
+        width = max(far for _, far in ranges) - min(near for near, _ in ranges)
         mean_error = mean_radius - radius
     return CircleFigures(
         circular_deviation_um=float(width) * UM_PER_MM,
@@ -190,12 +197,10 @@ def _least_squares_circle(points: FloatArray) -> tuple[FloatArray, float]:
     """
     center = np.zeros(2)
     radius = float(np.linalg.norm(points, axis=1).mean())
+    matrix, right = np.zeros((3, 3)), np.zeros(3)
     for _ in range(20):
-        offset = points - center
-        distance = np.linalg.norm(offset, axis=1)
-        outward = offset / distance[:, None]
-        slope = np.column_stack([outward, np.ones(len(points))])
-        change = np.linalg.solve(slope.T @ slope, slope.T @ (distance - radius))
+        radial_equations(points, center, radius, matrix, right)
+        change = np.linalg.solve(matrix, right)
         center, radius = center + change[:2], radius + float(change[2])
         if np.abs(change).max() < 1e-10:
             break

@@ -1,11 +1,11 @@
-"""Collecting an actual path around a circle by angle, point by point."""
+"""Loops over the points of an actual path around a circle."""
 
 import math
 
-from twin.compilation.kernel import array_kernel
+from twin.compilation.kernel import kernel
 
 
-@array_kernel
+@kernel
 def collect_by_angle(points, radius, count, angle_sum, deviation_sum, least, greatest):
     """Sort points into bins of angle.
 
@@ -15,8 +15,8 @@ def collect_by_angle(points, radius, count, angle_sum, deviation_sum, least, gre
         count: By bin: how many points, added to, shape (m,).
         angle_sum: By bin: sum of their angles, added to, shape (m,) [rad].
         deviation_sum: By bin: sum of their radial deviations, added to, shape (m,) [mm].
-        least: By bin: least radial deviation [mm] and its angle [rad], shape (m, 2).
-        greatest: By bin: greatest radial deviation [mm] and its angle [rad], shape (m, 2).
+        least: By bin: least radial deviation and its point, shape (m, 3) [mm].
+        greatest: By bin: greatest radial deviation and its point, shape (m, 3) [mm].
     """
     turn = 2.0 * math.pi
     bins = len(count)
@@ -31,6 +31,82 @@ def collect_by_angle(points, radius, count, angle_sum, deviation_sum, least, gre
         angle_sum[here] += angle
         deviation_sum[here] += deviation
         if deviation < least[here, 0]:
-            least[here, 0], least[here, 1] = deviation, angle
+            least[here, 0], least[here, 1], least[here, 2] = deviation, x, y
         if deviation > greatest[here, 0]:
-            greatest[here, 0], greatest[here, 1] = deviation, angle
+            greatest[here, 0], greatest[here, 1], greatest[here, 2] = deviation, x, y
+
+
+@kernel
+def radial_range(points, radius):
+    """Least and greatest radial deviation of points [mm], relative to the centre, shape (n, 2)."""
+    least, greatest = math.inf, -math.inf
+    for i in range(len(points)):
+        x, y = points[i]
+        deviation = math.sqrt(x * x + y * y) - radius
+        least, greatest = min(least, deviation), max(greatest, deviation)
+    return least, greatest
+
+
+@kernel
+def widest_gap(count):
+    """The longest run of empty bins around a turn, and one [bins]; all of them without points."""
+    bins = len(count)
+    first, last, widest = -1, -1, 0
+    for index in range(bins):
+        if count[index] == 0:
+            continue
+        if last < 0:
+            first = index
+        else:
+            widest = max(widest, index - last)
+        last = index
+    return bins if last < 0 else max(widest, first + bins - last)
+
+
+@kernel
+def radial_equations(points, center, radius, matrix, right):
+    """Normal equations of the change of a circle that minimises the squared radial distances.
+
+    Args:
+        points: Shape (n, 2) [mm].
+        center: Of the circle, shape (2,) [mm].
+        radius: Of the circle [mm].
+        matrix: Out: shape (3, 3); unknowns are the centre's two coordinates and the radius.
+        right: Out: shape (3,).
+    """
+    matrix[:], right[:] = 0.0, 0.0
+    for i in range(len(points)):
+        x, y = points[i, 0] - center[0], points[i, 1] - center[1]
+        distance = math.sqrt(x * x + y * y)
+        x, y, off = x / distance, y / distance, distance - radius
+        matrix[0, 0] += x * x
+        matrix[0, 1] += x * y
+        matrix[0, 2] += x
+        matrix[1, 1] += y * y
+        matrix[1, 2] += y
+        right[0] += x * off
+        right[1] += y * off
+        right[2] += off
+    matrix[1, 0], matrix[2, 0], matrix[2, 1] = matrix[0, 1], matrix[0, 2], matrix[1, 2]
+    matrix[2, 2] = len(points)
+
+
+@kernel
+def into_planes(point, run, center, across, seen):
+    """Where tool points lie in the planes of arcs, about their centres.
+
+    Args:
+        point: In the part's frame, shape (n, 3) [mm].
+        run: Which arc each belongs to, shape (n,).
+        center: Of m arcs, shape (m, 3) [mm].
+        across: Directions of 0 and 90 degrees in their planes as columns, shape (m, 3, 2).
+        seen: Out: along 0 and 90 degrees, shape (n, 2) [mm].
+    """
+    for i in range(len(point)):
+        arc = run[i]
+        x = point[i, 0] - center[arc, 0]
+        y = point[i, 1] - center[arc, 1]
+        z = point[i, 2] - center[arc, 2]
+        for side in range(2):
+            along = across[arc, :, side]
+            seen[i, side] = x * along[0] + y * along[1] + z * along[2]

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from twin.compare.statistics_kernels import BINS, FIRST_CODE, MANTISSA_BITS, bin_of
-from twin.compilation.kernel import array_kernel
+from twin.compilation.kernel import kernel
 from twin.nc.canonical import BoolArray, FloatArray, IntArray
 
 COARSER = 3
@@ -55,7 +55,7 @@ class OpenPassages(NamedTuple):
     bins: IntArray
 
 
-@array_kernel
+@kernel
 def close(passage, bins, greatest, p99):
     """Enter the 99th percentile of a passage (nearest rank) into its row, and empty it.
 
@@ -79,7 +79,7 @@ def close(passage, bins, greatest, p99):
     passage[COUNT] = 0
 
 
-@array_kernel
+@kernel
 def collect(row, error, bits, time, latest, passages, blocks):
     """Take in the samples of a chunk.
 

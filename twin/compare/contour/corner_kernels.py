@@ -2,10 +2,10 @@
 
 import math
 
-from twin.compilation.kernel import array_kernel
+from twin.compilation.kernel import kernel
 
 
-@array_kernel
+@kernel
 def pass_corners(corner, sharp, before, point, place, time, nearest, when):
     """Keep the shortest distance from each corner to the tool's path.
 

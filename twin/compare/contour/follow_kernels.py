@@ -1,8 +1,10 @@
 """Following the simulated tool along the commanded path, sample by sample."""
 
 import math
+from typing import NamedTuple
 
-from twin.compilation.kernel import array_kernel
+from twin.compilation.kernel import kernel
+from twin.nc.canonical import FloatArray, IntArray
 from twin.toolpath.nearest_kernels import distance_at, nearest_between, walk
 
 _TIE_MM = 1e-7
@@ -16,31 +18,69 @@ _ERRORS = 4.0
 and four times at one of 53 degrees."""
 
 
-@array_kernel
-def follow(path, point, command, back, state, distance, place_move, place_fraction):
+class Commanded(NamedTuple):
+    """Where m setpoints are on the path, the late ones before a chunk's own.
+
+    Attributes:
+        time: Shape (m,) [s].
+        move: Number in the program; below 0 before the first move, shape (m,).
+        fraction: Of that move, shape (m,).
+    """
+
+    time: FloatArray
+    move: IntArray
+    fraction: FloatArray
+
+
+class Followed(NamedTuple):
+    """The nearest places on the path of n points.
+
+    Attributes:
+        distance: Contour error, shape (n,) [mm].
+        move: Of the moves at hand, shape (n,).
+        fraction: Of that move, shape (n,).
+    """
+
+    distance: FloatArray
+    move: IntArray
+    fraction: FloatArray
+
+
+@kernel
+def follow(path, first, point, commanded, reach_s, state, found):
     """Shortest distance from each simulated point to the path that can be meant.
 
     The search goes from where the tool was found one sample before to where it is commanded now,
-    with a margin by the tool's own step and error on either side; it does not reach behind ``back``.
+    with a margin by the tool's own step and error on either side; it does not reach behind what was
+    commanded ``reach_s`` ago.
 
     Args:
         path: ``PathColumns`` of the moves at hand.
+        first: Number in the program of the first of them.
         point: Simulated tool points in the part's frame, shape (n, 3) [mm].
-        command: Move number (within ``path``) and fraction of the setpoints, shape (n, 2).
-        back: Move number and fraction of the setpoint beyond which no tool can be late, shape (n, 2).
+        commanded: The setpoints, those of the points last.
+        reach_s: How late a tool can be [s].
         state: Where the tool was found before: move, fraction, its point, its error, shape (6,);
             read and written.
-        distance: Out: contour error, shape (n,) [mm].
-        place_move: Out: move of the nearest place, shape (n,).
-        place_fraction: Out: its fraction, shape (n,).
+        found: Written.
+
+    Returns:
+        The row of ``commanded`` that the last point does not reach behind.
     """
-    move, u = int(state[0]), state[1]
+    move, u = int(state[0]) - first, state[1]
     x0, y0, z0, error = state[2], state[3], state[4], state[5]
+    now_move, now_u = move, u
+    before, late = len(commanded.time) - len(point), 0
     for i in range(len(point)):
         x, y, z = point[i, 0], point[i, 1], point[i, 2]
         step = math.sqrt((x - x0) ** 2 + (y - y0) ** 2 + (z - z0) ** 2)
         margin = _STEPS * step + _ERRORS * error
-        now_move, now_u = int(command[i, 0]), command[i, 1]
+        last_move, last_u = now_move, now_u
+        now_move, now_u = _place(commanded, before + i, first)
+        # The tool goes on as the command does.
+        advance = now_u - last_u if now_move == last_move else 0.0
+        while commanded.time[late] < commanded.time[before + i] - reach_s:
+            late += 1
         low_move, low_u = now_move, now_u
         high_move, high_u = now_move, now_u
         was_ahead = move > now_move or (move == now_move and u > now_u)
@@ -49,23 +89,32 @@ def follow(path, point, command, back, state, distance, place_move, place_fracti
         else:
             high_move, high_u = move, u
         low_move, low_u = walk(path, low_move, low_u, -margin)
-        back_move = int(back[i, 0])
-        if low_move < back_move or (low_move == back_move and low_u < back[i, 1]):
-            low_move, low_u = back_move, back[i, 1]
+        back_move, back_u = _place(commanded, late, first)
+        if low_move < back_move or (low_move == back_move and low_u < back_u):
+            low_move, low_u = back_move, back_u
         error, move, u = nearest_between(
-            path, (low_move, low_u), (now_move, now_u), x, y, z, _TIE_MM
+            path, (low_move, low_u), (now_move, now_u), (move, u + advance), x, y, z, _TIE_MM
         )
         # Within the margin ahead of the command nothing is nearer than the command less the margin.
         asked = distance_at(path, now_move, now_u, x, y, z)
         if was_ahead or asked - margin < error:
             high_move, high_u = walk(path, high_move, high_u, margin)
             ahead, ahead_move, ahead_u = nearest_between(
-                path, (now_move, now_u), (high_move, high_u), x, y, z, _TIE_MM
+                path, (now_move, now_u), (high_move, high_u), (now_move, now_u), x, y, z, _TIE_MM
             )
             if ahead < error - _TIE_MM:
                 error, move, u = ahead, ahead_move, ahead_u
-        distance[i] = error
-        place_move[i], place_fraction[i] = move, u
+        found.distance[i], found.move[i], found.fraction[i] = error, move, u
         x0, y0, z0 = x, y, z
-    state[0], state[1] = move, u
+    state[0], state[1] = move + first, u
     state[2], state[3], state[4], state[5] = x0, y0, z0, error
+    return late
+
+
+@kernel
+def _place(commanded, row, first):
+    """Move at hand and fraction of a setpoint; before the first move, where that begins."""
+    move = commanded.move[row]
+    if move < 0:
+        return -first, 0.0
+    return move - first, commanded.fraction[row]

@@ -10,6 +10,7 @@ import numpy as np
 from twin.compilation.compilable import compilable
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import Instruction
+from twin.nc.bytecode.coordinates import directions, reframe, to_part, transform
 from twin.nc.bytecode.flow import Stack
 from twin.nc.bytecode.registers import (
     CYCLE_WORDS,
@@ -29,12 +30,12 @@ from twin.nc.bytecode.registers import (
     SELECTED,
     SIGNS,
     SPINDLE,
+    SPINDLE_TURNS,
     UNIT,
     Constants,
     State,
 )
-from twin.nc.canonical import FloatArray
-from twin.nc.bytecode.coordinates import directions, reframe, to_part, transform
+from twin.nc.functions import turns_behind
 from twin.nc.geometry import polar
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import SHIFTS, add_up
@@ -141,6 +142,8 @@ def _report_effect(
     registers, constants = on.state.registers, on.constants
     value = stack[top - 1] if top > 0 else 0.0
     kind, number, amount = FUNCTION_ALONE, operand, np.nan
+    if opcode in (opcodes.FUNCTION, opcodes.SPINDLE_FUNCTION):
+        registers[SPINDLE_TURNS] = turns_behind(operand, registers[SPINDLE_TURNS])
     if opcode == opcodes.SPINDLE_FUNCTION:
         kind, amount = FUNCTION_WITH_SPEED, registers[SPINDLE]
     elif opcode == opcodes.SPEED:
@@ -206,9 +209,7 @@ def _use_tool(instruction: Instruction, stack: Stack, top: int, on: Affected) ->
 
 
 @compilable
-def _shift_coordinates(
-    instruction: Instruction, stack: Stack, top: int, on: Affected
-) -> int:
+def _shift_coordinates(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
     """Shifts, and other coordinates for the present position; as ``run_effect``."""
     opcode, operand = instruction.opcode, instruction.operand
     state = on.state

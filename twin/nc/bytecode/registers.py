@@ -41,16 +41,17 @@ MODAL = 10
     ROTATION_ORDINATE,
     TURNED,
     RADIUS_GIVEN,
-) = range(15)
-SIGNS = 15
-CYCLE_STATE = 18
+    SPINDLE_TURNS,
+) = range(16)
+SIGNS = 16
+CYCLE_STATE = 19
 CYCLE_WORDS = CYCLE_STATE + VALUES
 MATRIX = CYCLE_WORDS + VALUES
 REGISTERS = MATRIX + 9
 """Places in the registers: F; S; the tool that comes next and the one that is in use; whether it has
 its offset; the polar origin, the last R and Q; the scale; angle and centre of the rotation in the
-plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; the
-signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
+plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; whether
+M3 or M4 is in force; the signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
 ``drilling_cycle`` counts it, and the same of the words of the block; the matrix, row by row. NaN: none."""
 Cells: TypeAlias = "memoryview[float]"
 """A column as Python reads and writes it one by one, without a NumPy object for each value."""
@@ -121,8 +122,8 @@ class Constants(NamedTuple):
         directions: Their directions, and at last those of a plane that is none of them,
             shape (4, 3, 3).
         tools: Numbers of the tools that the job lists, shape (t,).
-        longer: How much longer each is than the first, shape (t,) [mm].
-        radii: Of each, shape (t,) [mm].
+        longer: How much longer each is than the first, and at last any other, shape (t + 1,) [mm].
+        radii: Of each, and at last of any other, NaN where there is none, shape (t + 1,) [mm].
         square_corners: Compensation that begins extends outside corners between lines.
         indirect_leads: It goes around the contour's first and last point.
         over: Room for where the hole lies, shape (k,).
@@ -180,7 +181,8 @@ def new_state(start: list[float]) -> State:
     """The state of a control that stands at a position, shape (k,), and has run nothing."""
     registers = np.full(REGISTERS, np.nan)
     registers[SCALE] = registers[SIGNS:CYCLE_STATE] = 1.0
-    registers[[OFFSET_ON, POLAR_ABSCISSA, POLAR_ORDINATE, TURNED, RADIUS_GIVEN]] = 0.0
+    nothing = [POLAR_ABSCISSA, POLAR_ORDINATE, TURNED, RADIUS_GIVEN, SPINDLE_TURNS]
+    registers[OFFSET_ON], registers[nothing] = 1.0, 0.0
     registers[MATRIX:] = np.identity(3).ravel()
     axes = len(start)
     return State(

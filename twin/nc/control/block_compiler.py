@@ -12,7 +12,7 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import UnsupportedError
 from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
 from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import GCode, MCode, StatementEffect, Vocabulary
+from twin.nc.control.codes import GCode, MCode, StatementEffect, Vocabulary, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.text.blocks import Block, Word
@@ -40,6 +40,7 @@ class BlockCompiler:
         control: Whose program it is.
         vocabulary: The codes and words of its dialect.
         assembler: Takes the instructions.
+        acting: Addresses of words that do something by themselves, such as S and T.
     """
 
     def __init__(
@@ -48,6 +49,8 @@ class BlockCompiler:
         self.control = control
         self.vocabulary = vocabulary
         self.assembler = assembler
+        effects = (each for each, do in vocabulary.words.items() if isinstance(do, WordEffect))
+        self.acting = frozenset((*vocabulary.word_compilers, *effects))
 
     def sorted(self, words: Iterable[Word]) -> SortedBlock:
         """Sort the words of a block.
@@ -87,7 +90,7 @@ class BlockCompiler:
                 tuple(_number(word) for word, _ in codes),
                 tuple(number for number, _ in functions),
                 any(code.action is not None for _, code in functions),
-                vocabulary.word_compilers.keys(),
+                self.acting,
             ),
         )
 
@@ -175,7 +178,7 @@ class BlockCompiler:
         """Whether the block does more than its plain words."""
         functions = 0
         for word in words:
-            if word.address in self.vocabulary.word_compilers:
+            if word.address in self.acting:
                 return True
             if isinstance(word.value, Expression):
                 continue
@@ -198,8 +201,12 @@ class BlockCompiler:
 
     def _modal_words(self, block: BlockWords, reserved: str) -> None:
         compilers = self.vocabulary.word_compilers
-        for address in self.vocabulary.words:
-            if address in block.words and address not in reserved and address in compilers:
+        for address, effect in self.vocabulary.words.items():
+            if address not in block.words or address in reserved:
+                continue
+            if isinstance(effect, WordEffect):
+                effect.write(self.control, block.words.pop(address), self.assembler)
+            elif address in compilers:
                 compilers[address](block, self.assembler)
 
     def _functions(

@@ -18,6 +18,7 @@ Compiler = Callable[[BlockWords, Assembler], None]
 """Writes as instructions what a code or a word does, taking the words that belong to it."""
 
 CodeWriter = Callable[[Control, Assembler], None]
+WordWriter = Callable[[Control, Word, Assembler], None]
 StatementWriter = Callable[[Control, Statement, Assembler], None]
 
 
@@ -35,6 +36,18 @@ class Effect:
     def __call__(self, control: Control) -> None:
         """Do it."""
         control.perform(lambda assembler: self.write(control, assembler))
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class WordEffect:
+    """The action of a word that is said as instructions; as ``Effect``."""
+
+    write: WordWriter
+
+    def __call__(self, control: Control, word: Word) -> None:
+        """Do it."""
+        span = word.column, word.width
+        control.perform(lambda assembler: self.write(control, word, assembler), span)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

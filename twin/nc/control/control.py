@@ -5,12 +5,14 @@ import math
 from collections.abc import Callable, Mapping
 
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.canonical import Corner, Motion
+from twin.nc.bytecode.effects import Affected
+from twin.nc.bytecode.registers import INCREMENTAL, PLANE, UNIT
+from twin.nc.canonical import Corner, Dwell, Function, Motion
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
-from twin.nc.control.state import SPINDLE_CODES
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
-from twin.nc.geometry.planes import Plane, Vector
+from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
+from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.moves import (
     LARGEST_COORDINATE,
@@ -22,9 +24,6 @@ from twin.nc.path.moves import (
 )
 from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
-
-_SPINDLE = {f"M{number}": turns for number, turns in SPINDLE_CODES.items()}
-"""Whether the spindle turns behind these functions."""
 
 
 class Control(ControlWords):
@@ -181,10 +180,32 @@ class Control(ControlWords):
 
     def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
         """Report a function at this place of the path."""
-        if word in _SPINDLE:
-            self.spindle_turns = _SPINDLE[word]
         line, given = self.block.line, dict(arguments)
         self.path.event(lambda columns: columns.function(line, word, given, at))
+
+    def begin_effect(self) -> Affected:
+        """Let the columns show what the control keeps as objects, for an instruction."""
+        state, modal = self.state, self.modal
+        state.programmed[:], state.part[:] = self.programmed, self.part
+        state.modal[UNIT], state.modal[INCREMENTAL] = modal.unit, modal.incremental
+        if modal.plane in PLANE_ORDER:
+            state.modal[PLANE] = PLANE_ORDER.index(modal.plane)
+        else:
+            state.modal[PLANE] = len(PLANE_ORDER)
+            self.constants.directions[len(PLANE_ORDER)] = modal.plane.directions
+        return Affected(self.constants, state, self._event_room)
+
+    def end_effect(self) -> None:
+        """Take back what an instruction has changed, and report what happened."""
+        state, room = self.state, self._event_room
+        self.programmed = state.programmed.tolist()
+        self.frame.refresh()
+        for event in EventRows(room.events, room.event_values).part(0, int(state.event_count[0])):
+            if isinstance(event, Dwell):
+                self.dwell(event.seconds)
+            elif isinstance(event, Function):
+                self.function(event.word, event.arguments)
+        state.event_count[0] = 0
 
     def part_plane(self) -> Plane:
         """The working plane as the part sees it."""

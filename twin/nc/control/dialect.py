@@ -93,8 +93,6 @@ class Dialect:
             None: rapids have the machine's pace.
         disturbed: Something that only this dialect remembers acts on plain blocks, so that the
             interpreter tier must run them; None: nothing can.
-        registers: What the compiled tier is given of its memory, by places in the registers.
-        take_registers: Takes all of them back.
     """
 
     name: str
@@ -144,8 +142,6 @@ class Dialect:
     compile_block: Callable[[BlockCompiler, Block], None] = BlockCompiler.block
     rapid_feed: Callable[[Control], float] | None = None
     disturbed: Callable[[Control], bool] | None = None
-    registers: Callable[[Control], Mapping[int, float]] = lambda _control: {}
-    take_registers: Callable[[Control, list[float]], None] = lambda _control, _values: None
 
     def refusal(self, code: float) -> str | None:
         """Why a G code that the control knows is refused, given its number; None: it is not."""

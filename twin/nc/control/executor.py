@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.registers import SPINDLE_TURNS
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
@@ -16,6 +17,7 @@ from twin.nc.control.modal import ModalChanges
 from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import code_number, integer_of, number_of
+from twin.nc.functions import turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
 from twin.nc.text.source import Source
@@ -285,8 +287,9 @@ class Executor(Control):
             code.action(self)
         if code.silent:
             return
-        arguments = self.take_function_arguments(word)
-        self.function(f"M{integer_of(number_of(word))}", arguments)
+        arguments, number = self.take_function_arguments(word), integer_of(number_of(word))
+        self.registers[SPINDLE_TURNS] = turns_behind(number, self.registers[SPINDLE_TURNS])
+        self.function(f"M{number}", arguments)
         if code.dwell > 0.0:
             self.dwell(code.dwell)
         if code.ends:

@@ -163,7 +163,6 @@ def drill(control: Control, hole: Hole, target: list[float]) -> None:
     room = most_acts(hole.stops)
     acts, amounts = [0.0] * room, [0.0] * room
     turning = {} if control.spindle is None else {"S": control.spindle}
-    turned = control.spindle_turns
     for number in range(write_acts(hole, control.programmed[axis], acts, amounts)):
         act, amount = Act(int(acts[number])), amounts[number]
         if act in (Act.RAPID, Act.FEED, Act.ACROSS):
@@ -174,4 +173,3 @@ def drill(control: Control, hole: Hole, target: list[float]) -> None:
             control.dwell(amount)
         else:
             control.function(act.name, {} if act is Act.M5 else turning)
-    control.spindle_turns = turned

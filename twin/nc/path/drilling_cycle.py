@@ -6,12 +6,12 @@ not given is NaN.
 
 import enum
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from twin.compilation.compilable import compilable
 from twin.nc.canonical import FloatArray
 
-Values = list[float] | FloatArray
+Values: TypeAlias = "list[float] | FloatArray | memoryview[float]"
 
 (
     START,
@@ -170,9 +170,20 @@ class Hole(NamedTuple):
     retract: int
 
 
+MOST_STOPS = 500
+"""Stops of a hole that the compiled tier drills: its moves must fit into a chunk."""
+
+
 def no_values() -> list[float]:
-    """What a cycle remembers that has not begun."""
+    """The words of a block that has none."""
     return [math.nan] * VALUES
+
+
+@compilable
+def forget(values: Values) -> None:
+    """No cycle has begun."""
+    for value in range(VALUES):
+        values[value] = math.nan
 
 
 @compilable
@@ -180,8 +191,7 @@ def begin(values: Values, axis: int, height: float, lasting: bool) -> None:
     """A cycle begins at a height [mm] of the axis across its plane."""
     if lasting and values[START] == values[START]:
         return
-    for value in range(VALUES):
-        values[value] = math.nan
+    forget(values)
     values[START], values[AXIS] = height, float(axis)
 
 

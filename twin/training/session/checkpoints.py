@@ -1,12 +1,22 @@
-"""Copies of a room at earlier moments, so that going back takes no longer after hours."""
+"""Copies of a room at earlier moments, so that going back takes no longer after hours.
+
+A copy is made while the machine runs, so it must be quick and small: what never changes is shared,
+and of the stock only the tiles that were cut since the copy before.
+"""
 
 import copy
 import dataclasses
+from collections.abc import Iterator
 from typing import Any
 
 import mujoco
+import numpy as np
 
+from twin.cutting.outline import Outline
 from twin.machine.description.config import Machine
+from twin.machine.model.head_shape import HeadShape
+from twin.machine.watching.relative_motion import RelativeMotion
+from twin.nc.canonical import FloatArray
 from twin.nc.text.source import Source
 from twin.training.scene.scene_file import Scene
 from twin.training.session.program_run import ProgramRun, ProgramRunCopy
@@ -17,8 +27,54 @@ APART_S = 4.0
 DENSE = 20
 """Newest copies that are kept; older ones lie further apart the older they are."""
 
-_SHARED = (Scene, Machine, Source, mujoco.MjModel)
+SPREAD = 0.2
+"""Between older copies lies at least this share of their age."""
+TILE = 64
+"""Cells along a side of a tile of the stock."""
+
+_SHARED = (Scene, Machine, Source, mujoco.MjModel, HeadShape, RelativeMotion, Outline)
 """What never changes and need not be copied."""
+
+
+class KeptHeights:
+    """Heights of the stock as they were: tiles that had not changed are those of the copy before.
+
+    Attributes:
+        tiles: Row by row.
+    """
+
+    def __init__(self, heights: FloatArray, before: "KeptHeights | None") -> None:
+        """Keep heights.
+
+        Args:
+            heights: Shape (ny, nx) [mm].
+            before: Of the same stock, as it was earlier; None: nothing is shared.
+        """
+        self._shape = heights.shape
+        known = [None] * len(list(self._places())) if before is None else before.tiles
+        self.tiles = [
+            old
+            if old is not None and np.array_equal(old, heights[place])
+            else heights[place].copy()
+            for place, old in zip(self._places(), known, strict=True)
+        ]
+
+    def _places(self) -> Iterator[tuple[slice, slice]]:
+        rows, columns = self._shape
+        for row in range(0, rows, TILE):
+            for column in range(0, columns, TILE):
+                yield slice(row, row + TILE), slice(column, column + TILE)
+
+    def __deepcopy__(self, _memo: dict[int, Any]) -> FloatArray:
+        """In a room that goes on the heights stand in its place."""
+        return self.laid_out()
+
+    def laid_out(self) -> FloatArray:
+        """The heights, to be cut again, shape (ny, nx) [mm]."""
+        heights = np.zeros(self._shape)
+        for place, tile in zip(self._places(), self.tiles, strict=True):
+            heights[place] = tile
+        return heights
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -28,16 +84,18 @@ class Checkpoint:
     Attributes:
         tick: Servo periods since the beginning.
         done: How many commands had been given by then.
-        room: The copy; its run is planned anew when the copy is used.
+        room: The copy; its run is planned anew, and its stock laid out, when the copy is used.
+        heights: Of its stock; None: there is none.
     """
 
     tick: int
     done: int
     room: Room
+    heights: KeptHeights | None
 
     def restored(self) -> Room:
         """A room that goes on from there; the copy stays as it is."""
-        room = _copied(self.room)
+        room = _copied(self.room, {})
         room.run = _made_again(room.run)
         return room
 
@@ -47,7 +105,7 @@ class Checkpoints:
 
     def __init__(self, room: Room) -> None:
         """Begin with the room as it is."""
-        self._kept = [Checkpoint(room.tick, 0, _copied(room))]
+        self._kept = [_checkpoint(room, 0, None)]
         self._apart = SLICE * round(APART_S / room.slice_s)
 
     def note(self, room: Room, done: int) -> None:
@@ -58,7 +116,7 @@ class Checkpoints:
             done: How many commands have been given to it.
         """
         if room.tick - self._kept[-1].tick >= self._apart:
-            self._kept.append(Checkpoint(room.tick, done, _copied(room)))
+            self._kept.append(_checkpoint(room, done, self._kept[-1].heights))
             self._thin_out()
 
     def before(self, tick: int) -> Checkpoint:
@@ -73,7 +131,7 @@ class Checkpoints:
         kept = self._kept[:1]
         for number, one in enumerate(self._kept[1:], 1):
             recent = number >= len(self._kept) - DENSE
-            if recent or one.tick - kept[-1].tick >= 0.1 * (newest - one.tick):
+            if recent or one.tick - kept[-1].tick >= SPREAD * (newest - one.tick):
                 kept.append(one)
         self._kept = kept
 
@@ -82,8 +140,17 @@ def _made_again(run: ProgramRun | ProgramRunCopy | None) -> ProgramRun | None:
     return run.made_again() if isinstance(run, ProgramRunCopy) else run
 
 
-def _copied(room: Room) -> Room:
+def _checkpoint(room: Room, done: int, before: KeptHeights | None) -> Checkpoint:
     memo: dict[int, Any] = {}
+    kept = None
+    if room.work is not None:
+        stock = room.work.map
+        kept = KeptHeights(stock.heights, before)
+        memo[id(stock.heights)], memo[id(stock.uncut)] = kept, stock.uncut
+    return Checkpoint(room.tick, done, _copied(room, memo), kept)
+
+
+def _copied(room: Room, memo: dict[int, Any]) -> Room:
     _share(room, memo, set())
     return copy.deepcopy(room, memo)
 

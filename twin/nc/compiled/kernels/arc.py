@@ -4,6 +4,7 @@ What a centre or a radius means, and which fits, ``geometry.arcs`` says.
 """
 
 from twin.compilation.compilable import inlined
+from twin.nc.bytecode.coordinates import turn_arc
 from twin.nc.bytecode.registers import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
@@ -15,7 +16,6 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.bytecode.token_kinds import AXIS, CENTER, RADIUS
-from twin.nc.bytecode.coordinates import turn_arc
 from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import Bounds, Point

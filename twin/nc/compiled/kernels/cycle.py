@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.compilable import compilable
+from twin.nc.bytecode.coordinates import turn_place
+from twin.nc.bytecode.effects import report
 from twin.nc.bytecode.registers import (
     CORNER,
     CYCLE,
@@ -22,8 +24,6 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import Corner, FloatArray, Motion, Shape
-from twin.nc.bytecode.effects import report
-from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
@@ -34,8 +34,6 @@ from twin.nc.path.rows import Rows, copy
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
-MOST_STOPS = 500
-"""Stops of a hole: its moves must fit into a chunk."""
 _UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
 _ACROSS = int(Act.ACROSS)
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
@@ -83,7 +81,7 @@ def drill(
     """
     plane = constants.planes[int(block.modal[PLANE])]
     taken, hole = _read_cycle(block, called, tables, constants, state)
-    if hole.fault != 0 or hole.stops > MOST_STOPS:
+    if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS:
         return UNSUPPORTED
     rest = block.seen & ~taken
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):

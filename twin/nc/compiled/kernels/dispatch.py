@@ -6,6 +6,8 @@ Each does what ``opcodes`` says of it; opcodes of one kind have a function.
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import PART_BITS, BytecodeTable, Instruction
+from twin.nc.bytecode.coordinates import begin_compensation
+from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect
 from twin.nc.bytecode.flow import (
     Transfer,
     arrive,
@@ -35,9 +37,7 @@ from twin.nc.bytecode.registers import CYCLE, Machine, State, copy_active_codes,
 from twin.nc.bytecode.variables import undo_stores
 from twin.nc.compiled.kernels.block import BlockBegin, run_words
 from twin.nc.compiled.kernels.cycle import NO_ROOM
-from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect
 from twin.nc.compiled.kernels.expression import compute
-from twin.nc.bytecode.coordinates import begin_compensation
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import OFF, STAGE
 from twin.nc.path.compensation.lookahead import hold_events

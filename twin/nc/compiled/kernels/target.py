@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 from twin.compilation.compilable import compilable, inlined
+from twin.nc.bytecode.coordinates import directions
 from twin.nc.bytecode.registers import INCREMENTAL, PLANE, UNIT, Constants, State
 from twin.nc.bytecode.token_kinds import AXIS
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.bytecode.coordinates import directions
 from twin.nc.geometry.planes import along, put_point
 
 

@@ -8,6 +8,8 @@ left untouched; the control runs it and makes its diagnostics.
 import numpy as np
 
 from twin.compilation.compilable import inlined
+from twin.nc.bytecode.coordinates import turn_place
+from twin.nc.bytecode.effects import is_whole, report
 from twin.nc.bytecode.registers import (
     ARC,
     CODES,
@@ -22,6 +24,7 @@ from twin.nc.bytecode.registers import (
     POLAR_RADIUS,
     PROGRAMMED_FEED,
     RAPID_LINE,
+    SPINDLE_TURNS,
     UNIT,
     BlockTables,
     Machine,
@@ -39,9 +42,8 @@ from twin.nc.bytecode.token_kinds import (
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
-from twin.nc.bytecode.effects import is_whole, report
-from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
+from twin.nc.functions import turns_behind
 from twin.nc.path.event_columns import FUNCTION_ALONE
 from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length, only_turns
 from twin.nc.path.rows import copy
@@ -94,7 +96,7 @@ def execute_block(
         return UNSUPPORTED
     early = function != UNSUPPORTED and tables.function[function] == EARLY
     if early:
-        report(rows, state, row, line, FUNCTION_ALONE, function, np.nan)
+        _report_function(function, machine, row, line)
     after = row
     if drills and moves:
         after = drill(block, (begins, anew), tables, machine.constants, state, rows, row)
@@ -104,7 +106,7 @@ def execute_block(
         state.event_count[0] = event_count
         return after
     if function != UNSUPPORTED and not early:
-        report(rows, state, after, line, FUNCTION_ALONE, function, np.nan)
+        _report_function(function, machine, after, line)
     _activate(block, tables, state)
     if moves:
         if drills:
@@ -116,6 +118,14 @@ def execute_block(
         if in_plane:
             state.registers[POLAR_RADIUS] = state.registers[POLAR_ANGLE] = np.nan
     return after
+
+
+@inlined
+def _report_function(function: int, machine: Machine, row: int, line: int) -> None:
+    """An M function that does nothing to the path."""
+    registers = machine.state.registers
+    registers[SPINDLE_TURNS] = turns_behind(function, registers[SPINDLE_TURNS])
+    report(machine.rows, machine.state, row, line, FUNCTION_ALONE, function, np.nan)
 
 
 @inlined

@@ -9,7 +9,7 @@ import math
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import LineRule
-from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.memory import memory_of, polar_origin
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 from twin.nc.geometry.arcs import (
     SAME_POINT,
@@ -75,7 +75,7 @@ def _arc(control: Control, *, clockwise: bool) -> None:
     elif centre.words:
         center = _given_center(control, centre.words, start[:2])
     elif goal.polar:
-        center = memory_of(control).origin
+        center = polar_origin(control)
     else:
         control.fail(
             "arc-without-center",

@@ -83,7 +83,6 @@ def _tap(control: Control) -> None:
     control.line_to(goal, rapid=True)
     _go(control, axis, reference, rapid=True)
     turning = {} if control.spindle is None else {"S": control.spindle}
-    turned = control.spindle_turns
     passes = math.ceil((reference - bottom) / step - 1e-9)
     for number in range(1, passes + 1):
         depth = bottom if number == passes else reference - number * step
@@ -95,7 +94,6 @@ def _tap(control: Control) -> None:
         broken = number < passes and lift > 0.0
         _go(control, axis, min(depth + lift, reference) if broken else reference, rapid=False)
         control.function("M3", turning)
-    control.spindle_turns = turned
     if not control.modal.return_to_reference:
         _go(control, axis, back, rapid=True)
 
