@@ -186,6 +186,7 @@ class Control(ControlWords):
     def begin_effect(self) -> Affected:
         """Let the columns show what the control keeps as objects, for an instruction."""
         state, modal = self.state, self.modal
+        state.event_count[0] = 0
         state.programmed[:], state.part[:] = self.programmed, self.part
         state.modal[UNIT], state.modal[INCREMENTAL] = modal.unit, modal.incremental
         if modal.plane in PLANE_ORDER:
@@ -205,7 +206,6 @@ class Control(ControlWords):
                 self.dwell(event.seconds)
             elif isinstance(event, Function):
                 self.function(event.word, event.arguments)
-        state.event_count[0] = 0
 
     def part_plane(self) -> Plane:
         """The working plane as the part sees it."""

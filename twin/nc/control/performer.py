@@ -49,7 +49,7 @@ _FINDINGS: Mapping[int, tuple[str, str, str | None, bool]] = {
         "end it by G73 alone",
         False,
     ),
-    effects.MIRROR_SIGN: ("mirror", "a mirror takes -1 or 1", None, True),
+    effects.MIRROR_SIGN: ("mirror", "a mirror takes -1 or 1 for X, Y and Z", None, True),
     effects.SCALE_RANGE: ("scale", "a scale lies between 0.001 and 1000", None, True),
     effects.ROTATED_ALREADY: (
         "rotation-active",
