@@ -46,6 +46,11 @@ def kernel(function: Kernel) -> Kernel:
     return _compiled(function, _nrt=False)
 
 
+def arithmetic_kernel(function: Kernel) -> Kernel:
+    """Compile a function that makes no array, where a division by zero gives infinity or NaN."""
+    return _compiled(function, error_model="numpy", _nrt=False)
+
+
 def _compiled(function: Kernel, **options: Any) -> Kernel:
     for called, compiled, of_part in take_declared():
         options_of_part: Any = {**of_part, "pipeline_class": PartCompiler}

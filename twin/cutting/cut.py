@@ -8,8 +8,9 @@ import numpy as np
 
 from twin.cutting.cut_log import BlockCut, CutLog
 from twin.cutting.events import CutEvent, EventLog, StockWatch, Stretches
-from twin.cutting.force import cutting_load, cutting_width, kienzle
-from twin.cutting.force_direction import tool_force
+from twin.cutting.forces.direction import tool_force
+from twin.cutting.forces.materials import kienzle
+from twin.cutting.forces.mean_force import cutting_load, cutting_width
 from twin.cutting.height_map import BoolArray, blank
 from twin.cutting.kernels.sweep import Removal, sweep
 from twin.cutting.kernels.thin import thin

@@ -84,6 +84,9 @@ _SHAPES = {
 _POINT_ANGLES = {"drill": 118.0, "chamfer": 90.0}
 """Included angles of points where the job names none [deg]; a drill's after DIN 1412, form A."""
 
+_USUAL_HELIX = 30.0
+"""Helix angle of end mills where the job names none [deg]: DIN 1836, type N."""
+
 
 class ToolTable(Table):
     """One tool of the job."""
@@ -112,6 +115,8 @@ class ToolTable(Table):
     """Diameter of the holder's nut [mm]."""
     teeth: Annotated[int, Field(ge=1)] = 2
     """Cutting edges, for the cutting force."""
+    helix: Annotated[float, Field(ge=0, le=60)] | None = None
+    """Helix angle of the edges, for the cutting force [deg]; none: 30, of drills and chamfer cutters 0."""
     speed: Positive | None = None
     """Spindle speed for the cutting force [1/min]; none: no force is reckoned."""
 
@@ -133,6 +138,13 @@ class ToolTable(Table):
     def point_angle(self) -> float | None:
         """Included angle of a conical end [deg]; None: the end is flat or round."""
         return self.angle or _POINT_ANGLES.get(self.kind)
+
+    @property
+    def helix_angle(self) -> float:
+        """Helix angle of the edges [deg]."""
+        if self.helix is not None:
+            return self.helix
+        return 0.0 if self.kind in _POINT_ANGLES else _USUAL_HELIX
 
     @property
     def below_holder(self) -> float:

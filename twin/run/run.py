@@ -11,7 +11,7 @@ import numpy as np
 from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
 from twin.compare.verdict import Check, judge
-from twin.cutting.axis_load import AxisLoad
+from twin.cutting.forces.axis_load import AxisLoad
 from twin.cutting.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError

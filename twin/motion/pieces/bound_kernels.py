@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from twin.compilation.kernel import array_arithmetic_kernel, array_kernel
+from twin.compilation.kernel import arithmetic_kernel, array_arithmetic_kernel, kernel
 from twin.nc.canonical import FloatArray, IntArray
 from twin.toolpath.geometry_kernels import Curves
 
@@ -53,32 +53,39 @@ def bound_derivatives(
     bounds = np.empty((count, 3, axes))
     curvature = np.empty(count)
     against = np.empty((count, 2, axes), np.bool_)
+    c, s, c_end, s_end = 1.0, 0.0, 1.0, 0.0
     for i in range(count):
         move = max(0, owner[i])
         turn = angle[move] * fraction_per_length[i]
-        c, s, c_end, s_end, squares, radius = 1.0, 0.0, 1.0, 0.0, 0.0, 0.0
+        squares, radius = 0.0, 0.0
         if turn != 0.0:
             at = angle[move] * begin[i]
-            c, s = math.cos(at), math.sin(at)
+            # A piece begins where the one before it on the same arc has ended.
+            c, s = c_end, s_end
+            if i == 0 or owner[i] != owner[i - 1]:
+                c, s = math.cos(at), math.sin(at)
             at += turn * length[i]
             c_end, s_end = math.cos(at), math.sin(at)
         for axis in range(axes):
             slope = drift[move, axis] * fraction_per_length[i]
             added = rounding[i, axis]
             bent = turn != 0.0 and axis < 3
-            if not bent and added[2] == added[3] == added[4] == added[5] == 0.0:
-                bounds[i, 0, axis] = abs(slope + added[1])
+            low1 = high1 = slope + added[1]
+            low2 = high2 = low3 = high3 = 0.0
+            if not (added[2] == added[3] == added[4] == added[5] == 0.0):
+                low1, high1, low2, high2, low3, high3 = _polynomial_ranges(added, slope, length[i])
+            elif not bent:
+                bounds[i, 0, axis] = abs(low1)
                 bounds[i, 1, axis] = bounds[i, 2, axis] = 0.0
                 against[i, 0, axis] = against[i, 1, axis] = False
                 continue
-            low1, high1, low2, high2, low3, high3 = _polynomial_ranges(added, slope, length[i])
             if bent:
                 p, q = cosine[move, axis], sine[move, axis]
-                amplitude, sense = math.hypot(p, q), math.copysign(1.0, turn)
+                sense = math.copysign(1.0, turn)
                 x, x_end = p * c + q * s, p * c_end + q * s_end
                 y, y_end = q * c - p * s, q * c_end - p * s_end
-                across = _wave_range(x, x_end, sense * y, sense * y_end, amplitude)
-                along = _wave_range(y, y_end, -sense * x, -sense * x_end, amplitude)
+                across = _wave_range(x, x_end, sense * y, sense * y_end, p, q)
+                along = _wave_range(y, y_end, -sense * x, -sense * x_end, p, q)
                 radius += p * p
                 square = turn * turn
                 low1 += min(turn * along[0], turn * along[1])
@@ -106,20 +113,20 @@ def bound_derivatives(
     return DerivativeBounds(bounds, curvature, against)
 
 
-@array_arithmetic_kernel
+@arithmetic_kernel
 def _wave_range(
-    at_begin: float, at_end: float, slope_begin: float, slope_end: float, amplitude: float
+    at_begin: float, at_end: float, slope_begin: float, slope_end: float, p: float, q: float
 ) -> tuple[float, float]:
-    """Range of a sine over less than a quarter of its period."""
+    """Range of ``p cos + q sin`` over less than a quarter of its period."""
     low, high = min(at_begin, at_end), max(at_begin, at_end)
     if slope_begin > 0.0 > slope_end:
-        high = amplitude
+        high = math.hypot(p, q)
     elif slope_begin < 0.0 < slope_end:
-        low = -amplitude
+        low = -math.hypot(p, q)
     return low, high
 
 
-@array_arithmetic_kernel
+@arithmetic_kernel
 def _polynomial_ranges(
     c: FloatArray, slope: float, length: float
 ) -> tuple[float, float, float, float, float, float]:
@@ -162,7 +169,7 @@ def _polynomial_ranges(
     return low1, high1, low2, high2, low3, high3
 
 
-@array_kernel
+@kernel
 def _second(c2: float, c3: float, c4: float, c5: float, x: float) -> float:
     """The second derivative of a polynomial at x."""
     return 2.0 * c2 + (6.0 * c3 + (12.0 * c4 + 20.0 * c5 * x) * x) * x

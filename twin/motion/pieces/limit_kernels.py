@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.kernel import array_arithmetic_kernel, array_kernel, kernel
+from twin.compilation.kernel import arithmetic_kernel, array_arithmetic_kernel, array_kernel, kernel
 from twin.motion.blocks.blocks import BoolArray
 from twin.motion.limits import MachineLimits
 from twin.motion.pieces.bound_kernels import DerivativeBounds
@@ -146,7 +146,7 @@ def piece_limits(
     return out
 
 
-@array_arithmetic_kernel
+@arithmetic_kernel
 def _straight_limits(
     bounds: FloatArray, curvature: float, wanted: float,
     path_acceleration: float, path_jerk: float, machine: MachineLimits, share: float,
@@ -194,7 +194,7 @@ def _straight_limits(
     return velocity, acceleration, jerk
 
 
-@array_arithmetic_kernel
+@arithmetic_kernel
 def _leave_room_for_curves(
     derivatives: DerivativeBounds, curved: BoolArray, limits: FloatArray, machine: MachineLimits
 ) -> None:

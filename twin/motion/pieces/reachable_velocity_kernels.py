@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.kernel import array_arithmetic_kernel
+from twin.compilation.kernel import arithmetic_kernel, array_arithmetic_kernel
 from twin.motion.blocks.blocks import BoolArray
 from twin.motion.pieces.bound_kernels import DerivativeBounds
 from twin.nc.canonical import FloatArray
@@ -59,36 +59,35 @@ def lower_to_reachable(
         before = velocity[i]
     highest = min(ceilings[count], before)
     border[count] = 0.5 * highest * highest
-    ramped = np.full(count, math.inf)
+    # From the last border with a ceiling, where a = 0, the jerk alone bounds what is gained: the velocity
+    # there and the distance from there, forwards and backwards.
+    slow, gone = np.full((2, count), math.inf), np.zeros((2, count))
     for direction in range(2):
         along = speeding if direction == 0 else braking
-        # From the last border with a ceiling, where a = 0, the jerk alone bounds what is gained.
-        slow, gone = math.inf, 0.0
+        ceiling, distance = math.inf, 0.0
         for step in range(count):
             i = step if direction == 0 else count - 1 - step
             known, wanted = (i, i + 1) if direction == 0 else (i + 1, i)
             start = border[known]
             if ceilings[known] < math.inf:
-                slow, gone = ceilings[known], 0.0
-            gone += length[i]
-            ramp = math.inf
-            if slow < math.inf and curved[i]:
-                ramp = slow + 0.5 * np.cbrt(36.0 * limits[3, i] * gone * gone)
-                ramp *= 0.5 * ramp
-                ramped[i] = min(ramped[i], ramp)
+                ceiling, distance = ceilings[known], 0.0
+            distance += length[i]
+            if curved[i]:
+                slow[direction, i], gone[direction, i] = ceiling, distance
             if start >= border[wanted]:
                 continue
-            distance = length[i] * readiness[i]
-            highest = start + distance * along[i]
+            way = length[i] * readiness[i]
+            highest = start + way * along[i]
             for axis in range(axes):
                 slope = bounds[i, 0, axis]
                 if slope > 0.0:
                     curve = bounds[i, 1, axis] if against[i, direction, axis] else 0.0
                     # The division does not wait for the piece before.
-                    share = 1.0 / (slope + 2.0 * distance * curve)
-                    top = (slope * start + distance * axis_acceleration[axis]) * share
+                    share = 1.0 / (slope + 2.0 * way * curve)
+                    top = (slope * start + way * axis_acceleration[axis]) * share
                     highest = min(highest, top)
-            border[wanted] = min(border[wanted], max(min(highest, ramp), start))
+            highest = _ramped(slow[direction, i], gone[direction, i], limits[3, i], highest)
+            border[wanted] = min(border[wanted], max(highest, start))
     for i in range(count):
         # Along a straight piece velocity and acceleration do not compete.
         if curved[i]:
@@ -96,5 +95,27 @@ def lower_to_reachable(
             gain = length[i] * min(limits[1, i], limits[2, i])
             if top < 0.5 * gain:
                 # So slow at both ends that the piece's own peak counts.
-                top = min(0.5 * (border[i] + border[i + 1] + gain), ramped[i])
+                top = 0.5 * (border[i] + border[i + 1] + gain)
+                for direction in range(2):
+                    top = _ramped(slow[direction, i], gone[direction, i], limits[3, i], top)
             velocity[i] = min(velocity[i], math.sqrt(2.0 * top))
+
+
+@arithmetic_kernel
+def _ramped(slow: float, gone: float, jerk: float, highest: float) -> float:
+    """A bound of v²/2, lowered to what the jerk alone lets a ramp reach.
+
+    Args:
+        slow: Velocity at the ramp's begin, where a = 0; infinite: it begins nowhere.
+        gone: Distance from there.
+        jerk: Highest j.
+        highest: The bound of v²/2.
+    """
+    if slow == math.inf:
+        return highest
+    # With constant jerk x = j t³/6 + slow t: v is no more than slow + (36 j x²)^(1/3) / 2.
+    gain, cube = 2.0 * (math.sqrt(2.0 * highest) - slow), 36.0 * jerk * gone * gone
+    if gain <= 0.0 or gain * gain * gain <= cube:
+        return highest
+    ramp = slow + 0.5 * np.cbrt(cube)
+    return 0.5 * ramp * ramp

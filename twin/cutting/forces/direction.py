@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from twin.cutting.events import Stretches
-from twin.cutting.force import Kienzle, cutting_width
+from twin.cutting.forces.materials import Kienzle
+from twin.cutting.forces.mean_force import cutting_width
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 

@@ -6,55 +6,11 @@ import math
 import numpy as np
 
 from twin.cutting.events import Stretches
-from twin.errors import ConfigError
-from twin.job.job_file import StockTable, ToolTable
+from twin.cutting.forces.materials import Kienzle
+from twin.cutting.kernels.tooth_forces import THINNEST_CHIP_MM
+from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
 from twin.units import SECONDS_PER_MINUTE
-
-THINNEST_CHIP_MM = 1e-3
-"""Chips thinner than this are rubbed, not cut; the formula is not followed below [mm]."""
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Kienzle:
-    """How a material resists: kc = kc1.1 h^-mc (Kienzle, 1952).
-
-    Attributes:
-        kc: Specific cutting force of a chip 1 mm wide and 1 mm thick [N/mm²].
-        mc: Its fall with the chip's thickness.
-    """
-
-    kc: float
-    mc: float
-
-
-MATERIALS = {
-    "C45": Kienzle(2220.0, 0.14),
-    "C60": Kienzle(2130.0, 0.18),
-    "E335": Kienzle(2110.0, 0.17),
-    "16MnCr5": Kienzle(2100.0, 0.26),
-    "42CrMo4": Kienzle(2500.0, 0.26),
-    "EN-GJL-250": Kienzle(1160.0, 0.26),
-    "AlMgSi": Kienzle(650.0, 0.25),
-}
-"""Steels and cast iron: Kienzle's constants as tabulated in König and Klocke,
-Fertigungsverfahren 1; those of C45, E335, 16MnCr5, 42CrMo4 and EN-GJL-250 give the specific forces
-of Röhm's table (Reference RN 1391, table 2) within 7 %, to which the tests hold them. AlMgSi, aged:
-the value of tool makers' tables for ISO group N1.2."""
-
-
-def kienzle(stock: StockTable) -> Kienzle | None:
-    """The constants of a stock's material, or None where the job names none.
-
-    Raises:
-        ConfigError: The material is not known.
-    """
-    if stock.material is None:
-        return None
-    if stock.material not in MATERIALS:
-        known = ", ".join(sorted(MATERIALS))
-        raise ConfigError(f"stock.material = '{stock.material}' is not known: there are {known}")
-    return MATERIALS[stock.material]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

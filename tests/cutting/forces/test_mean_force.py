@@ -6,8 +6,8 @@ import pytest
 from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
 from twin.cutting.cut_log import BINS
-from twin.cutting.force import MATERIALS
-from twin.cutting.force_direction import RADIAL_SHARE
+from twin.cutting.forces.direction import RADIAL_SHARE
+from twin.cutting.forces.materials import materials
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
 from twin.toolpath.part_frame import PartFrame
@@ -33,7 +33,7 @@ def test_force_follows_kienzle(width: float, samples: Motion) -> None:
     per_tooth = feed / (3000.0 * 4)
     engaged = math.acos(1 - 2 * width / 10.0)
     chip = 2 * width / 10.0 * per_tooth / engaged
-    steel = MATERIALS["C45"]
+    steel = materials()["C45"]
     power = steel.kc * chip**-steel.mc * width * 4.0 * feed / 60.0 / 1000.0
     speed = math.pi * 10.0 * 3000.0 / 60.0 / 1000.0
     result = cutter.result()
@@ -84,7 +84,7 @@ def test_a_plunge_pushes_up_with_a_drills_thrust(samples: Motion) -> None:
     way = np.stack([0 * z, 0 * z, z], 1)
     cutter.add(samples(way), np.zeros(len(way), np.bool_))
     per_turn = 13.0 / 4.0 / (1000.0 / 60.0)
-    steel = MATERIALS["42CrMo4"]
+    steel = materials()["42CrMo4"]
     kc = steel.kc * (per_turn / 2 * 2 / math.pi) ** -steel.mc
     thrust = kc * 8.0 / 4 * per_turn * math.sin(math.radians(59.0))
     force = cutter.force[2000:3900]
@@ -105,7 +105,7 @@ def test_a_plunge_pushes_up_with_a_drills_thrust(samples: Motion) -> None:
 def test_constants_give_a_chuck_makers_table(material: str, row: tuple[float, ...]) -> None:
     """Röhm, Reference RN 1391, table 2: kc [kN/mm²] by feed at a setting angle of 45 degrees."""
     feed = np.array([0.16, 0.25, 0.4, 0.63, 1.0, 1.6])
-    constants = MATERIALS[material]
+    constants = materials()[material]
     kc = constants.kc * (feed * math.sin(math.radians(45.0))) ** -constants.mc
     np.testing.assert_allclose(kc / 1000.0, row, rtol=0.07)
 

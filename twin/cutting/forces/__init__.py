@@ -1,0 +1,1 @@
+"""Cutting forces: what a material resists with, in the mean and tooth by tooth."""
