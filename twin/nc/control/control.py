@@ -9,6 +9,7 @@ from twin.nc.bytecode.effects import Affected
 from twin.nc.bytecode.registers import INCREMENTAL, PLANE, UNIT
 from twin.nc.canonical import Corner, Dwell, Function, Motion
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
+from twin.nc.control.state import number_of
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
 from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
@@ -18,6 +19,7 @@ from twin.nc.path.moves import (
     LARGEST_COORDINATE,
     SMALLEST_MOVE,
     arc_length,
+    axis_target,
     feed_per_minute,
     line_length,
     only_turns,
@@ -33,9 +35,10 @@ class Control(ControlWords):
         """Take the axis words; the programmed position that they ask for, shape (k,)."""
         target, modal = list(self.programmed), self.modal
         for index, word in self.take_axis_words():
-            value = self.axis_value(index, word)
-            if modal.incremental or word.incremental:
-                value += target[index]
+            incremental = modal.incremental or word.incremental
+            value = axis_target(
+                number_of(word), modal.unit, self.linear[index], incremental, target[index]
+            )
             if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value

@@ -7,7 +7,6 @@ from pathlib import Path
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.codes import (
     Action,
-    Compiler,
     GCode,
     MCode,
     StatementAction,
@@ -62,7 +61,6 @@ class Dialect:
         series: Addresses that may stand several times in a block with a switch point, in order.
         words: Addresses with a modal meaning, and what they do.
         feed_letter: Address that sets the feed and does no more; empty: there is none.
-        word_compilers: The compilers of those that have one.
         statements: Keywords of statements, and what they do.
         other_statement: What the others do, which begin with a name.
         word_meanings: What the addresses mean, for people.
@@ -114,7 +112,6 @@ class Dialect:
     series: str = ""
     words: Mapping[str, WordAction]
     feed_letter: str = "F"
-    word_compilers: Mapping[str, Compiler] = dataclasses.field(default_factory=dict)
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
     other_statement: StatementAction | None = None
     word_meanings: Mapping[str, str]

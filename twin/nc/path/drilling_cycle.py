@@ -199,20 +199,25 @@ def begin(values: Values, axis: int, height: float, lasting: bool) -> None:
 def remember(
     values: Values,
     given: Values,
-    from_start: bool,
-    from_reference: bool,
+    unit: float,
+    relative: tuple[bool, bool],
     lasting: bool,
 ) -> None:
     """Take the words of a block.
 
     Args:
         values: What the cycle remembers.
-        given: The block's words in millimetres and seconds, in the same places.
-        from_start: The reference plane counts from the height of the call.
-        from_reference: The bottom counts from the reference plane.
+        given: The block's words as they are written, in the same places; lengths become millimetres.
+        unit: Of programmed lengths [mm].
+        relative: Whether the reference plane counts from the height of the call, and whether the
+            bottom counts from the reference plane.
         lasting: As in ``Cycle``; else the reference plane is the height of the call where it is
             not given.
     """
+    from_start, from_reference = relative
+    for value in range(VALUES):
+        if (LENGTHS >> value) & 1:
+            given[value] *= unit
     if given[REFERENCE] == given[REFERENCE]:
         values[REFERENCE] = given[REFERENCE] + (values[START] if from_start else 0.0)
     elif not lasting:

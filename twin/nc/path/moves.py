@@ -19,6 +19,21 @@ SMALLEST_MOVE = 1e-9
 
 
 @inlined
+def axis_target(value: float, unit: float, linear: bool, incremental: bool, here: float) -> float:
+    """Where a word wants an axis, programmed coordinates [mm or deg].
+
+    Args:
+        value: Of the word.
+        unit: Of programmed lengths [mm].
+        linear: The axis is a linear one.
+        incremental: The value counts from where it stands.
+        here: Where that is.
+    """
+    target = value * unit if linear else value
+    return target + here if incremental else target
+
+
+@inlined
 def line_length(start: Position, end: Position) -> float:
     """How far a straight move goes: in X, Y and Z, or where these rest in the other axes [mm or deg].
 

@@ -24,7 +24,7 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import Corner, FloatArray, Motion, Shape
-from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
+from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
 from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
@@ -90,7 +90,7 @@ def drill(
         aim(constants, block, rest, state)
     target = constants.over
     for axis in range(len(state.part)):
-        target[axis] = axis_target(axis, block, rest, constants, state)
+        target[axis] = target_of_axis(axis, block, rest, constants, state)
         if not abs(target[axis]) <= LARGEST_COORDINATE:
             return UNSUPPORTED
     after = _emit_hole(block, hole, constants, state, rows, row)
@@ -140,12 +140,9 @@ def _read_cycle(
             if value >= 0:
                 given[value] = block.values[word]
                 taken |= 1 << token_kind
-    for value in range(drilling_cycle.VALUES):
-        if (drilling_cycle.LENGTHS >> value) & 1:
-            given[value] *= modal[UNIT]
     relative = modal[INCREMENTAL] != 0.0
     if begins or taken:
-        drilling_cycle.remember(remembered, given, relative, relative, cycle.lasting)
+        drilling_cycle.remember(remembered, given, modal[UNIT], (relative, relative), cycle.lasting)
     return taken, drilling_cycle.hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
 
 

@@ -8,6 +8,7 @@ from twin.nc.bytecode.registers import INCREMENTAL, PLANE, UNIT, Constants, Stat
 from twin.nc.bytecode.token_kinds import AXIS
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.geometry.planes import along, put_point
+from twin.nc.path.moves import axis_target
 
 
 class PlainBlock(NamedTuple):
@@ -44,7 +45,7 @@ def value_of(token_kind: int, block: PlainBlock) -> float:
 
 
 @inlined
-def axis_target(
+def target_of_axis(
     axis: int, block: PlainBlock, seen: int, constants: Constants, state: State
 ) -> float:
     """Where the block wants an axis, as programmed; a polar block has aimed already.
@@ -60,9 +61,9 @@ def axis_target(
         return state.target[axis]
     if not seen & (1 << (AXIS + axis)):
         return state.programmed[axis]
-    value = value_of(AXIS + axis, block)
-    value *= block.modal[UNIT] if constants.linear[axis] else 1.0
-    return value + state.programmed[axis] if block.modal[INCREMENTAL] != 0.0 else value
+    value, unit = value_of(AXIS + axis, block), block.modal[UNIT]
+    incremental = block.modal[INCREMENTAL] != 0.0
+    return axis_target(value, unit, constants.linear[axis], incremental, state.programmed[axis])
 
 
 @compilable
@@ -71,11 +72,11 @@ def aim(constants: Constants, block: PlainBlock, seen: int, state: State) -> Non
     abscissa, ordinate = state.target[0], state.target[1]
     x, y, z = state.programmed[0], state.programmed[1], state.programmed[2]
     plane = int(block.modal[PLANE])
-    across = constants.planes[plane, 2]
+    across = int(constants.planes[plane, 2])
     if seen & (1 << (AXIS + across)):
-        value = value_of(AXIS + across, block) * block.modal[UNIT]
+        value, unit = value_of(AXIS + across, block), block.modal[UNIT]
         incremental = block.modal[INCREMENTAL] != 0.0
-        height = value + state.programmed[across] if incremental else value
+        height = axis_target(value, unit, True, incremental, state.programmed[across])
         x = height if across == 0 else x
         y = height if across == 1 else y
         z = height if across == 2 else z

@@ -42,7 +42,7 @@ from twin.nc.bytecode.token_kinds import (
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
-from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
+from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.functions import turns_behind
 from twin.nc.path.event_columns import FUNCTION_ALONE
 from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length, only_turns
@@ -217,7 +217,7 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     if block.polar:
         aim(constants, block, seen, state)
     for axis in range(len(state.part)):
-        target = axis_target(axis, block, seen, constants, state)
+        target = target_of_axis(axis, block, seen, constants, state)
         if not abs(target) <= LARGEST_COORDINATE:
             return UNSUPPORTED
         position[0, axis] = state.part[axis]

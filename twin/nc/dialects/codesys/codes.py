@@ -38,7 +38,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=actions.plane_changed,
-        compiler=lambda block, assembler: base.plane_effect(plane).write(block.control, assembler),
+        compiler=base.plane_effect(plane).write,
         ground="manual",
     )
 

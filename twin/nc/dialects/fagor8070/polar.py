@@ -83,26 +83,25 @@ def compile_polar(compiler: BlockCompiler, words: Iterable[Word]) -> None:
     Raises:
         UnsupportedError: It does more than that.
     """
-    assembler = compiler.assembler
-    codes, functions, block = compiler.sorted(words)
+    assembler, control = compiler.assembler, compiler.control
+    codes, functions = compiler.sorted(words)
     cycles = [(word, code) for word, code in codes if code.begins_cycle]
     others = [(word, code) for word, code in codes if not code.begins_cycle]
     for _, code in cycles:
-        writer = code.writer
-        if writer is None:
+        if code.writer is None:
             raise UnsupportedError
-        writer(block, assembler)
-    radius, angle, feed = block.take("R"), block.take("Q"), block.take("F")
+        code.writer(control, assembler)
+    radius, angle, feed = control.take("R"), control.take("Q"), control.take("F")
     if (
         functions
-        or block.words.keys() - compiler.control.axis_letters
+        or control.words.keys() - control.axis_letters
         or any(code.writer or code.action or code.perform for _, code in others)
         or any(word is not None and word.incremental for word in (radius, angle))
     ):
         raise UnsupportedError
     moving = [] if feed is None else [feed]
     assembler.codes([*(word for word, _ in others), *moving])
-    assembler.polar(radius, angle, [*(word for word, _ in cycles), *block.words.values()])
+    assembler.polar(radius, angle, [*(word for word, _ in cycles), *control.words.values()])
 
 
 def refuse_origin_by_g93(control: Control) -> None:
