@@ -8,7 +8,6 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.registers import SPINDLE_TURNS
 from twin.nc.control.block_order import Conflict, conflict_of, in_order, run_in_order
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
@@ -261,7 +260,7 @@ class Executor(Control):
         if function.silent:
             return
         arguments, number = self.take_function_arguments(word), integer_of(number_of(word))
-        self.registers[SPINDLE_TURNS] = turns_behind(number, self.registers[SPINDLE_TURNS])
+        self.spindle_turns = turns_behind(number, self.spindle_turns) != 0.0
         self.function(f"M{number}", arguments)
         if function.dwell > 0.0:
             self.dwell(function.dwell)

@@ -217,6 +217,10 @@ class ControlState:
         """M3 or M4 of the program is in force; what a cycle does at a hole ends with the hole."""
         return self.registers[SPINDLE_TURNS] != 0.0
 
+    @spindle_turns.setter
+    def spindle_turns(self, turns: bool) -> None:
+        self.registers[SPINDLE_TURNS] = turns
+
     def saved_modal(self) -> SavedModal:
         """What is in force, to be restored later."""
         return SavedModal(dataclasses.replace(self.modal), dict(self.active))

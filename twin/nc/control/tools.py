@@ -24,13 +24,16 @@ class Tools:
         self.any = table[first] if any_tool and first is not None else None
         self._reference = 0.0 if first is None else table[first].length
         self._registers = registers
-        self._registers[IN_SPINDLE] = math.nan if first is None else first
-        self.selected = first
+        self.spindle = self.selected = first
 
     @property
     def spindle(self) -> int | None:
         """Number of the tool in the spindle."""
         return _number(self._registers[IN_SPINDLE])
+
+    @spindle.setter
+    def spindle(self, number: int | None) -> None:
+        self._registers[IN_SPINDLE] = math.nan if number is None else number
 
     @property
     def selected(self) -> int | None:
