@@ -73,7 +73,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
     ),
     "twin.run": (
         "stages progress run_folder",
-        "placement outcome",
+        "placement outcome waits",
         "preparation",
         "dry_run machining messages replay",
         "run",

@@ -120,7 +120,7 @@ def setpoints(run: Run) -> Iterator[Setpoints]:
     """The setpoints of a run that is prepared already, in chunks."""
     preparation = run.preparation
     return plan_chunks(
-        preparation.interpretation().chunks(),
+        preparation.timed_chunks(),
         motion_limits(preparation.machine),
         period_s=preparation.machine.file.servo_period_s,
         part_zero=run.part_zero,

@@ -52,7 +52,7 @@ def plan_and_print(
     preparation = prepare(path, dialect=dialect, machine=machine, strict=strict)
     twin_machine = preparation.machine
     summary = summarize(
-        preparation.interpretation().chunks(),
+        preparation.timed_chunks(),
         motion_limits(twin_machine),
         start=preparation.start,
         axes=twin_machine.axes,

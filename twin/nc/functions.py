@@ -15,7 +15,9 @@ SPINDLE_SPEED = "S"
 COOLANT_ON = frozenset({"M7", "M8"})
 COOLANT_OFF = frozenset({"M9"})
 TOOL_CHANGE = "M6"
-PROGRAM_STOPS = frozenset({"M0", "M1"})
+OPTIONAL_STOP = "M1"
+"""Stops where the operator's switch says so."""
+PROGRAM_STOPS = frozenset({"M0", OPTIONAL_STOP})
 """The operator starts the program again."""
 PROGRAM_ENDS = frozenset({"M2", "M30"})
 """The spindle and the coolant end with the program."""

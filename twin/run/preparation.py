@@ -2,7 +2,7 @@
 
 import dataclasses
 import functools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pydantic
@@ -12,13 +12,14 @@ from twin.files.overrides import Change
 from twin.files.shipped import machine_file, shipped_program
 from twin.job.job_file import Job, JobFile, read_job
 from twin.machine.description.config import Machine, read_machine
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named, recognise
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
 from twin.run.placement import start_position
+from twin.run.waits import with_waits
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -42,6 +43,11 @@ class Preparation:
     def interpretation(self) -> Interpretation:
         """A fresh pass over the program."""
         return Interpretation(self.source, self.dialect, self.settings)
+
+    def timed_chunks(self) -> Iterator[Chunk]:
+        """A fresh pass over the program, with the time of tool changes and spindle as dwells."""
+        chunks = self.interpretation().chunks()
+        return with_waits(chunks, self.machine.file.spindle, self.job.file)
 
     @functools.cached_property
     def start(self) -> FloatArray:

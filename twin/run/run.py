@@ -182,7 +182,7 @@ class Run:
         period = machine.file.servo_period_s
 
         def moves() -> Iterator[Chunk]:
-            for chunk in self.preparation.interpretation().chunks():
+            for chunk in self.preparation.timed_chunks():
                 comparison.expect(chunk.moves)
                 machining.expect(chunk)
                 yield chunk

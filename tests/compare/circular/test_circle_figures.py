@@ -195,3 +195,11 @@ def test_angles_are_the_planes_own(normal: FloatArray):
     if normal[1] == 1.0:
         assert first == pytest.approx([0, 0, 1])
         assert second == pytest.approx([1, 0, 0])
+
+
+@pytest.mark.parametrize("rows", [1000, 7000, 15_000])
+def test_a_turn_is_full_however_its_points_come(rows: int):
+    path, points = CirclePath(RADIUS), RADIUS * np.column_stack([np.cos(TURN), np.sin(TURN)])
+    for first in range(0, len(points), rows):
+        path.add(points[first : first + rows])
+    assert path.covers_full_turn()

@@ -272,15 +272,16 @@ def test_a_malformed_command_changes_nothing(session):
     assert session.snapshot().position == before.position
 
 
-def test_a_spindle_start_without_a_speed_turns_at_the_last_one_or_at_one_nobody_has_said(session):
+def test_a_spindle_starts_at_its_last_speed_and_without_one_not_at_all(session):
     room = session.room
     do(session, "mode", mode="mdi")
-    for text, speed in (("M3", None), ("S1500 M4", 1500.0), ("M5", None), ("M3", 1500.0)):
+    for text, turns, speed in (
+        ("M3", False, 0.0), ("S1500 M4", True, 1500.0), ("M5", False, 1500.0), ("M3", True, 1500.0),
+    ):  # fmt: skip
         do(session, "mdi", text=text)
         do(session, "cycle_start")
         rest(session)
-        assert room.spindle.turns == (text != "M5")
-        assert room.spindle.speed == (speed if room.spindle.turns else 1500.0)
+        assert (room.spindle.turns, room.spindle.speed) == (turns, speed)
     do(session, "spindle", on=False)
     assert not room.spindle.turns
     do(session, "spindle", on=True)

@@ -92,7 +92,7 @@ class CirclePath:
     def covers_full_turn(self) -> bool:
         """Whether no gap in the angles is wider than ``FULL_TURN_GAP``."""
         if self._bins is not None:
-            return self._bins.widest_gap() <= FULL_TURN_GAP
+            return self._binned().widest_gap() <= FULL_TURN_GAP
         points = np.concatenate([np.zeros((0, 2)), *self._points])
         angle = np.sort(np.arctan2(points[:, 1], points[:, 0]))
         gaps = np.diff(np.append(angle, angle[:1] + 2.0 * np.pi))

@@ -169,6 +169,10 @@ class SpindleTable(Table):
 
     flange_diameter: Positive = 63.0
     """Of the holder's flange [mm]; 63 is a BT40 taper's (JIS B 6339)."""
+    tool_change_s: NonNegative = 0.0
+    """Time of a tool change with the spindle at rest [s]; 0: none is counted."""
+    acceleration: NonNegative = 0.0
+    """How fast the spindle changes its speed [1/min per s]; 0: at once."""
 
 
 class CollisionTable(Table):

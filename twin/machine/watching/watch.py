@@ -34,7 +34,7 @@ class Watch:
         self._forces = ["N" if kind == "linear" else "N m" for kind in machine.axes.kinds]
         force_limit = np.array([axis.force_limit or np.inf for axis in axes])
         patience = [round(axis.saturation_time_s / machine.file.servo_period_s) for axis in axes]
-        switches = np.array([_switches(axis) for axis in axes]).T.copy()
+        switches = np.array([limit_switches(axis) for axis in axes]).T.copy()
         self._force_limit = force_limit
         self._watched = Watched(
             lag=np.array([axis.following_error_limit or np.inf for axis in axes]),
@@ -93,7 +93,7 @@ class Watch:
         )
 
 
-def _switches(axis: AxisTable) -> tuple[float, float]:
+def limit_switches(axis: AxisTable) -> tuple[float, float]:
     """Where the limit switches of an axis lie [mm or deg]."""
     if axis.limit_switches is not None:
         return axis.limit_switches

@@ -28,6 +28,8 @@ FEED_OVERRIDES = (0, 120)
 """Ends of the feed override dial [%]."""
 RAPID_OVERRIDES = (0, 100)
 """Ends of the rapid override dial [%]."""
+SPINDLE_OVERRIDES = (50, 120)
+"""Ends of the spindle override dial [%]."""
 
 _SHIPPED = Path(__file__).resolve().parent.parent / "scenes"
 
@@ -45,6 +47,8 @@ class StartTable(Table):
     """How much longer the tool table has the tool in the spindle than it is [mm]."""
     spindle: bool = False
     """Whether the spindle turns already."""
+    speed: Annotated[float, Field(gt=0)] | None = None
+    """What it is set to [1/min]; none: nobody has said."""
     feed_override: Annotated[int, Field(ge=FEED_OVERRIDES[0], le=FEED_OVERRIDES[1])] = 100
     """Of programmed feeds [%]."""
     rapid_override: Annotated[int, Field(ge=RAPID_OVERRIDES[0], le=RAPID_OVERRIDES[1])] = 100
@@ -60,6 +64,17 @@ class PictureTable(Table):
     """Named camera that the view begins with."""
     columns: Annotated[int, Field(ge=4, le=96)] = 40
     """Columns of the drawn stock along its longer side; the cutting itself is as fine as ever."""
+
+
+class PartTable(Table):
+    """What the finished part is known by: a program that ends has finished it only then."""
+
+    removed_mm3: tuple[float, float] = (0.0, 1e12)
+    """Least and most that has been cut off [mm³]."""
+    points: tuple[tuple[float, float, float], ...] = ()
+    """Where the part's surface lies: X, Y and Z in program coordinates at C0 [mm]."""
+    tolerance: Annotated[float, Field(gt=0)] = 0.1
+    """Of the points [mm]."""
 
 
 class StepTable(Table):
@@ -103,12 +118,14 @@ class SceneFile(Table):
     faults: tuple[FaultTable, ...] = ()
     """What is broken from the start."""
     tasks: Annotated[tuple[TaskTable, ...], Field(min_length=1)]
+    part: PartTable | None = None
+    """The part by which the condition ``finished`` is judged; none: the program's end is enough."""
     hints: tuple[Text, ...] = ()
     """Given one after the other when the operator asks for one."""
     hint_cost: Annotated[int, Field(ge=0)] = 1
     """Points that a hint costs."""
     time_limit_s: Annotated[float, Field(gt=0)] = 1800.0
-    """Machine time after which the scene is judged [s]."""
+    """Machine time from the first touch after which the scene is judged [s]."""
     picture: PictureTable = PictureTable()
     solution: tuple[StepTable, ...] = ()
     """A scripted operator who reaches full points."""

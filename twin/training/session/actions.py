@@ -1,21 +1,29 @@
 """What each command does at the machine, and why it may be refused."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 
 from twin.errors import UsageError
 from twin.nc.functions import SpindleState
-from twin.nc.iso.base import jog_block
 from twin.nc.text.source import source_from_text
 from twin.training.session import commands as c
 from twin.training.session.faults import forget_offset, inject, repair
-from twin.training.session.room import Room
+from twin.training.session.program_run import RunOptions
+from twin.training.session.room import SHORTEST_WAY, Leg, Room
 from twin.units import SECONDS_PER_MINUTE
 
-RESOLUTION = 1e-3
-"""Way that counts as none when an axis is jogged [mm or deg]."""
+DRY_RUN_FEED = 3000.0
+"""What all feeds are replaced by in a dry run [mm/min]."""
+HAND_FEED = 2000.0
+"""Of the handwheel, of the way to the reference point and back to the path [mm/min or deg/min]."""
+ENDLESS = 3600.0
+"""How far a jog goes at most that lasts while its key is held [mm or deg]."""
+REFERENCE = 0.0
+"""Machine coordinate of the reference point of every axis."""
+EDITS_KEPT = 100
+"""Changes of the program that can be taken back."""
 
 
 def carry_out(room: Room, command: c.Command) -> None:
@@ -24,13 +32,19 @@ def carry_out(room: Room, command: c.Command) -> None:
     Raises:
         TwinError: The machine refuses; the message says why. Nothing has changed then.
     """
+    room.judge.note_touch(room)
     _ACTIONS[type(command)](room, command)
 
 
 def _mode(room: Room, command: c.SelectMode) -> None:
     within = {"auto", "single"}
     if room.run is not None and not {room.mode, command.mode} <= within:
-        raise UsageError("the mode cannot change while something runs: reset first")
+        held = room.running == "program" and room.run.held and not room.moving
+        if command.mode != "jog" or not held or room.waiting:
+            raise UsageError("the mode cannot change while something runs: reset first")
+        room.suspend()
+    if room.suspended is not None and command.mode == "mdi":
+        raise UsageError("a program is held: reset first")
     room.mode = command.mode
 
 
@@ -38,17 +52,45 @@ def _cycle_start(room: Room, _command: c.CycleStart) -> None:
     _require_no_alarm(room)
     if room.waiting:
         room.go_on()
-    elif room.run is not None:
+    elif room.run is not None and room.running != "jog":
         room.run.start()
     elif room.mode == "jog":
         raise UsageError("cycle start does nothing in manual jog")
+    elif room.suspended is not None:
+        room.resume()
+        assert room.run is not None
+        room.run.start()
     elif room.mode == "mdi":
         if not room.entered.strip():
             raise UsageError("the MDI line is empty")
-        room.start_run(source_from_text(room.entered, "MDI"), "mdi")
+        options = RunOptions(inherited=room.inherited)
+        room.start_run(source_from_text(room.entered, "MDI"), "mdi", options)
     else:
-        room.judge.note_start()
-        room.start_run(room.program, "program")
+        _start_program(room)
+
+
+def _start_program(room: Room) -> None:
+    dry = DRY_RUN_FEED if room.switches.dry_run else None
+    whole = room.searched == 0 and dry is None
+    options = RunOptions(dry_feed=dry, search=room.searched)
+    room.start_run(room.program, "program", options)
+    room.judge.note_start(whole=whole)
+    room.searched = 0
+
+
+def _search(room: Room, command: c.Search) -> None:
+    _require_no_run(room, "a search begins while nothing runs: reset first")
+    if command.line > len(room.lines):
+        raise UsageError(f"the program has {len(room.lines)} lines")
+    room.searched = command.line
+
+
+def _switch(room: Room, command: c.Switch) -> None:
+    if command.name == "dry_run":
+        _require_no_run(room, "the dry run cannot change while something runs: reset first")
+    setattr(room.switches, command.name, command.on)
+    if command.name == "block_skip" and room.run is not None:
+        room.run.skip_blocks(on=command.on)
 
 
 def _feed_hold(room: Room, _command: c.FeedHold) -> None:
@@ -59,6 +101,10 @@ def _feed_hold(room: Room, _command: c.FeedHold) -> None:
 
 
 def _reset(room: Room, _command: c.Reset) -> None:
+    room.legs.clear()
+    room.suspended = None
+    room.searched = 0
+    room.inherited = None
     if room.run is not None and not room.waiting:
         room.run.drop()
     elif room.run is not None:
@@ -79,39 +125,81 @@ def _emergency_stop(room: Room, command: c.EmergencyStop) -> None:
 def _override(room: Room, command: c.Override) -> None:
     if command.dial == "feed":
         room.feed_override = command.percent
+    elif command.dial == "spindle":
+        room.spindle_override = command.percent
     else:
         room.rapid_override = command.percent
 
 
 def _jog(room: Room, command: c.Jog) -> None:
-    _require_no_alarm(room)
-    if room.mode != "jog":
-        raise UsageError("jogging needs the mode manual jog")
+    _require_jog(room, command.axis)
     if room.run is not None:
         raise UsageError("an axis is being jogged already")
-    machine = room.machine.machine
     column = _column(room, command.axis)
-    distance = _within_travel(room, column, command)
-    if abs(distance) < RESOLUTION:
-        raise UsageError(f"{command.axis} stands at the end of its travel")
-    feed = min(command.feed, SECONDS_PER_MINUTE * machine.axis(command.axis).velocity)
-    block = jog_block(room.scene.preparation.dialect, command.axis, distance, feed)
-    room.start_run(source_from_text(block, "jog"), "jog")
-
-
-def _within_travel(room: Room, column: int, command: c.Jog) -> float:
-    """How far a jog goes: its step, or to the end of the travel; never further out."""
-    machine = room.machine.machine
-    axis = machine.axis(command.axis)
     place = float(room.standing_setpoint[column])
-    low, high = axis.travel or (-np.inf, np.inf)
-    free = max(0.0, high - place) if command.direction > 0 else max(0.0, place - low)
-    endless = 3600.0
-    wanted = command.step if command.step is not None else endless
-    return command.direction * min(wanted, free)
+    way = command.direction * (command.step if command.step is not None else ENDLESS)
+    target = _within_travel(room, command.axis, place, place + way)
+    if abs(target - place) < SHORTEST_WAY:
+        raise UsageError(f"{command.axis} stands at the end of its travel")
+    room.drive_by_hand([Leg(command.axis, target, _feed(room, command.axis, command.feed))])
+
+
+def _handwheel(room: Room, command: c.Handwheel) -> None:
+    _require_jog(room, command.axis)
+    axis, way = command.axis, command.clicks * command.step
+    place = float(room.standing_setpoint[_column(room, axis)])
+    waits = room.legs[-1].target if room.legs and room.legs[-1].axis == axis else None
+    if room.run is not None and waits is None:
+        going = room.run.target(0)
+        if room.running != "jog" or going is None:
+            raise UsageError("an axis is being jogged already")
+        column = _column(room, axis)
+        waits = float(going[0][column] + room.tables.program_zero[column])
+    target = _within_travel(room, axis, place, (place if waits is None else waits) + way)
+    leg = Leg(axis, target, _feed(room, axis, HAND_FEED))
+    if room.run is not None:
+        room.legs.clear()
+        room.legs.append(leg)
+    else:
+        room.drive_by_hand([leg])
+
+
+def _reference(room: Room, _command: c.Reference) -> None:
+    _require_still(room)
+    names = room.machine.machine.axes.names
+    order = sorted(names, key=lambda name: name != "Z")
+    room.drive_by_hand(
+        Leg(name, _within_travel(room, name, REFERENCE, REFERENCE), _feed(room, name, HAND_FEED))
+        for name in order
+    )
+
+
+def _return_to_path(room: Room, _command: c.ReturnToPath) -> None:
+    if room.suspended is None:
+        raise UsageError("no program is held")
+    _require_still(room)
+    names = room.machine.machine.axes.names
+    goal, stands = room.suspended.place, room.standing_setpoint
+    # Up first, down last: the tool goes over what it may meet.
+    up = goal[names.index("Z")] > stands[names.index("Z")]
+    order = sorted(names, key=lambda name: (name == "Z") != up)
+    room.drive_by_hand(
+        Leg(name, float(goal[names.index(name)]), _feed(room, name, HAND_FEED)) for name in order
+    )
+
+
+def _within_travel(room: Room, axis: str, place: float, target: float) -> float:
+    """How far an axis goes by hand: to the end of its travel; never further out."""
+    low, high = room.machine.machine.axis(axis).travel or (-np.inf, np.inf)
+    return float(min(max(target, min(low, place)), max(high, place)))
+
+
+def _feed(room: Room, axis: str, feed: float) -> float:
+    return min(feed, SECONDS_PER_MINUTE * room.machine.machine.axis(axis).velocity)
 
 
 def _jog_stop(room: Room, _command: c.JogStop) -> None:
+    room.legs.clear()
     if room.running == "jog" and room.run is not None:
         room.run.drop()
 
@@ -123,26 +211,64 @@ def _enter(room: Room, command: c.Enter) -> None:
 
 
 def _edit(room: Room, command: c.Edit) -> None:
-    if room.run is not None:
-        raise UsageError("a program cannot be edited while something runs: reset first")
+    _require_no_run(room, "a program cannot be edited while something runs: reset first")
     lines = list(room.lines)
     if command.line > len(lines) + 1:
         raise UsageError(f"the program has {len(lines)} lines")
     new = [] if command.text is None else command.text.split("\n")
     lines[command.line - 1 : command.line] = new
-    room.program = source_from_text("\n".join(lines), room.program.name)
+    room.edits = [*room.edits, room.lines][-EDITS_KEPT:]
+    _load(room, lines)
+
+
+def _undo(room: Room, _command: c.Undo) -> None:
+    _require_no_run(room, "a program cannot be edited while something runs: reset first")
+    if not room.edits:
+        raise UsageError("the program has not been changed")
+    *room.edits, lines = room.edits
+    _load(room, lines)
+
+
+def _reload(room: Room, _command: c.Reload) -> None:
+    _require_no_run(room, "a program cannot be edited while something runs: reset first")
+    room.edits = [*room.edits, room.lines][-EDITS_KEPT:]
+    _load(room, room.scene.preparation.source.lines)
+
+
+def _load(room: Room, lines: Iterable[str]) -> None:
     room.lines = tuple(lines)
+    room.program = source_from_text("\n".join(room.lines), room.program.name)
+    room.searched = 0
 
 
 def _spindle(room: Room, command: c.Spindle) -> None:
+    speed = room.spindle.speed if command.speed is None else command.speed
     if command.on:
         _require_no_alarm(room)
-    speed = room.spindle.speed if command.speed is None else command.speed
+        if not speed:
+            raise UsageError("no spindle speed is set: type S first")
+        room.counter_clockwise = command.counter_clockwise
     room.spindle = SpindleState(started=command.on, speed=speed)
 
 
 def _coolant(room: Room, command: c.Coolant) -> None:
+    if command.on:
+        _require_no_alarm(room)
     room.coolant = command.on
+
+
+def _change_tool(room: Room, command: c.ChangeTool) -> None:
+    _require_still(room)
+    if room.spindle.turns:
+        raise UsageError("the spindle turns: stop it before the tool is changed")
+    room.mount(command.number)
+
+
+def _new_blank(room: Room, _command: c.NewBlank) -> None:
+    _require_still(room)
+    if room.spindle.turns:
+        raise UsageError("the spindle turns: stop it before the blank is changed")
+    room.new_blank()
 
 
 def _set_zero(room: Room, command: c.SetZero) -> None:
@@ -156,13 +282,17 @@ def _set_zero(room: Room, command: c.SetZero) -> None:
 
 def _set_offset(room: Room, command: c.SetOffset) -> None:
     _require_no_run(room)
-    room.tables.zero[_column(room, command.axis)] = command.value
+    column = _column(room, command.axis)
+    if command.name is not None:
+        room.tables.set_offset(command.name, command.axis, command.value)
+        return
+    room.tables.zero[column] = command.value
     forget_offset(room, command.axis)
 
 
 def _set_tool(room: Room, command: c.SetTool) -> None:
     _require_no_run(room)
-    room.tables.set_length(command.number, command.length)
+    room.tables.set_tool(command.number, command.length, command.radius)
 
 
 def _answer(room: Room, command: c.Answer) -> None:
@@ -190,9 +320,31 @@ def _require_no_alarm(room: Room) -> None:
         raise UsageError(f"an alarm stands ({room.alarm.code}): reset first")
 
 
-def _require_no_run(room: Room) -> None:
-    if room.run is not None:
-        raise UsageError("the tables cannot change while something runs: reset first")
+def _require_no_run(
+    room: Room, why: str = "the tables cannot change while something runs: reset first"
+) -> None:
+    if room.run is not None or room.suspended is not None:
+        raise UsageError(why)
+
+
+def _require_jog(room: Room, axis: str) -> None:
+    """An axis may be jogged; off its limit switch also while that alarm stands."""
+    if room.mode != "jog":
+        raise UsageError("jogging needs the mode manual jog")
+    _column(room, axis)
+    if room.alarm is not None and room.alarm.code == "hard-limit" and not room.pressed:
+        room.release(axis)
+    else:
+        _require_no_alarm(room)
+
+
+def _require_still(room: Room) -> None:
+    """Nothing runs, and no alarm stands."""
+    _require_no_alarm(room)
+    if room.mode != "jog":
+        raise UsageError("that is done in the mode manual jog")
+    if room.run is not None or room.moving:
+        raise UsageError("the axes still move")
 
 
 def _column(room: Room, axis: str) -> int:
@@ -211,10 +363,19 @@ _ACTIONS: dict[type, Callable[[Room, Any], None]] = {
     c.Override: _override,
     c.Jog: _jog,
     c.JogStop: _jog_stop,
+    c.Handwheel: _handwheel,
+    c.Reference: _reference,
+    c.ReturnToPath: _return_to_path,
+    c.Search: _search,
+    c.Switch: _switch,
     c.Enter: _enter,
     c.Edit: _edit,
+    c.Undo: _undo,
+    c.Reload: _reload,
     c.Spindle: _spindle,
     c.Coolant: _coolant,
+    c.ChangeTool: _change_tool,
+    c.NewBlank: _new_blank,
     c.SetZero: _set_zero,
     c.SetOffset: _set_offset,
     c.SetTool: _set_tool,

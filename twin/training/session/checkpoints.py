@@ -97,6 +97,10 @@ class Checkpoint:
         """A room that goes on from there; the copy stays as it is."""
         room = _copied(self.room, {})
         room.run = _made_again(room.run)
+        if room.suspended is not None:
+            run = _made_again(room.suspended.run)
+            assert run is not None
+            room.suspended = room.suspended._replace(run=run)
         return room
 
 

@@ -12,7 +12,12 @@ from pydantic import Field
 from twin.errors import UsageError
 from twin.files.toml import Table
 from twin.training.scene.fault_table import FaultTable
-from twin.training.scene.scene_file import FEED_OVERRIDES, RAPID_OVERRIDES, Mode
+from twin.training.scene.scene_file import (
+    FEED_OVERRIDES,
+    RAPID_OVERRIDES,
+    SPINDLE_OVERRIDES,
+    Mode,
+)
 
 SPINDLE_SPEEDS = (1.0, 20000.0)
 """Ends of what the spindle turns [1/min]."""
@@ -57,13 +62,15 @@ class Override(Table):
     """Turn an override dial."""
 
     do: Literal["override"] = "override"
-    dial: Literal["feed", "rapid"] = "feed"
+    dial: Literal["feed", "rapid", "spindle"] = "feed"
     percent: Annotated[int, Field(ge=FEED_OVERRIDES[0], le=FEED_OVERRIDES[1])]
 
     @pydantic.model_validator(mode="after")
     def _within_dial(self) -> "Override":
         if self.dial == "rapid" and self.percent > RAPID_OVERRIDES[1]:
             raise ValueError(f"the rapid override ends at {RAPID_OVERRIDES[1]} %")
+        if self.dial == "spindle" and self.percent < SPINDLE_OVERRIDES[0]:
+            raise ValueError(f"the spindle override begins at {SPINDLE_OVERRIDES[0]} %")
         return self
 
 
@@ -77,6 +84,44 @@ class Jog(Table):
     """How far [mm or deg]; none: until ``jog_stop``."""
     feed: Annotated[float, Field(gt=0, le=100000)] = 2000.0
     """[mm/min or deg/min]."""
+
+
+class Handwheel(Table):
+    """Turn the handwheel by clicks; the axis follows it."""
+
+    do: Literal["handwheel"] = "handwheel"
+    axis: str
+    clicks: Annotated[int, Field(ge=-100, le=100)]
+    step: Annotated[float, Field(ge=0.001, le=1.0)]
+    """What a click is worth [mm or deg]."""
+
+
+class Reference(Table):
+    """Drive the axes to the machine's reference point, Z first."""
+
+    do: Literal["reference"] = "reference"
+
+
+class ReturnToPath(Table):
+    """Drive the axes, which were jogged during a hold, back to where the program was held."""
+
+    do: Literal["return_to_path"] = "return_to_path"
+
+
+class Search(Table):
+    """Let the next start begin at a line: what stands before it is only computed."""
+
+    do: Literal["search"] = "search"
+    line: Annotated[int, Field(ge=0)]
+    """0: from the beginning after all."""
+
+
+class Switch(Table):
+    """Turn a switch that says how programs run."""
+
+    do: Literal["switch"] = "switch"
+    name: Literal["optional_stop", "block_skip", "dry_run"]
+    on: bool
 
 
 class JogStop(Table):
@@ -100,6 +145,18 @@ class Edit(Table):
     text: Annotated[str, Field(max_length=LONGEST_TEXT)] | None = None
 
 
+class Undo(Table):
+    """Take back the last change of the program."""
+
+    do: Literal["undo"] = "undo"
+
+
+class Reload(Table):
+    """Load the program as the scene has it."""
+
+    do: Literal["reload"] = "reload"
+
+
 class Spindle(Table):
     """Start or stop the spindle by hand."""
 
@@ -107,6 +164,8 @@ class Spindle(Table):
     on: bool
     speed: Annotated[float, Field(ge=SPINDLE_SPEEDS[0], le=SPINDLE_SPEEDS[1])] | None = None
     """[1/min]; none: as it last turned."""
+    counter_clockwise: bool = False
+    """Which way, as M4 turns it."""
 
 
 class Coolant(Table):
@@ -124,20 +183,38 @@ class SetZero(Table):
     reading: Annotated[float, Field(ge=-10000, le=10000)] = 0.0
 
 
+class ChangeTool(Table):
+    """Put a tool into the spindle by hand."""
+
+    do: Literal["change_tool"] = "change_tool"
+    number: Annotated[int, Field(ge=0)]
+
+
+class NewBlank(Table):
+    """Clamp a new blank in the place of the one on the table."""
+
+    do: Literal["new_blank"] = "new_blank"
+
+
 class SetOffset(Table):
-    """Write the part zero of an axis into the table, machine coordinates."""
+    """Write the part zero of an axis into the table, machine coordinates; or a work offset of it."""
 
     do: Literal["set_offset"] = "set_offset"
     axis: str
     value: Annotated[float, Field(ge=-10000, le=10000)]
+    name: Annotated[str, Field(max_length=8)] | None = None
+    """Which work offset, counted from part zero; none: part zero itself."""
 
 
 class SetTool(Table):
-    """Write a tool's length into the tool table."""
+    """Write a tool's length or radius into the tool table."""
 
     do: Literal["set_tool"] = "set_tool"
     number: Annotated[int, Field(ge=0)]
-    length: Annotated[float, Field(gt=0, le=1000)]
+    length: Annotated[float, Field(gt=0, le=1000)] | None = None
+    """[mm]"""
+    radius: Annotated[float, Field(ge=0, le=500)] | None = None
+    """[mm]"""
 
 
 class Answer(Table):
@@ -210,9 +287,10 @@ SessionCommand = Freeze | Unfreeze | Rewind | StartReplay | EndReplay
 """What is done to the session's time and not to its machine."""
 
 Command = (
-    SelectMode | CycleStart | FeedHold | Reset | EmergencyStop | Override | Jog | JogStop | Enter
-    | Edit | Spindle | Coolant | SetZero | SetOffset | SetTool | Answer | Hint | Finish | Inject
-    | Repair | SessionCommand
+    SelectMode | CycleStart | FeedHold | Reset | EmergencyStop | Override | Jog | JogStop
+    | Handwheel | Reference | ReturnToPath | Search | Switch | Enter | Edit | Undo | Reload
+    | Spindle | Coolant | ChangeTool | NewBlank | SetZero | SetOffset | SetTool | Answer | Hint
+    | Finish | Inject | Repair | SessionCommand
 )  # fmt: skip
 
 TRAINERS = (Inject, Repair, Freeze, Unfreeze, Rewind, StartReplay, EndReplay)

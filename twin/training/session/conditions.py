@@ -19,10 +19,11 @@ class Evidence:
     Attributes:
         alarms: Codes of the alarms that came.
         cleared: Codes of those that were cleared.
-        ended_well: The program has run to its end without an alarm.
-        single: Lines that were run in single block.
+        ended_well: The program has run to its end without an alarm, and the part is what it should be.
+        single: Lines that were run in single block, from one stop to the next.
         held: Lines in which the axes were held to a stand.
         answers: What was answered, by number of the task.
+        since_touch_s: Machine time since the panel was touched first [s].
     """
 
     alarms: list[str] = dataclasses.field(default_factory=list)
@@ -31,6 +32,17 @@ class Evidence:
     single: set[int] = dataclasses.field(default_factory=set)
     held: set[int] = dataclasses.field(default_factory=set)
     answers: dict[int, str] = dataclasses.field(default_factory=dict)
+    since_touch_s: float = 0.0
+
+
+def part_is_right(room: Observed) -> bool:
+    """Whether the part on the table is the one that the scene asks for."""
+    part, work = room.scene.file.part, room.work
+    if part is None:
+        return True
+    if work is None or not part.removed_mm3[0] <= work.removed <= part.removed_mm3[1]:
+        return False
+    return all(abs(work.height_at(x, y) - z) <= part.tolerance for x, y, z in part.points)
 
 
 def _reached(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
@@ -90,9 +102,9 @@ def _no_alarm(evidence: Evidence, _room: Observed, task: TaskTable, _number: int
     return "failed" if forbidden and evidence.alarms else "open"
 
 
-def _within(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
+def _within(evidence: Evidence, _room: Observed, task: TaskTable, _number: int) -> State:
     assert task.within_s is not None
-    return "failed" if room.time_s > task.within_s else "open"
+    return "failed" if evidence.since_touch_s > task.within_s else "open"
 
 
 def _removed(evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:

@@ -3,7 +3,7 @@
 import dataclasses
 
 from twin.errors import UsageError
-from twin.training.session.conditions import CHECKS, Evidence, State
+from twin.training.session.conditions import CHECKS, Evidence, State, part_is_right
 from twin.training.session.observed import Observed
 
 
@@ -38,6 +38,7 @@ class Judge:
         self.evidence = Evidence()
         self._trouble = False
         self._hold_line = 0
+        self._touched_s: float | None = None
 
     @property
     def score(self) -> int:
@@ -49,6 +50,15 @@ class Judge:
         )
         return max(0, points - self.hints * self._file.hint_cost)
 
+    def note_touch(self, room: Observed) -> None:
+        """The operator has touched the panel: from the first time on, time counts."""
+        if self._touched_s is None:
+            self._touched_s = room.time_s
+
+    def time_s(self, room: Observed) -> float:
+        """Machine time since the first touch [s]."""
+        return 0.0 if self._touched_s is None else room.time_s - self._touched_s
+
     def note_alarm(self, code: str) -> None:
         """An alarm has come."""
         self.evidence.alarms.append(code)
@@ -58,15 +68,18 @@ class Judge:
         """An alarm has been cleared."""
         self.evidence.cleared.append(code)
 
-    def note_start(self) -> None:
-        """The program has been started from its beginning."""
-        self._trouble = False
+    def note_start(self, *, whole: bool) -> None:
+        """The program has been started; ``whole``: from its beginning, and to cut."""
+        self._trouble = not whole
         self.evidence.ended_well = False
 
     def note_end(self, room: Observed) -> None:
         """The program has run to its end."""
-        self.evidence.ended_well = not self._trouble
-        self._note_single(room)
+        self.evidence.ended_well = not self._trouble and part_is_right(room)
+
+    def note_singly(self, lines: set[int]) -> None:
+        """Those lines were run in single block, from one stop to the next."""
+        self.evidence.single |= lines
 
     def note_hold(self, room: Observed) -> None:
         """The operator has asked for a feed hold."""
@@ -120,8 +133,9 @@ class Judge:
         """Check every open task against the machine as it stands after a slice."""
         if self.over:
             return
+        self.evidence.since_touch_s = self.time_s(room)
         if room.run is not None and room.running == "program" and room.run.held:
-            self._note_single(room)
+            self.note_singly(room.run.singly)
             if self._hold_line and not room.moving:
                 self.evidence.held.add(self._hold_line)
                 self._hold_line = 0
@@ -130,9 +144,5 @@ class Judge:
                 state = CHECKS[task.condition](self.evidence, room, task, number + 1)
                 if state != "open":
                     self.verdicts[number] = Verdict(state, room.time_s)
-        if room.time_s >= self._file.time_limit_s:
+        if self.time_s(room) >= self._file.time_limit_s:
             self.finish(room)
-
-    def _note_single(self, room: Observed) -> None:
-        if room.mode == "single":
-            self.evidence.single.add(int(room.machine.setpoint.line[0]))

@@ -1,6 +1,8 @@
 """What the judge and the faults see of a room, so that they depend on no room."""
 
 import dataclasses
+import re
+from collections.abc import Sequence
 from typing import Protocol
 
 from twin.machine.simulation.live import LiveMachine
@@ -11,6 +13,8 @@ from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.program_run import ProgramRun
 from twin.training.session.tables import Tables
 from twin.training.session.workpiece import Workpiece
+
+_NUMBER = re.compile(r"\s*/?\s*[Nn]\s*(\d+)")
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -25,6 +29,7 @@ class Notice:
         line: Source line of the program, 0 where none.
         time_s: When, in machine time [s].
         finding: What the interpreter found, where that is the cause.
+        block: Number of the block, such as ``N20``; empty where it has none.
     """
 
     code: str
@@ -33,6 +38,18 @@ class Notice:
     line: int
     time_s: float
     finding: Diagnostic | None = None
+    block: str = ""
+
+
+def block_number(lines: Sequence[str], line: int) -> str:
+    """The number that a line of a program gives its block, such as ``N20``; empty: none.
+
+    Args:
+        lines: Of the program.
+        line: Counted from 1; 0: none.
+    """
+    found = _NUMBER.match(lines[line - 1]) if 0 < line <= len(lines) else None
+    return "" if found is None else f"N{found[1]}"
 
 
 class Observed(Protocol):
@@ -52,6 +69,11 @@ class Observed(Protocol):
     @property
     def time_s(self) -> float:
         """Machine time since the beginning [s]."""
+        ...
+
+    @property
+    def line(self) -> int:
+        """Source line of the program that runs; 0: none."""
         ...
 
     @property

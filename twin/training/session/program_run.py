@@ -4,7 +4,8 @@ The program is interpreted block by block. It is cut into parts where an operato
 has to do something before the axes go on: a program stop, a tool change, an error. The axes rest at
 such places anyway, so that each part can be planned on its own. It is interpreted ahead of the
 axes, a bounded number of blocks in each slice of time, so that a program that loops for ever keeps
-nobody waiting: where the axes have caught up with it, they come to rest until there are moves. All that was asked of a run is noted, so that it can be copied at any moment.
+nobody waiting: where the axes have caught up with it, they come to rest until there are moves. All
+that was asked of a run is noted, so that it can be copied at any moment.
 """
 
 import bisect
@@ -12,7 +13,7 @@ import dataclasses
 import math
 from collections import deque
 from collections.abc import Iterator
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -24,11 +25,23 @@ from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
+from twin.nc.control.modal import FEED_FACTORS, SavedModal
 from twin.nc.control.settings import ControlSettings
-from twin.nc.functions import PROGRAM_STOPS, TOOL_CHANGE
+from twin.nc.functions import (
+    COOLANT_OFF,
+    COOLANT_ON,
+    OPTIONAL_STOP,
+    PROGRAM_STOPS,
+    SPINDLE_SPEED,
+    SPINDLE_STARTS,
+    SPINDLE_STOPS,
+    TOOL_CHANGE,
+)
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
+from twin.training.session.approach import approach
+from twin.training.session.block_walk import BlockWalk, ModalState
 
 MOVES_AT_ONCE = 256
 """Moves that are interpreted before the planner hears of them."""
@@ -47,24 +60,43 @@ MADE_AGAIN_AT_ONCE = 100
 LARGEST_OVERRIDE = 1.2
 """Factor at the end of the feed override dial."""
 
+PASSED = 0.5
+"""A stop at the end of a block is given as the end of its move or as the beginning of the next."""
+
 Ending = Literal["end", "stop", "tool", "wait", "soft-limit", "program"]
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class ModalState:
-    """What is in force while a block runs.
+class Inherited(NamedTuple):
+    """What an MDI block finds in force that the one before it left.
 
     Attributes:
-        line: Source line.
-        codes: G codes in force, such as ``G90``.
-        feed: As programmed, or None.
-        tool: Number of the tool in the spindle, or None.
+        modal: G codes.
+        shifts: Of the part's zero, as the frame keeps them [mm or deg].
+        feed: F as programmed, or None.
+        spindle: S as programmed, or None [1/min].
     """
 
-    line: int
-    codes: tuple[str, ...]
+    modal: SavedModal
+    shifts: list[list[float]]
     feed: float | None
-    tool: int | None
+    spindle: float | None
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """How a program is run.
+
+    Attributes:
+        soft_limits: Whether to stop before a move that leaves the travel.
+        dry_feed: What all feeds are replaced by in a dry run [mm/min]; None: none.
+        search: Source line to begin at: what stands before it is only computed. 0: the beginning.
+        inherited: What is in force at the beginning; None: what the control begins with.
+    """
+
+    soft_limits: bool = True
+    dry_feed: float | None = None
+    search: int = 0
+    inherited: Inherited | None = None
 
 
 class ProgramRun:
@@ -75,6 +107,7 @@ class ProgramRun:
         message: What there is to say of an ending by error.
         finding: What the interpreter found, where that is the error.
         tool: The tool that a tool change asks for.
+        optional: The stop that the present part ends with is M1's.
         dropped: An operator has given up the rest.
     """
 
@@ -84,8 +117,7 @@ class ProgramRun:
         dialect: Dialect,
         settings: ControlSettings,
         machine: Machine,
-        *,
-        soft_limits: bool = True,
+        options: RunOptions,
     ) -> None:
         """Read a program from its beginning.
 
@@ -94,19 +126,26 @@ class ProgramRun:
             dialect: Its language.
             settings: What the control knows of the machine as it stands.
             machine: The machine.
-            soft_limits: Whether to stop before a move that leaves the travel.
+            options: How it is run.
 
         Raises:
             ProgramError: The program cannot be begun.
         """
-        self._recipe = (source, dialect, settings, machine, soft_limits)
+        self._recipe = (source, dialect, settings, machine, options)
         self._journal: list[tuple[Any, ...]] = []
         self._machine = machine
         self._limits = motion_limits(machine)
         self._control = Executor(dialect, settings, source)
         self._control.prepare()
-        self._soft_limits = soft_limits
+        self._options = options
+        self._searched = options.search
+        self._found: Block | None = None
+        self._arrival: Chunk | None = None
+        self._collected: dict[str, Function] = {}
+        if options.inherited is not None:
+            self._inherit(options.inherited)
         self.dropped = False
+        self.optional = False
         self.ending: Ending | None = None
         self.ending_line = 0
         self.message = ""
@@ -127,23 +166,32 @@ class ProgramRun:
     @property
     def held(self) -> bool:
         """Whether cycle start is waited for."""
-        return self._motion is not None and self._motion.held
+        return self._motion is not None and (self._motion.held or self._walk.paused)
 
     @property
     def finished(self) -> bool:
         """Whether the present part has come to its end, or to rest after ``drop``."""
-        return self.dropped if self._motion is None else self._motion.finished
+        if self._motion is None or self.dropped:
+            return self.dropped and (self._motion is None or self._motion.finished)
+        return self._motion.finished and not self._walk.paused
 
-    def begin(self, start: FloatArray, zero: FloatArray) -> None:
+    @property
+    def singly(self) -> set[int]:
+        """Source lines of the present part that were run in single block, from stop to stop."""
+        return self._walk.singly
+
+    def begin(self, start: FloatArray, zero: FloatArray, *, paused: bool = False) -> None:
         """Plan the part that comes next.
 
         Args:
             start: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+            paused: Whether start is waited for before its first block.
         """
-        self._journal.append(("begin", start, zero))
+        self._journal.append(("begin", start, zero, paused))
         self._forget()
         self._begin = start, zero
+        self._begin_paused = paused
         self.ending = None
         self._look_ahead()
 
@@ -163,7 +211,53 @@ class ProgramRun:
             return None
         motion.feed_override, motion.rapid_override = feed, rapid
         motion.single_block = single
-        return motion.advance(count)
+        self._single = single
+        if not self._driven:
+            self._driven = True
+            self._begin_singly()
+        setpoints = motion.advance(count)
+        if single and not self.dropped and not self._walk.paused:
+            self._stop_behind_block(motion, setpoints)
+        return setpoints
+
+    def _begin_singly(self) -> None:
+        """The first block of a part: it may move nothing, or wait for start."""
+        assert self._motion is not None
+        if self._begin_paused:
+            self._walk.pause_before_all()
+        elif self._single and self._moves_next():
+            self._walk.run_next()
+        elif self._single:
+            self._walk.pass_one()
+        if self._walk.paused:
+            self._motion.hold()
+
+    def _moves_next(self) -> bool:
+        """Whether the block that comes next moves the axes, or is the last one of the part."""
+        line = self._walk.next_line()
+        after = self._find(self._last_move + 1)
+        if self.ending is not None and self._walk.next_is_last:
+            return True
+        return after is not None and int(after[0].line[after[1]]) == line
+
+    def _stop_behind_block(self, motion: LiveMotion, setpoints: Setpoints) -> None:
+        """Notice that single block has stopped behind a block that moved."""
+        if len(setpoints):
+            move, share = int(setpoints.move[-1]), float(setpoints.fraction[-1])
+            self._last_move = max(self._last_move, move if share > PASSED else move - 1)
+        if motion.finished:
+            self._last_move = self._count - 1
+        stopped = motion.held and motion.standing and not self._hold_asked
+        if motion.finished and self._walk.at_last:
+            self._walk.go_freely()
+            return
+        if not (stopped or motion.finished):
+            return
+        last = self._find(self._last_move)
+        if last is not None:
+            self._walk.stop_behind(self._last_move, int(last[0].line[last[1]]))
+        if motion.finished and self._walk.at_last:
+            self._walk.end_singly()
 
     def _note_drive(self, count: int, feed: float, rapid: float, single: bool) -> None:
         settings = (feed, rapid, single)
@@ -176,19 +270,36 @@ class ProgramRun:
     def hold(self) -> None:
         """Stop on the path until ``start``."""
         self._journal.append(("hold",))
+        self._hold_asked = True
         if self._motion is not None:
             self._motion.hold()
 
     def start(self) -> None:
         """Go on after a hold or at the end of a single block."""
         self._journal.append(("start",))
-        if self._motion is not None:
-            self._motion.start()
+        if self._motion is None:
+            return
+        held, self._hold_asked = self._hold_asked, False
+        if self._walk.paused and self._single and not held and not self._moves_next():
+            self._walk.pass_one()
+            return
+        if self._walk.paused and self._single:
+            self._walk.run_next()
+        elif not self._single:
+            self._walk.go_freely()
+        self._motion.start()
+
+    def skip_blocks(self, *, on: bool) -> None:
+        """Leave out blocks that begin with a slash, as far as they have not been read yet."""
+        self._journal.append(("skip_blocks", on))
+        control = self._control
+        control.settings = dataclasses.replace(control.settings, block_skip=on)
 
     def drop(self) -> None:
         """Come to rest on the path, and forget the rest."""
         self._journal.append(("drop",))
         self.dropped = True
+        self._walk.paused = False
         if self._motion is not None:
             self._motion.reset()
 
@@ -217,9 +328,9 @@ class ProgramRun:
         self._looks = self._left = 0
         self._waiting: deque[Chunk] = deque()
         self._count = 0
-        self._marks: list[int] = []
-        self._modal: list[ModalState] = []
-        self._functions: list[tuple[int, Function]] = []
+        self._walk = BlockWalk()
+        self._driven = self._begin_paused = self._single = self._hold_asked = False
+        self._last_move = -1
         self._moves: list[Moves] = []
         self._firsts: list[int] = []
 
@@ -244,19 +355,31 @@ class ProgramRun:
         try:
             while most > 0 and not enough and self.ending is None:
                 most -= 1
-                block = None if control.ended else control.program_counter.next()
+                block, self._found = self._found, None
+                if block is None and not control.ended:
+                    block = control.program_counter.next()
                 if block is None:
                     control.finish()
                     self.ending = "end"
+                    self._require_found()
                     break
-                self._marks.append(self._count + len(control.path))
+                if self._searched and block.line == self._searched:
+                    self._arrive(block)
+                    break
+                mark = self._count + len(control.path)
                 control.run(block)
-                self._note(block)
+                if self._searched:
+                    self._collect(control.path.take())
+                    continue
+                self._note(block, mark)
                 self._look_for_stop(block)
                 enough = len(control.path) >= MOVES_AT_ONCE
         except ProgramError as error:
             self._end_by(error.diagnostic)
-        if enough or self.ending is not None:
+        if self._arrival is not None:
+            chunk, self._arrival = self._arrival, None
+            self._finish_chunk(chunk)
+        elif enough or self.ending is not None:
             self._finish_chunk(control.path.take())
 
     def _end_by(self, finding: Diagnostic) -> None:
@@ -267,27 +390,31 @@ class ProgramRun:
     def _finish_chunk(self, chunk: Chunk) -> None:
         """Hand moves on to the planner, up to the first one that would leave the travel."""
         alarm = None
-        if self._soft_limits:
+        dry = self._options.dry_feed
+        if dry is not None:
+            feeds = np.where(chunk.moves.motion == Motion.FEED, dry, chunk.moves.feed)
+            chunk = Chunk(dataclasses.replace(chunk.moves, feed=feeds), chunk.events)
+        if self._options.soft_limits:
             alarm = soft_limit_alarm(self._machine, chunk.moves, self._begin[1])
         if alarm is not None:
             outside = int(np.flatnonzero(chunk.moves.line == alarm.line)[0])
             chunk = Chunk(chunk.moves[:outside], ())
             self.ending, self.message = "soft-limit", alarm.message
             self.ending_line = alarm.line
-        self._functions += [
-            (self._count + event.before, event)
-            for event in chunk.events
-            if isinstance(event, Function)
-        ]
+        for event in chunk.events:
+            if isinstance(event, Function):
+                self._walk.note_function(self._count + event.before + event.at, event)
         self._firsts.append(self._count)
         self._moves.append(chunk.moves)
         self._count += len(chunk.moves)
         self._waiting.append(chunk)
 
-    def _note(self, block: Block) -> None:
+    def _note(self, block: Block, mark: int) -> None:
         control = self._control
-        codes = tuple(f"G{number}" for number in control.active.values())
-        self._modal.append(ModalState(block.line, codes, control.feed, control.tools.spindle))
+        codes = tuple(f"G{number:g}" for number in control.active.values())
+        factor = FEED_FACTORS.get(control.modal.feed_mode)
+        state = ModalState(block.line, codes, control.feed, control.tools.spindle, factor)
+        self._walk.note(mark, state)
 
     def _look_for_stop(self, block: Block) -> None:
         words = [f"M{word.value:g}" for word in block.words if word.address == "M"
@@ -295,7 +422,7 @@ class ProgramRun:
         if TOOL_CHANGE in words:
             self.ending, self.tool = "tool", self._control.tools.spindle
         elif any(word in PROGRAM_STOPS for word in words):
-            self.ending = "stop"
+            self.ending, self.optional = "stop", OPTIONAL_STOP in words
         if self.ending is not None:
             self.ending_line = block.line
 
@@ -306,16 +433,69 @@ class ProgramRun:
         place = math.inf if self.finished else -1.0
         if len(setpoints) and not self.finished:
             place = int(setpoints.move[-1]) + float(setpoints.fraction[-1])
-        happened = [function for move, function in self._functions if move + function.at <= place]
-        del self._functions[: len(happened)]
-        return happened
+        return self._walk.due(place)
 
     def modal(self, move: int) -> ModalState | None:
         """What is in force during a move of the part."""
-        if not self._modal:
-            return None
-        index = bisect.bisect_right(self._marks, max(move, 0)) - 1
-        return self._modal[min(max(index, 0), len(self._modal) - 1)]
+        return self._walk.state(move)
+
+    def line(self, line: int) -> int:
+        """Source line of the block that runs, or behind which single block has stopped.
+
+        Args:
+            line: Of the setpoints.
+        """
+        return self._walk.line if self._walk.paused else line
+
+    def left(self) -> Inherited:
+        """What an MDI block leaves in force for the next one."""
+        control = self._control
+        shifts = [list(shift) for shift in control.frame.shifts]
+        return Inherited(control.saved_modal(), shifts, control.feed, control.spindle)
+
+    def _inherit(self, before: Inherited) -> None:
+        control = self._control
+        modal, active = before.modal
+        control.restore_modal(SavedModal(dataclasses.replace(modal), dict(active)))
+        control.frame.set_shifts([list(shift) for shift in before.shifts])
+        control.programmed = control.frame.to_programmed(control.part)
+        control.feed, control.spindle = before.feed, before.spindle
+
+    def _collect(self, skipped: Chunk) -> None:
+        """Of what a search passes over, keep what the spindle and the coolant were told last."""
+        for event in skipped.events:
+            if isinstance(event, Function):
+                name = "coolant" if event.word in COOLANT_ON | COOLANT_OFF else event.word
+                name = "spindle" if event.word in SPINDLE_STARTS | SPINDLE_STOPS else name
+                self._collected[name] = event
+
+    def _arrive(self, block: Block) -> None:
+        """The block that was searched for comes next: go to where it begins, and wait there."""
+        control, self._searched, self._found = self._control, 0, block
+        self.ending_line, self.optional = block.line, False
+        control.path.take()
+        needed = control.tools.spindle
+        if {41, 42} & set(control.active.values()):
+            self.ending = "program"
+            self.message = "a search cannot begin within a compensated contour"
+        elif needed != self.tool:
+            self.ending = "program"
+            self.message = f"T{needed} belongs into the spindle there: change the tool first"
+        else:
+            self.ending = "stop"
+            stand = self._begin[0] - self._begin[1]
+            events = tuple(
+                dataclasses.replace(event, before=0, at=0.0, line=block.line)
+                for name, event in self._collected.items()
+                if name in ("spindle", "coolant", SPINDLE_SPEED)
+            )
+            self._note(block, self._count)
+            self._arrival = Chunk(approach(control, stand, block.line), events)
+
+    def _require_found(self) -> None:
+        if self._searched:
+            self.ending, self.ending_line = "program", self._searched
+            self.message = f"the program never comes to line {self._searched}"
 
     def rapid(self, move: int) -> bool:
         """Whether a move of the part is a rapid."""
@@ -343,13 +523,12 @@ class ProgramRunCopy:
         journal: What was asked of it, in order.
     """
 
-    recipe: tuple[Source, Dialect, ControlSettings, Machine, bool]
+    recipe: tuple[Source, Dialect, ControlSettings, Machine, RunOptions]
     journal: tuple[tuple[Any, ...], ...]
 
     def made_again(self) -> ProgramRun:
         """The run as it was when it was copied."""
-        source, dialect, settings, machine, soft_limits = self.recipe
-        run = ProgramRun(source, dialect, settings, machine, soft_limits=soft_limits)
+        run = ProgramRun(*self.recipe)
         for what, *given in self.journal:
             if what == "drive":
                 times, count, feed, rapid, single = given
@@ -359,6 +538,11 @@ class ProgramRunCopy:
                     setpoints = run.drive(together * count, feed, rapid, single=single)
                     if setpoints is not None:
                         run.passed(setpoints)
+            elif what == "begin":
+                start, zero, paused = given
+                run.begin(start, zero, paused=paused)
+            elif what == "skip_blocks":
+                run.skip_blocks(on=given[0])
             else:
                 getattr(run, what)(*given)
         return run

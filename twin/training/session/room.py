@@ -5,7 +5,9 @@ at the same ticks give the same motion, to the last bit.
 """
 
 import dataclasses
-from typing import Any
+from collections import deque
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,26 +17,86 @@ from twin.job.job_file import StockTable
 from twin.machine.model.model import spindle_over_table_mm
 from twin.machine.simulation.live import STANDSTILL, LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
+from twin.machine.watching.watch import limit_switches
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, Function
 from twin.nc.control.settings import ToolData
-from twin.nc.functions import COOLANT_OFF, COOLANT_ON, PROGRAM_ENDS, SpindleState
+from twin.nc.functions import (
+    COOLANT_OFF,
+    COOLANT_ON,
+    PROGRAM_ENDS,
+    SPINDLE_COUNTER_CLOCKWISE,
+    SPINDLE_STARTS,
+    SpindleState,
+)
+from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
-from twin.nc.text.source import Source
+from twin.nc.text.source import Source, source_from_text
 from twin.recording.reader import Samples
 from twin.run.placement import part_zero, start_position
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode, Scene
+from twin.training.session.block_walk import ModalState
 from twin.training.session.faults import inject
 from twin.training.session.judge import Judge
-from twin.training.session.observed import Notice
-from twin.training.session.program_run import ProgramRun
+from twin.training.session.observed import Notice, block_number
+from twin.training.session.program_run import Inherited, ProgramRun, RunOptions
 from twin.training.session.tables import Tables
 from twin.training.session.workpiece import Workpiece
 
 SLICE = 10
 """Servo periods between two looks at the panel: 10 ms at 1 kHz. Time goes on by whole slices, so that
 a session that is lived again has its commands, its cuts and its ends at the same borders."""
+
+ALARMS_KEPT = 50
+"""Alarms that the history shows."""
+WORK_OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59")
+"""Rows of the table of work offsets, where the control knows them."""
+SHORTEST_WAY = 1e-3
+"""Way that counts as none when an axis is driven by hand [mm or deg]."""
+ON_PATH = 1e-3
+"""How near to where it was held a program may go on [mm or deg]."""
+
+
+class Leg(NamedTuple):
+    """A way of one axis by hand.
+
+    Attributes:
+        axis: Its name.
+        target: Machine coordinates [mm or deg].
+        feed: [mm/min or deg/min].
+    """
+
+    axis: str
+    target: float
+    feed: float
+
+
+class Suspended(NamedTuple):
+    """A program that was held, while the axes are jogged.
+
+    Attributes:
+        run: The program.
+        place: Where it was held, machine coordinates, shape (k,) [mm or deg].
+    """
+
+    run: ProgramRun
+    place: FloatArray
+
+
+@dataclasses.dataclass(slots=True)
+class Switches:
+    """What the panel's switches say of how programs run.
+
+    Attributes:
+        optional_stop: M1 stops.
+        block_skip: Blocks that begin with a slash are left out.
+        dry_run: Feeds go at the feed of the dry run.
+    """
+
+    optional_stop: bool = False
+    block_skip: bool = False
+    dry_run: bool = False
 
 
 class Room:
@@ -50,17 +112,27 @@ class Room:
         mode: Where the mode switch stands.
         feed_override: Feed override dial [%].
         rapid_override: Rapid override dial [%].
+        spindle_override: Spindle override dial [%].
+        counter_clockwise: Which way the spindle turns, or turned last.
+        switches: Optional stop, block skip, dry run.
+        searched: Line at which the next start begins; 0: the first.
         alarm: The alarm that stands.
+        alarms: Those that came, the newest last.
         pressed: Whether the emergency stop button is pressed.
         spindle: Whether the spindle turns, and how fast.
         running_down: Whether the spindle, stopped by a reset, still turns while the axes brake.
         coolant: Whether coolant flows.
         program: The program as the operator has edited it.
         lines: Its lines.
+        edits: What the lines were before each change.
         entered: What stands in the MDI line.
         run: The program, MDI block or jog that is being run.
         running: What is being run: ``program``, ``mdi``, ``jog``, or nothing.
         waiting: A program waits at a program stop.
+        suspended: A program that was held, while the axes are jogged.
+        legs: Ways by hand that are still to go.
+        modal: What was in force last, where nothing runs.
+        inherited: What the last MDI block left in force for the next one.
         faults: What is broken.
         samples: The last slice.
         label: What the screen adds to the position, shape (k,) [mm or deg].
@@ -76,7 +148,7 @@ class Room:
         machine, job = preparation.machine, preparation.job.file
         self.scene = scene
         zero = part_zero(job, machine, spindle_over_table_mm(machine))
-        self.tables = Tables(zero, job.tools)
+        self.tables = Tables(zero, job.tools, _offsets(scene))
         for axis, error in file.start.zero_error.items():
             self.tables.zero[machine.axes.index(axis)] += error
         self.tables.lengths[self.tables.spindle] += file.start.tool_length_error
@@ -87,25 +159,31 @@ class Room:
         rotary = machine.part_frame.rotary
         turn_zero = 0.0 if rotary is None else float(zero[rotary])
         self.part_frame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
-        self.work = None
-        if job.stock is not None:
-            head = self.machine.head.above_tip
-            stock = _fine(job.stock, scene)
-            self.work = Workpiece(stock, job.tools[0], self.part_frame, zero, head)
+        self.work = self._clamped_blank()
         self.mode: Mode = file.start.mode
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
-        self.spindle = SpindleState(started=file.start.spindle)
+        self.spindle_override = 100
+        self.counter_clockwise = False
+        self.switches = Switches()
+        self.searched = 0
+        self.spindle = SpindleState(started=file.start.spindle, speed=file.start.speed)
         self.running_down = False
         self.coolant = False
         self.alarm: Notice | None = None
+        self.alarms: deque[Notice] = deque(maxlen=ALARMS_KEPT)
         self.pressed = False
         self.program: Source = preparation.source
         self.lines = tuple(preparation.source.lines)
+        self.edits: list[tuple[str, ...]] = []
         self.entered = ""
         self.run: ProgramRun | None = None
         self.running = ""
         self.waiting = False
+        self.suspended: Suspended | None = None
+        self.legs: deque[Leg] = deque()
+        self.modal: ModalState | None = None
+        self.inherited: Inherited | None = None
         self.tick = 0
         self.samples = self.machine.hold(1)
         self.label = np.zeros(len(stand))
@@ -124,7 +202,8 @@ class Room:
     @property
     def held(self) -> bool:
         """Whether cycle start is waited for in the midst of something that runs."""
-        return self.waiting or (self.run is not None and self.run.held)
+        held = self.suspended is not None and self.run is None
+        return held or self.waiting or (self.run is not None and self.run.held)
 
     @property
     def moving(self) -> bool:
@@ -142,6 +221,22 @@ class Room:
         if self.work is None or self.spindle.turns:
             return False
         return self.work.touches(self.machine.position - self.tables.longer)
+
+    @property
+    def line(self) -> int:
+        """Source line of the program that runs, or behind which it waits; 0: none."""
+        if self.running != "program" or self.run is None:
+            return 0
+        return self.run.line(int(self.machine.setpoint.line[0]))
+
+    @property
+    def needs_speed(self) -> bool:
+        """Whether the control has a word for the spindle's speed: without it no start turns it.
+
+        LinuxCNC, "M3, M4, M5": started with S0 the spindle stands until S says more. CODESYS knows
+        no such word; there the drive turns as it is set.
+        """
+        return self.scene.preparation.dialect.name != "codesys"
 
     @property
     def slice_s(self) -> float:
@@ -170,6 +265,8 @@ class Room:
         self._relabel()
         self._latch(self.machine.alarm)
         self._end_of_part()
+        if self.legs and not self.moving:
+            self._next_leg()
         self.judge.look(self)
 
     def _setpoints(self, count: int) -> Setpoints:
@@ -226,6 +323,10 @@ class Room:
 
     def _function(self, function: Function) -> None:
         self.spindle = self.spindle.after(function)
+        if function.word in SPINDLE_STARTS:
+            self.counter_clockwise = function.word == SPINDLE_COUNTER_CLOCKWISE
+            if self.spindle.speed is None and self.needs_speed:
+                self.spindle = SpindleState(started=True, speed=0.0)
         if function.word in PROGRAM_ENDS:
             self.spindle = self.spindle.stopped()
         if function.word in COOLANT_ON:
@@ -248,10 +349,14 @@ class Room:
     ) -> None:
         """The control stops everything and says why; the first alarm counts."""
         if self.alarm is None:
-            self.alarm = Notice(code, message, axis, line, self.time_s, finding)
+            here = self.running == "program" or (self.running == "" and line > 0)
+            block = block_number(self.lines, line) if here else ""
+            self.alarm = Notice(code, message, axis, line, self.time_s, finding, block)
+            self.alarms.append(self.alarm)
             self.judge.note_alarm(code)
-        self.drop_run()
+        self.give_up()
         self.spindle = self.spindle.stopped()
+        self.coolant = False
 
     def _end_of_part(self) -> None:
         """What comes when the present part of a program has come to its end."""
@@ -264,12 +369,15 @@ class Room:
         if self.run is None:
             return
         ending = run.ending
+        self.judge.note_singly(run.singly)
         if run.dropped or self.running == "jog" or ending in (None, "end"):
             if self.running == "program" and not run.dropped:
                 self.judge.note_end(self)
+            elif self.running == "mdi" and not run.dropped:
+                self.inherited = run.left()
             self.drop_run()
-        elif ending == "wait":
-            self.go_on()
+        elif ending == "wait" or (ending == "stop" and run.optional and not self._stops_at_m1):
+            self.go_on(paused=ending == "stop" and self.mode == "single")
         elif ending == "stop":
             self.waiting = True
         elif ending == "tool":
@@ -284,9 +392,14 @@ class Room:
         except TwinError as error:
             self.raise_alarm("program", str(error), line=run.ending_line)
         else:
-            self.go_on()
+            self.go_on(paused=self.mode == "single")
 
-    def start_run(self, source: Source, what: str) -> None:
+    @property
+    def _stops_at_m1(self) -> bool:
+        """An MDI block has no use for a stop that is optional."""
+        return self.running == "program" and self.switches.optional_stop
+
+    def start_run(self, source: Source, what: str, options: RunOptions | None = None) -> None:
         """Interpret and drive a source from where the axes stand.
 
         Raises:
@@ -303,11 +416,12 @@ class Room:
                 preparation.dialect,
                 settings,
                 self.machine.machine,
-                # A jog is kept within the travel by itself, and leads back into it.
-                soft_limits=what != "jog",
+                options or RunOptions(),
             )
             run.begin(self.standing_setpoint, self.tables.program_zero)
             self.run, self.running, self.waiting = run, what, False
+            if what == "program":
+                self.inherited = None
         except ProgramError as error:
             found = error.diagnostic
             message = f"{found.code}: {found.message}"
@@ -322,8 +436,8 @@ class Room:
         reference = self.tables.tool.length
         # The panel's control takes the length of the tool in the spindle from its table by itself.
         tools = {
-            number: ToolData(radius=tool.diameter / 2.0, length=reference)
-            for number, tool in sorted(
+            number: ToolData(radius=self.tables.radii[number], length=reference)
+            for number, _ in sorted(
                 self.tables.tools.items(), key=lambda item: item[0] != self.tables.spindle
             )
         }
@@ -332,17 +446,79 @@ class Room:
             "start": dict(zip(names, map(float, start), strict=True)),
             "tools": tools,
             "machine_zero": dict(zip(names, map(float, -zero), strict=True)),
+            "offsets": self.tables.offsets,
+            "block_skip": self.scene.preparation.settings.block_skip or self.switches.block_skip,
         }
 
-    def go_on(self) -> None:
-        """Drive the part of the program that comes next."""
+    def go_on(self, *, paused: bool = False) -> None:
+        """Drive the part of the program that comes next; ``paused``: start is waited for."""
         assert self.run is not None
         self.waiting = False
-        self.run.begin(self.standing_setpoint, self.tables.program_zero)
+        self.run.begin(self.standing_setpoint, self.tables.program_zero, paused=paused)
 
     def drop_run(self) -> None:
         """Forget what runs; the axes slow down where they are."""
+        if self.run is not None and self.running != "jog":
+            self.modal = self.run.modal(int(self.machine.setpoint.move[0]))
         self.run, self.running, self.waiting = None, "", False
+
+    def give_up(self) -> None:
+        """Forget what runs, what was held, and what was still to be driven by hand."""
+        self.drop_run()
+        self.suspended = None
+        self.legs.clear()
+
+    def suspend(self) -> None:
+        """Let the axes be jogged while the program is held."""
+        assert self.run is not None
+        run, self.suspended = self.run, Suspended(self.run, self.standing_setpoint)
+        self.modal = run.modal(int(self.machine.setpoint.move[0]))
+        self.run, self.running = None, ""
+
+    def resume(self) -> None:
+        """Take the held program up again.
+
+        Raises:
+            UsageError: The axes stand elsewhere.
+        """
+        assert self.suspended is not None
+        if np.abs(self.standing_setpoint - self.suspended.place).max() > ON_PATH:
+            raise UsageError("the axes stand off the path: return to it first")
+        self.run, self.running = self.suspended.run, "program"
+        self.suspended = None
+
+    def drive_by_hand(self, legs: Iterable[Leg]) -> None:
+        """Drive axes one after the other, kept within their travel."""
+        self.legs = deque(legs)
+        self._next_leg()
+
+    def _next_leg(self) -> None:
+        """Begin the next way by hand that is not done yet."""
+        machine = self.machine.machine
+        while self.legs and self.run is None and self.machine.alarm is None:
+            axis, target, feed = self.legs.popleft()
+            low, high = machine.axis(axis).travel or (-np.inf, np.inf)
+            stands = float(self.standing_setpoint[machine.axes.index(axis)])
+            # An axis that stands beyond its travel may only come back.
+            way = min(max(target, min(low, stands)), max(high, stands)) - stands
+            if abs(way) >= SHORTEST_WAY:
+                block = jog_block(self.scene.preparation.dialect, axis, way, feed)
+                # A jog is kept within the travel by itself, and leads back into it.
+                self.start_run(source_from_text(block, "jog"), "jog", RunOptions(soft_limits=False))
+
+    def new_blank(self) -> None:
+        """Clamp a new blank."""
+        self.work = self._clamped_blank()
+        if self.work is not None:
+            self.work.mount(self.tables.tool)
+
+    def _clamped_blank(self) -> Workpiece | None:
+        job = self.scene.preparation.job.file
+        if job.stock is None:
+            return None
+        head = self.machine.head.above_tip
+        stock = _fine(job.stock, self.scene)
+        return Workpiece(stock, job.tools[0], self.part_frame, self.tables.true_zero, head)
 
     def mount(self, number: int | None) -> None:
         """Put a tool of the scene into the spindle.
@@ -370,6 +546,9 @@ class Room:
         """
         if self.pressed:
             raise AlarmStandsError("the emergency stop button is pressed: turn it free first")
+        axis = self.on_switch
+        if self.alarm is not None and self.alarm.code == "hard-limit" and axis:
+            raise AlarmStandsError(f"{axis} stands on its limit switch: jog it back first")
         if self.machine.alarm is not None:
             self.machine.clear()
         elif self.moving:
@@ -379,6 +558,31 @@ class Room:
         self.alarm = None
         if self.work is not None:
             self.work.forgive()
+
+    @property
+    def on_switch(self) -> str:
+        """Name of an axis that stands on its limit switch; empty: none does."""
+        machine = self.machine.machine
+        for name, place in zip(machine.axes.names, self.machine.position, strict=True):
+            low, high = limit_switches(machine.axis(name))
+            if not low < place < high:
+                return name
+        return ""
+
+    def release(self, axis: str) -> None:
+        """Switch the drives on, so that an axis can be jogged off its limit switch.
+
+        As at a real machine the alarm stands until it has left the switch (Fagor 8070: with the
+        limit overridden only jogging away is allowed; LinuxCNC: "Override Limits").
+
+        Raises:
+            UsageError: Another axis stands there.
+            AlarmStandsError: An axis moves.
+        """
+        if self.on_switch not in ("", axis):
+            raise UsageError(f"{self.on_switch} stands on its limit switch: jog it back first")
+        if self.machine.alarm is not None:
+            self.machine.clear()
 
     def fail(self, message: str) -> None:
         """Something went wrong within the program that simulates: the axes brake, nothing ends."""
@@ -392,6 +596,15 @@ class Room:
             message = "an axis stands on its limit switch"
             self.machine.raise_alarm("hard-limit", message)
         self.alarm = Notice(code, message, "", 0, 0.0)
+        self.alarms.append(self.alarm)
+
+
+def _offsets(scene: Scene) -> dict[str, dict[str, float]]:
+    """The work offsets that the control's table has, with the values of the job."""
+    job, dialect = scene.preparation.job.file, scene.preparation.dialect
+    names = [f"G{number:g}" for number in sorted(dialect.g) if dialect.g[number].group == "offset"]
+    wanted = [name for name in names if name in WORK_OFFSETS]
+    return {name: dict(job.offsets.get(name, {})) for name in wanted} | dict(job.offsets)
 
 
 def _fine(stock: StockTable, scene: Scene) -> StockTable:

@@ -8,9 +8,9 @@ from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode
+from twin.training.session.block_walk import ModalState
 from twin.training.session.judge import Verdict
 from twin.training.session.observed import Notice
-from twin.training.session.program_run import ModalState
 from twin.training.session.room import Room
 from twin.units import SECONDS_PER_MINUTE
 
@@ -22,12 +22,13 @@ _STILL = 1e-3
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class ToolRow:
-    """A row of the tool table: number, kind, diameter and length in the table [mm]."""
+    """A row of the tool table: number, kind, diameter; length and radius in the table [mm]."""
 
     number: int
     kind: str
     diameter: float
     length: float
+    radius: float
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,7 +59,22 @@ class Snapshot:
     feed_override: int
     rapid_override: int
     spindle: SpindleState
+    spindle_override: int
+    counter_clockwise: bool
     coolant: bool
+    optional_stop: bool
+    block_skip: bool
+    dry_run: bool
+    searched: int
+    """Line at which the next start begins, 0 for the first."""
+    suspended: bool
+    """A program is held, and the axes can be jogged."""
+    changed: bool
+    """The program has been changed."""
+    alarms: tuple[Notice, ...]
+    """Those that came, the newest last."""
+    offsets: tuple[tuple[str, Row], ...]
+    """Work offsets by name."""
     program: tuple[str, ...]
     line: int
     """Source line that runs, 0 for none."""
@@ -114,14 +130,33 @@ def take_snapshot(room: Room) -> Snapshot:
         feed_override=room.feed_override,
         rapid_override=room.rapid_override,
         spindle=room.spindle,
+        spindle_override=room.spindle_override,
+        counter_clockwise=room.counter_clockwise,
         coolant=room.coolant,
+        optional_stop=room.switches.optional_stop,
+        block_skip=room.switches.block_skip,
+        dry_run=room.switches.dry_run,
+        searched=room.searched,
+        suspended=room.suspended is not None,
+        changed=bool(room.edits),
+        alarms=tuple(room.alarms),
+        offsets=tuple(
+            (name, tuple(float(values.get(axis, 0.0)) for axis in machine.axes.names))
+            for name, values in room.tables.offsets.items()
+        ),
         program=room.lines,
-        line=int(setpoint.line[0]) if room.running == "program" else 0,
+        line=room.line,
         entered=room.entered,
         tool=room.tables.spindle,
         tools=tuple(
-            ToolRow(tool.number, tool.kind, tool.diameter, room.tables.lengths[tool.number])
-            for tool in room.tables.tools.values()
+            ToolRow(
+                number,
+                tool.kind,
+                tool.diameter,
+                room.tables.lengths[number],
+                room.tables.radii[number],
+            )
+            for number, tool in room.tables.tools.items()
         ),
         zero=_row(room.tables.zero),
         touches=room.touches,
@@ -138,12 +173,13 @@ def take_snapshot(room: Room) -> Snapshot:
 def _from_run(room: Room, zero: FloatArray) -> tuple[FloatArray, ModalState | None]:
     """Distance to go, and what is in force."""
     if room.run is None:
-        return np.zeros(len(zero)), None
+        return np.zeros(len(zero)), room.modal
     setpoint = room.machine.setpoint
     move = int(setpoint.move[0])
     target = room.run.target(move)
     to_go = np.zeros(len(zero)) if target is None else target[0] + zero - setpoint.position[0]
-    return to_go, room.run.modal(move)
+    # A jog has codes of its own, which are nobody's business.
+    return to_go, room.modal if room.running == "jog" else room.run.modal(move)
 
 
 def _feed(velocity: FloatArray) -> float:

@@ -1,4 +1,6 @@
-"""The control's tables: where it believes part zero to be, and how long it believes the tools."""
+"""The control's tables: where it believes part zero to be, and what it believes of the tools."""
+
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -17,15 +19,24 @@ class Tables:
         zero: Machine coordinates of part zero in the control's table, shape (k,) [mm or deg].
         true_zero: Where it is.
         lengths: Tool lengths in the control's table, by number [mm].
+        radii: Tool radii in the control's table, by number [mm].
+        offsets: Work offsets by name, each by axis, from part zero [mm or deg].
         tools: The tools as they are, by number.
         spindle: Number of the tool in the spindle.
     """
 
-    def __init__(self, true_zero: FloatArray, tools: tuple[ToolTable, ...]) -> None:
+    def __init__(
+        self,
+        true_zero: FloatArray,
+        tools: tuple[ToolTable, ...],
+        offsets: Mapping[str, Mapping[str, float]],
+    ) -> None:
         self.true_zero = true_zero
         self.zero = true_zero.copy()
         self.tools = {tool.number: tool for tool in tools}
         self.lengths = {tool.number: tool.length for tool in tools}
+        self.radii = {tool.number: tool.diameter / 2.0 for tool in tools}
+        self.offsets = {name: dict(values) for name, values in offsets.items()}
         self.spindle = tools[0].number
         self._reference = tools[0].length
 
@@ -49,8 +60,8 @@ class Tables:
         """How much higher the head stands than with the first tool, shape (k,) [mm]."""
         return self._along_z(self.tool.length - self._reference)
 
-    def set_length(self, number: int, length: float) -> None:
-        """Write a tool's length [mm].
+    def set_tool(self, number: int, length: float | None, radius: float | None) -> None:
+        """Write a tool's length and radius [mm]; None leaves what stands there.
 
         Raises:
             UsageError: There is no such tool.
@@ -58,7 +69,21 @@ class Tables:
         if number not in self.lengths:
             known = ", ".join(str(each) for each in self.lengths)
             raise UsageError(f"no tool {number}: the table has {known}")
-        self.lengths[number] = length
+        if length is not None:
+            self.lengths[number] = length
+        if radius is not None:
+            self.radii[number] = radius
+
+    def set_offset(self, name: str, axis: str, value: float) -> None:
+        """Write a work offset of an axis [mm or deg].
+
+        Raises:
+            UsageError: The control has no such offset.
+        """
+        if name not in self.offsets:
+            known = ", ".join(self.offsets) or "none"
+            raise UsageError(f"no work offset {name}: the table has {known}")
+        self.offsets[name][axis] = value
 
     def _along_z(self, value: float) -> FloatArray:
         shift = np.zeros(len(self.zero))

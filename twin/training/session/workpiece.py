@@ -103,6 +103,16 @@ class Workpiece:
         halted = self._cutter.halted
         return None if halted is None else stock_alarm(halted, self._cutter.tool)
 
+    def height_at(self, x: float, y: float) -> float:
+        """How high the part stands at a place, program coordinates at C0 [mm]."""
+        map_ = self._cutter.map
+        corner = self._zero[:3] - np.array([*self._frame.center, 0.0])
+        column = round((x + corner[0] - map_.origin[0]) / map_.cell)
+        row = round((y + corner[1] - map_.origin[1]) / map_.cell)
+        rows, columns = map_.heights.shape
+        inside = 0 <= row < rows and 0 <= column < columns
+        return float(map_.heights[row, column] - corner[2]) if inside else -math.inf
+
     def take_changed(self) -> Rectangle:
         """Cells that have changed since the last call; none when the rows end before they begin."""
         changed, self._changed = self._changed, (0, 0, 0, 0)

@@ -1,0 +1,369 @@
+"""What the keys of the panel do: switches, block search, handwheel, tables, and what a control refuses."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from twin.nc.text.source import source_from_text
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.session.session import Session
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(read_scene(scene_path("fagor_first_steps")))
+
+
+def do(session: Session, what: str, /, **arguments: object) -> None:
+    assert session.submit({"do": what, **arguments}), session.refusal
+    session.advance()
+
+
+def refused(session: Session, what: str, /, **arguments: object) -> str:
+    assert not session.submit({"do": what, **arguments})
+    return session.refusal
+
+
+def rest(session: Session) -> None:
+    """Until nothing moves and nothing goes on by itself."""
+    still = 0
+    for _ in range(4000):
+        session.advance()
+        room = session.room
+        waits = room.run is None or room.held
+        still = still + 1 if waits and not room.moving else 0
+        if still > 3:
+            return
+    raise AssertionError(f"the axes never came to rest: {session.room.alarm}")
+
+
+def load(session: Session, text: str) -> None:
+    session.room.program = source_from_text(text, "test")
+    session.room.lines = tuple(text.split("\n"))
+
+
+def at(session: Session) -> tuple[float, ...]:
+    """The tip, part coordinates [mm]."""
+    room = session.room
+    return tuple(np.round(room.machine.position - room.tables.zero, 2)[:3])
+
+
+def test_single_block_stops_behind_blocks_that_move_nothing(session):
+    load(session, "N10 G90 F500\nN20 S3000 M3\nN30 G0 X0 Y0\nN40 M8\nN50 G1 X5\nN60 M30")
+    do(session, "mode", mode="single")
+    seen = []
+    for _ in range(6):
+        do(session, "cycle_start")
+        rest(session)
+        room = session.room
+        seen.append((room.line, room.spindle.turns, room.coolant, at(session)[0]))
+    start = seen[0][3]
+    assert seen[:5] == [
+        (1, False, False, start),
+        (2, True, False, start),
+        (3, True, False, 0.0),
+        (4, True, True, 0.0),
+        (5, True, True, 5.0),
+    ]
+    assert session.room.run is None
+    assert session.room.judge.evidence.single == {1, 2, 3, 4, 5, 6}
+
+
+def test_a_block_that_began_in_automatic_was_not_run_singly(session):
+    do(session, "cycle_start")
+    while session.room.line < 5:
+        session.advance()
+    do(session, "mode", mode="single")
+    rest(session)
+    assert session.room.line == 5
+    assert session.room.judge.evidence.single == set()
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.judge.evidence.single == {6}
+
+
+def test_a_hold_within_a_single_block_goes_on_to_its_end(session):
+    load(session, "N10 G90 S3000 M3\nN20 G1 X-40 F600\nN30 X-30\nN40 M30")
+    do(session, "mode", mode="single")
+    for _ in range(2):
+        do(session, "cycle_start")
+    session.advance(50)
+    do(session, "feed_hold")
+    rest(session)
+    assert session.room.line == 2
+    do(session, "cycle_start")
+    rest(session)
+    assert (session.room.line, at(session)[0]) == (2, -40.0)
+
+
+@pytest.mark.parametrize("on", [False, True])
+def test_the_optional_stop_stops_where_its_switch_says_so(session, on):
+    load(session, "N10 G90 F500\nN20 G0 X-5\nN30 M1\nN40 G0 X5\nN50 M30")
+    do(session, "switch", name="optional_stop", on=on)
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.waiting == on
+    assert at(session)[0] == (-5.0 if on else 5.0)
+
+
+@pytest.mark.parametrize("on", [False, True])
+def test_a_block_with_a_slash_is_left_out_where_the_switch_says_so(session, on):
+    load(session, "N10 G90 G0 X-5\n/N20 G0 X5\nN30 M30")
+    do(session, "switch", name="block_skip", on=on)
+    do(session, "cycle_start")
+    rest(session)
+    assert at(session)[0] == (-5.0 if on else 5.0)
+
+
+def test_a_dry_run_goes_at_its_own_feed_and_finishes_nothing(session):
+    do(session, "switch", name="dry_run", on=True)
+    do(session, "cycle_start")
+    while session.room.line < 5:
+        session.advance()
+    session.advance(40)
+    velocity = session.room.samples.joint_velocity[-1, :3]
+    assert 60.0 * float(np.linalg.norm(velocity)) == pytest.approx(3000.0, rel=1e-2)
+    rest(session)
+    assert not session.room.judge.evidence.ended_well
+
+
+def test_a_search_goes_up_over_and_down_and_waits(session):
+    do(session, "search", line=5)
+    do(session, "cycle_start")
+    rest(session)
+    room = session.room
+    assert room.waiting
+    assert at(session) == (-40.0, -20.0, -2.0)
+    assert room.spindle.turns
+    assert room.alarm is None
+    do(session, "cycle_start")
+    while room.line < 6:
+        session.advance()
+    assert room.modal is None or "G1" in room.modal.codes
+    rest(session)
+    assert room.run is None
+    assert not room.judge.evidence.ended_well
+
+
+def test_a_search_that_finds_nothing_is_told(session):
+    load(session, "N10 G90 G0 X0\n(goto end)\nN30 M30")
+    do(session, "search", line=2)
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.alarm is not None
+    assert session.room.alarm.message == "the program never comes to line 2"
+    assert refused(session, "search", line=9) == "the program has 3 lines"
+
+
+def test_jog_during_a_hold_and_the_way_back_to_the_path(session):
+    do(session, "cycle_start")
+    while session.room.line < 5:
+        session.advance()
+    session.advance(40)
+    do(session, "feed_hold")
+    rest(session)
+    held = at(session)
+    do(session, "mode", mode="jog")
+    do(session, "jog", axis="Z", direction=1, step=20.0)
+    rest(session)
+    do(session, "jog", axis="X", direction=-1, step=10.0)
+    rest(session)
+    assert refused(session, "set_zero", axis="X") != ""
+    do(session, "mode", mode="auto")
+    assert refused(session, "cycle_start") == "the axes stand off the path: return to it first"
+    do(session, "mode", mode="jog")
+    do(session, "return_to_path")
+    rest(session)
+    assert at(session) == held
+    do(session, "mode", mode="auto")
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.judge.evidence.ended_well
+    assert session.room.alarm is None
+
+
+def test_going_back_into_a_hold_with_jogged_axes(session):
+    do(session, "cycle_start")
+    while session.room.line < 5:
+        session.advance()
+    do(session, "feed_hold")
+    rest(session)
+    do(session, "mode", mode="jog")
+    for _ in range(45):
+        session.advance(10)
+    do(session, "jog", axis="Z", direction=1, step=5.0)
+    rest(session)
+    session.rewind(0.5)
+    assert session.room.suspended is not None
+    do(session, "return_to_path")
+    rest(session)
+    do(session, "mode", mode="auto")
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.judge.evidence.ended_well
+
+
+def test_the_handwheel_moves_by_its_clicks_and_no_further_than_the_travel(session):
+    do(session, "mode", mode="jog")
+    before = at(session)
+    for _ in range(5):
+        do(session, "handwheel", axis="X", clicks=2, step=0.1)
+    rest(session)
+    assert at(session)[0] == pytest.approx(before[0] + 1.0)
+    do(session, "handwheel", axis="X", clicks=-1, step=0.01)
+    rest(session)
+    assert at(session)[0] == pytest.approx(before[0] + 0.99)
+    assert session.snapshot().modal is None
+
+
+def test_the_reference_return_drives_up_first(session):
+    do(session, "mode", mode="jog")
+    do(session, "jog", axis="X", direction=1, step=30.0)
+    rest(session)
+    do(session, "reference")
+    velocity = session.room.machine.velocity
+    session.advance(10)
+    velocity = session.room.machine.velocity
+    assert abs(velocity[2]) > 0.0
+    assert velocity[0] == pytest.approx(0.0, abs=1e-6)
+    rest(session)
+    assert session.room.machine.position == pytest.approx(np.zeros(4), abs=1e-3)
+
+
+def test_mdi_keeps_what_a_block_left_in_force_until_reset(session):
+    do(session, "mode", mode="mdi")
+    for text in ("G91 G1 F600", "X2", "X2"):
+        do(session, "mdi", text=text)
+        do(session, "cycle_start")
+        rest(session)
+    assert session.room.alarm is None
+    stands = at(session)[0]
+    do(session, "mdi", text="G90 X10")
+    do(session, "cycle_start")
+    rest(session)
+    assert at(session)[0] == 10.0
+    assert stands != 10.0
+    do(session, "reset")
+    assert session.room.inherited is None
+
+
+def test_an_mdi_block_keeps_the_work_offset(session):
+    do(session, "set_offset", axis="X", value=7.0, name="G55")
+    do(session, "mode", mode="mdi")
+    for text in ("G55", "G90 G0 X1"):
+        do(session, "mdi", text=text)
+        do(session, "cycle_start")
+        rest(session)
+    assert at(session)[0] == 8.0
+
+
+def test_typed_tool_data_reach_the_control(session):
+    number = session.room.tables.spindle
+    do(session, "set_tool", number=number, radius=4.0)
+    row = next(tool for tool in session.snapshot().tools if tool.number == number)
+    assert row.radius == 4.0
+    length = row.length
+    do(session, "set_tool", number=number, length=length + 1.0)
+    assert session.room.tables.lengths[number] == length + 1.0
+    assert session.room.tables.radii[number] == 4.0
+
+
+def test_the_program_can_be_taken_back_and_loaded_anew(session):
+    lines = session.room.lines
+    assert refused(session, "undo") == "the program has not been changed"
+    do(session, "edit", line=5, text="N40 X30 F1200")
+    do(session, "edit", line=6, text="N50 Y10")
+    do(session, "undo")
+    assert session.room.lines[5] == lines[5]
+    assert session.room.lines[4] == "N40 X30 F1200"
+    do(session, "reload")
+    assert session.room.lines == lines
+    do(session, "undo")
+    assert session.room.lines[4] == "N40 X30 F1200"
+
+
+def test_a_new_blank_has_not_been_cut(session):
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.work.removed > 0.0
+    do(session, "mode", mode="jog")
+    do(session, "new_blank")
+    assert session.room.work.removed == 0.0
+    assert not session.room.work.map.machined().any()
+
+
+def test_the_spindle_needs_a_speed_and_the_tool_a_standing_spindle(session):
+    assert refused(session, "spindle", on=True) == "no spindle speed is set: type S first"
+    do(session, "spindle", on=True, speed=2000.0, counter_clockwise=True)
+    now = session.snapshot()
+    assert (now.spindle.speed, now.counter_clockwise) == (2000.0, True)
+    do(session, "mode", mode="jog")
+    assert "spindle turns" in refused(session, "change_tool", number=1)
+    do(session, "spindle", on=False)
+    do(session, "change_tool", number=1)
+
+
+def test_a_start_without_a_speed_turns_nothing(session):
+    load(session, "N10 M3\nN20 G90 G1 X5 F100\nN30 M30")
+    do(session, "cycle_start")
+    session.advance(20)
+    assert session.room.spindle.started
+    assert not session.room.spindle.turns
+
+
+def test_coolant_closes_with_an_alarm_and_stays_closed(session):
+    do(session, "coolant", on=True)
+    do(session, "emergency_stop")
+    assert not session.room.coolant
+    assert "emergency-stop" in refused(session, "coolant", on=True)
+
+
+def test_the_limit_alarm_stands_until_the_axis_has_left_its_switch():
+    session = Session(read_scene(scene_path("fagor_overtravel")))
+    refusal = refused(session, "reset")
+    assert refusal == "X stands on its limit switch: jog it back first"
+    do(session, "mode", mode="jog")
+    assert "end of its travel" in refused(session, "jog", axis="X", direction=1, step=1.0)
+    assert "limit switch" in refused(session, "jog", axis="Y", direction=1, step=1.0)
+    do(session, "jog", axis="X", direction=-1, step=1.0)
+    rest(session)
+    assert session.room.alarm is not None
+    do(session, "reset")
+    assert session.room.alarm is None
+    assert [notice.code for notice in session.room.alarms] == ["hard-limit"]
+
+
+def test_an_alarm_names_the_block_by_its_number(session):
+    load(session, "N10 G90 F500\nN20 G1 X9999\nN30 M30")
+    do(session, "cycle_start")
+    rest(session)
+    alarm = session.room.alarm
+    assert alarm is not None
+    assert (alarm.code, alarm.line, alarm.block) == ("soft-limit", 2, "N20")
+
+
+def test_a_jog_changes_nothing_that_is_in_force(session):
+    do(session, "cycle_start")
+    rest(session)
+    before = session.snapshot().modal
+    assert before is not None
+    do(session, "mode", mode="jog")
+    do(session, "jog", axis="X", direction=1, step=10.0)
+    session.advance(5)
+    assert session.room.running == "jog"
+    assert session.snapshot().modal == before
+
+
+def test_time_counts_from_the_first_touch():
+    scene = read_scene(scene_path("fagor_first_steps"))
+    task = scene.file.tasks[0].model_copy(update={"held": (), "within_s": 1.0})
+    file = scene.file.model_copy(update={"tasks": (task,), "time_limit_s": 2.0})
+    session = Session(dataclasses.replace(scene, file=file))
+    session.advance(500)
+    assert session.room.judge.verdicts[0].state == "open"
+    do(session, "coolant", on=True)
+    session.advance(120)
+    assert session.room.judge.verdicts[0].state == "failed"
+    session.advance(100)
+    assert session.room.judge.over

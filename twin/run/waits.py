@@ -1,0 +1,78 @@
+"""The time that tool changes and the spindle take, as dwells of the program."""
+
+import dataclasses
+from collections.abc import Iterable, Iterator
+
+from twin.job.job_file import JobFile
+from twin.machine.description.config import SpindleTable
+from twin.nc.canonical import Chunk, Dwell, Event, Function
+from twin.nc.functions import (
+    SPINDLE_COUNTER_CLOCKWISE,
+    SPINDLE_STARTS,
+    TOOL_CHANGE,
+    SpindleState,
+)
+
+
+def with_waits(chunks: Iterable[Chunk], spindle: SpindleTable, job: JobFile) -> Iterator[Chunk]:
+    """A program with a dwell behind every function that a machine takes time for.
+
+    A tool change takes ``tool_change_s`` and stops the spindle first; one that brings the tool that
+    is in the spindle takes no time. Whatever changes the spindle's speed takes the change over
+    ``acceleration``; a speed that neither program nor job says takes none. The program's end is
+    not waited for, nor is what happens in the middle of a path that goes on.
+
+    Args:
+        chunks: The program.
+        spindle: How long the machine takes.
+        job: Says the first tool, and the speeds of tools for programs that say none.
+    """
+    if not spindle.tool_change_s and not spindle.acceleration:
+        yield from chunks
+        return
+    waits = _Waits(spindle, job)
+    for chunk in chunks:
+        yield dataclasses.replace(chunk, events=tuple(waits.among(chunk.events)))
+
+
+class _Waits:
+    """Follows the tool in the spindle and its speed."""
+
+    def __init__(self, spindle: SpindleTable, job: JobFile) -> None:
+        self._spindle = spindle
+        self._speeds = {tool.number: tool.speed for tool in job.tools}
+        self._tool = self._selected = job.tools[0].number
+        self._state = SpindleState()
+        self._sign, self._turns = 1.0, 0.0
+
+    def among(self, events: Iterable[Event]) -> Iterator[Event]:
+        """The events with their dwells."""
+        for event in events:
+            yield event
+            if isinstance(event, Function):
+                seconds = self._hear(event)
+                if seconds > 0.0 and event.at == 0.0:
+                    yield Dwell(event.before, event.line, seconds)
+
+    def _hear(self, event: Function) -> float:
+        """How long the machine takes for a function [s]."""
+        word = event.word
+        if word[:1] == "T" and word[1:].isdigit():
+            self._selected = int(word[1:])
+        if word == TOOL_CHANGE:
+            if self._selected == self._tool:
+                return 0.0
+            self._tool, self._state = self._selected, self._state.stopped()
+            return self._spindle.tool_change_s + self._turn(0.0)
+        self._state = self._state.after(event)
+        if word in SPINDLE_STARTS:
+            self._sign = -1.0 if word == SPINDLE_COUNTER_CLOCKWISE else 1.0
+        speed = self._state.speed if self._state.turns else 0.0
+        if speed is None:
+            speed = self._speeds.get(self._tool) or 0.0
+        return self._turn(self._sign * speed)
+
+    def _turn(self, turns: float) -> float:
+        """How long the spindle takes to another speed [s], negative counter-clockwise [1/min]."""
+        change, self._turns = abs(turns - self._turns), turns
+        return change / self._spindle.acceleration if self._spindle.acceleration else 0.0

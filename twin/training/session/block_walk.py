@@ -1,0 +1,158 @@
+"""The blocks of a part of a program, and how far single block has let them go.
+
+Single block stops behind every block, also behind one that moves nothing (LinuxCNC, "Running a
+program one block at a time"; Fagor 8070, operating manual, "single block"). Blocks with motion are
+stopped by the planner; between two of them each further press of start goes one block on.
+"""
+
+import bisect
+import dataclasses
+from collections import deque
+
+from twin.nc.canonical import Function
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ModalState:
+    """What is in force while a block runs.
+
+    Attributes:
+        line: Source line.
+        codes: G codes in force, such as ``G90``.
+        feed: As programmed, or None.
+        tool: Number of the tool in the spindle, or None.
+        per_minute: What the programmed feed is multiplied by to count per minute; None: it counts
+            something else.
+    """
+
+    line: int
+    codes: tuple[str, ...]
+    feed: float | None
+    tool: int | None
+    per_minute: float | None = 1.0
+
+
+class BlockWalk:
+    """What single block knows of a part.
+
+    Attributes:
+        blocks: What is in force in each block, in the order in which they run.
+        paused: Start is waited for behind a block.
+        singly: Source lines that were run from one press of start to the stop behind them.
+    """
+
+    def __init__(self) -> None:
+        self.blocks: list[ModalState] = []
+        self.paused = False
+        self.singly: set[int] = set()
+        self._marks: list[int] = []
+        self._functions: deque[tuple[float, int, Function]] = deque()
+        self._current = -1
+        self._of_function = 0
+        self._stepping = False
+
+    def note(self, mark: int, state: ModalState) -> None:
+        """A block has been interpreted.
+
+        Args:
+            mark: How many moves of the part came before it.
+            state: What is in force.
+        """
+        self._marks.append(mark)
+        self.blocks.append(state)
+
+    def note_function(self, place: float, function: Function) -> None:
+        """A function of the blocks so far; ``place``: how many moves lie before it."""
+        for index in range(self._of_function, len(self.blocks)):
+            if self.blocks[index].line == function.line:
+                self._of_function = index
+                break
+        self._functions.append((place, self._of_function, function))
+
+    def of_move(self, move: int) -> int:
+        """Number of the block that a move belongs to, as far as its mark tells; -1: none."""
+        return bisect.bisect_right(self._marks, max(move, 0)) - 1
+
+    @property
+    def line(self) -> int:
+        """Source line of the block that the walk has come to; 0: none."""
+        return self.blocks[self._current].line if 0 <= self._current < len(self.blocks) else 0
+
+    @property
+    def at_last(self) -> bool:
+        """Whether all blocks that are known have been run."""
+        return self._current >= len(self.blocks) - 1
+
+    @property
+    def next_is_last(self) -> bool:
+        """Whether the next block is the last that is known, or there is none."""
+        return self._current + 1 >= len(self.blocks) - 1
+
+    def state(self, move: int) -> ModalState | None:
+        """What is in force during a move, or where start is waited for."""
+        if not self.blocks:
+            return None
+        index = self._current if self.paused else self.of_move(move)
+        return self.blocks[min(max(index, 0), len(self.blocks) - 1)]
+
+    def pause_before_all(self) -> None:
+        """Start is waited for before the first block."""
+        self.paused, self._stepping = True, True
+
+    def run_next(self) -> None:
+        """The next block, which moves, begins; or what is left comes to its end."""
+        self.paused, self._stepping = False, True
+        self._current = min(self._current + 1, max(len(self.blocks) - 1, 0))
+        if self.at_last and self.blocks:
+            self.singly.add(self.line)
+
+    def pass_one(self) -> None:
+        """The next block, which does not move, has been run."""
+        self._current += 1
+        self.paused, self._stepping = True, True
+        self.singly.add(self.line)
+
+    def stop_behind(self, move: int, line: int) -> None:
+        """The axes have stopped at the end of a block.
+
+        Args:
+            move: The last move that was run, or part of it.
+            line: Its source line.
+        """
+        if self._stepping and self.line == line:
+            self.singly.add(line)
+        else:
+            at = self.of_move(move)
+            while at > 0 and self.blocks[at].line != line:
+                at -= 1
+            self._current = at
+        self.paused = True
+
+    def end_singly(self) -> None:
+        """The block behind which the axes have stopped was the last one: nothing waits."""
+        self.paused = False
+
+    def go_freely(self) -> None:
+        """Single block is off."""
+        self.paused = self._stepping = False
+
+    def next_line(self) -> int:
+        """Source line of the block that comes next; 0 where none is known."""
+        index = self._current + 1
+        return self.blocks[index].line if index < len(self.blocks) else 0
+
+    def due(self, place: float) -> list[Function]:
+        """Functions that have happened and were not told yet.
+
+        Args:
+            place: How many moves, and which share of the next, lie behind.
+        """
+        last = self._current if self._stepping or self.paused else len(self.blocks)
+        found: list[Function] = []
+        while self._functions:
+            at, block, function = self._functions[0]
+            if block > last or (at > place and not (self.paused and block <= self._current)):
+                break
+            found.append(function)
+            self._functions.popleft()
+        return found
