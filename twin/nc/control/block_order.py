@@ -49,10 +49,12 @@ def run_in_order(
         functions: Its M functions in the order of the text.
         words_first: Words and early functions take effect before the actions of G codes.
     """
-    instead = next((code for _, code in codes if code.perform is not None), None)
-    if not words_first:
-        for word, code in codes:
+    instead = None
+    for word, code in codes:
+        if not words_first:
             steps.act(word, code)
+        if code.perform is not None:
+            instead = code
     steps.modal_words("" if instead is None else instead.takes)
     for word, function in functions:
         if not function.late:

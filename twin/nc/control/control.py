@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.effects import Affected
-from twin.nc.bytecode.registers import INCREMENTAL, PLANE, UNIT
+from twin.nc.bytecode.registers import INCREMENTAL, PLANE, PROGRAMMED_FEED, UNIT
 from twin.nc.canonical import Corner, Dwell, Function, Motion
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
 from twin.nc.control.state import number_of
@@ -141,26 +141,26 @@ class Control(ControlWords):
         return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
-        settings, mode = self.settings, self.modal.feed_mode
-        if self.feed is None:
+        settings, modal, feed = self.settings, self.modal, self.registers[PROGRAMMED_FEED]
+        factor = FEED_FACTORS.get(modal.feed_mode)
+        if feed != feed:
             self.report.warn_once(
                 "no-feed",
                 "no feed is programmed: the machine's default is used",
                 *self._blamed(None),
                 hint="write F in the first block that needs it",
             )
-        elif mode is FeedMode.SECONDS_PER_BLOCK:
-            return length / self.feed * 60.0
-        elif mode is FeedMode.BLOCKS_PER_MINUTE:
-            return length * self.feed
-        factor = FEED_FACTORS.get(mode, self.spindle)
-        if self.feed is not None and mode not in FEED_FACTORS:
+        elif factor is None:
+            if modal.feed_mode is FeedMode.SECONDS_PER_BLOCK:
+                return length / feed * 60.0
+            if modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
+                return length * feed
             self._refuse_standing_spindle()
         return feed_per_minute(
-            NAN if self.feed is None else self.feed,
+            feed,
             not is_arc and only_turns(self.part, end, self.linear),
-            self.modal.unit,
-            factor or 1.0,
+            modal.unit,
+            (self.spindle or 1.0) if factor is None else factor,
             (settings.default_feed, settings.default_rotary_feed),
         )
 

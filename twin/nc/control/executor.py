@@ -160,13 +160,15 @@ class Executor(Control):
         self.series = []
         functions: list[tuple[Word, MCode]] = []
         for word in block.words:
-            if isinstance(word.value, Expression) and word.address not in dialect.references:
-                word = word._replace(value=self.evaluate(word.value, word))
-                if word.value != word.value:
+            address, value = word.address, word.value
+            if isinstance(value, Expression) and address not in dialect.references:
+                value = self.evaluate(value, word)
+                word = word._replace(value=value)
+                if value != value:
                     continue  # computed of a vacant variable: the word is not there
-            if word.address in dialect.signed and number_of(word) < 0.0:
-                word = word._replace(address=f"{word.address}-")
-            address = word.address
+            if address in dialect.signed and number_of(word) < 0.0:
+                address = f"{address}-"
+                word = word._replace(address=address)
             if address == "G":
                 codes.append((word, self._g_code(word)))
             elif address == "M" and not self._takes_m(block):
