@@ -25,6 +25,7 @@ PAGES: Mapping[str, str] = {
     "twin/nc/dialects/codesys.md": "reference/dialects/codesys.md",
     "twin/nc/dialects/fagor8070.md": "reference/dialects/fagor8070.md",
     "twin/nc/dialects/mefi.md": "reference/dialects/mefi.md",
+    "twin/nc/dialects/fanuc.md": "reference/dialects/fanuc.md",
     "models/mill4/README.md": "machines/mill4.md",
     "models/mill4_light/README.md": "machines/mill4_light.md",
     "CONTRIBUTING.md": "development/contributing.md",

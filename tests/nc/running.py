@@ -19,7 +19,10 @@ SETTINGS = ControlSettings(axes=MILL, periodic=frozenset({"C"}))
 WITH_TABLES = dataclasses.replace(
     SETTINGS,
     tools={1: ToolData(2.0, 60.0), 2: ToolData(3.0, 72.5)},
-    offsets={f"G{number}": {"X": 10.0 * (number - 53)} for number in range(54, 60)},
+    offsets={
+        **{f"G{number}": {"X": 10.0 * (number - 53)} for number in range(54, 60)},
+        "G54.1 P1": {"Y": 5.0},
+    },
     machine_zero={"Z": 300.0},
 )
 """With tools, work offsets and machine zero."""

@@ -21,6 +21,7 @@ from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source, read_source, source_from_bytes, source_from_text
 
 NEVER, ALWAYS = 10**9, 0
+CALCULATOR = dataclasses.replace(WITH_TABLES, decimal_point="calculator")
 GOLDEN = sorted((ROOT / "tests").glob("*/*/**/*.nc")) + sorted((ROOT / "programs").glob("*/*.nc"))
 
 SOUND = [
@@ -41,6 +42,8 @@ RARE = {
     "|G4 P2|S100|T2 M6|T1|G54|G55 X3|G92 X1|G43 H2|G49|G18|G17|M3 S5 M8|M8 M5|G53|G81 Z-9 R8|G80",
     "codesys": "(* a *) G1 X1|// X2|FX3|LET #a : LREAL := 2|G1 X(1+2)|N1 X1 N2 X2|FF5|E5|M7 K2",
     "fagor8070": "G1 R5 Q30|P1=2|G1 XP1|G1 X20I|; text|G73|G11|G10|G1 X5 NR3|[HERE]",
+    "fanuc": "#1=2.5|G1 X#1|X[#1*2]|#[1+1]=#1|X#2|Y#9|(text)|/X1.|/2 Y3.|M98 P2|G4 P20|M3 S500|G54 X3.|G92 X1."
+    "|G52 Y2.|G41 D1|G40|G43 H2|G49|G81 Z-9. R8.|X3. K2|G80|G68 X0 Y0 R30.|G69|IF [#1 GT 2] THEN #1=1.5",
     "mefi": '"text|G1 X1 "behind|Z1 G10|M5|S200|G4 P2|T2 M6|G54|G55 X3|G92 X1|G43 H2|G49|M3 S5 M8',
 }
 """What the interpreter tier must run in between."""
@@ -48,6 +51,7 @@ WRONG = {
     "gost": "(open",
     "codesys": "T90|PC360|G16 I1",
     "fagor8070": "$FOR P2=1,3,1|$ENDFOR|G263=20|G31",
+    "fanuc": "M99 P5|GOTO 7|G65 P3|#0=1|END1|G31 X1.",
     "mefi": "G09|G98|G73 L1 Q2",
 }
 WRONG_ANYWHERE = "X{} U5|I{} J{}|K{}|R{}|R-{}|G{}|F-1|G1 G0 X1|X1 X2|X1.2.3|X|Y12345678|G18|N1 X1|Ü"
@@ -180,7 +184,8 @@ def block(random_: random.Random, dialect: str, wildness: float) -> str:
         return random_.choice(RARE[dialect].split("|"))
     codes = ["G1", "G0", "G90 G1", "G1 G91", "G17 G1", "G55 G1", "G54 G1"]
     if dialect != "codesys":
-        codes += ["G70 G1", "G71 G1"]
+        inches = 20 if dialect == "fanuc" else 70
+        codes += [f"G{inches} G1", f"G{inches + 1} G1"]
     feed = random_.choice(["", "", "", " F500", " F0.2"])
     return f"{random_.choice(codes)} {filled(random_, random_.choice(SOUND))}{feed}"
 
@@ -204,7 +209,7 @@ def test_both_ways_agree_on_random_programs(dialect: str) -> None:
     random_ = random.Random(8)  # noqa: S311 (programs need no cryptography)
     moves = errors = 0
     for _ in range(250):
-        result = assert_same(source_from_text(program(random_, dialect)), dialect)
+        result = assert_same(source_from_text(program(random_, dialect)), dialect, CALCULATOR)
         moves += len(result.moves)
         errors += result.error is not None
     assert moves > 1000
@@ -240,7 +245,7 @@ def test_long_runs_cross_the_border_of_chunks(dialect: str) -> None:
     ]
     if dialect == "mefi":  # which refuses the larger arc
         lines = [line.replace("R-", "R") for line in lines]
-    result = assert_same(source_from_text("\n".join(lines)), dialect)
+    result = assert_same(source_from_text("\n".join(lines)), dialect, CALCULATOR)
     assert result.error is None
     assert len(result.moves) > 8000
 
@@ -251,8 +256,9 @@ def test_the_compiled_tier_is_taken() -> None:
     from twin.nc.compiled.virtual_machine import VirtualMachine
 
     text = "G90 G1 X0 F100\n" + "G1 X1 Y2 (a)\n\nG2 X11 Y2 I5 J0\n" * 50
-    for dialect in ("gost", "codesys", "fagor8070"):
-        interpretation = Interpretation(source_from_text(text), dialect_named(dialect), SETTINGS)
+    for dialect in ("gost", "codesys", "fagor8070", "fanuc"):
+        source = source_from_text(text)
+        interpretation = Interpretation(source, dialect_named(dialect), CALCULATOR)
         interpretation._control.prepare()
         assert VirtualMachine(interpretation._control, COLD).run()
         assert interpretation._control.program_counter.location.line == 151, dialect

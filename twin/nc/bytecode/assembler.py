@@ -142,14 +142,16 @@ class Assembler(abc.ABC):
         own: Iterable[str] | None = None,
         *,
         restores: bool = False,
+        often: bool = False,
     ) -> None:
-        """Run the part that begins at a location.
+        """Run the part that begins at a location and ends by a word.
 
         Args:
             location: Where it begins.
             deepest: Parts that may call each other.
             own: Its own variables, which get the topmost values; None: it has the caller's.
             restores: Its end puts back into force what is in force now.
+            often: The value below those of its own variables says how often it runs.
         """
         self._add(opcodes.CHECK_CALL, deepest)
         if own is not None:
@@ -163,7 +165,7 @@ class Assembler(abc.ABC):
                 done.add(name)
         if restores:
             self._add(opcodes.RESTORE_CODES)
-        self._add(opcodes.CALL, number_of_location(location))
+        self._add(opcodes.REPEAT if often else opcodes.CALL, number_of_location(location))
 
     def repeat(self, first: Location, last: Location, deepest: int) -> None:
         """Run a range as often as the topmost value says."""

@@ -6,7 +6,7 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.bytecode import MOST_ROWS, MOST_STORES, Bytecode
 from twin.nc.bytecode.registers import MOST_WORDS
-from twin.nc.bytecode.variables import Variables
+from twin.nc.bytecode.variables import NO_SLOT, Variables
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import (
@@ -203,7 +203,10 @@ class BytecodeAssembler(Assembler):
         bytecode = self._bytecode
         if not len(bytecode.numbered):
             bytecode.number_variables(
-                [self._variables.slot(f"{name}{number}") for number in range(MOST_NUMBERED)]
+                [
+                    NO_SLOT if each in self._live else self._variables.slot(each)
+                    for each in (f"{name}{number}" for number in range(MOST_NUMBERED))
+                ]
             )
 
     # --- variables

@@ -166,9 +166,14 @@ def transfer(
         known = innermost(calls, called) > 0
     elif opcode == opcodes.RETURN:
         called = innermost(calls, called) - 1
-        depth -= calls[called, OWNS_SCOPE]
-        going = calls[called, BACK]
-        restores = calls[called, RESTORES]
+        if calls[called, AGAIN] > 0:
+            calls[called, AGAIN] -= 1
+            going, restores = calls[called, FIRST], NOTHING_RESTORED
+            called += 1
+        else:
+            depth -= calls[called, OWNS_SCOPE]
+            going = calls[called, BACK]
+            restores = calls[called, RESTORES]
     else:
         again = value - 1.0 if opcode == opcodes.REPEAT else 0.0
         known = again >= 0.0 and again == np.floor(again)

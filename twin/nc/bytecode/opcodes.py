@@ -101,7 +101,8 @@ CALL = 34
 RANGE = 35
 """The range that is repeated next ends at the location ``operand``."""
 REPEAT = 36
-"""Run the range that begins at the location ``operand`` as often as the topmost value says."""
+"""Run the range, or the part that a word ends, which begins at the location ``operand`` as often as the
+topmost value says."""
 CHECK_RETURN = 37
 """There must be a part that can be returned from."""
 RETURN = 38

@@ -83,7 +83,7 @@ class BlockTables(NamedTuple):
             does neither, shape (``CODES``,).
         cycles: What is peculiar to each, as ``drilling_cycle.Cycle`` has it, and behind that which of its
             values a word with each token kind gives, ``UNSUPPORTED`` for none; 0 is no cycle, shape
-            (c, 7 + token_kinds).
+            (c, 8 + token_kinds).
         function: Whether each M code is reported ``EARLY``, before its block's move, or ``LATE``,
             shape (``CODES``,); ``UNSUPPORTED`` for codes that do more than that.
         kind: Kind of each interpolation, shape (i,).

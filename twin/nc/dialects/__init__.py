@@ -1,4 +1,4 @@
-"""The four controls, one module each."""
+"""The controls, a module or a folder each."""
 
 import re
 from collections.abc import Mapping
@@ -7,12 +7,13 @@ from twin.errors import UsageError
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.fagor8070 import FAGOR8070
+from twin.nc.dialects.fanuc import FANUC
 from twin.nc.dialects.gost import GOST
 from twin.nc.dialects.mefi import MEFI
 from twin.nc.text.source import Source
 
 DIALECTS: Mapping[str, Dialect] = {
-    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI)
+    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC)
 }
 """Every known dialect by name."""
 

@@ -34,6 +34,7 @@ def cycle_code(
     meaning: str,
     target: Callable[[Control], list[float]] = Control.target,
     ground: Ground = "decision",
+    repeats: str = "",
 ) -> GCode:
     """The code that calls a cycle.
 
@@ -42,6 +43,8 @@ def cycle_code(
         meaning: For people.
         target: Takes the words that name the hole; its programmed position, shape (k,).
         ground: On what the meaning rests.
+        repeats: Address that says how often a block drills, each hole as far from the last as the
+            block's increments say; 0: its words are taken and nothing is drilled. Empty: none.
     """
     cycle = rule.cycle
 
@@ -52,9 +55,17 @@ def cycle_code(
             _take_words(control, rule)
 
     def perform(control: Control) -> None:
-        if cycle.lasting:
+        count = _repeats(control, repeats)
+        given = dict(control.words)
+        if count == 0:
             _take_words(control, rule)
-        drill(control, _hole(control, rule), target(control))
+            control.take_axis_words()
+        for number in range(count):
+            if number:
+                control.words = dict(given)
+            if cycle.lasting:
+                _take_words(control, rule)
+            drill(control, _hole(control, rule), target(control))
 
     return GCode(
         meaning=meaning,
@@ -64,6 +75,22 @@ def cycle_code(
         compiler=_write_words(rule.words),
         ground=ground,
     )
+
+
+def _repeats(control: Control, address: str) -> int:
+    """How often the block drills; takes the word that says it.
+
+    Raises:
+        ProgramError: It is no count, or too large a one.
+    """
+    word = control.take(address) if address else None
+    if word is None:
+        return 1
+    given, most = control.number(word), control.settings.step_limit
+    if given < 0.0 or given != int(given) or given > most:
+        message = f"{word.address} must count holes, {most} at most"
+        control.fail("repeat-count", message, word)
+    return int(given)
 
 
 def _take_words(control: Control, rule: CycleRule) -> None:

@@ -60,6 +60,8 @@ class Retract(enum.IntEnum):
     """With the feed, the spindle reversed."""
     STOPPED = 3
     """Rapidly, the spindle stopped."""
+    REVERSED_LEFT = 4
+    """As ``REVERSED``, of a spindle that turned counter-clockwise."""
 
 
 class Pecking(enum.IntEnum):
@@ -103,6 +105,7 @@ class Fault(enum.IntEnum):
 
 
 _FEED, _REVERSED, _STOPPED = int(Retract.FEED), int(Retract.REVERSED), int(Retract.STOPPED)
+_REVERSED_LEFT = int(Retract.REVERSED_LEFT)
 _STRAIGHT, _COUNTED = int(Pecking.NONE), int(Pecking.COUNTED)
 _MISSING, _PLANE, _PECKS = int(Fault.MISSING), int(Fault.PLANE), int(Fault.PECKS)
 _MANY_PECKS, _DEPTH, _DWELL = int(Fault.MANY_PECKS), int(Fault.DEPTH), int(Fault.DWELL)
@@ -123,6 +126,8 @@ class Cycle(NamedTuple):
         dwells: It waits at the bottom.
         clearance: Where its words give none [mm].
         retract: A ``Retract``.
+        lift: How far the tool withdraws between pecks where its words do not say it; 0: to the
+            reference plane [mm].
     """
 
     lasting: bool
@@ -132,6 +137,7 @@ class Cycle(NamedTuple):
     dwells: bool = True
     clearance: float = CHIP_CLEARANCE
     retract: int = int(Retract.RAPID)
+    lift: float = 0.0
 
 
 class Hole(NamedTuple):
@@ -249,7 +255,7 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
     reference, bottom = values[REFERENCE], values[BOTTOM]
     surface = reference - either(values[SURFACE], 0.0)
     peck, factor = values[PECK], either(values[FACTOR], 1.0)
-    least, lift = either(values[LEAST], 0.0), either(values[LIFT], 0.0)
+    least, lift = either(values[LEAST], 0.0), either(values[LIFT], cycle.lift)
     every, stops, full_every = either(values[EVERY], 0.0), 0, 1
     if cycle.pecking == _COUNTED:
         peck = abs(values[DEPTH])
@@ -339,14 +345,16 @@ def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
     if hole.dwell > 0.0:
         acts[at], amounts[at] = _WAIT, hole.dwell
         at += 1
-    if hole.retract in (_REVERSED, _STOPPED):
-        acts[at], amounts[at] = _M4 if hole.retract == _REVERSED else _M5, 0.0
+    reverses = hole.retract in (_REVERSED, _REVERSED_LEFT)
+    back, forth = (_M3, _M4) if hole.retract == _REVERSED_LEFT else (_M4, _M3)
+    if reverses or hole.retract == _STOPPED:
+        acts[at], amounts[at] = back if reverses else _M5, 0.0
         at += 1
-    if hole.retract in (_REVERSED, _FEED):
+    if reverses or hole.retract == _FEED:
         acts[at], amounts[at] = _DOWN, hole.reference
         at += 1
-    if hole.retract == _REVERSED:
-        acts[at], amounts[at] = _M3, 0.0
+    if reverses:
+        acts[at], amounts[at] = forth, 0.0
         at += 1
     acts[at], amounts[at] = _UP, hole.back
     at += 1

@@ -75,6 +75,38 @@ def unequal(a: float, b: float) -> float:
 
 
 @compilable
+def equal_or_vacant(a: float, b: float) -> float:
+    """Whether they are the same number, or neither has a value (NaN)."""
+    return 1.0 if a == b or (a != a and b != b) else 0.0
+
+
+@compilable
+def unequal_or_vacant(a: float, b: float) -> float:
+    """Whether they are different numbers, or one of them has no value (NaN)."""
+    return 0.0 if a == b or (a != a and b != b) else 1.0
+
+
+@compilable
+def remainder_of_wholes(a: float, b: float) -> float:
+    """The remainder of a division of whole numbers, to which both are rounded."""
+    return math.fmod(nearest_whole_away(a), nearest_whole_away(b))
+
+
+def from_binary_decimal(a: float) -> float:
+    """The number whose decimal digits stand in four bits each."""
+    if a < 0.0 or a != int(a):
+        raise ValueError(a)
+    return float(int(f"{int(a):x}"))
+
+
+def to_binary_decimal(a: float) -> float:
+    """A number with its decimal digits in four bits each."""
+    if a < 0.0 or a != int(a):
+        raise ValueError(a)
+    return float(int(f"{int(a)}", 16))
+
+
+@compilable
 def both(a: float, b: float) -> float:
     """Whether both are true."""
     return 1.0 if a != 0.0 and b != 0.0 else 0.0
@@ -165,6 +197,13 @@ def direction_in_degrees(x: float, y: float) -> float:
 
 
 @compilable
+def direction_from_zero(y: float, x: float) -> float:
+    """The direction of a vector, its ordinate first, from 0 up to 360 [deg]."""
+    angle = math.degrees(math.atan2(y, x))
+    return angle + 360.0 if angle < 0.0 else angle
+
+
+@compilable
 def square(a: float) -> float:
     """The number times itself."""
     return a * a
@@ -198,6 +237,18 @@ def nearest_whole(a: float) -> float:
 def next_whole(a: float) -> float:
     """The least whole number that is not below it."""
     return float(math.ceil(a))
+
+
+@compilable
+def nearest_whole_away(a: float) -> float:
+    """The nearest whole number; halves go away from 0."""
+    return float(math.floor(a + 0.5)) if a >= 0.0 else float(math.ceil(a - 0.5))
+
+
+@compilable
+def whole_away(a: float) -> float:
+    """The nearest whole number that is not nearer to 0."""
+    return float(math.ceil(a)) if a >= 0.0 else float(math.floor(a))
 
 
 @compilable

@@ -44,6 +44,9 @@ class Lexer:
             return ()
         self._report.line = number
         self._check(line)
+        end = self._grammar.syntax.block_end
+        if end:
+            line = line.rstrip(f"{end} \t")
         try:
             return LineReader(self._grammar, self._report, line, number).blocks()
         except ProgramError:

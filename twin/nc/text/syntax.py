@@ -39,6 +39,7 @@ class Syntax:
         several_blocks: A further N begins a further block on the same line.
         named_labels: ``[NAME]`` at its begin names a block.
         skip_levels: A digit may stand behind the slash of a block that can be skipped.
+        block_end: Character that may end a line and says no more, such as ``;`` for the end of a block.
         inner_comments: Comments in brackets may stand anywhere within a statement.
         incremental_suffix: ``X20I`` makes one word incremental.
         aliases: Addresses that mean another one.
@@ -57,6 +58,7 @@ class Syntax:
     several_blocks: bool = False
     named_labels: bool = False
     skip_levels: bool = False
+    block_end: str = ""
     inner_comments: bool = False
     incremental_suffix: bool = False
     aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)

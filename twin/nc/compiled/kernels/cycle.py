@@ -119,7 +119,14 @@ def _read_cycle(
     modal, (begins, anew) = block.modal, called
     row = tables.cycles[int(modal[CYCLE])]
     cycle = Cycle(
-        row[0] != 0.0, int(row[1]), int(row[2]), int(row[3]), row[4] != 0.0, row[5], int(row[6])
+        row[0] != 0.0,
+        int(row[1]),
+        int(row[2]),
+        int(row[3]),
+        row[4] != 0.0,
+        row[5],
+        int(row[6]),
+        row[7],
     )
     across = int(constants.planes[int(modal[PLANE])][2])
     remembered, given = constants.hole[0], constants.hole[1]

@@ -1,0 +1,3 @@
+O1
+IF [#1 EQ 1 AND #2 EQ 2] GOTO 5
+N5 M30

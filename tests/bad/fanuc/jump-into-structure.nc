@@ -1,0 +1,6 @@
+O1
+GOTO 10
+WHILE [#1 LT 5] DO1
+N10 #1=#1+1
+END1
+M30

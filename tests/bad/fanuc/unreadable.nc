@@ -1,0 +1,3 @@
+O1
+X10.; COMMENT
+M30

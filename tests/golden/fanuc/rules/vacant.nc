@@ -1,0 +1,14 @@
+O1 (WHAT HAS NO VALUE)
+G0 X5. Y5.
+#1=#0
+X#1 Y7.
+IF [#1 EQ #0] THEN #100=1.
+IF [#1 EQ 0] THEN #101=1.
+#2=#1+3.
+IF [#1 LE 0] THEN #102=1.
+#3=#1*5.
+IF [#3 EQ 0] THEN #103=1.
+X#100 Y#101
+X#102 Z#103
+X#2
+M30

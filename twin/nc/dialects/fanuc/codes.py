@@ -1,0 +1,276 @@
+"""G and M codes of the Fanuc 0i-MF and 30i, milling, as far as the controls of the family share them."""
+
+from collections.abc import Mapping
+from typing import Unpack
+
+from twin.nc.canonical import Corner
+from twin.nc.control.codes import Action, Compiler, GCode, Interpolation, MCode
+from twin.nc.control.control import Control
+from twin.nc.control.modal import FeedMode, ModalChanges
+from twin.nc.dialects.fanuc import (
+    macro_calls,
+    motion,
+    offsets,
+    programs,
+    reference_points,
+    tool_offsets,
+    transformations,
+)
+from twin.nc.dialects.fanuc.cycles import cycles
+from twin.nc.dialects.fanuc.memory import Variant
+from twin.nc.geometry.planes import XY, YZ, ZX, Plane
+from twin.nc.iso import base, fixed_cycles
+from twin.nc.iso.tool_compensation import (
+    LEFT,
+    RIGHT,
+    compile_end_of_compensation,
+    end_compensation,
+    refuse_plane_change,
+)
+
+
+def dwell(control: Control) -> None:
+    """G4: wait for the seconds of X, or the milliseconds of P."""
+    words = [control.words.pop(letter) for letter in "PX" if letter in control.words]
+    if len(words) != 1 or control.number(words[0]) < 0.0:
+        control.fail("dwell", "G4 needs its time", None, "G4 P500 or G4 X0.5 waits half a second")
+    control.dwell(control.number(words[0]))
+
+
+def _g(meaning: str, group: str = "", **sets: Unpack[ModalChanges]) -> GCode:
+    return GCode(meaning=meaning, group=group, sets=sets, ground="manual")
+
+
+def _motion(meaning: str, interpolation: Interpolation) -> GCode:
+    sets: ModalChanges = {"interpolation": interpolation, "cycle": None}
+    return GCode(meaning=meaning, group="motion", sets=sets, ground="manual")
+
+
+def _plane(meaning: str, plane: Plane) -> GCode:
+    return GCode(
+        meaning=meaning,
+        group="plane",
+        sets={"plane": plane},
+        action=refuse_plane_change,
+        compiler=base.compile_plane(plane),
+        ground="manual",
+    )
+
+
+def _do(meaning: str, action: Action, compiler: Compiler | None = None) -> GCode:
+    """A code that stands in the place of a move and is not modal."""
+    return GCode(meaning=meaning, perform=action, compiler=compiler, ground="manual")
+
+
+def _modal(meaning: str, group: str, action: Action, compiler: Compiler | None = None) -> GCode:
+    """A modal code that does something before the block moves."""
+    return GCode(meaning=meaning, group=group, action=action, compiler=compiler, ground="manual")
+
+
+def _transforming(meaning: str, group: str, action: Action) -> GCode:
+    """A modal code that takes the block's words and does not move."""
+    return GCode(meaning=meaning, group=group, perform=action, ground="manual")
+
+
+def passed_over(meaning: str, letters: str, group: str = "") -> GCode:
+    """A code whose words change nothing of the path here."""
+
+    def perform(control: Control) -> None:
+        for letter in letters:
+            control.take(letter)
+        word = control.codes[-1][0]
+        message = f"{word.text} does not change the path here: {meaning}"
+        control.report.notice(word.text, message, word.column, word.width)
+
+    return GCode(meaning=meaning, group=group, action=perform, ground="manual")
+
+
+def refused(meaning: str, reason: str, *numbers: float) -> Mapping[float, GCode]:
+    """Codes that the control knows and the twin does not follow."""
+    code = GCode(meaning=meaning, refused=reason, ground="manual")
+    return dict.fromkeys(numbers, code)
+
+
+_NO_PROBE = "the twin has no probe to touch with"
+_NO_TILT = "the machine's tool does not tilt"
+_NO_ANGLE = "the twin's spindle has no angle"
+_UNKNOWN = "its effect on the path is not documented well enough to be followed"
+_LIMITS = "the limits are the machine file's"
+_NO_SPACE = "turning in space is not simulated"
+
+_MOTION: Mapping[float, GCode] = {
+    0: _motion("rapid positioning", motion.RAPID),
+    1: _motion("straight line", motion.FEED),
+    2: _motion("arc clockwise, by I J K or R", motion.CLOCKWISE),
+    3: _motion("arc counter-clockwise, by I J K or R", motion.COUNTER_CLOCKWISE),
+    4: GCode(
+        meaning="dwell, seconds in X or milliseconds in P",
+        perform=dwell,
+        compiler=base.compile_dwell("PX"),
+        ground="manual",
+    ),
+    5.1: passed_over("look-ahead (AI contour control): Q1 on, Q0 off", "QRXYZC"),
+    8: passed_over("look-ahead (advanced preview): P1 on, P0 off", "P"),
+    9: GCode(
+        meaning="exact stop in this block",
+        sets={"corner": Corner.EXACT_STOP},
+        once=True,
+        ground="manual",
+    ),
+    61: _g("exact stop mode", "corner", corner=Corner.EXACT_STOP),
+    62: _g("override at corners", "corner", corner=Corner.EXACT_PATH),
+    63: _g("tapping mode", "corner", corner=Corner.EXACT_PATH),
+    64: _g("cutting mode", "corner", corner=Corner.EXACT_PATH),
+}
+_PLACE: Mapping[float, GCode] = {
+    15: _modal("polar coordinates off", "polar", motion.end_polar),
+    16: _modal("polar coordinates: radius and angle", "polar", motion.begin_polar),
+    17: _plane("plane X Y", XY),
+    18: _plane("plane Z X", ZX),
+    19: _plane("plane Y Z", YZ),
+    20: _g("inches", "units", unit=25.4),
+    21: _g("millimetres", "units", unit=1.0),
+    27: _do("check of the reference point", reference_points.check_reference),
+    28: _do("to machine zero, by the block's point", reference_points.go_home),
+    29: _do("from machine zero, by the point of G28", reference_points.leave_reference),
+    30: _do("to a further reference point P2 P3 P4", reference_points.go_to_reference),
+    52: _do("local origin, in every work offset", offsets.local_offset),
+    53: _do("machine coordinates in this block", reference_points.machine_move),
+    **{
+        number: _modal(
+            f"work offset G{number} of the job",
+            "offset",
+            offsets.offset_code(number),
+            offsets.compile_offset(number),
+        )
+        for number in range(54, 60)
+    },
+    54.1: _modal("work offset P1 to P300 of the job", "offset", offsets.extended_offset),
+    90: _g("absolute coordinates", "distance", incremental=False),
+    91: _g("incremental coordinates", "distance", incremental=True),
+    92: _do("preset the position, in every work offset", offsets.preset),
+    92.1: _do("presets end for the axes named", offsets.end_preset),
+}
+_TOOL: Mapping[float, GCode] = {
+    40: _modal(
+        "radius compensation off", "compensation", end_compensation, compile_end_of_compensation
+    ),
+    41: _modal(
+        "compensation by D, tool left",
+        "compensation",
+        tool_offsets.compensation_code(41, LEFT),
+        tool_offsets.compile_compensation(LEFT),
+    ),
+    42: _modal(
+        "compensation by D, tool right",
+        "compensation",
+        tool_offsets.compensation_code(42, RIGHT),
+        tool_offsets.compile_compensation(RIGHT),
+    ),
+    43: _modal("tool length by H", "length", tool_offsets.length_code(43, 1.0)),
+    44: _modal("tool length by H, reversed", "length", tool_offsets.length_code(44, -1.0)),
+    49: _modal("tool length off", "length", tool_offsets.end_length),
+}
+_TRANSFORMATIONS: Mapping[float, GCode] = {
+    50: _transforming("scale off", "scale", transformations.end_scale),
+    51: _transforming("scale about X Y Z: P, or I J K", "scale", transformations.scale),
+    50.1: _transforming("mirror off", "mirror", transformations.end_mirror),
+    51.1: _transforming("mirror the axes at the places named", "mirror", transformations.mirror),
+    68: _transforming(
+        "rotation by R about a point of the plane", "rotation", transformations.rotate
+    ),
+    69: _transforming("rotation off", "rotation", transformations.end_rotation),
+}
+_FEEDS: Mapping[float, GCode] = {
+    93: _g("feed as blocks per minute", "feed", feed_mode=FeedMode.BLOCKS_PER_MINUTE),
+    94: _g("feed per minute", "feed", feed_mode=FeedMode.PER_MINUTE),
+    95: _g("feed per revolution", "feed", feed_mode=FeedMode.PER_REVOLUTION),
+    97: _g("constant spindle speed", "spindle"),
+    65: _do("macro call: P L and arguments", macro_calls.refuse_late_call),
+    66: _modal("modal macro call behind every move", "modal call", macro_calls.refuse_late_call),
+    67: _modal("modal macro call off", "modal call", macro_calls.end_modal_call),
+}
+_REFUSED: Mapping[float, GCode] = {
+    **refused("smooth and spline interpolation", _UNKNOWN, 5, 5.4, 6.1, 6.2),
+    **refused("helical and spiral interpolation in space", _UNKNOWN, 2.2, 3.2, 2.3, 3.3, 2.4, 3.4),
+    **refused("polar coordinate interpolation", "a lathe's, of a rotating part", 12.1, 13.1),
+    **refused("stored stroke check", _LIMITS, 22, 23),
+    **refused("modal macro call in every block", _UNKNOWN, 66.1),
+    **refused("skip until a signal", _NO_PROBE, 31, 31.8),
+    **refused("threading", _NO_ANGLE, 33),
+    **refused("tool length measurement", _NO_PROBE, 37),
+    **refused("corner compensation", "write the arc, or ,R", 39),
+    **refused(
+        "tool position offset", "write the coordinates, or compensate by G41", 45, 46, 47, 48
+    ),
+    **refused(
+        "tool centre point control", _NO_TILT, 43.1, 43.3, 43.4, 43.5, 43.8, 43.9, 53.1, 53.6
+    ),
+    **refused("normal direction control", "the twin has no axis that turns the tool", 41.1, 42.1),
+    **refused("tilted plane, conversion in space", _NO_SPACE, 68.2, 68.3, 68.4),
+    **refused("single direction positioning", "the backlash is the machine file's", 60),
+    **refused("constant cutting speed", "a mill's radius is the tool's", 96),
+}
+
+
+def codes(variant: Variant) -> dict[float, GCode]:
+    """The G codes that a control of the family shares with the others."""
+    return {
+        **_MOTION,
+        **_PLACE,
+        **_TOOL,
+        **_TRANSFORMATIONS,
+        **cycles(variant),
+        **_FEEDS,
+        **fixed_cycles.RETURN,
+        **_REFUSED,
+    }
+
+
+GROUPS = (
+    "units",
+    "plane",
+    "distance",
+    "feed",
+    "spindle",
+    "corner",
+    "polar",
+    "offset",
+    "scale",
+    "mirror",
+    "rotation",
+    "length",
+    "modal call",
+    "return plane",
+    "compensation",
+    "motion",
+    "cycle",
+)
+START = (0, 15, 17, 21, 40, 49, 50, 50.1, 54, 64, 67, 69, 80, 90, 94, 97, 98)
+
+INSTEAD: Mapping[float, str] = {
+    70: "inches are G20",
+    71: "millimetres are G21",
+    158: "write G52 or G10 L2",
+}
+"""Codes of other controls, and what this one has for them."""
+
+M_CODES: Mapping[int, MCode] = {
+    **base.M_CODES,
+    19: MCode(meaning="spindle orientation", ground="manual"),
+    29: MCode(meaning="rigid tapping", ground="manual"),
+    98: MCode(
+        meaning="run a subprogram: P L",
+        late=True,
+        action=programs.call,
+        silent=True,
+        ground="manual",
+    ),
+    99: MCode(
+        meaning="end of a subprogram, or jump: P",
+        late=True,
+        action=programs.return_,
+        silent=True,
+        ground="manual",
+    ),
+}

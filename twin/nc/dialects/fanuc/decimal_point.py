@@ -1,0 +1,170 @@
+"""Numbers without a decimal point: what they count on a Fanuc control.
+
+Decision after the manual's default (parameter 3401 #0 at 0): a coordinate, radius, depth or angle
+without a point counts least input increments, 0.001 mm, 0.0001 inch or 0.001 degree, so that X10 is
+0.010 mm; a feed per minute counts mm/min or 0.01 inch/min. A job or a machine file says
+``decimal_point = "calculator"`` where the control counts whole millimetres. The time P counts
+milliseconds on either. The first number that is changed so is warned of.
+"""
+
+from twin.nc.control.control import Control
+from twin.nc.control.modal import FeedMode
+from twin.nc.control.settings import ControlSettings
+from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.variables import rounding_to, rounds
+from twin.nc.text import arithmetic
+from twin.nc.text.blocks import Block, Word
+from twin.nc.text.expressions import Computed, Expression, Number
+
+LENGTHS = frozenset("XYZUVWIJKRQ") | {",R", ",C"}
+ANGLES = frozenset("ABC")
+_MILLI = 0.001
+_INCH_INCREMENT = 0.0001
+_WAITING = frozenset({4.0, 73.0, 74.0, 76.0, 77.0, *map(float, range(81, 90))})
+"""Codes whose P counts milliseconds."""
+_COUNTS = frozenset({73.0, 74.0, 76.0, 77.0, *map(float, range(81, 90))})
+"""Codes whose K counts holes."""
+_SCALED = 51.0
+_TURNED = 68.0
+_UNTOUCHED = frozenset({5.1, 8.0})
+"""Codes whose words are switches."""
+
+
+def pointless(settings: ControlSettings) -> frozenset[str]:
+    """Addresses whose numbers without a point are looked at."""
+    if settings.decimal_point == "calculator":
+        return frozenset("P")
+    return LENGTHS | ANGLES | frozenset("PF")
+
+
+def count(control: Control, block: Block) -> Block:
+    """Give the words of a block the value that their numbers without a point count.
+
+    Raises:
+        ProgramError: An assignment does not stand alone in its block.
+    """
+    *others, second = block.assignments or (None,)
+    if second is not None and (others or block.words):
+        message = "an assignment stands alone in its block"
+        control.report.line = block.line
+        control.report.fail("assignment", message, second.column, second.width, "write two blocks")
+    block = _rounded(control, block)
+    looked_at = pointless(control.settings)
+    if not any(word.address in looked_at for word in block.words):
+        return block
+    codes = {word.value for word in block.words if word.address == "G"}
+    words = [
+        _counted(control, word, codes) if word.address in looked_at else word
+        for word in block.words
+    ]
+    return block._replace(words=tuple(words))
+
+
+def _counted(control: Control, word: Word, codes: set[float | Expression]) -> Word:
+    cycles = control.modal.cycle is not None or codes & _COUNTS
+    if word.address == "P":
+        return _time(control, word) if codes & _WAITING or cycles else _scale(word, codes)
+    if not word.pointless or not isinstance(word.value, float) or word.value == 0.0:
+        return word
+    if codes & _UNTOUCHED or (cycles and word.address in "KL"):
+        return word
+    factor, unit = _increment(control, word.address, codes)
+    if factor == 1.0:
+        return word
+    value = word.value * factor
+    control.report.warn_once(
+        "decimal-point",
+        f"{word.text} has no decimal point: it counts {factor:g} {unit}, so it is {value:g} {unit}",
+        word.column,
+        word.width,
+        hint=f'write {word.text}. for whole units, or decimal_point = "calculator" into the job',
+    )
+    return word._replace(value=value)
+
+
+def is_counted(control: Control, word: Word) -> bool:
+    """Whether an argument of a macro counts increments."""
+    letters = LENGTHS | ANGLES
+    counts = control.settings.decimal_point != "calculator"
+    return counts and word.pointless and word.address in letters and word.value != 0.0
+
+
+def argument(control: Control, word: Word) -> Word:
+    """An argument of a macro: without a point it counts the increments of its address (manual)."""
+    return _counted(control, word, set()) if is_counted(control, word) else word
+
+
+def _rounded(control: Control, block: Block) -> Block:
+    """ROUND in a word goes to the least increment of its address."""
+    words: list[Word] = []
+    for word in block.words:
+        value = word.value
+        if isinstance(value, Expression) and rounds(value.evaluate):
+            increment, _ = _increment(control, word.address, set())
+            word = word._replace(value=rounding_to(value, increment))
+        words.append(word)
+    return block if words == list(block.words) else block._replace(words=tuple(words))
+
+
+def _increment(control: Control, address: str, codes: set[float | Expression]) -> tuple[float, str]:
+    """How much 1 without a point counts, and its unit for people."""
+    inches = 20.0 in codes or (control.modal.unit != 1.0 and 21.0 not in codes)
+    length = (_INCH_INCREMENT, "inch") if inches else (_MILLI, "mm")
+    if address == "F":
+        return _feed_increment(control, codes, inches=inches)
+    if address in ANGLES or (address == "R" and _TURNED in codes):
+        return _MILLI, "degrees"
+    if 4.0 in codes:
+        return _MILLI, "seconds"
+    if _SCALED in codes and address in "IJK":
+        return _MILLI, "times"
+    if _is_polar_angle(control, address):
+        return _MILLI, "degrees"
+    return length
+
+
+def _feed_increment(
+    control: Control, codes: set[float | Expression], *, inches: bool
+) -> tuple[float, str]:
+    per_revolution = 95.0 in codes or (
+        control.modal.feed_mode is FeedMode.PER_REVOLUTION and not codes & {93.0, 94.0}
+    )
+    per_block = 93.0 in codes or (
+        control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE and not codes & {94.0, 95.0}
+    )
+    if per_block:
+        return 1.0, ""
+    if per_revolution:
+        return (_INCH_INCREMENT, "inch") if inches else (0.01, "mm")
+    of_mm, of_inch = memory_of(control).variant.feed_increments
+    return (of_inch, "inch/min") if inches else (of_mm, "mm/min")
+
+
+def _is_polar_angle(control: Control, address: str) -> bool:
+    if not memory_of(control).polar:
+        return False
+    return control.axis_index.get(address) == control.modal.plane.axes[1]
+
+
+def _time(control: Control, word: Word) -> Word:
+    """P of a dwell: milliseconds, without a point."""
+    if isinstance(word.value, Expression):
+        return word._replace(value=_times(word.value, _MILLI))
+    if not word.pointless:
+        if memory_of(control).variant.seconds_by_point:
+            return word
+        message = f"{word.address} counts milliseconds and takes no decimal point"
+        control.fail("dwell", message, word, hint="P1500 is 1.5 seconds; so is X1.5 of G4")
+    return word._replace(value=word.value * _MILLI)
+
+
+def _scale(word: Word, codes: set[float | Expression]) -> Word:
+    """P of G51: thousandths, where it has no point."""
+    if _SCALED in codes and word.pointless and isinstance(word.value, float):
+        return word._replace(value=word.value * _MILLI)
+    return word
+
+
+def _times(expression: Expression, factor: float) -> Expression:
+    tree = Computed("*", arithmetic.multiply, (expression.evaluate, Number(factor)))
+    return Expression(expression.text, tree)

@@ -1,0 +1,253 @@
+"""Program flow of Fanuc's custom macro B: IF GOTO, IF THEN, GOTO, WHILE DO END."""
+
+import re
+from typing import NoReturn
+
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import StatementAction, StatementEffect
+from twin.nc.control.control import Control
+from twin.nc.dialects.fanuc.memory import Loop, memory_of
+from twin.nc.dialects.fanuc.programs import lines_around
+from twin.nc.dialects.fanuc.variables import ControlVariables, compile_assignment, write_variable
+from twin.nc.text.blocks import Assignment, Location, Statement
+from twin.nc.text.expressions import (
+    Expression,
+    ExpressionError,
+    Number,
+    NumberedVariable,
+    Variable,
+)
+from twin.nc.text.lines import Lines
+
+PATTERN = (
+    r"IF(?=[ \t]*\[)|WHILE(?=[ \t]*\[)|GOTO(?![A-Z])|DO(?=[ \t]*[0-9])|END(?=[ \t]*[0-9])"
+    r"|G6[56](?![0-9.])|DPRNT(?=\[)|BPRNT(?=\[)|POPEN|PCLOS|SETVN(?![A-Z])"
+)
+"""What begins a statement."""
+DEEPEST_LOOP = 3
+_LOOP = re.compile(
+    r"[ \t]*/?[1-9]?[ \t]*(?:N[ \t]*[0-9]+[ \t]*)?"
+    r"(?:(?:WHILE[^(]*\][ \t]*)?DO[ \t]*(?P<begin>[0-9]+)|END[ \t]*(?P<end>[0-9]+))",
+    re.IGNORECASE,
+)
+_LOOP_SOMEWHERE = re.compile(rb"DO[ \t]*[0-9]", re.IGNORECASE)
+_DO = re.compile(r"[ \t]*DO[ \t]*([0-9]+)[ \t]*\Z", re.IGNORECASE)
+_COUNT = re.compile(r"[ \t]*([0-9]+)[ \t]*\Z")
+_BEHIND_CONDITION = re.compile(r"[ \t]*(GOTO|THEN)(?![A-Z])", re.IGNORECASE)
+_EQUALS = re.compile(r"[ \t]*=")
+
+
+def refuse(
+    control: Control, statement: Statement, code: str, message: str, hint: str | None = None
+) -> NoReturn:
+    """Refuse a statement; the caret stands under its keyword."""
+    control.report.fail(code, message, statement.column, len(statement.keyword), hint)
+
+
+def loops_of(lines: Lines, headings: list[int]) -> dict[int, Loop]:
+    """The loops of a file by the lines that begin and end them; those without an end have none."""
+    found: dict[int, Loop] = {}
+    if not lines.any_holds(_LOOP_SOMEWHERE):
+        return found
+    inside: list[Loop] = []
+    begins = set(headings)
+    for line, text in enumerate(lines):
+        if line in begins:
+            inside = []
+        match = _LOOP.match(text)
+        if match is None:
+            continue
+        if match["begin"]:
+            inside.append(Loop(int(match["begin"]), line, None, len(inside) + 1))
+            found[line] = inside[-1]
+        elif inside and inside[-1].number == int(match["end"]):
+            loop = inside.pop()
+            loop.end = line
+            found[line] = loop
+    return found
+
+
+def _loops(control: Control) -> dict[int, Loop]:
+    memory = memory_of(control)
+    if memory.loops is None:
+        memory.loops = loops_of(control.program_counter.lines, memory.headings)
+    return memory.loops
+
+
+def _loop(control: Control, statement: Statement) -> tuple[int, int]:
+    """First and last line, from 0, of the loop that the block begins or ends.
+
+    Raises:
+        ProgramError: It has no counterpart, or is one of too many within each other.
+    """
+    loop = _loops(control).get(control.block.line - 1)
+    if loop is None or loop.end is None:
+        message = f"{statement.keyword} has no counterpart"
+        hint = "DO1 ends at END1 of its program, and loops do not cross"
+        refuse(control, statement, "open-structure", message, hint)
+    if not 1 <= loop.number <= DEEPEST_LOOP or loop.depth > DEEPEST_LOOP:
+        message = f"loops are numbered 1 to {DEEPEST_LOOP}, and no more lie within each other"
+        refuse(control, statement, "structure", message)
+    return loop.begin, loop.end
+
+
+def _read(control: Control, statement: Statement, at: int) -> tuple[Expression, int]:
+    """The operand at a place of a statement's text, and where it ends."""
+    try:
+        return control.program_counter.lexer.expressions.read_operand(statement.text, at)
+    except ExpressionError as error:
+        column = statement.text_column + (error.column or 0)
+        control.report.fail(error.code, str(error), column, 1, error.hint)
+
+
+def _while(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """WHILE [...] DO1: run the blocks up to END1 as long as the condition holds."""
+    _, end = _loop(control, statement)
+    condition, at = _read(control, statement, 0)
+    if _DO.match(statement.text, at) is None:
+        refuse(
+            control,
+            statement,
+            "structure",
+            "WHILE needs DO behind its condition",
+            "WHILE [#1 LT 5] DO1",
+        )
+    assembler.value(condition, statement.text_column)
+    assembler.jump_unless(Location(end + 1, 0))
+
+
+def _do(control: Control, statement: Statement, _assembler: Assembler) -> None:
+    """DO1: the blocks up to END1 run until a jump leaves them."""
+    _loop(control, statement)
+    _whole(control, statement)
+
+
+def _end(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """END1: back to the loop's first line."""
+    begin, _ = _loop(control, statement)
+    _whole(control, statement)
+    assembler.jump(Location(begin, 0))
+
+
+def _whole(control: Control, statement: Statement) -> None:
+    if _COUNT.match(statement.text) is None:
+        refuse(control, statement, "structure", f"only a number follows {statement.keyword}")
+
+
+def _if(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """IF [...] GOTO 10, IF [...] THEN #1=5."""
+    condition, at = _read(control, statement, 0)
+    match = _BEHIND_CONDITION.match(statement.text, at)
+    if match is None:
+        hint = "IF [#1 EQ 5] GOTO 10, or IF [#1 EQ 5] THEN #2=1"
+        refuse(control, statement, "structure", "GOTO or THEN must follow the condition", hint)
+    assembler.value(condition, statement.text_column)
+    if match[1].upper() == "GOTO":
+        target = _target(control, statement, match.end())
+        number = _known(target)
+        if number is None:
+            assembler.jump_unless(Location(control.block.line, 0))
+            assembler.interpreted(lambda: _jump(control, statement, target))
+        else:
+            assembler.jump_if(lambda: destination(control, statement, number))
+        return
+    assignment = _assignment(control, statement, match.end())
+    assembler.jump_unless(Location(control.block.line, 0))
+    if isinstance(assignment.target, Variable) and assignment.target.name not in ControlVariables():
+        compile_assignment(assembler, assignment)
+    else:
+        assembler.interpreted(lambda: _assign(control, assignment))
+
+
+def _assignment(control: Control, statement: Statement, at: int) -> Assignment:
+    """The assignment behind THEN."""
+    reader, text = control.program_counter.lexer.expressions, statement.text
+    at += len(text[at:]) - len(text[at:].lstrip())
+    target, end = Expression("", Number(0.0)), at
+    if text.startswith("#", at):
+        target, end = _read(control, statement, at)
+    equals = _EQUALS.match(text, end)
+    if equals is None or not isinstance(target.evaluate, Variable | NumberedVariable):
+        refuse(control, statement, "structure", "one assignment follows THEN", "THEN #2=1")
+    try:
+        value, end = reader.read(text, equals.end())
+    except ExpressionError as error:
+        column = statement.text_column + (error.column or 0)
+        control.report.fail(error.code, str(error), column, 1, error.hint)
+    if text[end:].strip():
+        refuse(control, statement, "structure", "one assignment follows THEN, and no more")
+    column = statement.text_column + at
+    return Assignment(target.evaluate, value, column, end - at)
+
+
+def _assign(control: Control, assignment: Assignment) -> None:
+    target, index = assignment.target, None
+    if isinstance(target, NumberedVariable):
+        index = control.compute(Expression("", target.index), assignment.column)
+    value = control.compute(assignment.value, assignment.column)
+    write_variable(control, target.name, index, value, assignment)
+
+
+def _go_to(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """GOTO 10, GOTO #1, GOTO [#1+10]."""
+    target = _target(control, statement, 0)
+    number = _known(target)
+    if number is None:
+        assembler.interpreted(lambda: _jump(control, statement, target))
+    else:
+        assembler.jump(destination(control, statement, number))
+
+
+def _target(control: Control, statement: Statement, at: int) -> Expression:
+    target, end = _read(control, statement, at)
+    if statement.text[end:].strip():
+        refuse(control, statement, "jump-target", "GOTO needs one number and no more", "GOTO 10")
+    return target
+
+
+def _known(target: Expression) -> float | None:
+    return target.evaluate.value if isinstance(target.evaluate, Number) else None
+
+
+def _jump(control: Control, statement: Statement, target: Expression) -> None:
+    value = control.compute(target, statement.text_column)
+    control.program_counter.go(destination(control, statement, value))
+
+
+def destination(control: Control, statement: Statement, number: float) -> Location:
+    """Where a jump leads: the next block of that number, else the first of the program.
+
+    Raises:
+        ProgramError: Nowhere, or into a loop.
+    """
+    if not number >= 0.0 or number != int(number):
+        refuse(control, statement, "jump-target", f"there is no block N{number:g}")
+    counter, around, here = control.program_counter, lines_around(control), control.block.line - 1
+    places = [place for place in counter.labels().get(int(number), []) if place.line in around]
+    if places:
+        place = next((each for each in places if each.line > here), places[0])
+    else:
+        span = statement.column, len(statement.keyword)
+        place = counter.find_label(int(number), span, "GOTO", around)
+    for loop in _loops(control).values():
+        end = -1 if loop.end is None else loop.end
+        if loop.begin < place.line <= end and not loop.begin <= here <= end:
+            message = f"N{int(number)} lies in a loop, and a jump must not lead into one"
+            refuse(control, statement, "jump-into-structure", message)
+    return place
+
+
+def _pass_over(control: Control, statement: Statement) -> None:
+    message = f"{statement.keyword} changes nothing of the path: it writes to a file or a name"
+    span = statement.column, len(statement.keyword)
+    control.report.notice(statement.keyword, message, *span)
+
+
+STATEMENTS: dict[str, StatementAction] = {
+    "IF": StatementEffect(_if),
+    "GOTO": StatementEffect(_go_to),
+    "WHILE": StatementEffect(_while),
+    "DO": StatementEffect(_do),
+    "END": StatementEffect(_end),
+    **dict.fromkeys(("DPRNT", "BPRNT", "POPEN", "PCLOS", "SETVN"), _pass_over),
+}

@@ -1,0 +1,166 @@
+"""Macro calls of a Fanuc control: G65, G66 and G67, with arguments of both kinds.
+
+A letter gives the variable of its own: A is #1, B #2, C #3, I J K #4 to #6, D #7 and so on. I, J and K
+may be written ten times: the second I, or an I behind a J or K, is #7, and so on. The later word wins.
+"""
+
+from collections.abc import Iterator
+
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.frames import CALLS
+from twin.nc.control.codes import StatementAction, StatementEffect
+from twin.nc.control.control import Control
+from twin.nc.dialects.fanuc import decimal_point
+from twin.nc.dialects.fanuc.flow import refuse
+from twin.nc.dialects.fanuc.memory import ModalCall, memory_of
+from twin.nc.dialects.fanuc.programs import line_of, whole
+from twin.nc.text.blocks import Location, Statement, Word
+from twin.nc.text.expressions import Expression
+
+_LETTERS = "ABCIJKDEF_H_M___QRSTUVWXYZ"
+VARIABLES = {letter: f"#{number}" for number, letter in enumerate(_LETTERS, 1) if letter != "_"}
+"""Variables of the letters."""
+_REPEATED = "IJK"
+_MOST_GROUPS = 10
+
+
+def _words(control: Control, statement: Statement) -> tuple[Word, ...]:
+    """The words behind G65 or G66."""
+    lexer, line = control.program_counter.lexer, control.block.line
+    blocks = lexer.blocks(" " * statement.text_column + statement.text, line)
+    if not blocks:
+        refuse(control, statement, "call-values", f"{statement.keyword} needs P", "G65 P1000 A1.")
+    if len(blocks) != 1 or blocks[0].statement is not None or blocks[0].assignments:
+        refuse(control, statement, "call-values", f"{statement.keyword} takes words only")
+    return blocks[0].words
+
+
+def _arguments(control: Control, words: tuple[Word, ...]) -> Iterator[tuple[str, Word]]:
+    """The variables that words set, each with its word."""
+    group, last = 0, -1
+    for word in words:
+        if word.address in "PL":
+            continue
+        if word.address in _REPEATED:
+            place = _REPEATED.index(word.address)
+            if place <= last:
+                group += 1
+            last = place
+            if group >= _MOST_GROUPS:
+                message = f"{word.address} stands more than {_MOST_GROUPS} times"
+                control.fail("call-values", message, word)
+            yield f"#{4 + 3 * group + place}", word
+        elif word.address in VARIABLES:
+            yield VARIABLES[word.address], word
+        else:
+            known = " ".join(VARIABLES)
+            message = f"{word.address} gives a macro no value"
+            control.fail("call-values", message, word, f"letters of arguments: {known}")
+
+
+def _one(control: Control, words: tuple[Word, ...], address: str) -> Word | None:
+    found = [word for word in words if word.address == address]
+    if len(found) > 1:
+        control.fail("duplicate-word", f"'{address}' stands twice in the block", found[1])
+    return found[0] if found else None
+
+
+def _call(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """G65 P L: run a program with variables of its own."""
+    words = _words(control, statement)
+    program, often = _one(control, words, "P"), _one(control, words, "L")
+    if program is None:
+        refuse(control, statement, "call-values", "G65 needs P", "G65 P1000 A1.")
+    arguments = list(_arguments(control, words))
+    counted = any(decimal_point.is_counted(control, word) for _, word in arguments)
+    if often is not None or counted:
+        assembler.interpreted(lambda: _call_at_once(control, words))
+        return
+    number = whole(
+        control, program._replace(value=assembler.known(program)), "call-values", "program number"
+    )
+    line = line_of(control, number, program)
+    for _, word in arguments:
+        assembler.word_value(word)
+    deepest = memory_of(control).variant.deepest_call
+    assembler.call(Location(line, 0), deepest, [name for name, _ in arguments])
+
+
+def _modal_call(control: Control, words: tuple[Word, ...]) -> ModalCall:
+    """What G65 or G66 asks for, computed."""
+    program, often = _one(control, words, "P"), _one(control, words, "L")
+    if program is None:
+        control.fail("call-values", "the number of the program is missing: P", None, "G66 P1000")
+    number = whole(control, _computed(control, program), "call-values", "program number")
+    count = 1
+    if often is not None:
+        count = whole(control, _computed(control, often), "repeat-count", "count")
+        if count < 1:
+            control.fail("repeat-count", "a program runs once at least", often)
+    values: dict[str, float] = {}
+    for name, word in _arguments(control, words):
+        values[name] = control.number(_computed(control, decimal_point.argument(control, word)))
+    return ModalCall(line_of(control, number, program), count, values, program)
+
+
+def _computed(control: Control, word: Word) -> Word:
+    if isinstance(word.value, Expression):
+        return word._replace(value=control.evaluate(word.value, word))
+    return word
+
+
+def _call_at_once(control: Control, words: tuple[Word, ...]) -> None:
+    _run(control, _modal_call(control, words))
+
+
+def _run(control: Control, asked: ModalCall) -> None:
+    deepest, word = memory_of(control).variant.deepest_call, asked.word
+
+    def write(assembler: Assembler) -> None:
+        assembler.constant(float(asked.often))
+        for value in asked.values.values():
+            assembler.constant(value)
+        assembler.call(Location(asked.line, 0), deepest, asked.values, often=True)
+
+    control.perform(write, (word.column, word.width))
+
+
+def call_modally(control: Control, statement: Statement) -> None:
+    """G66 P L: run a program behind every block that moves, until G67."""
+    memory = memory_of(control)
+    if memory.modal_call is not None:
+        message = "a modal call is in force already, and one within another is not simulated"
+        refuse(control, statement, "call-values", message, "end it by G67 first")
+    memory.modal_call = _modal_call(control, _words(control, statement))
+    memory.modal_depth = int(control.program_counter.progress[CALLS])
+    control.active["modal call"] = 66
+
+
+def end_modal_call(control: Control) -> None:
+    """G67."""
+    memory_of(control).modal_call = None
+
+
+def call_after_motion(control: Control) -> None:
+    """The modal call, when a block of its own program has moved."""
+    memory = memory_of(control)
+    depth = int(control.program_counter.progress[CALLS])
+    if memory.modal_call is not None and depth == memory.modal_depth:
+        _run(control, memory.modal_call)
+
+
+def refuse_late_call(control: Control) -> None:
+    """G65 or G66 behind other words.
+
+    Raises:
+        ProgramError: Always.
+    """
+    word = control.codes[-1][0]
+    message = f"{word.text} must stand before the other words of its block"
+    control.fail("call-values", message, word, "write the other codes in a block before it")
+
+
+CALLS_BY_CODE: dict[str, StatementAction] = {
+    "G65": StatementEffect(_call),
+    "G66": call_modally,
+}

@@ -1,0 +1,174 @@
+"""What only a Fanuc control remembers from block to block."""
+
+import dataclasses
+from typing import NamedTuple
+
+from twin.nc.control.control import Control
+from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.planes import Vector
+from twin.nc.text.blocks import Word
+
+
+class Variant(NamedTuple):
+    """What controls of the family do differently.
+
+    Attributes:
+        feed_increments: What F without a point counts, in mm/min and in inch/min.
+        seconds_by_point: P of a dwell counts seconds where it has a point.
+        repeats_in_p: P of M98 may hold how often the subprogram runs: P21000 is O1000, twice.
+        deepest_call: Programs that may call each other.
+        counting: Address that says how often a cycle's block drills.
+        tool_variables: First and last system variable of each column of the offset memory.
+        machine_by_motion: G53 moves by the motion code in force, not always rapidly.
+    """
+
+    feed_increments: tuple[float, float] = (1.0, 0.01)
+    seconds_by_point: bool = False
+    repeats_in_p: bool = True
+    deepest_call: int = 10
+    counting: str = "K"
+    machine_by_motion: bool = False
+    tool_variables: tuple[tuple[int, int, str], ...] = (
+        (2001, 2200, "length_wear"),
+        (2201, 2400, "length"),
+        (10001, 10999, "length_wear"),
+        (11001, 11999, "length"),
+        (12001, 12999, "radius_wear"),
+        (13001, 13999, "radius"),
+    )
+
+
+FANUC = Variant()
+HAAS = Variant(
+    feed_increments=(0.001, 0.0001),
+    seconds_by_point=True,
+    repeats_in_p=False,
+    deepest_call=9,
+    counting="L",
+    machine_by_motion=True,
+    tool_variables=(
+        (2001, 2200, "length"),
+        (2201, 2400, "length_wear"),
+        (2401, 2600, "radius"),
+        (2601, 2800, "radius_wear"),
+    ),
+)
+
+
+class ModalCall(NamedTuple):
+    """What G66 or G65 asks for.
+
+    Attributes:
+        line: First line of the program, from 0.
+        often: How many times it runs.
+        values: Its arguments by their variables.
+        word: That names the program.
+    """
+
+    line: int
+    often: int
+    values: dict[str, float]
+    word: Word
+
+
+@dataclasses.dataclass(slots=True)
+class Loop:
+    """A loop from DO to END.
+
+    Attributes:
+        number: Behind DO.
+        begin: Its first line, from 0.
+        end: Its last line; None where it has none.
+        depth: Loops around it, and itself.
+    """
+
+    number: int
+    begin: int
+    end: int | None
+    depth: int
+
+
+@dataclasses.dataclass(slots=True)
+class ToolOffset:
+    """A row of the offset memory, with what the program has written into it [mm].
+
+    Attributes:
+        length: Geometry of the length; None: that of the job's tool.
+        radius: Geometry of the radius; None: that of the job's tool.
+        length_wear: Added to the length.
+        radius_wear: Added to the radius.
+    """
+
+    length: float | None = None
+    radius: float | None = None
+    length_wear: float = 0.0
+    radius_wear: float = 0.0
+
+
+@dataclasses.dataclass(slots=True)
+class FanucMemory:
+    """Programs, offsets, transformations.
+
+    Attributes:
+        variant: Which control of the family it is.
+        programs: Line behind the heading of each program by its number, from 0.
+        headings: Lines of all headings, from 0, in order.
+        main: Line of the heading of the program that runs first, or None.
+        offsets: Work offsets that the program has written, by name and axis, as those of the job.
+        common_offset: The external work offset, by axis [mm or deg].
+        offset: Name of the work offset in force.
+        writes_offsets: Some line of the program may write work offsets.
+        bare_compensation: Some line calls compensation without D.
+        tool_offsets: Rows of the offset memory that the program has written, by number.
+        length_number: H in force; None: none yet.
+        radius_number: D in force; None: none yet.
+        intermediate: Where the last G28 or G30 passed, part coordinates by column, for G29.
+        polar: G16 is in force: plane coordinates are radius and angle.
+        polar_center: Its origin, programmed coordinates of the plane [mm].
+        polar_radius: Its last radius, or None [mm].
+        polar_angle: Its last angle, or None [deg].
+        scale: Factors of X, Y and Z, and their centre [mm].
+        mirror: Coordinates of the axes of mirror images by column [mm].
+        rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
+        loops: By their first and last lines, from 0; None before they were asked for.
+        modal_call: G66 in force.
+        modal_depth: Programs that were being run for callers when it was called.
+        extended_number: P of the last G54.1.
+    """
+
+    variant: Variant = FANUC
+    programs: dict[int, int] = dataclasses.field(default_factory=dict)
+    headings: list[int] = dataclasses.field(default_factory=list)
+    main: int | None = None
+    offsets: dict[str, dict[str, float]] = dataclasses.field(default_factory=dict)
+    common_offset: dict[str, float] = dataclasses.field(default_factory=dict)
+    offset: str = "G54"
+    writes_offsets: bool = False
+    bare_compensation: bool = False
+    tool_offsets: dict[int, ToolOffset] = dataclasses.field(default_factory=dict)
+    length_number: int | None = None
+    radius_number: int | None = None
+    intermediate: dict[int, float] = dataclasses.field(default_factory=dict)
+    polar: bool = False
+    polar_center: Point = (0.0, 0.0)
+    polar_radius: float | None = None
+    polar_angle: float | None = None
+    scale: tuple[Vector, Vector] | None = None
+    mirror: dict[int, float] = dataclasses.field(default_factory=dict)
+    rotation: tuple[float, Point] | None = None
+    loops: dict[int, Loop] | None = None
+    modal_call: ModalCall | None = None
+    modal_depth: int = 0
+    extended_number: int = 0
+
+
+def memory_of(control: Control) -> FanucMemory:
+    """The dialect's memory."""
+    assert isinstance(control.memory, FanucMemory)
+    return control.memory
+
+
+def acts_on_plain_blocks(control: Control) -> bool:
+    """Polar coordinates, a scale or a modal call in force: plain blocks heed them."""
+    memory = memory_of(control)
+    return memory.polar or memory.scale is not None or memory.modal_call is not None

@@ -1,0 +1,94 @@
+"""How blocks of a Fanuc control move: lines, arcs, and polar coordinates (G16).
+
+With G16 the plane's first axis is a radius and its second an angle. In G90 the radius counts from the
+origin and the angle from the first axis; in G91 the radius counts from where the tool stands, and the
+angle from the last one.
+"""
+
+import math
+
+from twin.nc.control.codes import Interpolation
+from twin.nc.control.control import Control
+from twin.nc.control.interpolation import LineRule
+from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.transformations import refuse_uneven_arc
+from twin.nc.geometry.arcs import direction
+from twin.nc.iso.circular import arc_rule, iso_arc_center, plane_center_letters, sweep_arc
+
+
+def target(control: Control) -> list[float]:
+    """Take the axis words; the programmed position that they ask for, shape (k,)."""
+    if not memory_of(control).polar:
+        return control.target()
+    abscissa, ordinate, _ = control.modal.plane.axes
+    names = control.settings.axes.names
+    radius, angle = control.take(names[abscissa]), control.take(names[ordinate])
+    goal = control.target()
+    if radius is None and angle is None:
+        return goal
+    memory, incremental = memory_of(control), control.modal.incremental
+    here = (control.programmed[abscissa], control.programmed[ordinate])
+    if radius is not None:
+        memory.polar_center = here if incremental else (0.0, 0.0)
+        memory.polar_radius = control.axis_value(abscissa, radius)
+    away = here[0] - memory.polar_center[0], here[1] - memory.polar_center[1]
+    length = math.hypot(*away) if memory.polar_radius is None else memory.polar_radius
+    turned = memory.polar_angle
+    if turned is None:
+        turned = math.degrees(math.atan2(away[1], away[0])) if any(away) else 0.0
+    if angle is not None:
+        turned = control.number(angle) + (turned if incremental else 0.0)
+    memory.polar_angle = turned
+    cosine, sine = direction(turned)
+    goal[abscissa] = memory.polar_center[0] + length * cosine
+    goal[ordinate] = memory.polar_center[1] + length * sine
+    return goal
+
+
+def begin_polar(control: Control) -> None:
+    """G16: origin and angle begin anew."""
+    memory = memory_of(control)
+    memory.polar, memory.polar_center = True, (0.0, 0.0)
+    memory.polar_radius = memory.polar_angle = None
+
+
+def end_polar(control: Control) -> None:
+    """G15."""
+    memory_of(control).polar = False
+
+
+def rapid_line(control: Control) -> None:
+    """G0."""
+    control.line_to(target(control), rapid=True)
+
+
+def feed_line(control: Control) -> None:
+    """G1."""
+    control.line_to(target(control), rapid=False)
+
+
+def clockwise_arc(control: Control) -> None:
+    """G2."""
+    _arc(control, clockwise=True)
+
+
+def counter_clockwise_arc(control: Control) -> None:
+    """G3."""
+    _arc(control, clockwise=False)
+
+
+def _arc(control: Control, *, clockwise: bool) -> None:
+    """An arc by I, J, K or R; where both are written R alone counts (manual)."""
+    refuse_uneven_arc(control)
+    if "R" in control.words:
+        for letter in plane_center_letters(control):
+            control.take(letter)
+    goal = target(control)
+    center = iso_arc_center(control, goal, clockwise=clockwise)
+    sweep_arc(control, goal, center, clockwise=clockwise)
+
+
+RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
+FEED = Interpolation(feed_line, rule=LineRule())
+CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True))
+COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=arc_rule(clockwise=False))

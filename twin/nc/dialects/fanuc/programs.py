@@ -1,0 +1,264 @@
+"""Programs of a Fanuc control: O numbers, several in one file, M98, M99 and M97.
+
+The first program of the file runs first; each ends where the next begins or the file does. A
+subprogram that the file lacks is a file of its own beside it: O2000, O2000.nc or 2000.nc.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.frames import AGAIN, CALLS
+from twin.nc.control.control import Control
+from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.text.blocks import Location, Word
+from twin.nc.text.library import named_files, with_called_files
+from twin.nc.text.lines import Lines
+from twin.nc.text.source import Source
+
+_HEADING = re.compile(r"[ \t]*O[ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE)
+_HEADING_SOMEWHERE = re.compile(rb"O[ \t]*[0-9]", re.IGNORECASE)
+_CALL = re.compile(
+    r"^[^(]*?(?:M0*98|G0*6[56])(?![0-9.])[^(]*?P[ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE
+)
+_CALL_SOMEWHERE = re.compile(rb"(?:M0*98|G0*6[56])(?![0-9.])", re.IGNORECASE)
+_FILE = re.compile(r"O?0*([0-9]{1,8})")
+_SUFFIXES = ("", ".nc", ".cnc", ".tap", ".prg", ".txt")
+_BLANK = re.compile(r"[ \t]*(?:%.*)?")
+_REPEATS = 10_000
+"""P of M98 holds how often the subprogram runs in the digits above the last four."""
+
+
+class CodePage:
+    """What reading a file needs to know."""
+
+    code_page = "cp1252"
+
+
+def with_subprograms(source: Source, folder: Path) -> Source:
+    """The program with the subprograms that it calls and does not hold, as far as they are found.
+
+    Args:
+        source: The program.
+        folder: Where their files lie.
+    """
+    return with_called_files(source, lambda: _files(folder), _calls, "O", CodePage())
+
+
+def _files(folder: Path) -> dict[str, Path]:
+    found: dict[str, Path] = {}
+    for name, path in named_files(folder, _SUFFIXES).items():
+        if (match := _FILE.fullmatch(name)) is not None:
+            found.setdefault(match[1], path)
+    return found
+
+
+def _calls(source: Source) -> Iterator[str]:
+    """Numbers of the programs that a text calls and does not hold."""
+    if not source.lines.any_holds(_CALL_SOMEWHERE):
+        return
+    held = {number for _, number in _headings(source.lines)}
+    for line in source.lines:
+        if (match := _CALL.match(line)) is not None:
+            number = int(match[1])
+            for each in {number, number % _REPEATS} - held:
+                yield str(each)
+
+
+def _headings(lines: Lines) -> Iterator[tuple[int, int]]:
+    """Lines of headings, from 0, and the numbers of the programs that they begin."""
+    if not lines.any_holds(_HEADING_SOMEWHERE):
+        return
+    for line, text in enumerate(lines):
+        if (match := _HEADING.match(text)) is not None:
+            yield line, int(match[1])
+
+
+def begin(control: Control) -> None:
+    """Find the programs of the file."""
+    memory, lines = memory_of(control), control.program_counter.lines
+    before: int | None = None
+    for line, number in _headings(lines):
+        memory.headings.append(line)
+        if memory.main is None:
+            memory.main = line
+        if number not in memory.programs or _follows(control, before, line, number):
+            memory.programs[number] = line + 1
+        before = line
+
+
+def _follows(control: Control, before: int | None, line: int, number: int) -> bool:
+    """A file's own heading stands right behind the one that its name has given it."""
+    lines = control.program_counter.lines
+    if before is None or memory_of(control).programs.get(number) != before + 1:
+        return False
+    return all(_BLANK.fullmatch(lines[each]) for each in range(before + 1, line))
+
+
+def heading(control: Control, word: Word) -> None:
+    """O: the heading of the program that runs first.
+
+    Raises:
+        ProgramError: The program before has not ended.
+    """
+    memory, line = memory_of(control), control.block.line - 1
+    if line != memory.main:
+        control.fail(
+            "program-end",
+            f"{word.text} begins here, and the program before it has not ended",
+            word,
+            hint="a program ends by M30 or M2, a subprogram by M99",
+        )
+    if control.program_counter.is_calling or len(control.block.words) > 1:
+        control.fail("program-end", f"{word.text} must stand alone before its program", word)
+
+
+def lines_around(control: Control) -> range:
+    """The program that is being run; labels are its own."""
+    return _lines_around(control, control.block.line - 1)
+
+
+def whole(control: Control, word: Word, code: str, meaning: str) -> int:
+    """The value of a word that must be a whole number from 0.
+
+    Raises:
+        ProgramError: It is none.
+    """
+    value = control.number(word)
+    if value < 0.0 or value != int(value):
+        control.fail(code, f"{word.text} is no {meaning}", word)
+    return int(value)
+
+
+def called(control: Control, number: int, repeats: int | None) -> tuple[int, int]:
+    """Number of the program that P names, and how often it runs.
+
+    Args:
+        control: The control.
+        number: P.
+        repeats: L, where it is written.
+    """
+    memory = memory_of(control)
+    if repeats is not None or number in memory.programs or not memory.variant.repeats_in_p:
+        return number, 1 if repeats is None else repeats
+    count, short = divmod(number, _REPEATS)
+    return (short, count) if count else (number, 1)
+
+
+def line_of(control: Control, number: int, word: Word | None) -> int:
+    """The line behind the heading of a program, from 0.
+
+    Raises:
+        ProgramError: There is none of this number.
+    """
+    line = memory_of(control).programs.get(number)
+    if line is None:
+        known = ", ".join(f"O{each}" for each in sorted(memory_of(control).programs)) or "none"
+        control.fail(
+            "unknown-subprogram",
+            f"there is no program O{number}",
+            word,
+            hint=f"programs of this file: {known}; or a file O{number}.nc beside it",
+        )
+    return line
+
+
+def call(control: Control) -> None:
+    """M98 P L: run a subprogram, L times."""
+    word, often = control.take("P"), control.take("L")
+    if word is None:
+        control.fail("call-values", "M98 needs P, the number of the program", None, "M98 P1000")
+    repeats = None if often is None else whole(control, often, "repeat-count", "count")
+    number = whole(control, word, "call-values", "program number")
+    number, count = called(control, number, repeats)
+    run_program(control, line_of(control, number, word), count, word)
+
+
+def call_block(control: Control) -> None:
+    """M97 P L: run the blocks from N on as a subprogram, L times."""
+    word, often = control.take("P"), control.take("L")
+    if word is None:
+        control.fail("call-values", "M97 needs P, the number of a block", None, "M97 P1000")
+    count = 1 if often is None else whole(control, often, "repeat-count", "count")
+    number = whole(control, word, "jump-target", "block number")
+    label = control.program_counter.find_label(
+        number, (word.column, word.width), "M97", lines_around(control)
+    )
+    run_part(control, label, count, word)
+
+
+def run_program(control: Control, line: int, count: int, word: Word) -> None:
+    """Run the program that begins at a line, from 0, so often."""
+    run_part(control, Location(line, 0), count, word)
+
+
+def run_part(control: Control, first: Location, count: int, word: Word) -> None:
+    """Run what begins at a location up to its M99, so often.
+
+    Raises:
+        ProgramError: The count is 0, or too many programs call each other.
+    """
+    if count < 1:
+        control.fail("repeat-count", "a subprogram runs once at least", word)
+
+    def write(assembler: Assembler) -> None:
+        compile_call(control, first, count, assembler)
+
+    control.perform(write, (word.column, word.width))
+
+
+def compile_call(control: Control, first: Location, count: int, assembler: Assembler) -> None:
+    """The same as instructions."""
+    if count > 1:
+        assembler.constant(float(count))
+    deepest = memory_of(control).variant.deepest_call
+    assembler.call(first, deepest, often=count > 1)
+
+
+def compile_return(assembler: Assembler) -> None:
+    """M99 as instructions."""
+    assembler.check_return()
+    assembler.end_call()
+
+
+def return_(control: Control) -> None:
+    """M99: back behind the call; with P at the block of that number.
+
+    In the main program M99 P jumps, and M99 alone, by which a control begins anew for ever, ends.
+    """
+    target, counter = control.take("P"), control.program_counter
+    if counter.is_calling:
+        if target is not None:
+            counter.calls[counter.progress[CALLS] - 1, AGAIN] = 0
+        control.perform(compile_return)
+        around = _lines_around(control, counter.location.line)
+    elif target is None:
+        message = "M99 in the main program begins it anew, for ever: here it ends"
+        control.report.warn_once("endless-main", message, hint="end the main program by M30")
+        control.ended = True
+        return
+    else:
+        around = lines_around(control)
+    if target is not None:
+        number = whole(control, target, "jump-target", "block number")
+        span = (target.column, target.width)
+        counter.go(counter.find_label(number, span, "M99", around))
+
+
+def _lines_around(control: Control, line: int) -> range:
+    headings, count = memory_of(control).headings, len(control.program_counter.lines)
+    first = max((each for each in headings if each <= line), default=0)
+    return range(first, min((each for each in headings if each > line), default=count))
+
+
+def finish(control: Control) -> None:
+    """The last line has been passed without an end.
+
+    Raises:
+        ProgramError: A subprogram has not returned.
+    """
+    if control.program_counter.is_calling:
+        message = "the file ends within a subprogram, which has no M99"
+        control.report.fail("program-end", message, hint="end it by M99")
+    control.report.warn("no-end", "the program has no M30, M2 or M99 at its end")

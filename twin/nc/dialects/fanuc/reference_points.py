@@ -1,0 +1,104 @@
+"""G27 to G30 and G53 of a Fanuc control: moves to the reference points and in machine coordinates.
+
+The first reference point is machine zero. Decision: the second to fourth (parameters 1241 to 1243)
+lie there as well, which is how a control comes from its maker.
+"""
+
+from twin.nc.control.control import Control
+from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.programs import whole
+from twin.nc.iso.machine_coordinates import machine_frame
+
+
+def go_home(control: Control) -> None:
+    """G28: rapidly to the point of the block, then its axes to machine zero."""
+    _go_home(control, "G28")
+
+
+def go_to_reference(control: Control) -> None:
+    """G30 P2, P3, P4: as G28, to the second, third or fourth reference point."""
+    word = control.take("P")
+    if word is not None and not 2 <= whole(control, word, "reference-point", "number") <= 4:
+        control.fail("reference-point", f"there is no reference point {word.text}", word)
+    _go_home(control, "G30")
+
+
+def _go_home(control: Control, code: str) -> None:
+    axes = _named_axes(control)
+    if not axes:
+        message = f"{code} needs the axes that shall go there, with the point on their way"
+        control.fail("reference-point", message, hint=f"G91 {code} Z0")
+    with machine_frame(control, code):
+        pass  # the reference point must be known before anything moves
+    control.line_to(control.target(), rapid=True)
+    memory_of(control).intermediate = {index: control.part[index] for index in axes}
+    with machine_frame(control, code):
+        there = list(control.programmed)
+        for index in axes:
+            there[index] = 0.0
+        control.line_to(there, rapid=True)
+
+
+def _named_axes(control: Control) -> list[int]:
+    """Columns of the axes that the block names; those that the machine lacks are refused later."""
+    letters = (name for name in control.words if name in control.axis_letters)
+    return [control.axis_index[name] for name in letters if name in control.axis_index]
+
+
+def leave_reference(control: Control) -> None:
+    """G29: by the point of the last G28 or G30 to that of the block."""
+    between = memory_of(control).intermediate
+    if not between:
+        message = "G29 goes by the point of the last G28, and there was none"
+        control.fail("reference-point", message, control.code_word(29))
+    part = list(control.part)
+    for index, value in between.items():
+        part[index] = value
+    control.line_to(control.frame.to_programmed(part), rapid=True)
+    control.line_to(control.target(), rapid=True)
+
+
+def check_reference(control: Control) -> None:
+    """G27: rapidly to the point of the block, which must be the reference point.
+
+    Raises:
+        ProgramError: It is not.
+    """
+    axes = _named_axes(control)
+    if not axes:
+        control.fail("reference-point", "G27 needs the axes that shall stand there")
+    control.line_to(control.target(), rapid=True)
+    with machine_frame(control, "G27"):
+        away = {index: control.programmed[index] for index in axes}
+    for index, distance in away.items():
+        if abs(distance) > _SAME_PLACE:
+            name = control.settings.axes.names[index]
+            message = f"{name} stands {distance:g} from its reference point"
+            control.fail("reference-point", message, control.code_word(27))
+
+
+_SAME_PLACE = 0.001
+"""How near G27 takes for the reference point [mm or deg]."""
+
+
+def machine_move(control: Control) -> None:
+    """G53: this block's coordinates count from machine zero.
+
+    Raises:
+        ProgramError: G91 is in force, or no axis is named.
+    """
+    word = control.code_word(53)
+    if control.modal.incremental:
+        control.fail(
+            "reference-point",
+            "G53 counts from machine zero, and G91 is in force",
+            word,
+            "write G90 G53",
+        )
+    if not control.words.keys() & control.axis_letters:
+        control.fail("reference-point", "G53 needs the axes that shall move", word, "G53 Z0")
+    motion, by_motion = control.active.get("motion"), memory_of(control).variant.machine_by_motion
+    if motion not in (0, 1) and by_motion:
+        control.fail("no-motion-code", "G53 moves by G0 or G1", word)
+    with machine_frame(control, "G53"):
+        control.line_to(control.target(), rapid=motion == 0 or not by_motion)

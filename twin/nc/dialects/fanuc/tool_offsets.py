@@ -1,0 +1,175 @@
+"""Tool offsets of a Fanuc control: H and D, G43 to G49, and what programs write into the memory.
+
+Geometry and wear of length and radius (memory C). The job's tools are the geometry of the rows of
+their numbers; lengths count against the job's first tool. D holds radii (parameter 5004 #2 at 0).
+"""
+
+import dataclasses
+import re
+from typing import NoReturn
+
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.control.block_words import BlockWords
+from twin.nc.control.codes import Action, Compiler
+from twin.nc.control.control import Control
+from twin.nc.dialects.fanuc.memory import ToolOffset, memory_of
+from twin.nc.dialects.fanuc.programs import whole
+from twin.nc.iso.tool_compensation import NO_TOOL, compensate, set_length, tool_numbered
+from twin.nc.text.blocks import Word
+from twin.nc.text.expressions import Expression
+
+BARE_COMPENSATION = re.compile(rb"G0*4[12](?![0-9.])(?![^\r\n]*D)", re.IGNORECASE)
+"""Compensation without D in its line."""
+LARGEST_OFFSET = 999
+
+
+def row_of(control: Control, number: int) -> ToolOffset:
+    """A row of the offset memory, to be written to."""
+    return memory_of(control).tool_offsets.setdefault(number, ToolOffset())
+
+
+def length_of(control: Control, number: int) -> float | None:
+    """Geometry of a length [mm]; None: nobody has given it."""
+    row, tool = memory_of(control).tool_offsets.get(number), control.tools.data(number)
+    if row is not None and row.length is not None:
+        return row.length
+    return None if tool is None else tool.length
+
+
+def radius_of(control: Control, number: int) -> float | None:
+    """Geometry of a radius [mm]; None: nobody has given it."""
+    row, tool = memory_of(control).tool_offsets.get(number), control.tools.data(number)
+    if row is not None and row.radius is not None:
+        return row.radius
+    return None if tool is None else tool.radius
+
+
+def set_length_number(control: Control, word: Word) -> None:
+    """H: the row of the tool length; alone it changes the length in force."""
+    memory_of(control).length_number = whole(control, word, "tool-offset", "offset number")
+    if not any(code in (43.0, 44.0, 49.0) for code in _codes(control)):
+        sign = {43: 1.0, 44: -1.0}.get(int(control.active.get("length", 49)))
+        if sign is not None:
+            _apply_length(control, sign, word)
+
+
+def set_radius_number(control: Control, word: Word) -> None:
+    """D: the row of the radius.
+
+    Raises:
+        ProgramError: Compensation is in force with another one.
+    """
+    number = whole(control, word, "tool-offset", "offset number")
+    memory = memory_of(control)
+    starts = any(code in (41.0, 42.0) for code in _codes(control))
+    if control.path.compensating and not starts and number != memory.radius_number:
+        message = "the radius cannot change while compensation is in force"
+        control.fail("compensation-change", message, word, "end it by G40 first")
+    memory.radius_number = number
+
+
+def _codes(control: Control) -> list[float]:
+    return [control.number(word) for word, _ in control.codes]
+
+
+def length_code(number: int, sign: float) -> Action:
+    """G43, G44: the row H moves Z."""
+    return lambda control: _apply_length(control, sign, control.code_word(number))
+
+
+def _apply_length(control: Control, sign: float, word: Word | None) -> None:
+    number = memory_of(control).length_number
+    if number is None:
+        code = "G43" if word is None else word.text
+        control.fail("tool-offset", f"{code} needs H, the number of the length", word, "G43 H1")
+    if number == 0:
+        set_length(control, 0.0)
+        return
+    length, row = length_of(control, number), memory_of(control).tool_offsets.get(number)
+    if length is None:
+        _refuse_row(control, number, "H")
+    if row is None or row.length is None:
+        _warn_of_default_tool(control, number, "H")
+    wear = 0.0 if row is None else row.length_wear
+    first = control.tools.data(next(iter(control.tools.table), None))
+    set_length(control, sign * (length + wear - (0.0 if first is None else first.length)))
+
+
+def _refuse_row(control: Control, number: int, letter: str) -> NoReturn:
+    word = next((each for each in control.block.words if each.address == letter), None)
+    word = Word(letter, float(number), 0, 1) if word is None else word
+    known = ", ".join(f"{letter}{each}" for each in control.tools.table) or "none"
+    message = f"nobody has given a value for {letter}{number}"
+    hint = f"the job's tools give {known}; or write it by G10"
+    control.fail("no-such-tool", message, word, hint)
+
+
+def _warn_of_default_tool(control: Control, number: int, letter: str) -> None:
+    word = next((each for each in control.block.words if each.address == letter), None)
+    if word is not None and control.tools.data(number) is not None:
+        tool_numbered(control, word._replace(value=float(number)))
+
+
+def end_length(control: Control) -> None:
+    """G49."""
+    set_length(control, 0.0)
+
+
+def compensation_code(number: int, side: float) -> Action:
+    """G41, G42: compensation by the row D."""
+
+    def action(control: Control) -> None:
+        row_number = memory_of(control).radius_number
+        if row_number is None:
+            message = f"G{number} needs D, the number of the radius"
+            control.fail("tool-offset", message, control.code_word(number), f"G{number} D1")
+        compensate(control, side, _radius(control, row_number))
+
+    return action
+
+
+def _radius(control: Control, number: int) -> float:
+    if number == 0:
+        return 0.0
+    radius, row = radius_of(control, number), memory_of(control).tool_offsets.get(number)
+    if radius is None:
+        if not control.tools.table:
+            message = "compensation needs a tool, and the job has none"
+            control.fail("no-such-tool", message, None, NO_TOOL)
+        _refuse_row(control, number, "D")
+    if row is None or row.radius is None:
+        _warn_of_default_tool(control, number, "D")
+    return radius + (0.0 if row is None else row.radius_wear)
+
+
+def compile_compensation(side: float) -> Compiler:
+    """G41 D1, for the compiled tier; where every call names D and no program writes radii."""
+
+    def write(block: BlockWords, assembler: Assembler) -> None:
+        word, control = block.take("D"), block.control
+        memory = memory_of(control)
+        if word is None or isinstance(word.value, Expression) or memory.bare_compensation:
+            raise UnsupportedError
+        if memory.writes_offsets or word.value not in control.tools.table:
+            raise UnsupportedError
+        assembler.constant(control.tools.table[int(word.value)].radius)
+        assembler.emit(opcodes.COMPENSATE, int(side))
+
+    return write
+
+
+def write_tool_offset(control: Control, number: int, field: str, value: float) -> None:
+    """Write a value of a row, whose length holds at once where it is in force [mm]."""
+    memory = memory_of(control)
+    memory.tool_offsets[number] = dataclasses.replace(row_of(control, number), **{field: value})
+
+
+def read_tool_offset(control: Control, number: int, field: str) -> float:
+    """A value of a row, 0 where nobody has given it [mm]."""
+    if field == "length":
+        return length_of(control, number) or 0.0
+    if field == "radius":
+        return radius_of(control, number) or 0.0
+    row = memory_of(control).tool_offsets.get(number, ToolOffset())
+    return float(getattr(row, field))

@@ -1,0 +1,194 @@
+"""Variables and expressions of Fanuc's custom macro B.
+
+#1 to #33 belong to the call, #100 to #199 and #500 to #999 to all programs; #0 never has a value. A
+variable without a value is vacant: it counts as 0 where something is computed of it, EQ and NE tell
+it from 0, and a word that has it as its value is left out.
+"""
+
+import math
+import re
+
+from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.control.control import Control
+from twin.nc.dialects.fanuc import system_variables
+from twin.nc.text import arithmetic
+from twin.nc.text.blocks import Assignment
+from twin.nc.text.expressions import (
+    ARITHMETIC,
+    COMPARISON,
+    Computed,
+    Expression,
+    ExpressionError,
+    ExpressionSyntax,
+    FunctionOf,
+    Number,
+    NumberedVariable,
+    Operator,
+    OrZero,
+    Tree,
+    Variable,
+)
+
+LOCAL = range(1, 34)
+COMMON = range(100, 200)
+KEPT = range(500, 1000)
+"""Variables that keep their value when the control is switched off."""
+_ZEROS = re.compile(r"#0+(?=[0-9])")
+_COMPARE = 4
+
+EXPRESSIONS = ExpressionSyntax(
+    operators={
+        **{symbol: ARITHMETIC[symbol] for symbol in "+-*/"},
+        "MOD": Operator(6, arithmetic.remainder_of_wholes),
+        "AND": Operator(6, arithmetic.bits_of_both),
+        "OR": Operator(5, arithmetic.bits_of_either),
+        "XOR": Operator(5, arithmetic.bits_of_one_alone),
+        "EQ": Operator(_COMPARE, arithmetic.equal_or_vacant),
+        "NE": Operator(_COMPARE, arithmetic.unequal_or_vacant),
+        "GT": COMPARISON[">"],
+        "GE": COMPARISON[">="],
+        "LT": COMPARISON["<"],
+        "LE": COMPARISON["<="],
+    },
+    functions={
+        "SIN": FunctionOf(arithmetic.sine_of_degrees),
+        "COS": FunctionOf(arithmetic.cosine_of_degrees),
+        "TAN": FunctionOf(arithmetic.tangent_of_degrees),
+        "ASIN": FunctionOf(arithmetic.arc_sine_in_degrees),
+        "ACOS": FunctionOf(arithmetic.arc_cosine_in_degrees),
+        "ATAN": FunctionOf(arithmetic.arc_tangent_in_degrees),
+        "SQRT": FunctionOf(math.sqrt),
+        "SQR": FunctionOf(math.sqrt),
+        "ABS": FunctionOf(math.fabs),
+        "ROUND": FunctionOf(arithmetic.nearest_whole_away),
+        "RND": FunctionOf(arithmetic.nearest_whole_away),
+        "FIX": FunctionOf(arithmetic.whole_part),
+        "FUP": FunctionOf(arithmetic.whole_away),
+        "LN": FunctionOf(math.log),
+        "EXP": FunctionOf(math.exp),
+        "POW": FunctionOf(math.pow, 2),
+        "BIN": FunctionOf(arithmetic.from_binary_decimal),
+        "BCD": FunctionOf(arithmetic.to_binary_decimal),
+    },
+    constants={},
+    variable="#[0-9]+",
+    spelled=lambda name: _ZEROS.sub("#", name),
+    indirect="#",
+    quotients={"ATAN": arithmetic.direction_from_zero},
+    brackets="[]",
+    bracketed=True,
+    vacant=True,
+    of_vacant=("EQ", "NE"),
+    exclusive=("EQ", "NE", "GT", "GE", "LT", "LE"),
+)
+"""Angles are degrees."""
+
+_ROUNDING = (arithmetic.nearest_whole_away,)
+
+
+class ControlVariables:
+    """The names of variables that only the interpreter tier reads and writes."""
+
+    def __contains__(self, name: object) -> bool:
+        """Whether it is one of them."""
+        number = int(str(name)[1:]) if str(name)[1:].isdigit() else 0
+        return number not in LOCAL and number not in COMMON and number not in KEPT
+
+
+def is_local(name: str) -> bool:
+    """Whether a variable belongs to the call, not to all programs."""
+    return name.startswith("#") and name[1:].isdigit() and int(name[1:]) in LOCAL
+
+
+def _number(name: str, index: float | None) -> int:
+    """The number of ``#5`` or of ``#[...]``, whose computed number is given.
+
+    Raises:
+        ExpressionError: It is none.
+    """
+    if index is None:
+        return int(name[1:])
+    if math.isnan(index) or index < 0.0 or index != int(index):
+        raise ExpressionError("parameter-number", f"there is no variable #[{index:g}]")
+    return int(index)
+
+
+def read_variable(control: Control, name: str, index: float | None) -> float:
+    """Value of a variable; NaN where it is vacant."""
+    number = _number(name, index)
+    if number == 0:
+        return math.nan
+    if number in LOCAL or number in COMMON or number in KEPT:
+        value = control.variables.read(f"#{number}")
+        if value is None and number in KEPT:
+            control.report.warn_once(
+                "vacant-variable",
+                f"#{number} keeps its value from earlier runs, which is not known: it is vacant here",
+                hint=f'set it before, or in the job: [variables] "#{number}" = 0.0',
+            )
+        return math.nan if value is None else value
+    given = control.settings.variables.get(f"#{number}")
+    return system_variables.read(control, number) if given is None else given
+
+
+def write_variable(
+    control: Control, name: str, index: float | None, value: float, assignment: Assignment
+) -> None:
+    """Give a variable a value; NaN leaves it vacant.
+
+    Raises:
+        ProgramError: Programs do not write it.
+    """
+    try:
+        number = _number(name, index)
+        if number in LOCAL or number in COMMON or number in KEPT:
+            control.variables.write(f"#{number}", value)
+        else:
+            system_variables.write(control, number, value)
+    except ExpressionError as error:
+        control.report.fail(error.code, str(error), assignment.column, assignment.width, error.hint)
+
+
+def compile_assignment(assembler: Assembler, assignment: Assignment) -> None:
+    """An assignment as instructions.
+
+    Raises:
+        UnsupportedError: It is left to the interpreter tier.
+    """
+    target = assignment.target
+    if isinstance(target, NumberedVariable):
+        assembler.value(target.index, assignment.column)
+        assembler.value(assignment.value, assignment.column)
+        assembler.assign_numbered(target.name)
+    elif target.name in ControlVariables():
+        raise UnsupportedError
+    else:
+        assembler.value(assignment.value, assignment.column)
+        assembler.assign(target.name)
+
+
+def rounds(tree: Tree) -> bool:
+    """Whether ROUND stands in an expression."""
+    match tree:
+        case Computed(_, compute, operands):
+            return compute in _ROUNDING or any(rounds(each) for each in operands)
+        case NumberedVariable(_, operand) | OrZero(operand):
+            return rounds(operand)
+        case _:
+            return not isinstance(tree, Number | Variable) and rounds(tree.operand)
+
+
+def rounding_to(expression: Expression, increment: float) -> Expression:
+    """The value of a word, whose ROUND goes to the least increment (manual)."""
+    return Expression(expression.text, _rounding_to(expression.evaluate, increment))
+
+
+def _rounding_to(tree: Tree, increment: float) -> Tree:
+    if not isinstance(tree, Computed):
+        return tree
+    operands = tuple(_rounding_to(each, increment) for each in tree.operands)
+    if tree.compute not in _ROUNDING:
+        return Computed(tree.what, tree.compute, operands)
+    shares = Computed("/", arithmetic.divide, (operands[0], Number(increment)))
+    nearest = Computed(tree.what, tree.compute, (shares,))
+    return Computed("*", arithmetic.multiply, (nearest, Number(increment)))
