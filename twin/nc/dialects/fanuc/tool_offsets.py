@@ -10,8 +10,7 @@ from typing import NoReturn
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import Action, Compiler
+from twin.nc.control.codes import Action, CodeWriter
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import ToolOffset, memory_of
 from twin.nc.dialects.fanuc.programs import whole
@@ -143,12 +142,11 @@ def _radius(control: Control, number: int) -> float:
     return radius + (0.0 if row is None else row.radius_wear)
 
 
-def compile_compensation(side: float) -> Compiler:
+def compile_compensation(side: float) -> CodeWriter:
     """G41 D1, for the compiled tier; where every call names D and no program writes radii."""
 
-    def write(block: BlockWords, assembler: Assembler) -> None:
-        word, control = block.take("D"), block.control
-        memory = memory_of(control)
+    def write(control: Control, assembler: Assembler) -> None:
+        word, memory = control.take("D"), memory_of(control)
         if word is None or isinstance(word.value, Expression) or memory.bare_compensation:
             raise UnsupportedError
         if memory.writes_offsets or word.value not in control.tools.table:
