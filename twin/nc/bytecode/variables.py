@@ -170,7 +170,8 @@ class Variables:
 
     def write(self, name: str, value: float) -> None:
         """Set a variable."""
-        store(self.columns, self._progress[DEPTH], self.slot(name), value)
+        slot = self.slot(name)  # which may make the columns grow
+        store(self.columns, self._progress[DEPTH], slot, value)
 
     def make_room(self, depth: int) -> None:
         """Let there be a row of local variables for calls so deep."""

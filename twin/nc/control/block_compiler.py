@@ -118,18 +118,15 @@ class BlockCompiler:
             self.assembler.words(words)
             return
         codes, functions = self._sorted = self.sorted(words)
-        self._refuse_beside_cycle()
         run_in_order(self, codes, functions, words_first=self.vocabulary.words_first)
 
     def _refuse_beside_cycle(self) -> None:
-        """A drilling cycle takes its words at the end: leave what else acts to the interpreter tier.
+        """A drilling cycle has its words: leave what else acts to the interpreter tier.
 
         Raises:
             UnsupportedError: Something does.
         """
         codes, functions = self._sorted
-        if not any(code.begins_cycle and code.writer is not None for _, code in codes):
-            return
         acting = self.control.words.keys() & self.acting - set(_BESIDE_CYCLE)
         performs = any(code.perform is not None for _, code in codes)
         if acting or performs or any(function.action is not None for _, function in functions):
@@ -145,6 +142,8 @@ class BlockCompiler:
             self.assembler.emit(opcodes.ACTIVATE, _number(word))
         if code.perform is None:
             code.writer(self.control, self.assembler)
+        if code.begins_cycle:
+            self._refuse_beside_cycle()
 
     def modal_words(self, reserved: str) -> None:
         """Write what words such as S and T do."""
