@@ -2,8 +2,9 @@
 
 ``python scripts/calibration_study.py [MACHINES] [SEED]`` draws machines (200 by default) with random
 drives, noise, quantisation, delay and rates from 50 Hz to 4 kHz, with force, with a current or with
-positions alone; prints by parameter how many intervals cover the truth, and ends with 1 where less
-than 90 % or more than 99 % of all do, or where something that cannot be told is not named.
+positions alone; half of them have a dead time, a filter of speed or command, an integrator, or a log
+behind a measuring filter. It prints by parameter how many intervals cover the truth, and ends with 1
+where less than 90 % or more than 99 % of all do, or where something that is not told is not named.
 """
 
 import collections
@@ -14,12 +15,13 @@ import numpy as np
 
 from twin.calibrate.fit.parameters import Parameters, of_base
 from twin.calibrate.fit.simulation import command_of, seen_at, simulate_axis
-from twin.calibrate.fit.stages import AxisFit, fit_axis
+from twin.calibrate.fit.stages import OF_THE_LOG, AxisFit, fit_axis
 from twin.calibrate.fit.stretch import stretches_of
 from twin.files.shipped import machine_file
 from twin.logs.column_map import AxisColumns, ColumnTable
 from twin.logs.machine_log import AxisLog
 from twin.machine.description.config import AxisTable, read_machine
+from twin.machine.model.drives import swings_up, tune
 from twin.nc.canonical import FloatArray
 
 RATES = (50, 100, 250, 500, 1000, 4000)
@@ -29,6 +31,14 @@ _FINE_S = 0.00025
 _AVERAGED = 1000
 """Rate above which ``twin calibrate`` averages neighbouring samples."""
 _ANY = ColumnTable(column="a", unit="mm")
+_EXTRAS = {
+    "loop_delay_s": (0.0005, 0.003),
+    "velocity_filter_s": (0.0005, 0.003),
+    "command_filter_s": (0.001, 0.008),
+    "reset_time_s": (0.01, 0.06),
+    "measuring_filter": (0.001, 0.006),
+}
+"""What a machine may have besides, and between which values [s]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -61,7 +71,10 @@ def draw(random: np.random.Generator) -> Drawn:
         current_scale=float(random.uniform(30.0, 300.0)),
         current_at_rest=float(random.uniform(-0.3, 0.3)),
         delay=float(random.choice([0.0, random.uniform(0.0, 0.005)])),
+        **_extras(random),
     )
+    if swings_up(tune(_axis_with(truth), mass)):
+        return draw(random)
     rate, kind = int(random.choice(RATES)), str(random.choice(["positions", "current", "force"]))
     asked = _course(random)
     command = command_of("linear", _FINE_S, asked, asked)
@@ -79,6 +92,19 @@ def draw(random: np.random.Generator) -> Drawn:
         more["current"] = force / truth.current_scale + truth.current_at_rest
     columns = AxisColumns(command=_ANY, actual=_ANY)
     return Drawn(truth, AxisLog("linear", asked[::every], actual, more, columns), rate, kind)
+
+
+def _extras(random: np.random.Generator) -> dict[str, float]:
+    """Nothing in half of the cases, else one or two of ``_EXTRAS``."""
+    count = int(random.choice([0, 0, 1, 2]))
+    names = random.choice(list(_EXTRAS), count, replace=False)
+    return {str(name): float(random.uniform(*_EXTRAS[str(name)])) for name in names}
+
+
+def _axis_with(truth: Parameters) -> AxisTable:
+    names = set(AxisTable.model_fields) & set(Parameters.__dataclass_fields__)
+    changes = {name: getattr(truth, name) for name in names}
+    return _shipped_axis().model_copy(update=changes)
 
 
 def _course(random: np.random.Generator) -> FloatArray:
@@ -120,22 +146,31 @@ def _mean(values: FloatArray, times: int) -> FloatArray:
 
 def covered(drawn: Drawn, found: AxisFit) -> dict[str, bool]:
     """Which intervals hold the truth; what stands on the base's mass is held to that."""
-    ratio = 1.0 if drawn.kind == "force" else BASE_MASS / drawn.truth.mass
+    truth = drawn.truth
+    ratio = 1.0 if drawn.kind == "force" else BASE_MASS / truth.mass
+    if "current_at_rest" in found.conditional:
+        hidden = truth.constant_force / truth.current_scale
+        truth = dataclasses.replace(truth, current_at_rest=truth.current_at_rest - hidden)
     told = dict(found.fitted)
     told |= {name: interval for name, (interval, _) in found.conditional.items()}
     scaled = ("dry_friction", "constant_force", "viscous_friction", "current_scale")
     return {
         name: interval.low
-        <= getattr(drawn.truth, name) * (ratio if name in scaled else 1.0)
+        <= getattr(truth, name) * (ratio if name in scaled else 1.0)
         <= interval.high
         for name, interval in told.items()
     }
 
 
 def unnamed(drawn: Drawn, found: AxisFit) -> list[str]:
-    """What this log cannot tell and the fit does not name."""
-    hidden = {"positions": ["mass", "viscous_friction"], "current": ["mass"], "force": []}
-    return [name for name in hidden[drawn.kind] if name not in found.undetermined]
+    """What this log cannot tell, or the fit did not take from it, and is not named."""
+    hidden = {"positions": {"mass", "viscous_friction"}, "current": {"mass"}, "force": set[str]()}
+    silent = set(OF_THE_LOG) | (
+        {"current_scale", "current_at_rest"} if "current" not in drawn.log.more else set()
+    )
+    every = {field.name for field in dataclasses.fields(Parameters)}
+    needed = hidden[drawn.kind] | (every - silent - set(found.fitted) - set(found.conditional))
+    return sorted(needed - set(found.undetermined))
 
 
 def main(arguments: list[str]) -> int:
@@ -150,9 +185,14 @@ def main(arguments: list[str]) -> int:
         marks = covered(drawn, found)
         for name, hit in marks.items():
             hits[name].append(hit)
-        lost += bool(unnamed(drawn, found))
+        silent = unnamed(drawn, found)
+        lost += bool(silent)
         missed = " ".join(name for name, hit in marks.items() if not hit)
-        print(f"{number:4} {drawn.rate:5} Hz {drawn.kind:10} {missed}", flush=True)
+        has = " ".join(name for name in _EXTRAS if getattr(drawn.truth, name))
+        print(
+            f"{number:4} {drawn.rate:5} Hz {drawn.kind:10} [{has}] {missed} {silent or ''}".rstrip(),
+            flush=True,
+        )
     every = [hit for found in hits.values() for hit in found]
     for name, found in sorted(hits.items()):
         print(f"{name:24} {np.mean(found):6.1%} of {len(found)}")

@@ -22,7 +22,7 @@ from benches.row import REPEATS, Row, median_cpu_seconds
 from twin.nc.canonical import Axes
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
-from twin.nc.interpreter import COMPILED_FROM, Interpretation
+from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import read_source
 
 PEERS = Path(__file__).resolve().parents[2] / ".peers"
@@ -95,7 +95,7 @@ def _arcs() -> Iterator[str]:
         yield f"G{2 if clockwise else 3} X{x}.000 Y{y}.000{height} I{i}.000 J{j}.000"
 
 
-def _interpret(path: Path, dialect: str, compiled_from: int = COMPILED_FROM) -> int:
+def _interpret(path: Path, dialect: str, compiled_from: int | None = None) -> int:
     interpretation = Interpretation(
         read_source(path), dialect_named(dialect), _SETTINGS, compiled_from=compiled_from
     )

@@ -11,7 +11,15 @@ from twin.calibrate.fit.slow import SlowLog, fit_slow, slow_force
 from twin.calibrate.fit.solve import on_one_thread
 from twin.calibrate.fit.stages import AxisFit, fit_axis
 from twin.calibrate.fit.stretch import Stretch, predict, stretches_of
-from twin.calibrate.health import SLOW_S, Finding, Health, look_at_axis, look_at_clock
+from twin.calibrate.health import (
+    SLOW_S,
+    Finding,
+    Health,
+    is_filtered,
+    look_at_axis,
+    look_at_clock,
+    look_at_fit,
+)
 from twin.calibrate.refusal import refuse_wrong_force, refuse_wrong_log
 from twin.calibrate.result import FIT, HOLD_OUT, AxisResult, Calibration, Course, LogFigures
 from twin.errors import UsageError
@@ -70,6 +78,9 @@ def calibrate(
         own = [item for item in fitted if name in item.log.axes]
         fit = _fit(kind, name, own, base, machine.axis(name).velocity)
         results[name] = AxisResult(kind, fit, _units(kind), _limits(name, own))
+        for item in (item for item in own if item.health.period_s <= SLOW_S):
+            told = look_at_fit(name, fit.fitted, filtered=_is_filtered(item, name))
+            findings[item.log.name] += tuple(told)
         figures += [
             _figures(item, name, fit.parameters) for item in fitted + held if name in item.log.axes
         ]
@@ -160,7 +171,13 @@ def _fit(
     if not fast:
         return fit_slow(kind, [_slow(item, name) for item in logs], base, fastest)
     pieces = [piece for item in fast for piece in _stretches(item, name)]
-    return fit_axis(kind, pieces, base)
+    return fit_axis(kind, pieces, base, filtered=all(_is_filtered(item, name) for item in fast))
+
+
+def _is_filtered(item: _Log, name: str) -> bool:
+    begin, end = max(item.health.stretches, key=lambda rows: rows[1] - rows[0])
+    axis = item.log.axes[name]
+    return is_filtered(axis.command[begin:end], axis.actual[begin:end])
 
 
 def _stretches(item: _Log, name: str) -> list[Stretch]:

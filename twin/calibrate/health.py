@@ -2,9 +2,12 @@
 
 import dataclasses
 import itertools
+import math
+from collections.abc import Mapping
 
 import numpy as np
 
+from twin.calibrate.fit.solve import Interval
 from twin.logs.machine_log import AxisLog, MachineLog
 from twin.nc.canonical import FloatArray
 
@@ -15,6 +18,16 @@ SLOW_S = 0.025
 SHORTEST = 50
 """Samples of a stretch that is fitted."""
 _JITTER = 0.2
+_SKEWED_S = 2e-4
+"""Columns that were taken less apart count as taken together [s]."""
+_BANDS, _BAND = (0.12, 0.26, 0.42), 0.08
+"""Where noise is looked at, in shares of the rate of samples."""
+_FALLS = 3.0
+"""The power of filtered noise falls by more, from the first of these bands to the last."""
+_STEEP = 15.0
+"""And by less, from the first to the second: what falls by more is motion."""
+_SPECTRUM = 1000
+"""Samples without which noise has no colour to speak of."""
 _HELD = 0.5
 """Share of samples that repeat the one before while the command moves, above which it is held."""
 
@@ -24,7 +37,8 @@ class Finding:
     """Something about a log that a person should know.
 
     Attributes:
-        code: ``gap``, ``clock-jump``, ``slow``, ``coarse``, ``held``, ``jitter``.
+        code: ``gap``, ``clock-jump``, ``slow``, ``coarse``, ``held``, ``jitter``, ``skew``,
+            ``filtered``.
         message: In words, with what can still be fitted.
     """
 
@@ -109,6 +123,30 @@ def resolution(values: FloatArray) -> float:
     return least if float(np.mean(even)) > 0.95 else 0.0
 
 
+def is_filtered(command: FloatArray, actual: FloatArray) -> bool:
+    """Whether the noise of positions falls off towards high frequencies, as behind a filter.
+
+    Motion falls off there too, but far more steeply, and it is in the command as well.
+
+    Args:
+        command: Commanded positions of one even stretch, shape (n,).
+        actual: Actual ones, shape (n,).
+    """
+    if len(actual) < _SPECTRUM:
+        return False
+    moved, *_ = _band_powers(command)
+    middle, high, highest = _band_powers(actual)
+    return moved < middle < _STEEP * high and middle > _FALLS * highest > 0.0
+
+
+def _band_powers(values: FloatArray) -> list[float]:
+    bent = np.diff(values, 2)
+    frequency = np.fft.rfftfreq(len(bent))[1:]
+    power = np.abs(np.fft.rfft(bent * np.hanning(len(bent)))[1:]) ** 2
+    power = power / (2.0 * np.sin(np.pi * frequency)) ** 4
+    return [float(np.mean(power[(frequency > low) & (frequency <= low + _BAND)])) for low in _BANDS]
+
+
 def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
     """What one axis's columns cannot tell."""
     findings = []
@@ -138,3 +176,49 @@ def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
                 )
             )
     return findings
+
+
+def look_at_fit(name: str, fitted: Mapping[str, Interval], *, filtered: bool) -> list[Finding]:
+    """What a fit shows or explains: columns that were taken at different times, or behind a filter.
+
+    Args:
+        name: Of the axis.
+        fitted: What its logs determine.
+        filtered: Whether the noise of its positions is that of a filtered column.
+    """
+    findings = []
+    for key, column in (("delay", "actual position"), ("force_delay", "force or current")):
+        skew = fitted.get(key)
+        if skew is not None and (skew.low > 0.0 or skew.high < 0.0):
+            if min(abs(skew.low), abs(skew.high)) < _SKEWED_S:
+                continue
+            when = "later" if skew.value > 0.0 else "earlier"
+            findings.append(
+                Finding(
+                    "skew",
+                    f"{name}: {column} is logged {abs(skew.value) * 1e3:.3g} ms {when} than the command "
+                    f"({_milliseconds(skew)}); the fit takes that as the log's, and the drive's own "
+                    "lag can still be fitted",
+                )
+            )
+    smooth = fitted.get("measuring_filter")
+    if filtered or (smooth is not None and smooth.low > 0.0):
+        seen = (
+            "" if smooth is None
+            else f", of {smooth.value * 1e3:.3g} ms ({_milliseconds(smooth)}), which dulls what is faster "
+            f"than {1.0 / (2.0 * math.pi * max(smooth.value, 1e-6)):.0f} Hz"
+        )  # fmt: skip
+        why = ": its noise falls off towards high frequencies" if filtered else ""
+        findings.append(
+            Finding(
+                "filtered",
+                f"{name}: actual position is logged behind a filter{seen}{why}; the filter is taken as "
+                "the log's, and loop gain, damping and friction can still be fitted",
+            )
+        )
+    return findings
+
+
+def _milliseconds(interval: Interval) -> str:
+    low, high = sorted((abs(interval.low), abs(interval.high)))
+    return f"{low * 1e3:.3g} to {high * 1e3:.3g} ms"

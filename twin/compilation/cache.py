@@ -55,6 +55,11 @@ def keep_by_content(compilable: Compilable, function: Callable[..., Any]) -> Com
     return compilable
 
 
+def is_loaded(kernel: Any) -> bool:
+    """Whether a kernel has been compiled, or loaded, in this process."""
+    return bool(kernel.signatures)
+
+
 def is_compiled(kernel: Any, arguments: Iterable[object]) -> bool:
     """Whether a call of a kernel with these arguments would have to wait for no compiler."""
     types = tuple(map(kernel.typeof_pyval, arguments))

@@ -18,6 +18,9 @@ from twin.nc.text.source import Source
 if TYPE_CHECKING:
     from twin.nc.compiled.virtual_machine import VirtualMachine
 
+AT_HAND_FROM = 40
+"""Blocks and moves after which the compiled tier is taken, where this process has run it before: to hand it
+the program costs as much as so many blocks of the interpreter tier."""
 COMPILED_FROM = 500
 """Blocks and moves after which the compiled tier is taken, where the compiler is loaded or the program is long."""
 LONG_PROGRAM = 10_000
@@ -28,7 +31,7 @@ _LOOK_AGAIN = 2_000
 """Blocks and moves after which a run looks again whether the kernels are there."""
 _PAYS = 2_000_000
 """Blocks and moves after which it waits for them: to go on without would take longer by then."""
-_COMPILER = "twin.compilation.kernel"
+_COMPILER, _ENTRIES = "twin.compilation.kernel", "twin.nc.compiled.entries"
 
 
 class Interpretation:
@@ -48,7 +51,7 @@ class Interpretation:
         dialect: Dialect,
         settings: ControlSettings,
         *,
-        compiled_from: int = COMPILED_FROM,
+        compiled_from: int | None = None,
         speed: Speed | None = None,
     ) -> None:
         """Take a program.
@@ -57,7 +60,7 @@ class Interpretation:
             source: The program.
             dialect: The language it is read in.
             settings: What the control is told of the machine and the job.
-            compiled_from: Blocks and moves after which the compiled tier is taken, where that pays.
+            compiled_from: Blocks and moves after which the compiled tier is taken; None: where that pays.
             speed: What it does while that is not compiled; None: as is usual.
         """
         self.source = source
@@ -132,5 +135,12 @@ class Interpretation:
 
     def _compiled_after(self) -> int:
         """Blocks and moves after which the compiled tier begins."""
+        if self._compiled_from is not None:
+            return self._compiled_from
+        if _ENTRIES in sys.modules:
+            from twin.nc.compiled.entries import at_hand
+
+            if at_hand():
+                return AT_HAND_FROM
         pays = _COMPILER in sys.modules or len(self.source.lines) >= LONG_PROGRAM
-        return self._compiled_from * (1 if pays else SHORT_PROGRAM)
+        return COMPILED_FROM * (1 if pays else SHORT_PROGRAM)

@@ -12,6 +12,7 @@ from twin.machine.circle.circle_plot import write_circle_plot
 from twin.machine.circle.circular_test import CircularTest, circular_test
 from twin.machine.description.config import Machine, MachineFile
 from twin.machine.model.model import build_spec, drives
+from twin.machine.model.transmission import give_stiffness
 from twin.units import MM, UM_PER_MM
 
 PERFECT = {"velocity_feedforward": 1.0, "acceleration_feedforward": 1.0}
@@ -100,7 +101,7 @@ def test_backlash_gives_steps_of_its_size():
     result = circular_test(machine, 50.0, 1000.0)
     model = build_spec(machine).compile()
     loop = drives(machine, model)[0]
-    wall = model.tendon_stiffness[model.tendon("X give").id]
+    wall = give_stiffness(machine.axis("X"), loop.moved, machine.file.servo_period_s)
     bend = 2 * friction * (1 / loop.position_gain + 1 / wall) / MM
     around = np.abs((result.angle_deg + 180) % 360 - 180)
     before = (around > 3.0) & (around < 5.0) & (result.angle_deg > 180)

@@ -9,6 +9,7 @@ from twin.errors import ConfigError
 from twin.machine.description.config import Machine
 from twin.machine.model.drives import integral_name
 from twin.machine.model.model import build_spec, drives, physics_model
+from twin.machine.model.transmission import give_stiffness
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.recording.reader import Samples
@@ -78,9 +79,8 @@ def test_backlash_is_lost_at_each_reversal(backlash):
     lag = (samples.setpoint.position - samples.joint_position)[:, 0]
     forth = lag[(samples.setpoint.time > 0.3) & (samples.setpoint.time < 0.7)]
     back = lag[(samples.setpoint.time > 1.3) & (samples.setpoint.time < 1.7)]
-    model = build_spec(machine).compile()
-    loop = drives(machine, model)[0]
-    wall = model.tendon_stiffness[model.tendon("X give").id]
+    loop = drives(machine, build_spec(machine).compile())[0]
+    wall = give_stiffness(machine.axis("X"), loop.moved, PERIOD)
     expected = backlash + 2 * friction * (1 / loop.position_gain + 1 / wall) / MM
     assert np.mean(forth) - np.mean(back) == pytest.approx(expected, abs=2e-5)
 
@@ -106,12 +106,69 @@ def test_a_springy_screw_gives_by_friction_over_stiffness():
 
 
 def test_a_screw_that_the_step_cannot_follow_is_refused():
-    """From one radian a step on: motor and axis against each other on the spring."""
+    """From one radian a step on, of twenty steps a period: motor and axis against each other."""
     moved, motor = 485.0 + 38.0 + 518.2, 518.2
-    stiffest = motor * (moved - motor) / moved / PERIOD**2 * 1e-3
+    stiffest = motor * (moved - motor) / moved / (PERIOD / 20) ** 2 * 1e-3
     build_spec(shipped_machine().changed("X", stiffness=0.99 * stiffest))
-    with pytest.raises(ConfigError, match=r"axes\.X\.stiffness = .* up to 2.6e\+05 works"):
+    with pytest.raises(ConfigError, match=r"axes\.X\.stiffness = .* up to 1.04e\+08 works"):
         build_spec(shipped_machine().changed("X", stiffness=1.01 * stiffest))
+
+
+def test_a_rigid_screw_with_backlash_loses_the_gap_and_little_more():
+    """0.02 mm under 480 N of friction: 20 µm + 2 · 480 N over 1040 N/µm, the integrating drive holds the rest."""
+    machine = shipped_machine(backlash=0.02, dry_friction=480.0, reset_time_s=0.01, **PERFECT)
+    samples = run(machine, back_and_forth(0, 40.0, 4.0))
+    lag = (samples.setpoint.position - samples.joint_position)[:, 0]
+    forth = lag[(samples.setpoint.time > 0.45) & (samples.setpoint.time < 0.55)]
+    back = lag[(samples.setpoint.time > 1.45) & (samples.setpoint.time < 1.55)]
+    lost = np.mean(forth) - np.mean(back)
+    assert lost == pytest.approx(0.020 + 2 * 480.0 / 1.04e6, abs=2e-5)
+
+
+def in_the_gap(**fields: float) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """X with a gap of 0.1 mm and a motor that nothing moves."""
+    machine = shipped_machine(backlash=0.1).changed("X", **fields)
+    model = physics_model(machine, build_spec(machine))
+    model.dof_armature[model.joint("X").dofadr[0]] = 1e7
+    return model, mujoco.MjData(model)
+
+
+@pytest.mark.parametrize("speed", [0.01, 0.1])
+def test_no_force_acts_within_the_gap(speed: float):
+    model, data = in_the_gap()
+    data.joint("X give").qvel[0] = speed
+    for _ in range(int(0.05e-3 / speed / model.opt.timestep)):
+        mujoco.mj_step(model, data)
+        assert data.joint("X give").qvel[0] == pytest.approx(speed, rel=1e-9)
+
+
+@pytest.mark.parametrize("fields", [{}, {"stiffness": 50_000.0}])
+@pytest.mark.parametrize("force", [-480.0, 480.0])
+def test_the_wall_gives_by_force_over_stiffness(fields: dict[str, float], force: float):
+    model, data = in_the_gap(**fields)
+    stiffness = 5e7 if fields else 523.0 * 518.2 / 1041.2 * (2 / PERIOD) ** 2
+    data.qfrc_applied[model.joint("X give").dofadr[0]] = force
+    for _ in range(4000):
+        mujoco.mj_step(model, data)
+    expected = np.copysign(0.05e-3 + abs(force) / stiffness, force)
+    assert data.joint("X give").qpos[0] == pytest.approx(expected, abs=2e-9)
+
+
+def test_a_wall_throws_back_like_a_damped_spring_that_only_pushes():
+    """x'' + 2 z w x' + w² x = 0 from x = 0 on; its force ends at the time t at which 2 z x' + w x = 0.
+
+    With s = sqrt(1 - z²) that is at w s t = pi - 2 asin(z), and x' is then -exp(-z w t) of what it was.
+    """
+    model, data = in_the_gap(stiffness=5_000.0)
+    data.joint("X give").qvel[0] = 0.01
+    ratio = 0.1 * np.sqrt(518.2 / 1041.2)  # the damper is that of both masses, and one swings
+    aside = np.sqrt(1 - ratio**2)
+    expected = -0.01 * np.exp(-ratio / aside * (np.pi - 2 * np.arcsin(ratio)))
+    speeds = []
+    for _ in range(2000):
+        mujoco.mj_step(model, data)
+        speeds.append(data.joint("X give").qvel[0])
+    assert min(speeds) == pytest.approx(expected, rel=0.02)
 
 
 @pytest.mark.parametrize("stiffness", [30_000.0, 250_000.0])

@@ -278,3 +278,14 @@ def test_a_run_changes_over_when_its_kernels_are_ready(
     assert next(looks, None) is None
     assert ready.moves.end.tobytes() == cold.moves.end.tobytes()
     assert ready.place == cold.place
+
+
+def test_a_process_that_has_run_the_kernels_takes_them_early() -> None:
+    lines = ["G90 G1 X0 F100", *(f"G1 X{number} Y2" for number in range(200))]
+    source = source_from_text("\n".join(lines))
+    seen(source, "gost", SETTINGS, ALWAYS)
+    next_run = Interpretation(source, dialect_named("gost"), SETTINGS, speed=Speed.HOT)
+    moves = sum(len(chunk.moves) for chunk in next_run.chunks())
+    assert moves == 200
+    assert next_run.compiled_after is not None
+    assert next_run.compiled_after <= interpreter.AT_HAND_FROM + 1

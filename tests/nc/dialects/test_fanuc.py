@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from twin.nc.text.source import read_source
 ZERO = {"X": 0.0, "Y": 0.0, "Z": 0.0}
 
 
-def ends(text: str, dialect: str = "fanuc", **changes: object) -> list[tuple[float, float, float]]:
+def ends(text: str, dialect: str = "fanuc", **changes: Any) -> list[tuple[float, float, float]]:
     """Where each move ends, X, Y and Z rounded to a nanometre."""
     moves = good(f"O1\n{text}\nM30", dialect, **changes).moves
     return [(round(x, 6) + 0.0, round(y, 6) + 0.0, round(z, 6) + 0.0) for x, y, z, _ in moves.end]
@@ -202,7 +203,7 @@ def test_h_without_a_tool_is_refused() -> None:
 # --- macros
 
 
-def value(expression: str, before: str = "", **changes: object) -> float:
+def value(expression: str, before: str = "", **changes: Any) -> float:
     """What an expression comes to."""
     return good(f"O1\n{before}\n#100={expression}\nG0 X#100\nM30", "fanuc", **changes).position["X"]
 
@@ -290,7 +291,7 @@ def test_goto_takes_the_next_block_of_its_number_else_the_first() -> None:
     assert good(text, "fanuc").position["X"] == 3.0
 
 
-ZEROED = {"machine_zero": {"X": -100.0, "Y": 0.0, "Z": 50.0}}
+ZEROED: dict[str, Any] = {"machine_zero": {"X": -100.0, "Y": 0.0, "Z": 50.0}}
 
 
 def test_positions_are_read() -> None:

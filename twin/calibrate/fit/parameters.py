@@ -107,7 +107,7 @@ def coordinates(kind: str, force_scale: float) -> dict[str, Coordinate]:
         "current_at_rest": Coordinate("A", 1e-4, -_ANY, _ANY),
         "delay": Coordinate("s", 1e-6, -0.05, 0.2),
         "force_delay": Coordinate("s", 1e-6, -0.05, 0.2),
-        "measuring_filter": Coordinate("s", 1e-6, 0.0, 0.1),
+        "measuring_filter": Coordinate("s", 1e-5, 0.0, 0.1),
     }  # fmt: skip
 
 

@@ -58,15 +58,27 @@ class Solution:
         parameters: All of them.
         free: Names of those that were fitted.
         cost: Root mean square of the weighted residuals.
+        squares: Their sum over each of the stretches of time, shape (batches,).
         intervals: By name of the fitted.
-        correlations: Shape (p, p), in the order of ``free``.
+        covariance: Of the coordinates, shape (p, p), in the order of ``free``.
     """
 
     parameters: Parameters
     free: tuple[str, ...]
     cost: float
+    squares: FloatArray
     intervals: dict[str, Interval]
-    correlations: FloatArray
+    covariance: FloatArray
+
+    @property
+    def correlations(self) -> FloatArray:
+        """Shape (p, p), in the order of ``free``."""
+        size = np.sqrt(np.diag(self.covariance))
+        finite = np.isfinite(size) & (size > 0)
+        joint = np.eye(len(size))
+        part = np.ix_(finite, finite)
+        joint[part] = self.covariance[part] / np.outer(size[finite], size[finite])
+        return joint
 
 
 Residuals = Callable[[Parameters], FloatArray]
@@ -97,9 +109,7 @@ def solve(problem: Problem, start: Parameters, free: Sequence[str]) -> Solution:
     """
     ways = [problem.coordinates[name] for name in free]
     low, high = np.array([way.bounds for way in ways]).reshape(-1, 2).T
-    begin = np.array(
-        [way.inside(getattr(start, name)) for name, way in zip(free, ways, strict=True)]
-    )
+    begin = _inside(problem, start, free)
     scale = np.array([1.0 if way.logarithmic else max(1e3 * way.step, _NOTHING) for way in ways])
 
     def at(point: FloatArray) -> Parameters:
@@ -109,16 +119,20 @@ def solve(problem: Problem, start: Parameters, free: Sequence[str]) -> Solution:
         }
         return dataclasses.replace(start, **values)
 
+    last: list[tuple[bytes, FloatArray]] = []
+
     def residuals(point: FloatArray) -> FloatArray:
-        return problem.residuals(at(point))
+        last[:] = [(point.tobytes(), problem.residuals(at(point)))]
+        return last[0][1]
 
     def jacobian(point: FloatArray) -> FloatArray:
-        here, columns = residuals(point), []
+        known = [rest for place, rest in last if place == point.tobytes()]
+        here, columns = known[0] if known else residuals(point), []
         for index, way in enumerate(ways):
             step = way.step if point[index] + way.step <= high[index] else -way.step
             there = point.copy()
             there[index] += step
-            columns.append((residuals(there) - here) / step)
+            columns.append((problem.residuals(at(there)) - here) / step)
         return np.column_stack(columns)
 
     inner = np.clip(begin, low + 1e-9 * scale, high - 1e-9 * scale)
@@ -128,14 +142,15 @@ def solve(problem: Problem, start: Parameters, free: Sequence[str]) -> Solution:
         max_nfev=_MOST_EVALUATIONS, xtol=1e-8, ftol=1e-8,
     )  # fmt: skip
     point = np.asarray(found.x, np.float64)
-    rest = residuals(point)
-    covariance = _covariance(jacobian(point), rest, problem.batch)
+    rest = np.asarray(found.fun, np.float64)
+    covariance = _covariance(np.asarray(found.jac, np.float64), rest, problem.batch)
     return Solution(
         at(point),
         tuple(free),
         float(np.sqrt(np.mean(rest**2))),
-        _intervals(free, ways, point, covariance, int(problem.batch.max()) + 1),
-        _correlations(covariance),
+        np.asarray(np.bincount(problem.batch, rest**2), np.float64),
+        _intervals(free, ways, point, covariance, _reach(problem.batch)),
+        covariance,
     )
 
 
@@ -150,11 +165,7 @@ def promised_costs(problem: Problem, best: Solution, names: Sequence[str]) -> di
     here = problem.residuals(best.parameters)
 
     def tangent(moved: str) -> FloatArray:
-        way = problem.coordinates[moved]
-        value = way.inside(getattr(best.parameters, moved))
-        step = way.step if value + way.step < way.bounds[1] else -way.step
-        there = dataclasses.replace(best.parameters, **{moved: way.outside(value + step)})
-        slope = (problem.residuals(there) - here) / step
+        slope = _tangent(problem, best.parameters, moved, here)
         return slope / max(float(np.sqrt(slope @ slope)), _NOTHING)
 
     known = [tangent(moved) for moved in best.free]
@@ -164,6 +175,87 @@ def promised_costs(problem: Problem, best: Solution, names: Sequence[str]) -> di
         step_to, *_ = np.linalg.lstsq(tangents, -here, rcond=1e-10)
         promised[name] = float(np.sqrt(np.mean((here + tangents @ step_to) ** 2)))
     return promised
+
+
+def movers(problem: Problem, best: Solution, names: Sequence[str]) -> list[str]:
+    """Parameters that were not fitted, and that would move others out of their intervals if they were.
+
+    By the tangents at the optimum: how far the log lets one go, and what moves with it.
+
+    Args:
+        problem: What is minimised.
+        best: The optimum.
+        names: Of those that were not fitted, each of which is tried by itself.
+    """
+    here = problem.residuals(best.parameters)
+    known = np.column_stack([_tangent(problem, best.parameters, name, here) for name in best.free])
+    reach = _reach(problem.batch)
+    own = reach * np.sqrt(np.diag(_covariance(known, here, problem.batch)))
+    found = []
+    for name in names:
+        way = problem.coordinates[name]
+        tangent = _tangent(problem, best.parameters, name, here)
+        both = np.column_stack([known, tangent])
+        spread = float(np.sqrt(_covariance(both, here, problem.batch)[-1, -1]))
+        if not np.isfinite(spread):
+            continue
+        step, *_ = np.linalg.lstsq(both, -here, rcond=1e-10)
+        now = way.inside(getattr(best.parameters, name))
+        ends = np.clip(now + step[-1] + np.array([-reach, reach]) * spread, *way.bounds) - now
+        moved, *_ = np.linalg.lstsq(known, -tangent, rcond=1e-10)
+        if np.any(np.abs(ends).max() * np.abs(moved) > own):
+            found.append(name)
+    return found
+
+
+def intervals_beside(problem: Problem, solution: Solution, name: str) -> dict[str, Interval]:
+    """Intervals of the others, where one stays within the bounds that it has.
+
+    Args:
+        problem: What is minimised.
+        solution: Its optimum.
+        name: Of the fitted one.
+    """
+    covariance, index = solution.covariance, solution.free.index(name)
+    if not np.isfinite(covariance[index, index]) or covariance[index, index] <= 0.0:
+        return solution.intervals
+    reach = _reach(problem.batch)
+    point = _inside(problem, solution.parameters, solution.free)
+    half = reach * float(np.sqrt(covariance[index, index]))
+    ends = np.array([point[index] - half, point[index] + half])
+    ends = np.clip(ends, *problem.coordinates[name].bounds) - point[index]
+    slope = covariance[:, index] / covariance[index, index]
+    rest = np.diag(covariance) - slope**2 * covariance[index, index]
+    own = reach * np.sqrt(np.maximum(rest, 0.0))
+    shifts = np.outer(slope, ends)
+    lows, highs = point + shifts.min(axis=1) - own, point + shifts.max(axis=1) + own
+    found = {}
+    for other, low, high in zip(solution.free, lows, highs, strict=True):
+        way = problem.coordinates[other]
+        both = (_end(way, float(low)), _end(way, float(high)))
+        found[other] = Interval(solution.intervals[other].value, min(both), max(both))
+    return found
+
+
+def _inside(problem: Problem, parameters: Parameters, names: Sequence[str]) -> FloatArray:
+    ways = [problem.coordinates[name] for name in names]
+    return np.array(
+        [way.inside(getattr(parameters, name)) for name, way in zip(names, ways, strict=True)]
+    )
+
+
+def _tangent(problem: Problem, at: Parameters, name: str, here: FloatArray) -> FloatArray:
+    """Derivative of the residuals by a coordinate."""
+    way = problem.coordinates[name]
+    value = way.inside(getattr(at, name))
+    step = way.step if value + way.step < way.bounds[1] else -way.step
+    there = dataclasses.replace(at, **{name: way.outside(value + step)})
+    return (problem.residuals(there) - here) / step
+
+
+def _reach(batch: IntArray) -> float:
+    """Half a 95 % interval in standard errors."""
+    return float(student.ppf((1 + CONFIDENCE) / 2, max(1, int(batch.max()))))
 
 
 def _covariance(jacobian: FloatArray, rest: FloatArray, batch: IntArray) -> FloatArray:
@@ -192,9 +284,8 @@ def _covariance(jacobian: FloatArray, rest: FloatArray, batch: IntArray) -> Floa
 
 def _intervals(
     free: Sequence[str], ways: Sequence[Coordinate], point: FloatArray, covariance: FloatArray,
-    batches: int,
+    reach: float,
 ) -> dict[str, Interval]:  # fmt: skip
-    reach = float(student.ppf((1 + CONFIDENCE) / 2, max(1, batches - 1)))
     found = {}
     for index, (name, way) in enumerate(zip(free, ways, strict=True)):
         half = reach * float(np.sqrt(covariance[index, index]))
@@ -210,12 +301,3 @@ def _end(way: Coordinate, coordinate: float) -> float:
     if way.reciprocal and coordinate <= 0.0:
         return float("inf")
     return way.outside(min(max(coordinate, low), high))
-
-
-def _correlations(covariance: FloatArray) -> FloatArray:
-    size = np.sqrt(np.diag(covariance))
-    finite = np.isfinite(size) & (size > 0)
-    joint = np.eye(len(size))
-    part = np.ix_(finite, finite)
-    joint[part] = covariance[part] / np.outer(size[finite], size[finite])
-    return joint

@@ -12,26 +12,31 @@ from twin.calibrate.fit.solve import (
     Interval,
     Problem,
     Solution,
+    intervals_beside,
+    movers,
     on_one_thread,
-    promised_costs,
     solve,
 )
 from twin.calibrate.fit.stretch import Stretch, predict
+from twin.calibrate.fit.structure import (
+    EXTRAS,
+    Choice,
+    choose_structure,
+    integrating,
+    leaves_less,
+    with_integrator,
+)
 from twin.nc.canonical import FloatArray, IntArray
 from twin.units import AxisKind, kv_per_second, to_si
 
-WORTH = 0.9
-"""What is not needed is not fitted: one parameter more must leave less than this share."""
 _ENOUGH = 1e-4
 """A fit that leaves less than this share of the following error is as good as the simulation."""
-_HOPE = 0.97
-"""A parameter is tried where the tangent at the optimum promises less than this share."""
-_EXTRAS = (
-    "delay", "velocity_feedforward", "acceleration_feedforward", "measuring_filter", "reset_time_s",
-    "loop_delay_s", "velocity_filter_s", "command_filter_s",
-)  # fmt: skip
 OF_THE_LOG = ("delay", "force_delay", "measuring_filter")
 """Parameters of a log's columns; the machine has none."""
+_FILTER_S = 0.003
+"""Where the search for a filter of the log begins [s]."""
+_WRONG = 1e6
+"""Weighted residual of what is not finite."""
 _DAMPINGS = (0.5, 1.2)
 _WIDE = 0.5
 """A parameter whose interval reaches further than this share to a side is not determined."""
@@ -63,48 +68,90 @@ class AxisFit:
 
 
 @on_one_thread
-def fit_axis(kind: AxisKind, stretches: Sequence[Stretch], base: Parameters) -> AxisFit:
+def fit_axis(
+    kind: AxisKind, stretches: Sequence[Stretch], base: Parameters, *, filtered: bool = False
+) -> AxisFit:
     """Fit one axis.
 
     Args:
         kind: Of the axis.
         stretches: All that is fitted.
         base: What is not determined stays at.
+        filtered: Whether the actual positions are known to be behind a filter of the log.
     """
     start = _first_guess(kind, stretches, base)
-    free = _core(stretches)
+    names = _core(stretches)
+    if filtered:
+        start = dataclasses.replace(start, measuring_filter=_FILTER_S)
+        names.append("measuring_filter")
+    forced = _has(stretches, "force")
     problem = _weighted(kind, stretches, start)
-    best = min(
-        (solve(problem, dataclasses.replace(start, damping_ratio=z), free) for z in _DAMPINGS),
-        key=lambda solution: solution.cost,
-    )
-    if base.reset_time_s:
-        plain = dataclasses.replace(best.parameters, reset_time_s=0.0)
-        best = min(best, solve(problem, plain, free), key=lambda solution: solution.cost)
-    problem = _weighted(kind, stretches, best.parameters)
-    best = solve(problem, best.parameters, free)
-    if _share_left(stretches, best.parameters) > _ENOUGH:
-        best = _with_extras(problem, best)
-    best, undetermined = _without_undetermined(problem, best, base)
-    fitted = dict(best.intervals)
-    if "delay" not in fitted and "delay" not in undetermined:
-        other = solve(problem, best.parameters, [*best.free, "delay"])
-        fitted = {
-            name: interval.spanning(other.intervals[name]) for name, interval in fitted.items()
-        }
-        fitted["delay"] = Interval(0.0, 0.0, 0.0).spanning(other.intervals["delay"])
+    core = _core_fit(problem, start, names, forced=forced)
+    problem = _weighted(kind, stretches, core.parameters)
+    choice = Choice(solve(problem, core.parameters, core.free))
+    if _share_left(stretches, choice.best.parameters) > _ENOUGH:
+        choice = choose_structure(problem, choice.best, forced=forced)
+    best, undetermined = _without_undetermined(problem, choice.best, base)
+    fitted = _allowing_for_others(problem, Choice(best, choice.rivals))
     if best.parameters.reset_time_s != base.reset_time_s and "reset_time_s" not in fitted:
         other = solve(problem, best.parameters, [*best.free, "reset_time_s"])
         fitted["reset_time_s"] = dataclasses.replace(
             other.intervals["reset_time_s"], value=best.parameters.reset_time_s
         )
     undetermined |= {
-        name: "the log does not ask for another value" for name in _EXTRAS
+        name: "the log does not ask for another value" for name in EXTRAS
         if name not in fitted and name not in undetermined and name not in OF_THE_LOG
     }  # fmt: skip
     if any(stretch.command.every > 1 for stretch in stretches):
         fitted = _allowing_for_drawing(kind, stretches, best, fitted)
     return _told(stretches, best, fitted, undetermined)
+
+
+def _core_fit(
+    problem: Problem, start: Parameters, free: Sequence[str], *, forced: bool
+) -> Solution:
+    """The optimum of gain, damping, friction and mass, with an integrator where the log asks for one.
+
+    Where it does not tell, the drive integrates or not as the base does.
+    """
+
+    def best(parameters: Parameters, names: Sequence[str]) -> Solution:
+        starts = (dataclasses.replace(parameters, damping_ratio=z) for z in _DAMPINGS)
+        return min((solve(problem, one, names) for one in starts), key=lambda found: found.cost)
+
+    plain = best(dataclasses.replace(start, reset_time_s=0.0), free)
+    integrates = best(integrating(start), with_integrator(free, forced=forced))
+    if not start.reset_time_s:
+        return integrates if leaves_less(integrates, plain) else plain
+    kept = solve(
+        problem,
+        dataclasses.replace(integrates.parameters, reset_time_s=start.reset_time_s),
+        with_integrator(free, forced=forced)[:-1],
+    )
+    if leaves_less(integrates, kept) and leaves_less(integrates, plain):
+        return integrates
+    return plain if plain.cost < kept.cost else kept
+
+
+def _allowing_for_others(problem: Problem, choice: Choice) -> dict[str, Interval]:
+    """Intervals that hold what rivals have, and what comes of parameters that were not taken in."""
+    best = choice.best
+    others = [name for name in EXTRAS if name not in best.free]
+    moving = dict.fromkeys([*movers(problem, best, others), *({"delay"} & set(others))])
+    freed = {name: solve(problem, best.parameters, [*best.free, name]) for name in moving}
+    fitted = dict(best.intervals)
+    alternatives = [(rival.parameters, rival.intervals) for rival in choice.rivals]
+    alternatives += [
+        (other.parameters, intervals_beside(problem, other, name)) for name, other in freed.items()
+    ]
+    for parameters, intervals in alternatives:
+        for name, interval in fitted.items():
+            value = getattr(parameters, name)
+            held = intervals.get(name, Interval(value, value, value))
+            fitted[name] = interval.spanning(held)
+    if "delay" not in fitted:
+        fitted["delay"] = Interval(0.0, 0.0, 0.0).spanning(freed["delay"].intervals["delay"])
+    return fitted
 
 
 def _allowing_for_drawing(
@@ -184,13 +231,15 @@ def _weighted(kind: AxisKind, stretches: Sequence[Stretch], at: Parameters) -> P
     weights = [1.0 / max(float(np.sqrt(np.mean(column**2))), 1e-9) for column in left]
 
     def residuals(parameters: Parameters) -> FloatArray:
-        parts = _columns_left(stretches, parameters)
-        whole = [
-            weight * column
-            for columns in parts
-            for weight, column in zip(weights, columns, strict=True)
-        ]
-        return np.nan_to_num(np.concatenate(whole), nan=1e6, posinf=1e6, neginf=-1e6)
+        # A loop that swings up by itself has no finite end, and is as wrong as can be.
+        with np.errstate(over="ignore", invalid="ignore"):
+            parts = _columns_left(stretches, parameters)
+            whole = [
+                weight * column
+                for columns in parts
+                for weight, column in zip(weights, columns, strict=True)
+            ]
+            return np.clip(np.nan_to_num(np.concatenate(whole), nan=_WRONG), -_WRONG, _WRONG)
 
     return Problem(
         residuals, _batches(stretches, len(weights)),
@@ -223,21 +272,6 @@ def _batches(stretches: Sequence[Stretch], columns: int) -> IntArray:
         parts += [number] * columns
         before += rows
     return np.concatenate(parts).astype(np.int64)
-
-
-def _with_extras(problem: Problem, best: Solution) -> Solution:
-    """Take in what else the log asks for, one after the other."""
-    left: list[str] = list(_EXTRAS)
-    while left:
-        promised = promised_costs(problem, best, left)
-        hopeful = [name for name in left if promised[name] < _HOPE * best.cost]
-        tried = [(solve(problem, best.parameters, [*best.free, name]), name) for name in hopeful]
-        better, name = min(tried, key=lambda pair: pair[0].cost, default=(best, ""))
-        if better.cost > WORTH * best.cost:
-            return best
-        best = better
-        left.remove(name)
-    return best
 
 
 def _without_undetermined(
@@ -298,6 +332,14 @@ def _told(
     mass = best.parameters.mass
     if not _has(stretches, "force"):
         known = _has(stretches, "current")
+        if best.parameters.reset_time_s:
+            told["constant_force"] = "an integrating drive takes up whatever is constant"
+            if "current_at_rest" in fitted:
+                conditional["current_at_rest"] = (
+                    fitted.pop("current_at_rest"),
+                    ("constant_force",),
+                )
+                told["current_at_rest"] = "the log does not tell it from a constant force"
         told["mass"] = (
             "a current of unknown scale does not tell it" if known
             else "positions alone do not tell it"

@@ -85,8 +85,8 @@ class AxisTable(Table):
     backlash: NonNegative = 0.0
     """Free play between motor and axis [mm or deg]; the position loop closes at the motor."""
     stiffness: NonNegative = 0.0
-    """Of screw, nut and bearings between motor and axis [N/mm or N m/deg]; 0: rigid, or, with
-    backlash, as stiff as the servo period allows to simulate."""
+    """Of screw, nut and bearings between motor and axis [N/mm or N m/deg]; 0: rigid. With backlash
+    rigid walls are springs that half a servo period just follows (1000 N/µm on the X of ``mill4``)."""
     counterbalance: Share | None = None
     """Share of the weight on the axis that a counterbalance takes; none: as the model says."""
     junction_velocity_step: NonNegative = 0.0

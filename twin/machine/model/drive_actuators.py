@@ -23,6 +23,7 @@ from twin.machine.model.transmission import (
     FASTEST_SPRING,
     add_friction_and_give,
     felt,
+    give_substeps,
     has_give,
     swinging,
 )
@@ -168,6 +169,7 @@ def _needs(machine: Machine, name: str, drive: Drive) -> Iterator[_Need]:
     axis, period = machine.axis(name), machine.file.servo_period_s
     fastest = drive.velocity_gain / felt(axis, drive.moved) * period
     yield _Need("kv", math.ceil(fastest / FASTEST))
+    yield _Need("stiffness", give_substeps(axis, drive.moved, period))
     for lag in drive.lags:
         of_delay = lag.time_s == drive.dead_time_s / 2.0
         key = "loop_delay_s" if of_delay else "velocity_filter_s"
@@ -202,7 +204,7 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
             "of its own; give motor_inertia"
         )
     for need in _needs(machine, name, drive):
-        if need.substeps <= MOST_SUBSTEPS:
+        if need.substeps <= MOST_SUBSTEPS or need.key == "stiffness":
             continue
         if need.key == "kv":
             reason = " behind the backlash or spring, where it moves no more than itself" * (
@@ -221,7 +223,8 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
     springs = []
     if axis.stiffness:
         swings = swinging(axis, drive.moved)
-        springs.append(("stiffness", axis.stiffness, swings, FASTEST_SPRING, "0 is rigid"))
+        most_finely = FASTEST_SPRING * MOST_SUBSTEPS
+        springs.append(("stiffness", axis.stiffness, swings, most_finely, "0 is rigid"))
     if axis.lugre is not None:
         bristles = axis.lugre.stiffness
         springs.append(("lugre.stiffness", bristles, drive.moved, FASTEST, "none is Coulomb"))
@@ -229,6 +232,6 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
         most = swings * (fastest / period) ** 2 * to_si(axis.kind)
         if stiffness > most:
             raise ConfigError(
-                f"{machine.path}: axes.{name}.{key} = {stiffness:g} swings faster than the servo "
-                f"period; up to {most:.3g} works, and {otherwise}"
+                f"{machine.path}: axes.{name}.{key} = {stiffness:g} swings faster than can "
+                f"be simulated; up to {most:.3g} works, and {otherwise}"
             )

@@ -3,10 +3,15 @@
 A rigid axis is one joint that carries the motor's inertia as armature. Backlash or a springy screw
 splits it in two coincident joints: the first is the motor (with the armature, and the position loop
 closed on it), the second the give between motor and axis. The axis stands where both together say.
-The give is held by a fixed tendon with a dead band: no spring while the gap is being crossed, only the
-wall's damper, which a tendon has everywhere; a spring beyond it,
 
-    F = k (x -/+ gap/2)   for |x| > gap/2.
+A screw without backlash is a spring with a damper on the give. With backlash the give runs between
+two walls, which are limits of its joint, and nothing acts within the gap:
+
+    F = k p + c p'   (pushing only)   for p = |x| - gap/2 > 0.
+
+A limit of MuJoCo gives its force from acceleration: F = (K p + B p' - p'')/R, with R = (1 - d)/(d m) for an
+impedance d and the mass m that swings. d is so small that the term of p'' is a thousandth of m; K and B
+follow from k and c.
 
 Friction acts where the guides are, on the motion of the axis: on the joint of a rigid axis, on a
 tendon over both joints otherwise.
@@ -21,16 +26,22 @@ from twin.machine.description.config import AxisTable
 from twin.machine.model.drives import reflected_inertia
 from twin.units import to_si
 
-STIFF_SPRING_STEP = 0.5
-"""Natural frequency times step of a gap's walls where no stiffness is given: RK4 follows a spring
-of 0.5 rad per step with an error of frequency below 0.1 %, and of 2.8 not at all."""
 FASTEST_SPRING = 1.0
-"""Natural frequency times step of the stiffest spring that is accepted: RK4 follows it with a frequency
+"""Natural frequency times step of the stiffest spring: RK4 follows it with a frequency
 that is 0.6 % low, and takes 0.6 % of its swing in a step; at twice as much it takes a quarter."""
+WALL_SUBSTEPS = 2
+"""Steps of a servo period where the walls of a gap are rigid: they are springs that this step can just
+follow, of 1000 N/µm where half a tonne swings at 1 kHz."""
+_WALL_IMPEDANCE = 0.001
+"""d above."""
 FASTEST = 2.0
 """Rate of a loop or spring, times the step, that is still simulated; RK4 diverges from 2.78 on."""
 GIVE_DAMPING_RATIO = 0.1
 """Of the spring between motor and axis. Assumed: screws ring, but not for long."""
+_TOLERANCE = 1e-14
+"""Of MuJoCo's solver where there are walls: by its own of 1e-8 it keeps a force that has changed by little, and
+an axis at rest on a wall trembles by up to a hundredth of a micrometre."""
+_ROUNDING = 1e-9
 _NO_INPUT = 16
 """What MuJoCo calls ``input="none"``: an actuator without controls, here a passive friction."""
 _SOLREF_FRICTION = (0.002, 1.0)
@@ -59,6 +70,30 @@ def swinging(axis: AxisTable, moved: float) -> float:
     return reflected * (moved - reflected) / moved
 
 
+def give_stiffness(axis: AxisTable, moved: float, period_s: float) -> float:
+    """Of what lies between motor and axis, or of the walls of its gap where that is rigid.
+
+    Args:
+        axis: The axis; its transmission gives.
+        moved: Moved mass [kg] or inertia [kg m²], motor and screw included.
+        period_s: The servo period [s].
+
+    Returns:
+        [N/m or N m/rad].
+    """
+    if axis.stiffness:
+        return axis.stiffness / to_si(axis.kind)
+    return swinging(axis, moved) * (FASTEST_SPRING * WALL_SUBSTEPS / period_s) ** 2
+
+
+def give_substeps(axis: AxisTable, moved: float, period_s: float) -> int:
+    """Steps per servo period that the spring between motor and axis needs."""
+    if not has_give(axis):
+        return 1
+    rate = math.sqrt(give_stiffness(axis, moved, period_s) / swinging(axis, moved))
+    return max(1, math.ceil(rate * period_s / FASTEST_SPRING - _ROUNDING))
+
+
 def add_inertia(spec: mujoco.MjSpec, axis: AxisTable) -> None:
     """Let the joint carry motor and screw, and the counterbalance the weight."""
     joint = spec.joint(axis.joint)
@@ -78,7 +113,7 @@ def add_friction_and_give(
         spec: The model, its joints inert so far.
         axis: The axis.
         moved: Moved mass [kg] or inertia [kg m²], motor and screw included.
-        period_s: The servo period, which is the step of the simulation [s].
+        period_s: The servo period [s].
     """
     joint = spec.joint(axis.joint)
     resisted: mujoco.MjsJoint | mujoco.MjsTendon = joint
@@ -104,12 +139,21 @@ def _add_give(
     )
     unit = to_si(axis.kind)
     free = swinging(axis, moved)
-    stiffness = axis.stiffness / unit or free * (STIFF_SPRING_STEP / period_s) ** 2
-    wall = spec.add_tendon(name=give_name(axis))
-    wall.wrap_joint(give.name, 1.0)
-    wall.stiffness = np.array([stiffness, 0.0, 0.0])
-    wall.damping = np.array([2.0 * GIVE_DAMPING_RATIO * math.sqrt(stiffness * free), 0.0, 0.0])
-    wall.springlength = np.array([-0.5, 0.5]) * axis.backlash * unit
+    stiffness = give_stiffness(axis, moved, period_s)
+    damping = 2.0 * GIVE_DAMPING_RATIO * math.sqrt(stiffness * free)
+    if axis.backlash:
+        in_degrees = spec.compiler.degree and axis.kind == "rotary"
+        share = _WALL_IMPEDANCE
+        spec.option.tolerance = _TOLERANCE
+        give.limited = True
+        give.range = np.array([-0.5, 0.5]) * axis.backlash * (1.0 if in_degrees else unit)
+        give.solref_limit = -np.array([stiffness, damping]) * (1.0 - share) / free
+        give.solimp_limit = np.array([share, share, 1.0, 0.5, 2.0])
+    else:
+        spring = spec.add_tendon(name=give_name(axis))
+        spring.wrap_joint(give.name, 1.0)
+        spring.stiffness = np.array([stiffness, 0.0, 0.0])
+        spring.damping = np.array([damping, 0.0, 0.0])
     guide = spec.add_tendon(name=f"{axis.joint} guide")
     guide.wrap_joint(motor.name, 1.0)
     guide.wrap_joint(give.name, 1.0)

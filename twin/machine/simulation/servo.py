@@ -12,7 +12,7 @@ from twin.machine.description.config import Machine
 from twin.machine.model.drives import Drive, feedforward_name, integral_name
 from twin.machine.model.model import drives
 from twin.machine.model.timers import switch_off_timers
-from twin.machine.model.transmission import felt, give_name, has_give
+from twin.machine.model.transmission import felt, give_name, give_stiffness, has_give
 from twin.machine.simulation.drive_kernels import (
     Drives,
     Points,
@@ -27,7 +27,7 @@ from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
-from twin.units import kv_per_second
+from twin.units import kv_per_second, to_si
 
 _STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
 _CONTROL = int(mujoco.mjtState.mjSTATE_CTRL)
@@ -90,9 +90,12 @@ class Servo:
         give = [model.joint(give_name(axes[index])) for index in self._gives]
         self._give_qpos = np.array([int(joint.qposadr[0]) for joint in give], np.int64)
         self._give_dof = np.array([int(joint.dofadr[0]) for joint in give], np.int64)
-        walls = [model.tendon(give_name(axes[index])).id for index in self._gives]
-        self._stiffness = model.tendon_stiffness[walls]
-        self._half_gap = model.tendon_lengthspring[walls, 1]
+        self._stiffness = np.array(
+            [give_stiffness(axes[i], loops[i].moved, self._period) for i in self._gives]
+        )
+        self._half_gap = np.array(
+            [0.5 * axes[i].backlash * to_si(axes[i].kind) for i in self._gives]
+        )
         self._scale = machine.joint_scale
         self._constant = np.array([axis.constant_force for axis in axes])
         self._substeps = round(self._period / model.opt.timestep)

@@ -46,3 +46,12 @@ def hot() -> Kernels:
     from twin.compilation.kernel import array_kernel, kernel
 
     return Kernels(kernel(program.run_program), array_kernel(program.unread_lines))
+
+
+def at_hand() -> bool:
+    """Whether this process has run the compiled ones before."""
+    if hot.cache_info().currsize == 0:
+        return False
+    from twin.compilation.cache import is_loaded
+
+    return is_loaded(hot().run_program)

@@ -52,19 +52,19 @@ def cycle_code(
         axis = control.modal.plane.axes[2]
         begin(control.cycle_state, axis, control.programmed[axis], cycle.lasting)
         if not cycle.lasting:
-            _take_words(control, rule)
+            take_words(control, rule)
 
     def perform(control: Control) -> None:
         count = _repeats(control, repeats)
         given = dict(control.words)
         if count == 0:
-            _take_words(control, rule)
+            take_words(control, rule)
             control.take_axis_words()
         for number in range(count):
             if number:
                 control.words = dict(given)
             if cycle.lasting:
-                _take_words(control, rule)
+                take_words(control, rule)
             drill(control, _hole(control, rule), target(control))
 
     return GCode(
@@ -93,7 +93,7 @@ def _repeats(control: Control, address: str) -> int:
     return int(given)
 
 
-def _take_words(control: Control, rule: CycleRule) -> None:
+def take_words(control: Control, rule: CycleRule) -> None:
     """Take the cycle's words, and that of the axis across the plane."""
     cycle, given = rule.cycle, no_values()
     relative = dict.fromkeys((REFERENCE, BOTTOM), control.modal.incremental)

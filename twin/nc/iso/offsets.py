@@ -33,11 +33,12 @@ def offset_of_job(control: Control, name: str, word: Word | None) -> Mapping[str
     values = control.settings.offsets.get(name)
     if values is None and name != "G54":
         known = ", ".join(sorted(control.settings.offsets)) or "none"
+        key = name if name.isalnum() else f'"{name}"'
         control.fail(
             "no-offset",
             f"the job gives no work offset {name}",
             word,
-            hint=f"write it under [offsets.{name}]; the job has: {known}",
+            hint=f"write it under [offsets.{key}]; the job has: {known}",
         )
     return values or {}
 

@@ -204,6 +204,13 @@ def direction_from_zero(y: float, x: float) -> float:
 
 
 @compilable
+def arc_sine_from_zero(a: float) -> float:
+    """The angle whose sine it is, from 270 over 0 to 90 [deg]."""
+    angle = math.degrees(math.asin(a))
+    return angle + 360.0 if angle < 0.0 else angle
+
+
+@compilable
 def square(a: float) -> float:
     """The number times itself."""
     return a * a

@@ -32,6 +32,7 @@ _UNARY = (
     arithmetic.fraction,
     arithmetic.nearest_whole,
     arithmetic.next_whole,
+    arithmetic.arc_sine_from_zero,
     arithmetic.nearest_whole_away,
     arithmetic.whole_away,
     arithmetic.opposite,

@@ -6,6 +6,7 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.fanuc import (
     block_compiler,
     codes,
+    corners,
     decimal_point,
     flow,
     macro_calls,
@@ -28,6 +29,13 @@ def prepare(control: Control) -> None:
     memory.writes_offsets = lines.any_holds(offsets.WRITES_OFFSETS)
     memory.bare_compensation = lines.any_holds(tool_offsets.BARE_COMPENSATION)
     offsets.put_into_force(control)
+    corners.prepare(control)
+
+
+def after_motion(control: Control) -> None:
+    """A block has moved."""
+    corners.blend_after_motion(control)
+    macro_calls.call_after_motion(control)
 
 
 FANUC = Dialect(
@@ -35,7 +43,7 @@ FANUC = Dialect(
     title="Fanuc 0i-MF, 30i (milling)",
     code_page="cp1252",
     syntax=Syntax(
-        address=r",[ \t]*[CR]|[A-Z]",
+        address=r",[CR]|[A-Z]",
         comments=(Comment("(", ")"), HEADING),
         skip_levels=True,
         block_end=";",
@@ -67,10 +75,12 @@ FANUC = Dialect(
         "I": "centre along X, from the start of the arc; scale of X",
         "J": "centre along Y; scale of Y",
         "K": "centre along Z; scale of Z; holes that a cycle's block drills",
+        ",R": "radius that rounds the corner at the block's end",
+        ",C": "chamfer of the corner at the block's end",
         "R": "radius of the arc, negative: the larger of the two; plane where a cycle's feed begins; angle of G68",
         "P": "milliseconds of a dwell; program or block; work offset of G54.1; scale of G51",
         "Q": "depth of a peck; shift of G76 and G87",
-        "L": "how often a subprogram runs",
+        "L": "how often a subprogram runs; kind of data of G10",
         "D": "row of the tool radius",
         "H": "row of the tool length",
         "F": "feed",
@@ -90,7 +100,7 @@ FANUC = Dialect(
     write_variable=variables.write_variable,
     is_local=variables.is_local,
     live_variables=variables.ControlVariables(),
-    after_motion=macro_calls.call_after_motion,
+    after_motion=after_motion,
     statements={**flow.STATEMENTS, **macro_calls.CALLS_BY_CODE},
     finish=programs.finish,
     library=programs.with_subprograms,

@@ -8,6 +8,7 @@ from twin.nc.control.codes import Action, CodeWriter, GCode, Interpolation, MCod
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode, ModalChanges
 from twin.nc.dialects.fanuc import (
+    data_setting,
     macro_calls,
     motion,
     offsets,
@@ -111,6 +112,8 @@ _MOTION: Mapping[float, GCode] = {
     64: _g("cutting mode", "corner", corner=Corner.EXACT_PATH),
 }
 _PLACE: Mapping[float, GCode] = {
+    10: _do("offsets from the program: L P and values", data_setting.set_data),
+    11: passed_over("setting of data off", ""),
     15: _modal("polar coordinates off", "polar", motion.end_polar),
     16: _modal("polar coordinates: radius and angle", "polar", motion.begin_polar),
     17: _plane("plane X Y", XY),
@@ -158,14 +161,14 @@ _TOOL: Mapping[float, GCode] = {
     49: _modal("tool length off", "length", tool_offsets.end_length),
 }
 _TRANSFORMATIONS: Mapping[float, GCode] = {
-    50: _transforming("scale off", "scale", transformations.end_scale),
+    50: _modal("scale off", "scale", transformations.end_scale),
     51: _transforming("scale about X Y Z: P, or I J K", "scale", transformations.scale),
     50.1: _transforming("mirror off", "mirror", transformations.end_mirror),
     51.1: _transforming("mirror the axes at the places named", "mirror", transformations.mirror),
     68: _transforming(
         "rotation by R about a point of the plane", "rotation", transformations.rotate
     ),
-    69: _transforming("rotation off", "rotation", transformations.end_rotation),
+    69: _modal("rotation off", "rotation", transformations.end_rotation),
 }
 _FEEDS: Mapping[float, GCode] = {
     93: _g("feed as blocks per minute", "feed", feed_mode=FeedMode.BLOCKS_PER_MINUTE),

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
+from twin.nc.dialects.fanuc.boring import boring_code
 from twin.nc.dialects.fanuc.memory import Variant
 from twin.nc.dialects.fanuc.motion import target
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
@@ -94,5 +95,7 @@ def cycles(variant: Variant) -> dict[float, GCode]:
     return {
         **{number: make(variant) for number, make in _CYCLES.items()},
         80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, ground="manual"),
+        76: boring_code(76, "fine boring, out with the tool shifted", variant),
+        87: boring_code(87, "back boring, from below", variant),
         88: GCode(meaning="boring by hand", group="cycle", refused=_BY_HAND, ground="manual"),
     }

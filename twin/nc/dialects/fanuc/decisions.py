@@ -2,4 +2,137 @@
 
 from twin.nc.control.dialect import Decision
 
-DECISIONS: tuple[Decision, ...] = ()
+DECISIONS: tuple[Decision, ...] = (
+    Decision(
+        "What does a number without a decimal point count?",
+        "Least increments: 0.001 mm, 0.0001 inch, 0.001 degree or second, 0.001 of a scale, 0.01 mm "
+        'per revolution; F in G94 counts mm/min or 0.01 inch/min. decimal_point = "calculator" of '
+        "the job or the machine file lets it count whole millimetres. The first one is warned of.",
+        "Parameter 3401 #0 is 0 when a control comes from its maker.",
+        example="decimal_point",
+    ),
+    Decision(
+        "What does P of a dwell count?",
+        "Milliseconds, also with calculator input; a decimal point in it is refused.",
+        "The manual gives P no point.",
+        example="dwell",
+    ),
+    Decision(
+        "Which codes are in force when a program starts?",
+        "G0 G15 G17 G21 G40 G49 G50 G50.1 G54 G64 G67 G69 G80 G90 G94 G97 G98.",
+        "Parameters 3402 and their neighbours are 0 when a control comes from its maker.",
+        example="start_state",
+    ),
+    Decision(
+        "How does rapid positioning go?",
+        "Straight to its end.",
+        "Parameter 1401 #1 chooses; a straight way is the one that can be checked for collisions.",
+        example="rapids_go_straight",
+    ),
+    Decision(
+        "How does a path pass its corners?",
+        "Exactly; G9 and G61 stop. G62, G63, G5.1 and G8 change nothing of the path.",
+        "What look-ahead rounds is a parameter of the machine.",
+        example="exact_path",
+    ),
+    Decision(
+        "How far may start and end of an arc differ in their distance from the centre?",
+        "By 0.01 mm or 0.1 % of the radius; the centre is then moved to fit, by 0.1 mm or 1 % of "
+        "the radius at most.",
+        "Parameter 3410 decides; programs rounded to 0.001 mm stay far below it.",
+        example="arc_centre_moved_to_fit",
+    ),
+    Decision(
+        "How does compensation begin and end?",
+        "By type A: the lead-in ends square to the contour's first element, the lead-out starts "
+        "square to its last one.",
+        "Parameter 5003 #0 is 0 when a control comes from its maker.",
+        example="compensation_start",
+    ),
+    Decision(
+        "How does compensation pass outside corners?",
+        "Lines are extended to where their parallels meet, up to a turn of 90 degrees; sharper "
+        "corners, and those of arcs, are rolled around.",
+        "Parameter 19607 #2 is 0, which extends; how far beyond 90 degrees the documents at hand "
+        "leave open, and the edge stays on the contour either way.",
+        example="compensation_corners",
+    ),
+    Decision(
+        "What do H and D name?",
+        "Rows of the offset memory, geometry and wear (memory C); the job's tools are the geometry "
+        "of the rows of their numbers. Lengths count against the job's first tool, H0 is none. D "
+        "holds radii. A new length moves nothing by itself.",
+        "Parameter 5004 #2 is 0; the job says what its tools measure.",
+        example="tools_by_h_and_d",
+    ),
+    Decision(
+        "Where do work offsets count from?",
+        "Those of the job from its part zero, and G54 is part zero itself where the job gives it no "
+        "values; those that the program writes or reads (G10 L2, #5221) from machine zero. G52 and "
+        "G92 shift all of them.",
+        "The job says where part zero lies on the machine.",
+        example="work_offsets",
+    ),
+    Decision(
+        "Where are the reference points?",
+        "The first at machine zero, the second to fourth (G30) there as well.",
+        "Parameters 1240 to 1243 are 0 when a control comes from its maker.",
+        example="reference_points",
+    ),
+    Decision(
+        "How far do G73 and G83 withdraw?",
+        "G73 by 0.5 mm; G83 to R, and back with rapid to 0.5 mm above where it was.",
+        "Parameters 5114 and 5115 decide.",
+        example="chip_clearance",
+    ),
+    Decision(
+        "Which way does the tool shift in G76 and G87?",
+        "Towards + of the plane's first axis, by Q, with M19 before it and M3 behind.",
+        "Parameters 5148 and 5101 #4 and #5 decide; 0 is +.",
+        example="boring_shift",
+    ),
+    Decision(
+        "How does tapping follow the spindle?",
+        "By its feed: G74 and G84 reverse the spindle at the bottom and feed back, with M29 or without.",
+        "The twin's spindle has no angle; with a feed of pitch times speed the path is the same.",
+        example="tapping",
+    ),
+    Decision(
+        "What does R of G68 count from?",
+        "From the plane's first axis, also with G91; a rotation replaces the one before.",
+        "Parameter 5400 #0 is 0 when a control comes from its maker.",
+        example="rotation_is_absolute",
+    ),
+    Decision(
+        "What does P of M98 say with more than four digits?",
+        "The last four are the program, those before them how often it runs, unless the file holds a "
+        "program of the whole number or L is written.",
+        "It is the older form of the call.",
+        example="repeats_in_p",
+    ),
+    Decision(
+        "What does M99 do in the main program?",
+        "It ends the run with a warning; with P it jumps.",
+        "A control would begin the program anew, for ever.",
+        example="main_ends_by_m99",
+    ),
+    Decision(
+        "What do #500 to #999 hold before the program has set them?",
+        "Nothing: they are vacant, with a warning, unless the job gives them a value.",
+        "A control keeps them from run to run.",
+        example="kept_variables",
+    ),
+    Decision(
+        "What do #3000 and #3006 do?",
+        "#3000 refuses the program with its message; #3006 is a program stop as M0. #3003 to #3005 "
+        "change nothing of the path.",
+        "An alarm ends a run, and nobody stands at the twin to answer a message.",
+        example="stops_by_variable",
+    ),
+    Decision(
+        "Between which angles do ASIN and ATAN lie?",
+        "ATAN[]/[] from 0 to 360 degrees, ASIN from 270 over 0 to 90, ATAN[] from -90 to 90.",
+        "Parameter 6004 #0 is 0 when a control comes from its maker.",
+        example="angles",
+    ),
+)

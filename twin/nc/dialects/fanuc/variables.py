@@ -54,7 +54,7 @@ EXPRESSIONS = ExpressionSyntax(
         "SIN": FunctionOf(arithmetic.sine_of_degrees),
         "COS": FunctionOf(arithmetic.cosine_of_degrees),
         "TAN": FunctionOf(arithmetic.tangent_of_degrees),
-        "ASIN": FunctionOf(arithmetic.arc_sine_in_degrees),
+        "ASIN": FunctionOf(arithmetic.arc_sine_from_zero),
         "ACOS": FunctionOf(arithmetic.arc_cosine_in_degrees),
         "ATAN": FunctionOf(arithmetic.arc_tangent_in_degrees),
         "SQRT": FunctionOf(math.sqrt),
