@@ -247,5 +247,5 @@ def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
 
 
 def _written(number: float) -> str:
-    """A number to a nanometre, without an exponent and without zeros that say nothing."""
-    return f"{number:.6f}".rstrip("0").rstrip(".")
+    """A number to a nanometre with its point, without an exponent and zeros that say nothing."""
+    return f"{number:.6f}".rstrip("0")
