@@ -23,7 +23,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "motion",
         "recording",
         "machine compare cutting",
-        "render calibrate",
+        "render calibrate coupling",
         "run",
         "api check link training view",
         "serve",

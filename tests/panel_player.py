@@ -191,6 +191,24 @@ class Player:
             self.press(f"answer {give['task']} {give['choice']}", "answer")
         elif name == "edit":
             self._edit(give)
+        elif name == "handwheel":
+            page.click("#tab-manual")
+            page.select_option("#wheel-axis", give["axis"])
+            page.select_option("#wheel-step", f"{give['step']:g}")
+            before, clicks = self.done("handwheel"), give["clicks"]
+            for count in range(abs(clicks)):
+                page.press("#wheel", "ArrowUp" if clicks > 0 else "ArrowDown")
+                self.until(lambda count=count: self.done("handwheel") > before + count or self.machine.alarm is not None, "a click")  # fmt: skip
+                if self.machine.alarm is not None:
+                    return
+        elif name == "switch":
+            page.click("#tab-run")
+            page.set_checked(f"[data-key='switch {give['name']}']", give["on"])
+            self.until(lambda: getattr(self.machine.switches, give["name"]) == give["on"], name)
+        elif name == "search":
+            page.click("#tab-run")
+            page.click(f"#line{give['line']}")
+            self.press("search", "search")
         elif name in ("spindle", "coolant"):
             stands = self.machine.spindle.started if name == "spindle" else self.machine.coolant
             if stands != give["on"]:

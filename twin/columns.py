@@ -13,7 +13,10 @@ Rows = slice | npt.NDArray[np.bool_] | npt.NDArray[np.int64]
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Columns:
-    """n rows; every field is an array whose first axis counts the rows, or again a table of n rows."""
+    """n rows; every field is an array whose first axis counts the rows, or again a table of n rows.
+
+    A field may be None where nothing is known of it.
+    """
 
     def __len__(self) -> int:
         return len(getattr(self, _names(type(self))[0]))
@@ -67,6 +70,8 @@ def _names(kind: type[Columns]) -> tuple[str, ...]:
 
 
 def _joined(values: Sequence[Any]) -> Any:
+    if any(value is None for value in values):
+        return None
     if not isinstance(values[0], Columns):
         return np.concatenate(values)
     if isinstance(values[0], Picked):
@@ -87,6 +92,8 @@ def _joined_picked(parts: Sequence[Any]) -> Any:
 
 
 def _selected(values: Any, rows: Rows) -> Any:
+    if values is None:
+        return None
     if isinstance(values, Columns) or isinstance(rows, slice):
         return values[rows]
     # ``values[rows]`` would copy the rows of a table number by number.

@@ -6,7 +6,7 @@ from typing import Any
 
 from twin.job.job_file import read_job
 from twin.nc.canonical import Axes, Chunk, Event, Moves, concatenate
-from twin.nc.control.settings import ControlSettings, ToolData
+from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.jsonl import records
@@ -92,6 +92,13 @@ def shipped(path: Path) -> Interpretation:
         SETTINGS,
         start=job.file.start,
         default_feed=job.file.default_feed or 1000.0,
+        tools={each.number: ToolData(each.diameter / 2.0, each.length) for each in job.file.tools},
+        any_tool="tools" not in job.file.model_fields_set,
+        offsets=job.file.offsets,
+        m_functions={
+            int(code[1:]): MachineFunction(each.meaning, each.dwell)
+            for code, each in job.file.m_functions.items()
+        },
         machine_zero={name: -value for name, value in zero.items()} if "Z" in zero else None,
     )
     return Interpretation(read_source(path, dialect), dialect, settings)

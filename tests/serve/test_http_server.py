@@ -39,12 +39,11 @@ def machine() -> Iterator[Tick]:
         yield Tick(number * PERIOD_S, {"X_position": f"{number:.3f}"})
 
 
-@pytest.fixture
-def port() -> Iterator[int]:
-    """Where an agent of this machine listens; its buffer holds five seconds."""
-    agent = Agent(device_of("mill", AXES), Clock(), "made up", size=500)
+@contextlib.contextmanager
+def served(agent: Agent, ticks: Iterator[Tick]) -> Iterator[int]:
+    """The port at which an agent of a machine listens."""
     config = uvicorn.Config(
-        application(agent, lambda: feed(agent, machine())),
+        application(agent, lambda: feed(agent, ticks)),
         log_level="error",
         timeout_graceful_shutdown=1,
     )
@@ -55,6 +54,13 @@ def port() -> Iterator[int]:
         yield listener.getsockname()[1]
         server.should_exit = True
         thread.join()
+
+
+@pytest.fixture
+def port() -> Iterator[int]:
+    """Where an agent of this machine listens; its buffer holds five seconds."""
+    with served(Agent(device_of("mill", AXES), Clock(), "made up", size=500), machine()) as port:
+        yield port
 
 
 def ask(port: int, target: str, method: str = "GET") -> tuple[int, ET.Element]:

@@ -17,6 +17,12 @@ def train(
     rehearse: Annotated[
         bool, typer.Option("--rehearse", help="Play the scene's solution and mistake, no page.")
     ] = False,
+    course: Annotated[
+        Path | None,
+        typer.Option(
+            "--course", help="List the score sheets of a folder; writes course.html there."
+        ),
+    ] = None,
     language: Annotated[
         str | None, typer.Option("--language", help="en, ru, it or cs; default: the scene's.")
     ] = None,
@@ -37,6 +43,9 @@ def train(
 
     if list_scenes:
         room.print_scenes(language)
+        return
+    if course is not None:
+        room.print_course(course)
         return
     if rehearse:
         raise typer.Exit(room.rehearse_and_print(scene))

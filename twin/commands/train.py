@@ -22,6 +22,26 @@ def print_scenes(language: str | None) -> None:
         typer.echo(f"{name:26} {dialect:11} {scene.points:3} points  {title}")
 
 
+def print_course(folder: Path) -> None:
+    """List the score sheets of a course, and write the list beside them.
+
+    Raises:
+        UsageError: There is no such folder.
+    """
+    from twin.files.atomic import write_text
+    from twin.training.session.course import course_of, course_page
+
+    rows, unread = course_of(folder)
+    for row in rows:
+        alarms = ", ".join(row.alarms) or "-"
+        points = f"{row.points}/{row.of}{'' if row.handed_in else ' open'}"
+        typer.echo(f"{row.name or '-':20} {row.scene:24} {row.date:16} {points:>10}  {alarms}")
+    for path in unread:
+        typer.echo(f"{path}: no score sheet", err=True)
+    write_text(folder / "course.html", course_page(rows))
+    typer.echo(f"{len(rows)} sessions; {folder / 'course.html'}")
+
+
 def rehearse_and_print(name: str) -> ExitCode:
     """Play a scene's scripted solution and mistake, and say whether they end as intended.
 

@@ -98,8 +98,7 @@ class Comparison:
             raise RecordingError("the recording holds joint positions that are not numbers")
         self._take_waiting()
         parts = [
-            self._add(_rows(samples, slice(first, first + _ROWS)))
-            for first in range(0, len(samples), _ROWS)
+            self._add(samples[first : first + _ROWS]) for first in range(0, len(samples), _ROWS)
         ]
         return np.concatenate(parts) if parts else np.zeros(0)
 
@@ -116,7 +115,7 @@ class Comparison:
         setpoint = samples.setpoint
         self._duration = float(setpoint.time[-1])
         self._add_tracking(samples)
-        real = self._frame.real(samples.joint_position)
+        real = samples.real(self._frame)
         point = np.ascontiguousarray(self._frame.position(real))
         if int(setpoint.move.max()) >= self._first + len(self._moves):
             raise RecordingError(
@@ -244,12 +243,3 @@ class Comparison:
             features=self._features.figures(),
             corners=self._corners.figures(self._moves),
         )
-
-
-def _rows(samples: Samples, rows: slice) -> Samples:
-    return Samples(
-        samples.setpoint[rows],
-        samples.joint_position[rows],
-        samples.joint_velocity[rows],
-        samples.drive_force[rows],
-    )

@@ -91,7 +91,7 @@ class Trace:
                 asked.time[rows],
                 asked.line[rows].astype(np.float64),
                 error_um[rows],
-                self._frame.position(self._frame.real(joints)) - self._origin,
+                self._frame.position(samples[rows].real(self._frame)) - self._origin,
                 joints - self._part_zero,
                 asked.position[rows] - joints,
                 asked.velocity[rows],

@@ -167,7 +167,7 @@ class Cutter:
         meant = self._part_frame.position(setpoint.position)
         points, joints = meant, samples.joint_position
         if self._along == "joints":
-            joints = self._part_frame.real(joints)
+            joints = samples.real(self._part_frame)
             points = self._part_frame.position(joints)
         off = np.zeros(len(samples), np.bool_) if standing is None else standing
         lag = np.abs(meant - points).sum(axis=1)
@@ -179,8 +179,10 @@ class Cutter:
             if tool.number != self.tool.number:
                 self._last = None
             self.tool = tool
-            force = self._cut(way[run].lowered(self.plan.longer(tool)))
-            self.force[run.start : run.start + len(force)] = force
+            whole = _with_edge(samples, run)
+            if whole.stop > whole.start:
+                force = self._cut(way[whole].lowered(self.plan.longer(tool)))
+                self.force[run.start : run.start + len(force)] = force
         return sum(self._removed.values()) - before
 
     def events(self) -> tuple[CutEvent, ...]:
@@ -360,6 +362,14 @@ class _Way:
     def group(self) -> IntArray:
         """A number that changes wherever a stretch must end."""
         return self.line * 4 + self.rapid * 2 + self.standing
+
+
+def _with_edge(samples: Samples, run: slice) -> slice:
+    """The samples of a run up to the one at which the tool loses its edge."""
+    if samples.tool is None:
+        return run
+    gone = np.flatnonzero(samples.tool.broken[run])
+    return slice(run.start, run.start + int(gone[0])) if len(gone) else run
 
 
 def _lengths(points: FloatArray) -> FloatArray:

@@ -143,7 +143,7 @@ class NominalWatch:
 
     def _first_samples(self, samples: Samples, cells: IntArray, height: FloatArray) -> IntArray:
         """In which sample the tool is first over each cell at a height or below it."""
-        tip = self._frame.position(self._frame.real(samples.joint_position))
+        tip = self._frame.position(samples.real(self._frame))
         radius = np.zeros(len(tip))
         for run, tool in self._cutter.plan.runs(samples.setpoint.move):
             tip[run, 2] -= self._cutter.plan.longer(tool)

@@ -119,6 +119,14 @@ class ToolTable(Table):
     """Helix angle of the edges, for the cutting force [deg]; none: 30, of drills and chamfer cutters 0."""
     speed: Positive | None = None
     """Spindle speed for the cutting force [1/min]; none: no force is reckoned."""
+    made_of: Literal["carbide", "hss"] = "carbide"
+    """Cemented carbide or high-speed steel: how far it bends, and where it breaks."""
+    force_limit: Positive | None = None
+    """Level force that breaks it [N]; none: from its diameter, lengths and what it is made of."""
+    chip_limit: Positive | None = None
+    """Chip that breaks an edge [mm]; none: a twentieth of the diameter."""
+    speed_limit: Positive | None = None
+    """Speed beyond which it flies apart [1/min]; none: not watched."""
 
     @pydantic.model_validator(mode="after")
     def _shape_is_whole(self) -> "ToolTable":
@@ -274,6 +282,10 @@ class JobFile(Table):
     """What holds the part, beside what the machine file puts on its table."""
     cutting_load: bool = False
     """The cutting force pushes the axes; the stock's material and a spindle speed must be known."""
+    cutting_force: Literal["teeth", "mean", "none"] = "teeth"
+    """Of a stock whose material is known: ``teeth``, the force of every tooth acts while it is cut, the tool
+    bends and may break; ``mean``, the mean force is told, and with ``cutting_load`` reckoned ahead, which
+    is quicker; ``none``, neither."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
     variables: dict[str, float] = Field(default_factory=dict)

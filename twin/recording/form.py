@@ -3,10 +3,38 @@
 import dataclasses
 from collections.abc import Mapping
 
+import numpy as np
+import numpy.typing as npt
+
 from twin.columns import Columns
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Axes, FloatArray
 from twin.toolpath.part_frame import PartFrame
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ToolLoad(Columns):
+    """What the tool of n samples felt, machine axes.
+
+    Attributes:
+        force: On the tool, in the mean of the period, shape (n, 3) [N].
+        peak_force: Greatest level force in a turn, shape (n,) [N].
+        power: Of the cut, shape (n,) [W].
+        chip: Thickest chip, shape (n,) [mm].
+        deflection: Of the tool's tip off where it would be, were the tool rigid, shape (n, 3) [mm].
+        spindle_speed: Shape (n,) [1/min], negative counter-clockwise.
+        spindle_load: Torque as a share of what the spindle can give, shape (n,).
+        broken: Whether the tool has lost its edge, shape (n,).
+    """
+
+    force: FloatArray
+    peak_force: FloatArray
+    power: FloatArray
+    chip: FloatArray
+    deflection: FloatArray
+    spindle_speed: FloatArray
+    spindle_load: FloatArray
+    broken: npt.NDArray[np.bool_]
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -18,12 +46,30 @@ class Samples(Columns):
         joint_position: Shape (n, k) [mm or deg], machine coordinates.
         joint_velocity: Shape (n, k) [mm/s or deg/s].
         drive_force: Shape (n, k) [N or N m].
+        tool: What the tool felt; None where the force of the cut was not simulated.
     """
 
     setpoint: Setpoints
     joint_position: FloatArray
     joint_velocity: FloatArray
     drive_force: FloatArray
+    tool: ToolLoad | None = None
+
+    def real(self, frame: PartFrame) -> FloatArray:
+        """Machine coordinates at which an ideal machine with a rigid tool would have the tool.
+
+        Args:
+            frame: How far the machine is from straight and square.
+
+        Returns:
+            Shape (n, k) [mm or deg].
+        """
+        joints = frame.real(self.joint_position)
+        if self.tool is None:
+            return joints
+        bent = joints.copy()
+        bent[:, :3] += self.tool.deflection
+        return bent
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +111,18 @@ JOINT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "drive/force": ("drive_force", "N or N m"),
 }
 """Datasets, the fields of ``Samples`` that they keep, and their units."""
+TOOL_COLUMNS: Mapping[str, tuple[str, str, int]] = {
+    "tool/force": ("force", "N", 3),
+    "tool/peak_force": ("peak_force", "N", 0),
+    "tool/power": ("power", "W", 0),
+    "tool/chip": ("chip", "mm", 0),
+    "tool/deflection": ("deflection", "mm", 3),
+    "tool/spindle_speed": ("spindle_speed", "1/min", 0),
+    "tool/spindle_load": ("spindle_load", "", 0),
+    "tool/broken": ("broken", "", 0),
+}
+"""Datasets, the fields of ``ToolLoad`` that they keep, their units and their widths (0: one value a
+sample); missing where the force of the cut was not simulated."""
 CONTOUR = "contour"
 """Dataset of the contour error, shape (n,) [µm]; missing where nobody compared."""
 
@@ -87,6 +145,13 @@ STEPS: Mapping[str, float] = {
     "joint/position": 2.0**-24,
     "joint/velocity": 2.0**-20,
     "drive/force": 2.0**-14,
+    "tool/force": 2.0**-14,
+    "tool/peak_force": 2.0**-14,
+    "tool/power": 2.0**-10,
+    "tool/chip": 2.0**-24,
+    "tool/deflection": 2.0**-24,
+    "tool/spindle_speed": 2.0**-10,
+    "tool/spindle_load": 2.0**-20,
     CONTOUR: 2.0**-14,
 }
 """What columns are rounded to, in their units: positions to 0.06 nm.

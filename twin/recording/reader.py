@@ -25,8 +25,10 @@ from twin.recording.form import (
     LATER_ATTRIBUTES,
     LONGEST_TEXT,
     TEXT_ATTRIBUTES,
+    TOOL_COLUMNS,
     RecordingHeader,
     Samples,
+    ToolLoad,
 )
 from twin.recording.seal import is_sealed, seal_is_broken
 from twin.recording.trial import reading_ends
@@ -68,14 +70,21 @@ class Recording:
             shape = self._dataset(name).shape
             if shape[1:] != ((width,) if "/" in name else ()):
                 raise ValueError(f"'{name}' has {shape[1:]} values a sample")
+        self._has_tool = next(iter(TOOL_COLUMNS)) in file
         self._length = len(self._dataset("time"))
 
     def __len__(self) -> int:
         return self._length
 
+    @property
+    def _names(self) -> tuple[str, ...]:
+        """Of all datasets that are read."""
+        return (*COLUMNS, *JOINT_COLUMNS, *(TOOL_COLUMNS if self._has_tool else ()))
+
     def refresh(self) -> int:
         """See what has been appended since; how many samples there are now."""
-        datasets = [self._dataset(name) for name in (*COLUMNS, *JOINT_COLUMNS)]
+        self._has_tool = list(TOOL_COLUMNS)[-1] in self._file
+        datasets = [self._dataset(name) for name in self._names]
         for dataset in datasets:
             dataset.refresh()
         # The columns grow one after the other: only what all of them have is whole.
@@ -88,7 +97,7 @@ class Recording:
         Raises:
             ValueError: They are not.
         """
-        for name in (*COLUMNS, *JOINT_COLUMNS):
+        for name in self._names:
             if len(self._dataset(name)) != len(self):
                 raise ValueError(f"'{name}' is not as long as 'time'")
 
@@ -137,7 +146,16 @@ class Recording:
                 **{
                     name: self._read(path, first, last) for path, (name, _) in JOINT_COLUMNS.items()
                 },
+                tool=self._tool(first, last),
             )
+
+    def _tool(self, first: int, last: int) -> ToolLoad | None:
+        """What the tool felt; None where that was not simulated."""
+        if not self._has_tool:
+            return None
+        return ToolLoad(
+            **{name: self._read(path, first, last) for path, (name, _, _) in TOOL_COLUMNS.items()}
+        )
 
 
 def _read_header(file: h5py.File) -> RecordingHeader:

@@ -19,6 +19,7 @@ from twin.recording.form import (
     LATER_ATTRIBUTES,
     STEPS,
     TEXT_ATTRIBUTES,
+    TOOL_COLUMNS,
     RecordingHeader,
     Samples,
 )
@@ -64,6 +65,14 @@ class RecordingWriter:
         if unit:
             dataset.attrs["unit"] = unit
 
+    def _create_tool_columns(self) -> None:
+        if next(iter(TOOL_COLUMNS)) in self._file:
+            return
+        for path, (name, unit, width) in TOOL_COLUMNS.items():
+            kind = np.bool_ if name == "broken" else np.float64
+            self._create(path, (0, width) if width else (0,), kind, unit)
+            self._row_bytes += max(1, width) * np.dtype(kind).itemsize
+
     def note_alarms(self, alarms: Iterable[tuple[float, str]]) -> None:
         """Add what the machine raised when [s, text]."""
         self._file.attrs["alarms"] = json.dumps(list(alarms))
@@ -85,6 +94,10 @@ class RecordingWriter:
             if CONTOUR not in self._file:
                 self._create(CONTOUR, (0,), np.float64, "um")
             columns[CONTOUR] = contour_um
+        if samples.tool is not None:
+            self._create_tool_columns()
+            for path, (name, _, _) in TOOL_COLUMNS.items():
+                columns[path] = getattr(samples.tool, name)
         for path, (name, _) in COLUMNS.items():
             columns[path] = getattr(samples.setpoint, name)
         for path, (name, _) in JOINT_COLUMNS.items():

@@ -11,6 +11,8 @@ import numpy as np
 from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
 from twin.compare.verdict import Check, judge
+from twin.coupling.cutting_process import CuttingProcess
+from twin.coupling.operations import program_process
 from twin.cutting.forces.axis_load import AxisLoad
 from twin.cutting.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
@@ -82,6 +84,7 @@ class Run:
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
         self._planned_s = 0.0
+        self._process: CuttingProcess | None = None
 
     def dry_run(self) -> DryRun:
         """Interpret the whole program once.
@@ -109,6 +112,7 @@ class Run:
             SimulationError: The simulation failed; the recording is not kept.
         """
         comparison, machining = self._comparison(), self._machining(dry_run)
+        self._process = None
         reached = _Reached(self.part_zero, self.preparation.start)
         alarm, near_miss = dry_run.alarm, None
         if alarm is None:
@@ -132,12 +136,13 @@ class Run:
                     if alarm is not None:
                         break
                 alarm, near_miss = alarm or motion.alarm, motion.near_miss
-                if alarm is not None and writer is not None:
-                    writer.note_alarms([(alarm.time_s, alarm.message)])
+                alarms = (*self._breaks(reached.time_s), *(() if alarm is None else (alarm,)))
+                if alarms and writer is not None:
+                    writer.note_alarms([(each.time_s, each.message) for each in alarms])
         with self.clock.stage("cut"):
             cut = machining.finish(out) if len(reached) else None
         figures = comparison.result()
-        alarms = () if alarm is None else (alarm,)
+        alarms = (*self._breaks(reached.time_s), *(() if alarm is None else (alarm,)))
         duration_s = min(self._planned_s or reached.last_motion_s, reached.time_s)
         tolerance = self.preparation.job.file.tolerance
         return Outcome(
@@ -159,6 +164,11 @@ class Run:
             final_commanded=reached.commanded,
             final_simulated=reached.simulated,
         )
+
+    def _breaks(self, until_s: float) -> tuple[Alarm, ...]:
+        """Tools that broke, which stops no machine, up to a time [s]."""
+        found = () if self._process is None else self._process.breaks
+        return tuple(each.alarm for each in found if each.time_s <= until_s)
 
     def _expect_all(self, comparison: Comparison, machining: Machining) -> None:
         """Let those who judge the motion hear of the whole program at once."""
@@ -203,11 +213,12 @@ class Run:
     def _simulation(self, setpoints: Iterator[Setpoints], summary: ProgramSummary) -> Simulation:
         machine, job = self.preparation.machine, self.preparation.job.file
         load = None
-        if job.cutting_load:
+        self._process = program_process(job, machine, summary, self.part_frame, self.part_zero)
+        if job.cutting_load and self._process is None:
             if job.stock is None:
                 raise ConfigError("cutting_load needs a [stock] to cut")
             load = AxisLoad(job.stock, summary, self.part_frame, self.part_zero)
-        return simulate(machine, self.spec, setpoints, summary.tools, load)
+        return simulate(machine, self.spec, setpoints, summary.tools, load, self._process)
 
     def _comparison(self) -> Comparison:
         return Comparison(

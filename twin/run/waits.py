@@ -19,7 +19,8 @@ def with_waits(chunks: Iterable[Chunk], spindle: SpindleTable, job: JobFile) -> 
 
     A tool change takes ``tool_change_s`` and stops the spindle first; one that brings the tool that
     is in the spindle takes no time. Whatever changes the spindle's speed takes the change over
-    ``acceleration``; a speed that neither program nor job says takes none. The program's end is
+    ``acceleration``, if the machine ``waits`` for it; a speed that neither program nor job says
+    takes none. The program's end is
     not waited for, nor is what happens in the middle of a path that goes on.
 
     Args:
@@ -75,4 +76,5 @@ class _Waits:
     def _turn(self, turns: float) -> float:
         """How long the spindle takes to another speed [s], negative counter-clockwise [1/min]."""
         change, self._turns = abs(turns - self._turns), turns
-        return change / self._spindle.acceleration if self._spindle.acceleration else 0.0
+        waits = self._spindle.waits and self._spindle.acceleration > 0.0
+        return change / self._spindle.acceleration if waits else 0.0

@@ -117,7 +117,7 @@ class Agent:
             message = f"no device '{name[:_LONGEST_PATH]}': there is {self.device.name}"
             raise RequestError("NO_DEVICE", message, 404)
 
-    def probe(self) -> bytes:
+    def probe(self) -> ET.Element:
         """The document that describes the device."""
         return devices_document(self._header(), self._element)
 
@@ -142,7 +142,7 @@ class Agent:
             heartbeat_ms=HEARTBEAT_MS if heartbeat is None else heartbeat,
         )
 
-    def answer(self, query: Query) -> tuple[bytes, int, bool]:
+    def answer(self, query: Query) -> tuple[ET.Element, int, bool]:
         """One document of observations.
 
         Returns:
@@ -163,11 +163,11 @@ class Agent:
             raise RequestError("OUT_OF_RANGE", str(error), 404) from error
         return self._streams(found, following), following, bool(found)
 
-    def error(self, error: RequestError) -> bytes:
+    def error(self, error: RequestError) -> ET.Element:
         """The document that tells of an error."""
         return error_document(self._header(), error.code, str(error))
 
-    def _streams(self, found: list[Observation], following: int) -> bytes:
+    def _streams(self, found: list[Observation], following: int) -> ET.Element:
         first, last = self.buffer.first_sequence, self.buffer.next_sequence - 1
         sequences = (first, last, following)
         return streams_document(self._header(), self.device, self._uuid, found, sequences)

@@ -1,7 +1,6 @@
-"""The documents of MTConnect 2.0: Devices, Streams and Error, as XML."""
+"""The documents of MTConnect 2.0: Devices, Streams and Error, as trees."""
 
 import dataclasses
-import io
 import xml.etree.ElementTree as ET  # only writes; nothing from outside is parsed
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -80,13 +79,13 @@ def _item_attributes(item: DataItem) -> dict[str, str]:
     return attributes
 
 
-def devices_document(header: Header, device: ET.Element) -> bytes:
+def devices_document(header: Header, device: ET.Element) -> ET.Element:
     """The answer to ``probe``."""
     root = _root("Devices")
     counts = {"assetBufferSize": "1", "assetCount": "0", "deviceModelChangeTime": header.time}
     ET.SubElement(root, "Header", header.attributes() | counts)
     ET.SubElement(root, "Devices").append(device)
-    return _bytes(root)
+    return root
 
 
 def streams_document(
@@ -95,7 +94,7 @@ def streams_document(
     uuid: str,
     observations: Sequence[Observation],
     sequences: tuple[int, int, int],
-) -> bytes:
+) -> ET.Element:
     """The answer to ``current`` and ``sample``.
 
     Args:
@@ -117,7 +116,7 @@ def streams_document(
         by_item.setdefault(observation.item, []).append(observation)
     for component in device.walk():
         _component_stream(stream, component, by_item)
-    return _bytes(root)
+    return root
 
 
 def _component_stream(
@@ -164,7 +163,7 @@ def _observation_element(item: DataItem, observation: Observation) -> ET.Element
     return element
 
 
-def error_document(header: Header, code: str, message: str) -> bytes:
+def error_document(header: Header, code: str, message: str) -> ET.Element:
     """The answer to a request that cannot be met.
 
     Args:
@@ -176,7 +175,7 @@ def error_document(header: Header, code: str, message: str) -> bytes:
     ET.SubElement(root, "Header", header.attributes())
     error = ET.SubElement(ET.SubElement(root, "Errors"), "Error", errorCode=code)
     error.text = _legal(message)
-    return _bytes(root)
+    return root
 
 
 def _root(kind: str) -> ET.Element:
@@ -200,12 +199,6 @@ def _legal(text: str) -> str:
         for letter in text
         if not "\ud800" <= letter <= "\udfff" and letter not in "\ufffe\uffff"
     )
-
-
-def _bytes(root: ET.Element) -> bytes:
-    out = io.BytesIO()
-    ET.ElementTree(root).write(out, encoding="UTF-8", xml_declaration=True)
-    return out.getvalue()
 
 
 def item_ids(elements: Iterable[ET.Element]) -> set[str]:

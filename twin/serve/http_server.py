@@ -4,8 +4,9 @@ import asyncio
 import contextlib
 import dataclasses
 import secrets
+import xml.etree.ElementTree as ET  # only a type here
 from collections.abc import AsyncIterator, Callable, Coroutine
-from typing import Any
+from typing import Any, NamedTuple
 
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
@@ -14,8 +15,8 @@ from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
 
 from twin.serve.agent import LEAST_INTERVAL_MS, REQUESTS, Agent, Query, RequestError
+from twin.serve.forms import Form, accepted_form
 
-_XML = "text/xml"
 _CODES = {404: "INVALID_URI", 405: "UNSUPPORTED"}
 MS_PER_S = 1000.0
 
@@ -40,27 +41,27 @@ def application(agent: Agent, feed: Callable[[], Coroutine[Any, Any, None]]) -> 
 
     async def probe(request: Request) -> Response:
         _require_device(agent, request)
-        return Response(agent.probe(), media_type=_XML)
+        return _response(request, agent.probe())
 
     async def observations(request: Request) -> Response:
         _require_device(agent, request)
         query = agent.query(request.url.path.rpartition("/")[2], dict(request.query_params))
         document, following, _ = agent.answer(query)
         if query.interval_ms is None:
-            return Response(document, media_type=_XML)
+            return _response(request, document)
         boundary = secrets.token_hex(16)
         return StreamingResponse(
-            _parts(agent, query, boundary, document, following),
+            _parts(agent, query, _Writer(_form(request), boundary), document, following),
             media_type=f"multipart/x-mixed-replace;boundary={boundary}",
         )
 
-    async def refuse(_: Request, error: Exception) -> Response:
+    async def refuse(request: Request, error: Exception) -> Response:
         if isinstance(error, HTTPException):
             code = _CODES.get(error.status_code, "INVALID_REQUEST")
             message = f"this agent answers GET of {', '.join(f'/{name}' for name in REQUESTS)}"
             error = RequestError(code, message, error.status_code)
         assert isinstance(error, RequestError)
-        return Response(agent.error(error), error.status, media_type=_XML)
+        return _response(request, agent.error(error), error.status)
 
     routes = [Route("/", probe, methods=["GET"])]
     for name in REQUESTS:
@@ -79,14 +80,46 @@ def _require_device(agent: Agent, request: Request) -> None:
         agent.require_device(name)
 
 
+def _form(request: Request) -> Form:
+    return accepted_form(request.headers.get("accept", ""))
+
+
+def _response(request: Request, document: ET.Element, status: int = 200) -> Response:
+    form = _form(request)
+    return Response(form.written(document), status, media_type=form.media_type)
+
+
+class _Writer(NamedTuple):
+    """How the documents of a stream are written.
+
+    Attributes:
+        form: Of each.
+        boundary: Between them.
+    """
+
+    form: Form
+    boundary: str
+
+    def part(self, document: ET.Element) -> bytes:
+        """A document with its heading."""
+        text = self.form.written(document)
+        kind, length = self.form.media_type, len(text)
+        head = f"--{self.boundary}\r\nContent-type: {kind}\r\nContent-length: {length}\r\n\r\n"
+        return head.encode() + text + b"\r\n"
+
+    def end(self) -> bytes:
+        """What stands behind the last one."""
+        return f"--{self.boundary}--\r\n".encode()
+
+
 async def _parts(
-    agent: Agent, query: Query, boundary: str, document: bytes, following: int
+    agent: Agent, query: Query, writer: _Writer, document: ET.Element, following: int
 ) -> AsyncIterator[bytes]:
     """The documents of a stream: one when something was observed, one when nothing was for long.
 
     A client that reads so slowly that the buffer has passed it by is told so, and the stream ends.
     """
-    yield _part(boundary, document)
+    yield writer.part(document)
     interval = max(query.interval_ms or 0, LEAST_INTERVAL_MS) / MS_PER_S
     heartbeat = query.heartbeat_ms / MS_PER_S
     quiet = 0.0
@@ -98,14 +131,9 @@ async def _parts(
         try:
             document, following, any_observed = agent.answer(query)
         except RequestError as error:
-            yield _part(boundary, agent.error(error))
-            yield f"--{boundary}--\r\n".encode()
+            yield writer.part(agent.error(error))
+            yield writer.end()
             return
         if any_observed or quiet >= heartbeat:
             quiet = 0.0
-            yield _part(boundary, document)
-
-
-def _part(boundary: str, document: bytes) -> bytes:
-    head = f"--{boundary}\r\nContent-type: {_XML}\r\nContent-length: {len(document)}\r\n\r\n"
-    return head.encode() + document + b"\r\n"
+            yield writer.part(document)

@@ -65,7 +65,7 @@ class RecordedRun:
         for samples in recording.chunks(self._every * 16384):
             chosen = slice(self._every - 1, None, self._every)
             tools, longer = self._tools(samples)
-            tips = frame.position(frame.real(samples.joint_position)) - longer
+            tips = frame.position(samples.real(frame)) - longer
             setpoint = samples.setpoint
             rows.append(
                 [column[chosen] for column in (setpoint.time, setpoint.line, tools, *tips.T)]

@@ -46,6 +46,7 @@ RARE = {
     "|G52 Y2.|G41 D1|G40|G43 H2|G49|G81 Z-9. R8.|X3. K2|G80|G68 X0 Y0 R30.|G69|IF [#1 GT 2] THEN #1=1.5",
     "mefi": '"text|G1 X1 "behind|Z1 G10|M5|S200|G4 P2|T2 M6|G54|G55 X3|G92 X1|G43 H2|G49|M3 S5 M8',
 }
+RARE["haas"] = f"{RARE['fanuc']}|G154 P1|G13 I5. D1"
 """What the interpreter tier must run in between."""
 WRONG = {
     "gost": "(open",
@@ -54,6 +55,7 @@ WRONG = {
     "fanuc": "M99 P5|GOTO 7|G65 P3|#0=1|END1|G31 X1.",
     "mefi": "G09|G98|G73 L1 Q2",
 }
+WRONG["haas"] = f"{WRONG['fanuc']}|M97 P99|G150"
 WRONG_ANYWHERE = "X{} U5|I{} J{}|K{}|R{}|R-{}|G{}|F-1|G1 G0 X1|X1 X2|X1.2.3|X|Y12345678|G18|N1 X1|Ü"
 NUMBERS = ["0", ".5", "5.", "00.250", "-7", "-.125", "0.000001", "-0", "123456"]
 
@@ -184,7 +186,7 @@ def block(random_: random.Random, dialect: str, wildness: float) -> str:
         return random_.choice(RARE[dialect].split("|"))
     codes = ["G1", "G0", "G90 G1", "G1 G91", "G17 G1", "G55 G1", "G54 G1"]
     if dialect != "codesys":
-        inches = 20 if dialect == "fanuc" else 70
+        inches = 20 if dialect in ("fanuc", "haas") else 70
         codes += [f"G{inches} G1", f"G{inches + 1} G1"]
     feed = random_.choice(["", "", "", " F500", " F0.2"])
     return f"{random_.choice(codes)} {filled(random_, random_.choice(SOUND))}{feed}"

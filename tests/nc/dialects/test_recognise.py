@@ -17,6 +17,8 @@ OWN = {
         "G01 R50 Q30", "G30 I5 J5", "$IF P1==1", "P1=5", "G01 X20I", "G01 X1=5", "#RPT[N1,N2]",
         "G01 X5 ; comment", "G263=50",
     ],
+    "fanuc": ["G54.1 P2", "G5.1 Q1", "G51.1 X0", "M98 P00022000", "O1\nG107 C20."],
+    "haas": ["G154 P2", "G187 P1", "M97 P100", "O01000\nG112"],
     "mefi": ['G00 X1 "pohyb', "N5 X0 G73 L5 Q2", "G09 G02 X0 I100"],
 }  # fmt: skip
 
@@ -68,5 +70,12 @@ def test_no_program_is_taken_for_another_dialects(path: Path) -> None:
     try:
         found = recognise(read_source(path)).name
     except UsageError as error:
-        found = path.parts[-3] if "could be any dialect" in str(error) else str(error)
+        said = str(error).split(":", 1)[1]
+        named = "could be any dialect" in said or path.parts[-3] in said
+        found = path.parts[-3] if named else said
     assert found == path.parts[-3]
+
+
+def test_words_of_a_family_ask_which_of_it() -> None:
+    with pytest.raises(UsageError, match=r"could be fanuc or haas \(O1000"):
+        recognise(source_from_text("%\nO1234 (PART)\nG0 X1.\nM30\n%"))

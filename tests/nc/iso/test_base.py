@@ -20,4 +20,4 @@ def test_jog_goes_by_its_distance_at_its_feed(dialect: str, axis: str, distance:
 
 
 def test_codesys_counts_its_f_per_second() -> None:
-    assert jog_block(dialect_named("codesys"), "X", 1.0, 600.0).endswith("X1 F10")
+    assert jog_block(dialect_named("codesys"), "X", 1.0, 600.0).endswith("X1. F10.")

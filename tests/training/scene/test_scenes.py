@@ -61,13 +61,15 @@ def test_the_mistake_fails_as_intended(name):
 
 def test_a_script_that_ends_otherwise_is_told(tmp_path):
     shipped = scene_path("fagor_full_circle")
-    text = shipped.read_text(encoding="utf-8").replace("mistake_fails = [1]", "mistake_fails = [2]")
+    text = shipped.read_text(encoding="utf-8").replace(
+        "mistake_fails = [1, 2]", "mistake_fails = [2]"
+    )
     (tmp_path / shipped.name).write_text(text, encoding="utf-8")
     program = shipped.with_suffix(".nc").read_text(encoding="utf-8")
     (tmp_path / f"{shipped.stem}.nc").write_text(program, encoding="utf-8")
     solution, mistake = rehearse(read_scene(tmp_path / shipped.name))
     assert solution.intended
-    assert (mistake.failed, mistake.intended) == ((1,), False)
+    assert (mistake.failed, mistake.intended) == ((1, 2), False)
     assert mistake.score < 10
 
 

@@ -47,6 +47,13 @@ INSIDE = """() => [...document.querySelectorAll(
   }));
 })()).filter(Boolean)"""
 
+BESIDE = """() => {
+  const outer = document.getElementById("sheet").getBoundingClientRect();
+  return [...document.querySelectorAll("#sheet *")].filter((one) => one.checkVisibility() && (
+    one.getBoundingClientRect().right > outer.right + 1 || (one.matches("button") && one.scrollWidth > one.clientWidth + 1)
+  )).map((one) => one.dataset.key || one.id || one.textContent);
+}"""
+
 
 @pytest.fixture(scope="module")
 def leader():
@@ -113,6 +120,9 @@ def test_nothing_is_cut_off_on_any_screen(chromium, room, language):
         page = open_page(room, context, query=f"?language={language}")
         page.wait_for_selector("#emergency[aria-pressed=true]")
         assert page.evaluate(INSIDE) == [], (width, height, ratio, language)
+        for tab in page.locator("#tabs button").all() if width == 1024 else ():
+            tab.click()
+            assert page.evaluate(BESIDE) == [], (tab.inner_text(), width, height, language)
         context.close()
 
 
@@ -161,6 +171,63 @@ def test_a_held_key_stops_when_it_is_let_go_or_its_page_freezes(room, context):
         player.until(lambda: machine.run is None and not machine.moving, "rest")
         assert room.session.log[-1].command == {"do": "jog_stop"}
         page.mouse.up()
+
+
+def test_the_machine_is_worked_by_hand_from_the_sheets(room, context):
+    player = Player(room, open_page(room, context))
+    page, machine = player.page, player.machine
+    player.press("mode_jog", "mode")
+    page.click("#tab-manual")
+    page.fill("[data-key='spindle speed']", "2500")
+    player.press("counter_clockwise", "spindle")
+    page.wait_for_selector("#speeds >> text=S 2500 ↺")
+    player.press("spindle_override +", "override")
+    page.wait_for_selector("#speeds >> text=S 2750")
+    player.press("spindle stop", "spindle")
+    before = machine.machine.position[0]
+    page.focus("#wheel")
+    for way in ("ArrowUp", "ArrowUp", "ArrowDown"):
+        page.keyboard.press(way)
+    page.hover("#wheel")
+    page.mouse.wheel(0, -100)
+    player.until(lambda: player.done("handwheel") == 4, "the handwheel")
+    player.until(lambda: abs(machine.machine.position[0] - before - 0.2) < 2e-3, "its way")
+    player.until(lambda: machine.run is None and not machine.moving, "rest")
+    player.press("reference", "reference")
+    player.until(lambda: abs(machine.machine.position).max() < 2e-3, "the reference point")
+    player.until(lambda: machine.run is None and not machine.moving, "rest")
+    player.press("new_blank", "new_blank")
+    page.click("#tab-tools")
+    page.fill("[data-key='radius 1']", "2.5")
+    page.press("[data-key='radius 1']", "Tab")
+    player.until(lambda: machine.tables.radii[1] == 2.5, "the radius")
+
+
+def test_a_program_is_begun_in_its_midst_and_held_and_left_and_found_again(room, context):
+    player = Player(room, open_page(room, context))
+    page, machine = player.page, player.machine
+    page.click("#tab-run")
+    page.check("[data-key='switch optional_stop']")
+    player.until(lambda: machine.switches.optional_stop, "the switch")
+    page.click("#line5")
+    player.press("search", "search")
+    player.press("cycle_start", "cycle_start")
+    player.until(lambda: machine.waiting, "the block's beginning")
+    player.press("cycle_start", "cycle_start")
+    player.until(lambda: machine.line == 5 and machine.moving, "the block")
+    player.press("feed_hold", "feed_hold")
+    player.until(lambda: machine.held and not machine.moving, "the hold")
+    player.press("mode_jog", "mode")
+    player.press("jog Z+", "jog")
+    player.until(lambda: machine.run is None and not machine.moving, "rest")
+    page.click("#tab-manual")
+    player.press("return_to_path", "return_to_path")
+    player.until(
+        lambda: machine.run is None and not machine.moving and not machine.legs, "the path"
+    )
+    player.press("mode_auto", "mode")
+    player.press("cycle_start", "cycle_start")
+    player.until(lambda: machine.running == "program" and machine.moving, "the program")
 
 
 def test_the_panel_is_handed_over_and_the_trainer_acts_beside_it(room, context):

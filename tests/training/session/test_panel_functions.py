@@ -143,7 +143,18 @@ def test_a_search_goes_up_over_and_down_and_waits(session):
     assert room.modal is None or "G1" in room.modal.codes
     rest(session)
     assert room.run is None
-    assert not room.judge.evidence.ended_well
+    assert room.judge.evidence.ended_well
+
+
+def test_a_search_behind_a_side_leaves_the_part_unfinished(session):
+    do(session, "search", line=6)
+    do(session, "cycle_start")
+    rest(session)
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.run is None
+    assert session.room.alarm is None
+    assert not session.room.judge.evidence.ended_well
 
 
 def test_a_search_that_finds_nothing_is_told(session):

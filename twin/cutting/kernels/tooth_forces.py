@@ -306,6 +306,8 @@ def _ring_share(
     if abs(top - profile_height(math.hypot(x, y), radius, flat, corner, slope)) <= _LEAST:
         # The cutter stands on what it has cut itself, and goes on into it.
         return 1.0
+    if top <= low:
+        return 0.0
     return 1.0 if top >= low + span else (top - low) / span
 
 

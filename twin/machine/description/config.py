@@ -173,6 +173,24 @@ class SpindleTable(Table):
     """Time of a tool change with the spindle at rest [s]; 0: none is counted."""
     acceleration: NonNegative = 0.0
     """How fast the spindle changes its speed [1/min per s]; 0: at once."""
+    waits: bool = True
+    """Whether the axes wait for the speed of the spindle; else a cut may begin too early."""
+    power: tuple[tuple[Positive, Positive], ...] = ()
+    """What the drive gives for long by speed: pairs of 1/min and W, rising in speed; below the first the
+    torque is constant, above the last the power. None: nothing stalls it."""
+    max_speed: Positive | None = None
+    """Never exceeded [1/min]; none: not limited."""
+    overload: Positive = 1.5
+    """What it gives for a short time, as a share of what it gives for long."""
+    overload_time_s: Positive = 5.0
+    """Alarm when the load is above 100 % for this long [s]."""
+
+    @pydantic.model_validator(mode="after")
+    def _spindle_fits(self) -> "SpindleTable":
+        speeds = [speed for speed, _ in self.power]
+        if speeds != sorted(set(speeds)):
+            raise ValueError("spindle.power must rise in speed")
+        return self
 
 
 class CollisionTable(Table):

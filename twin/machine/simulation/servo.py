@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from mujoco.rollout import Rollout
 
+from twin.columns import join
 from twin.machine.description.config import Machine
 from twin.machine.model.drives import Drive, feedforward_name, integral_name
 from twin.machine.model.model import drives
@@ -22,11 +23,13 @@ from twin.machine.simulation.drive_kernels import (
     read_states,
 )
 from twin.machine.simulation.late_drives import LateDrives, Told, is_late
+from twin.machine.simulation.process import Physics, Process
 from twin.machine.simulation.sampling import polyline_node
+from twin.machine.simulation.stepping import stepper
 from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
-from twin.recording.reader import Samples
+from twin.recording.form import Samples, ToolLoad
 from twin.units import kv_per_second, to_si
 
 _STATE = int(mujoco.mjtState.mjSTATE_FULLPHYSICS)
@@ -63,6 +66,7 @@ class Servo:
 
     Attributes:
         model: What is stepped.
+        process: What the tool does, which pushes the axes while they are stepped; None: nothing.
     """
 
     def __init__(self, machine: Machine, model: mujoco.MjModel) -> None:
@@ -100,6 +104,7 @@ class Servo:
         self._constant = np.array([axis.constant_force for axis in axes])
         self._substeps = round(self._period / model.opt.timestep)
         everywhere = len(axes)
+        driven = list(zip(axes, loops, strict=True))
         joined = 1 + model.nq
         self._drives = Drives(
             period=self._period,
@@ -108,16 +113,10 @@ class Servo:
             velocity_gain=np.array([loop.damping_gain for loop in loops]),
             integral_gain=self._integral_gain,
             velocity_told=np.array(
-                [
-                    axis.velocity_feedforward * loop.velocity_gain
-                    for axis, loop in zip(axes, loops, strict=True)
-                ]
+                [axis.velocity_feedforward * loop.velocity_gain for axis, loop in driven]
             ),
             acceleration_told=np.array(
-                [
-                    axis.acceleration_feedforward * loop.moved
-                    for axis, loop in zip(axes, loops, strict=True)
-                ]
+                [axis.acceleration_feedforward * loop.moved for axis, loop in driven]
             ),
             trail=np.array(
                 [(1.0 - axis.velocity_feedforward) / kv_per_second(axis.kv) for axis in axes]
@@ -125,7 +124,7 @@ class Servo:
             speed_bulge=np.array(
                 [
                     axis.velocity_feedforward * loop.velocity_gain / felt(axis, loop.moved)
-                    for axis, loop in zip(axes, loops, strict=True)
+                    for axis, loop in driven
                 ]
             )
             * (self._period**2 / 12),
@@ -145,6 +144,7 @@ class Servo:
             ),
         )
         self._late = _late_drives(machine, model, loops, self._drives)
+        self.process: Process | None = None
         self._view_data()
         self._state = np.zeros(0)
         self._states = np.zeros((0, 0))
@@ -173,20 +173,25 @@ class Servo:
         if not all_finite(points):
             raise SimulationError("a setpoint is not a finite number")
         begun: list[FloatArray] = []
-        past, ahead = points, points
+        felt: list[ToolLoad] = []
+        past, ahead, following = points, points, chunk
         if self._chunk is None:
             self._begin(chunk)
-            begun = [self._state[None]]
+            begun, following = [self._state[None]], chunk[1:]
+            if self.process is not None:
+                self.process.begin(chunk.position[0])
+                felt = [self.process.at_rest(1)]
             past = Points(*(column[:1] for column in points))
             ahead = Points(*(column[1:] for column in points))
             load = None if load is None else load[1:]
         else:
             past = _points(self._chunk)
         told = None if self._late is None else self._late.follow(past, ahead)
-        states = self._roll(past, ahead, told, load)
+        states, tool = self._roll(past, ahead, told, load, following)
         states = np.concatenate([*begun, states]) if begun else states
         self._chunk, self._states = chunk, states
-        return Samples(chunk, *self._read(points, told, states))
+        felt += [] if tool is None else [tool]
+        return Samples(chunk, *self._read(points, told, states), join(felt) if felt else None)
 
     def _read(
         self, points: Points, told: Told | None, states: FloatArray
@@ -241,6 +246,10 @@ class Servo:
         """Views of MuJoCo's arrays, which are slow to ask for."""
         self._ctrl, self._pushed = self._data.ctrl, self._data.qfrc_applied
         self._warned = self._data.warning.number
+        addresses = stepper(self.model, self._data)
+        self._physics = Physics(
+            addresses, self._ctrl, self._pushed, self._drives, self._substeps, _STATE
+        )
 
     def __deepcopy__(self, memo: dict[int, object]) -> "Servo":
         """A copy whose views are those of its own data."""
@@ -256,6 +265,7 @@ class Servo:
         motor goes with the axis.
         """
         before, data = other.stand(), self._data
+        self.process = other.process
         mujoco.mj_resetData(self.model, data)
         give = np.zeros(len(self._qpos))
         give[self._gives] = before.give[self._gives]
@@ -350,24 +360,48 @@ class Servo:
         mujoco.mj_getState(model, data, self._state, _STATE)
 
     def _roll(
-        self, past: Points, points: Points, told: Told | None, load: FloatArray | None
-    ) -> FloatArray:
-        """Step from the last of some setpoints to others; the states there, shape (n, width)."""
-        steps = len(points.position)
-        if steps == 0:
-            return np.zeros((0, len(self._state)))
-        model, data = self.model, self._data
-        controls, held = self._controls(past, points, told), _CONTROL
+        self,
+        past: Points,
+        points: Points,
+        told: Told | None,
+        load: FloatArray | None,
+        setpoints: Setpoints,
+    ) -> tuple[FloatArray, ToolLoad | None]:
+        """Step from the last of some setpoints to others.
+
+        Returns:
+            The states there, shape (n, width), and what the tool felt.
+        """
+        if len(points.position) == 0:
+            return np.zeros((0, len(self._state))), None
+        controls, tool = self._controls(past, points, told), None
+        self._warned[:] = 0
+        if self.process is None:
+            states = self._roll_alone(controls, load)
+        else:
+            states = np.zeros((len(controls), len(self._state)))
+            mujoco.mj_setState(self.model, self._data, self._state, _STATE)
+            self._data.qacc_warmstart[:] = self._warmstart[0]
+            tool = self.process.follow(self._physics, setpoints, controls, states)
+        self._pushed[:] = 0.0
+        if self._warned.any():
+            self._refuse_warnings()
+        self._state = states[-1].copy()
+        self._warmstart = self._data.qacc_warmstart[None].copy()
+        return states, tool
+
+    def _roll_alone(self, controls: FloatArray, load: FloatArray | None) -> FloatArray:
+        """States at setpoints, of a machine that nothing but a known load pushes, shape (n, width)."""
+        model, data, held = self.model, self._data, _CONTROL
         pushes = None
         if load is None and self._constant.any():
-            load = np.zeros((steps, len(self._dof)))
+            load = np.zeros((len(controls), len(self._dof)))
         if load is not None:
             pushes, held = hold_pushes(self._drives, load, model.nv), _CONTROL | _PUSH
         if self._substeps > 1:
             controls = controls.repeat(self._substeps, axis=0)
             pushes = None if pushes is None else pushes.repeat(self._substeps, axis=0)
-        self._warned[:] = 0
-        if steps <= _FEW:
+        if len(controls) <= _FEW * self._substeps:
             states = self._step_one_by_one(controls, pushes)
         else:
             with Rollout(nthread=0) as rollout:
@@ -377,11 +411,6 @@ class Servo:
                     control_spec=held, initial_warmstart=self._warmstart,
                 )  # fmt: skip
             states = rolled[0]
-        self._pushed[:] = 0.0
-        if self._warned.any():
-            self._refuse_warnings()
-        self._state = states[-1].copy()
-        self._warmstart = data.qacc_warmstart[None].copy()
         return states if self._substeps == 1 else states[self._substeps - 1 :: self._substeps]
 
     def _controls(self, past: Points, points: Points, told: Told | None) -> FloatArray:

@@ -8,6 +8,7 @@ import numpy as np
 from twin.machine.description.config import Machine
 from twin.machine.model.model import clearance_model, physics_model
 from twin.machine.model.tool_shape import ToolSchedule
+from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
 from twin.machine.simulation.tool_changes import ToolClearances
 from twin.machine.watching.alarms import Alarm, NearMiss
@@ -38,12 +39,14 @@ class Simulation:
         clearance: Clearance | ToolClearances | None,
         setpoints: Iterable[Setpoints],
         load: Load | None = None,
+        process: Process | None = None,
     ) -> None:
         self.alarm: Alarm | None = None
         self._clearance = clearance
         self._setpoints = setpoints
         self._load = load
         self._servo = Servo(machine, model)
+        self._servo.process = process
         self._watch = Watch(machine)
 
     @property
@@ -74,12 +77,13 @@ class Simulation:
             return
 
     def _look(self, samples: Samples) -> Alarm | None:
-        found = self._watch.look(samples)
-        if self._clearance is None:
-            return found
-        collision = self._clearance.look(samples)
-        both = [alarm for alarm in (collision, found) if alarm is not None]
-        return min(both, key=lambda alarm: alarm.time_s, default=None)
+        process, clearance = self._servo.process, self._clearance
+        found = (
+            None if clearance is None else clearance.look(samples),
+            self._watch.look(samples),
+            None if process is None else process.alarm,
+        )
+        return min(filter(None, found), key=lambda alarm: alarm.time_s, default=None)
 
 
 def simulate(
@@ -88,6 +92,7 @@ def simulate(
     setpoints: Iterable[Setpoints],
     tools: ToolSchedule | None = None,
     load: Load | None = None,
+    process: Process | None = None,
 ) -> Simulation:
     """Run the machine along setpoints.
 
@@ -102,6 +107,7 @@ def simulate(
         tools: Which tool is in the spindle during which move; by default that of the specification.
         load: Called with every chunk in turn: what pushes the axes from outside during the period
             that ends with each setpoint, shape (n, k) [N or N m]; None: nothing.
+        process: What the tool does, which pushes the axes while they move; instead of ``load``.
 
     Returns:
         The run: iterate it for the samples, then ask its ``alarm``.
@@ -110,10 +116,10 @@ def simulate(
         ConfigError: The specification does not compile.
     """
     if isinstance(model, mujoco.MjModel):
-        return Simulation(machine, model, None, setpoints, load)
+        return Simulation(machine, model, None, setpoints, load, process)
     clearance = (
         Clearance(machine, clearance_model(machine, model))
         if tools is None
         else ToolClearances(machine, tools)
     )
-    return Simulation(machine, physics_model(machine, model), clearance, setpoints, load)
+    return Simulation(machine, physics_model(machine, model), clearance, setpoints, load, process)

@@ -9,6 +9,9 @@
 | ``collision`` | head, spindle or holder met table, fixture or column, or the table the column |
 | ``rapid-into-stock`` | a rapid move cut into the stock |
 | ``spindle-off`` | a feed cut into the stock with the spindle standing |
+| ``tool-broken`` | force, chip or speed were more than the tool bears; it has no edge then |
+| ``spindle-stall`` | the cut took more torque than the spindle has, until it stood |
+| ``spindle-overload`` | the spindle gave more than it can for long, for longer than it may |
 | ``emergency-stop`` | an operator pressed the button |
 | ``control-stop`` | a real control that drives the twin stopped by itself, or was killed |
 """
@@ -27,6 +30,9 @@ AlarmCode = Literal[
     "rapid-into-stock",
     "spindle-off",
     "gouge",
+    "tool-broken",
+    "spindle-stall",
+    "spindle-overload",
     "emergency-stop",
     "control-stop",
 ]

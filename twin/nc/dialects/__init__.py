@@ -7,13 +7,13 @@ from twin.errors import UsageError
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.fagor8070 import FAGOR8070
-from twin.nc.dialects.fanuc import FANUC
+from twin.nc.dialects.fanuc import FANUC, HAAS
 from twin.nc.dialects.gost import GOST
 from twin.nc.dialects.mefi import MEFI
 from twin.nc.text.source import Source
 
 DIALECTS: Mapping[str, Dialect] = {
-    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC)
+    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS)
 }
 """Every known dialect by name."""
 
@@ -34,12 +34,17 @@ def recognise(source: Source) -> Dialect:
     """Tell a program's dialect by its own words.
 
     Raises:
-        UsageError: No dialect's own words stand in it, or those of several.
+        UsageError: No dialect's own words stand in it, or those of several, none of which has all.
     """
     found = _marks_found(source)
     fitting = [name for name, marks in found.items() if marks]
-    if len(fitting) == 1:
-        return DIALECTS[fitting[0]]
+    everything = {mark for marks in found.values() for mark in marks}
+    complete = [name for name in fitting if everything <= set(found[name])]
+    if len(complete) == 1:
+        return DIALECTS[complete[0]]
+    if complete:
+        seen = ", ".join(found[complete[0]])
+        raise UsageError(f"{source.name}: could be {' or '.join(complete)} ({seen}); {_SAY}")
     if fitting:
         seen = _listed({name: found[name] for name in fitting})
         raise UsageError(

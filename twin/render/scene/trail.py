@@ -86,7 +86,7 @@ def trail_points(recording: Recording, summary: ProgramSummary) -> TrailPoints:
     parts = []
     first, frame = 0, recording.header.part_frame
     for chunk in recording.chunks():
-        position = frame.position(frame.real(chunk.joint_position))
+        position = frame.position(chunk.real(frame))
         for run, tool in summary.tools.runs(chunk.setpoint.move):
             position[run, 2] -= summary.tools.longer(tool)
         sample = first + np.arange(len(chunk))

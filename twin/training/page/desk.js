@@ -11,7 +11,7 @@ const UNHEARD_MS = 600;
 
 export class Desk {
   constructor(scene, line) {
-    Object.assign(this, { scene, line, step: 1, feed: null, keys: {}, turned: {}, pressing: "", pointer: null, now: null });
+    Object.assign(this, { scene, line, step: 1, hand: { feed: null, rapid: false, axis: "", jog_step: "0.1" }, keys: {}, turned: {}, pressing: "", pointer: null, now: null });
     const command = (name) => () => line.say({ do: name });
     const at = (id) => document.getElementById(id);
     const add = (where, name, act, given = {}) => at(where).append(this.keys[name] = key("", act, { name, ...given }));
@@ -110,7 +110,8 @@ export class Desk {
   /** Jog by the chosen step, or for as long as the key is held; a click without a pointer is a short touch. */
   jog(axis, direction, touched = false) {
     const unit = this.now.units[this.now.axes.indexOf(axis)];
-    const command = { do: "jog", axis, direction, feed: this.feed ?? JOG_FEED[unit] };
+    const feed = this.hand.rapid ? this.scene.fastest[axis] : this.hand.feed ?? JOG_FEED[unit];
+    const command = { do: "jog", axis, direction, feed };
     if (this.step !== null || touched) this.line.say({ ...command, step: this.step ?? 0.1 });
     else this.line.hold(command);
   }
@@ -129,7 +130,7 @@ export class Desk {
     const target = event.target;
     const typing = target.matches("input:not([type=range]), select, textarea");
     if (typing || event.ctrlKey || event.altKey || event.metaKey || !this.now) return undefined;
-    if (target.matches("button, [role=tab], #program, input") && ["Space", "Enter", ...Object.keys(JOG_KEYS)].includes(event.code)) return undefined;
+    if (target.matches("button, [role=tab], #program, #wheel, input") && ["Space", "Enter", ...Object.keys(JOG_KEYS)].includes(event.code)) return undefined;
     const click = (name) => () => this.keys[name].disabled || this.keys[name].matches(":disabled") || this.line.say({ do: name });
     const dial = (name, by) => () => this.turn(name, Math.min(this.scene.overrides[name][1], Math.max(0, this.stands(name) + by)));
     const jog = JOG_KEYS[event.code];

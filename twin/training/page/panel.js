@@ -29,7 +29,8 @@ const line = new Connection(hear, (down) => {
     document.getElementById("banner").hidden = true;
   }
 });
-const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, view);
+const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, view, desk, screen);
+screen.on_choice = () => { if (now.mode !== undefined && words) sheets.show(now, words); };
 
 function banner(name, detail = "") {
   told = [name, detail];

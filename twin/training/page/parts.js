@@ -64,8 +64,20 @@ export class Words {
     return this.alarms[code] ?? { name: code, advice: "" };
   }
 
+  /** Where an alarm came: its block's number, else its line. */
+  place(alarm) {
+    if (alarm.block) return ` ${alarm.block}`;
+    return alarm.line ? ` ${this.label("line")} ${alarm.line}` : "";
+  }
+
   fill(root) {
     for (const element of root.querySelectorAll("[data-word]")) write(element, this.label(element.dataset.word));
     for (const element of root.querySelectorAll("[data-name]")) element.setAttribute("aria-label", this.label(element.dataset.name));
   }
+}
+
+/** A number as it is typed, with a point or a comma; null where it is none, which the machine refuses. */
+export function number(text) {
+  const found = Number(text.trim().replace(",", "."));
+  return text.trim() === "" || !Number.isFinite(found) ? null : found;
 }

@@ -3,13 +3,14 @@
 import { act_on, make, write } from "./parts.js";
 
 const LAG_SHOWN = 1.0;
+const SECONDS_PER_MINUTE = 60;
 const THOUSANDTH = { mm: "µm", deg: "m°" };
 
 const figure = (value, digits = 3) => (Math.round(value * 1000) / 1000 + 0).toFixed(digits).replace(/^-(0\.0*)$/, "$1");
 
 export class Screen {
   constructor(scene, line) {
-    Object.assign(this, { scene, line, chosen: 0, shown: "", rows: [], lines: [], entry: "" });
+    Object.assign(this, { scene, line, chosen: 0, shown: "", on_choice: () => {}, rows: [], lines: [], entry: "" });
     this.at = (id) => document.getElementById(id);
     this.at("program").addEventListener("click", (event) => this.choose([...this.at("program").children].indexOf(event.target.closest("li")) + 1));
     this.at("program").addEventListener("keydown", (event) => {
@@ -25,6 +26,7 @@ export class Screen {
     this.chosen = line;
     this.show_program();
     this.show_entry(true);
+    this.on_choice();
   }
 
   show(now, words, changed) {
@@ -36,8 +38,7 @@ export class Screen {
     this.language = words.language;
     const sent = this.at("entry").querySelector("[data-key=enter]");
     if (sent) sent.classList.toggle("sent", this.at("entry").querySelector("input").value === now.entered && now.entered !== "");
-    const modal = now.modal ?? this.modal;
-    this.modal = modal;
+    const { modal } = now;
     write(this.at("codes"), modal ? modal.codes.join("  ") : "");
   }
 
@@ -55,7 +56,7 @@ export class Screen {
       this.message = key;
       message.className = "";
       if (now.alarm) {
-        const alarm = words.alarm(now.alarm.code), where = now.alarm.line ? ` N ${now.alarm.line}` : "";
+        const alarm = words.alarm(now.alarm.code), where = words.place(now.alarm);
         message.replaceChildren(make("b", {}, `${alarm.name}${where}: `), words.text(now.alarm.message), " ", make("span", { class: "advice" }, alarm.advice));
       } else if (now.refusal) {
         message.className = "refusal";
@@ -96,9 +97,14 @@ export class Screen {
       gauge(cells[3].firstChild, Math.abs(state.lag[i]) / LAG_SHOWN, `${Math.abs(1000 * state.lag[i]).toFixed(0)} ${THOUSANDTH[now.units[i]]}`);
       gauge(cells[4].firstChild, state.load[i], `${(100 * state.load[i]).toFixed(0)} %`);
     });
-    const feed = this.modal?.feed == null ? "-" : String(Math.round(1000 * this.modal.feed) / 1000);
-    const spindle = now.spindle.started ? (now.spindle.speed === null ? "-" : now.spindle.speed.toFixed(0)) : "0";
-    const speeds = [["", `F ${state.feed.toFixed(0)}`], ["quiet", `(${feed})`], [state.turns ? "on" : "quiet", `S ${spindle}`], ["", `T ${now.tool}`]];
+    const feed = now.modal?.feed == null ? "-" : String(Math.round(1000 * now.modal.feed) / 1000);
+    const per_second = now.modal?.per_minute === SECONDS_PER_MINUTE;
+    const unit = words.label(per_second ? "per_second" : "per_minute"), shown = per_second ? (state.feed / SECONDS_PER_MINUTE).toFixed(1) : state.feed.toFixed(0);
+    const turns = now.counter_clockwise ? "↺" : "↻";
+    const spindle = now.spindle.started ? (now.spindle.speed === null ? "-" : (0.01 * now.spindle_override * now.spindle.speed).toFixed(0)) : "0";
+    const speeds = [["", `F ${shown}`], ["quiet", `(${feed}) ${unit}`], [state.turns ? "on" : "quiet", `S ${spindle}${state.turns ? ` ${turns}` : ""}`], ["", `T ${now.tool}`]];
+    if (now.searched) speeds.push(["contact", `▶ ${now.searched}`]);
+    for (const [name, mark] of [["optional_stop", "M01"], ["block_skip", "/"], ["dry_run", words.label("dry_run")]]) if (now[name]) speeds.push(["coolant", mark]);
     if (state.coolant) speeds.push(["coolant", words.label("coolant")]);
     if (state.touches) speeds.push(["contact", words.label("contact")]);
     const key = JSON.stringify(speeds);

@@ -1,14 +1,15 @@
-// The sheets beside the view: tasks, part zero, tools, view, and the trainer's.
+// The sheets beside the view: tasks, what is done by hand, how programs run, tables, alarms, view, trainer.
 
-import { act_on, make } from "./parts.js";
+import { alarm_sheet, manual_sheet, run_sheet } from "./machine_sheets.js";
+import { act_on, make, number } from "./parts.js";
 
 const MARKS = { open: "○", done: "●", failed: "×" };
 const BACK_S = [10, 60];
 const SHOWN = ["trail", "stock", "collision"];
 
 export class Sheets {
-  constructor(scene, line, view) {
-    Object.assign(this, { scene, line, view, sheet: "tasks", shown: { trail: true, stock: true, collision: false }, drawn: "", state: null });
+  constructor(scene, line, view, desk, screen) {
+    Object.assign(this, { scene, line, view, desk, screen, sheet: "tasks", shown: { trail: true, stock: true, collision: false }, drawn: "", state: null });
     document.addEventListener("next-sheet", () => {
       const names = this.names();
       this.choose(names[(names.indexOf(this.sheet) + 1) % names.length]);
@@ -17,7 +18,7 @@ export class Sheets {
   }
 
   names() {
-    return ["tasks", "offsets", "tools", "display", ...(this.now.role === "trainer" ? ["trainer"] : [])];
+    return ["tasks", "manual", "run", "offsets", "tools", "history", "display", ...(this.now.role === "trainer" ? ["trainer"] : [])];
   }
 
   choose(sheet) {
@@ -41,14 +42,16 @@ export class Sheets {
     for (const tab of tabs.children) tab.setAttribute("aria-selected", tab.id === `tab-${this.sheet}`);
     sheet.setAttribute("aria-labelledby", `tab-${this.sheet}`);
     const acts = now.role === "trainer" || now.has_panel;
-    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over], offsets: [now.zero], tools: [now.tools, now.tool], display: [this.shown], trainer: [now.faults, now.frozen, now.replaying] };
+    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets], tools: [now.tools, now.tool], history: [now.alarms], display: [this.shown], trainer: [now.faults, now.frozen, now.replaying] };
     const drawn = JSON.stringify([this.sheet, words.language, acts, what[this.sheet]]);
     if (drawn === this.drawn) return;
     const typed = this.drawn && JSON.parse(this.drawn)[0] === this.sheet ? new Map([...sheet.querySelectorAll("input:not([type=checkbox]), select")].map((field) => [field.id, field.value])) : new Map();
     this.drawn = drawn;
+    const focus = sheet.contains(document.activeElement) ? document.activeElement.id : "";
     sheet.replaceChildren(...this[this.sheet]());
     if (!acts) for (const field of sheet.querySelectorAll("button, input, select")) field.disabled = this.sheet !== "display";
     for (const [id, value] of typed) if (id && sheet.querySelector(`#${id}`)) sheet.querySelector(`#${id}`).value = value;
+    if (focus) document.getElementById(focus)?.focus();
   }
 
   button(name, text, act) {
@@ -71,8 +74,16 @@ export class Sheets {
     const finish = now.over ? make("b", { class: "done" }, words.label("over")) : this.button("finish", words.label("finish"), () => line.say({ do: "finish" }));
     return [
       make("h2", {}, words.text(scene.title)), make("p", { class: "quiet" }, words.text(scene.story)), make("ul", {}, ...tasks), ...hints,
-      make("p", { class: "points" }, `${words.label("score")}: ${now.score} / ${scene.points}`), make("div", { class: "row" }, more, finish),
+      this.signature(), make("p", { class: "points" }, `${words.label("score")}: ${now.score} / ${scene.points}`), make("div", { class: "row" }, more, finish),
     ];
+  }
+
+  /** Who is at the panel: it stands on the score sheet. */
+  signature() {
+    const { now, words, line } = this;
+    const field = make("input", { id: "signature", "data-key": "name", maxlength: 80, value: now.signature, autocomplete: "off", "aria-label": words.label("name") });
+    field.addEventListener("change", () => line.say({ do: "sign", name: field.value }));
+    return make("div", { class: "row name" }, make("label", {}, words.label("name"), field));
   }
 
   offsets() {
@@ -81,18 +92,43 @@ export class Sheets {
       const field = make("input", { id: `reading-${axis}`, inputmode: "decimal", value: "0", "aria-label": `${words.label("preset_help")} ${axis}` });
       const set = () => line.say({ do: "set_zero", axis, reading: number(field.value) });
       field.addEventListener("keydown", (event) => { if (event.key === "Enter") set(); });
-      return make("div", { class: "row" }, make("b", {}, axis), make("span", { class: "number" }, now.zero[index].toFixed(3)), field, this.button(`preset ${axis}`, words.label("preset"), set));
+      return make("div", { class: "row tight" }, make("b", {}, axis), make("span", { class: "number" }, now.zero[index].toFixed(3)), field, this.button(`preset ${axis}`, words.label("preset"), set));
     });
-    return [make("p", { class: "quiet" }, words.label("preset_help")), ...rows];
+    const table = now.offsets.length ? [make("h3", {}, words.label("work_offsets")), ...now.offsets.flatMap((row) => this.offset_row(...row))] : [];
+    return [make("p", { class: "quiet" }, words.label("preset_help")), ...rows, ...table];
   }
+
+  /** A work offset: a field for each axis, written by Enter. */
+  offset_row(name, values) {
+    const { now, words, line } = this;
+    const fields = now.axes.map((axis, index) => {
+      const field = make("input", { inputmode: "decimal", "data-key": `offset ${name} ${axis}`, value: values[index].toFixed(3), "aria-label": `${name} ${axis}` });
+      field.addEventListener("change", () => line.say({ do: "set_offset", name, axis, value: number(field.value) }));
+      return make("label", {}, axis, field);
+    });
+    return [make("div", { class: "row offset" }, make("b", {}, name), ...fields)];
+  }
+
+  manual() { return manual_sheet(this); }
+
+  run() { return run_sheet(this); }
+
+  history() { return alarm_sheet(this); }
 
   tools() {
     const { now, words } = this;
     return now.tools.flatMap((tool) => {
       const here = tool.number === now.tool;
+      const field = (name, value) => {
+        const made = make("input", { inputmode: "decimal", "data-key": `${name} ${tool.number}`, value: value.toFixed(3), "aria-label": `T${tool.number} ${words.label(name)}` });
+        made.addEventListener("change", () => this.line.say({ do: "set_tool", number: tool.number, [name]: number(made.value) }));
+        return make("label", {}, words.label(name), made);
+      };
       return [
         make("h3", {}, `T${tool.number}${here ? " ◂" : ""}  ${words.label(`tool_${tool.kind}`)}`),
-        make("div", { class: "row" }, `${words.label("diameter")} ${tool.diameter} · ${words.label("length")} ${tool.length.toFixed(3)}`),
+        make("div", { class: "row" }, `${words.label("diameter")} ${tool.diameter}`),
+        make("div", { class: "row" }, field("length", tool.length), field("radius", tool.radius)),
+        here ? null : make("div", { class: "row" }, this.button(`change tool ${tool.number}`, words.label("change_tool"), () => this.line.say({ do: "change_tool", number: tool.number }))),
         here ? make("div", { class: "row" }, this.button("touch off", words.label("touch_off"), () => this.measure())) : null,
       ].filter(Boolean);
     });
@@ -147,10 +183,4 @@ export class Sheets {
       make("h3", {}, words.label("active_faults")), active.length ? make("ul", {}, ...active) : make("p", { class: "quiet" }, words.label("no_faults")), make("div", { class: "row" }, ask("repair")),
     ];
   }
-}
-
-/** A number as it is typed, with a point or a comma; null where it is none, which the machine refuses. */
-function number(text) {
-  const found = Number(text.trim().replace(",", "."));
-  return text.trim() === "" || !Number.isFinite(found) ? null : found;
 }

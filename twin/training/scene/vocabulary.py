@@ -25,6 +25,8 @@ class AlarmWords(Table):
     """What an alarm is called and what to do about it."""
 
     name: str
+    why: str = ""
+    """Its cause, and what it would have done to a real machine."""
     advice: str
 
 

@@ -21,7 +21,12 @@ from twin.nc.text.diagnostics import Diagnostic
 from twin.render.machine_glb import DrawnMachine, drawn_machine
 from twin.training.scene.fault_table import FAULT_DEFAULTS
 from twin.training.scene.phrases import finding_in, translated
-from twin.training.scene.scene_file import FEED_OVERRIDES, MODES, RAPID_OVERRIDES
+from twin.training.scene.scene_file import (
+    FEED_OVERRIDES,
+    MODES,
+    RAPID_OVERRIDES,
+    SPINDLE_OVERRIDES,
+)
 from twin.training.scene.vocabulary import LANGUAGES, Language, Words
 from twin.training.server.driver import Driver, Look
 from twin.training.server.frames import Changes, StockFeed, as_texts, panel_words, state_message
@@ -101,7 +106,11 @@ class RoomApp:
                 "hint_cost": file.hint_cost,
                 "points": scene.points,
                 "modes": MODES,
-                "overrides": {"feed": FEED_OVERRIDES, "rapid": RAPID_OVERRIDES},
+                "overrides": {
+                    "feed": FEED_OVERRIDES,
+                    "rapid": RAPID_OVERRIDES,
+                    "spindle": SPINDLE_OVERRIDES,
+                },
                 "fastest": {
                     name: 60.0 * machine.axis(name).velocity for name in machine.axes.names
                 },
@@ -231,8 +240,7 @@ class RoomApp:
     @staticmethod
     def _translated(words: dict[str, Any]) -> dict[str, Any]:
         """The machine's sentences in every language, so that each page can choose its own."""
-        alarm = words["alarm"]
-        if alarm is not None:
+        for alarm in filter(None, (words["alarm"], *words["alarms"])):
             found = alarm.pop("finding")
             alarm["message"] = (
                 {language: finding_in(Diagnostic(**found), language) for language in LANGUAGES}

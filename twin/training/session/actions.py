@@ -18,6 +18,8 @@ DRY_RUN_FEED = 3000.0
 """What all feeds are replaced by in a dry run [mm/min]."""
 HAND_FEED = 2000.0
 """Of the handwheel, of the way to the reference point and back to the path [mm/min or deg/min]."""
+_NO_TOUCH = (c.Sign, c.Answer, c.Hint, c.Inject, c.Repair)
+"""What does not begin a scene's time."""
 ENDLESS = 3600.0
 """How far a jog goes at most that lasts while its key is held [mm or deg]."""
 REFERENCE = 0.0
@@ -32,7 +34,8 @@ def carry_out(room: Room, command: c.Command) -> None:
     Raises:
         TwinError: The machine refuses; the message says why. Nothing has changed then.
     """
-    room.judge.note_touch(room)
+    if not isinstance(command, _NO_TOUCH):
+        room.judge.note_touch(room)
     _ACTIONS[type(command)](room, command)
 
 
@@ -71,7 +74,8 @@ def _cycle_start(room: Room, _command: c.CycleStart) -> None:
 
 def _start_program(room: Room) -> None:
     dry = DRY_RUN_FEED if room.switches.dry_run else None
-    whole = room.searched == 0 and dry is None
+    # Where the part tells, it is no matter from which block on it was made.
+    whole = dry is None and (room.searched == 0 or room.scene.file.part is not None)
     options = RunOptions(dry_feed=dry, search=room.searched)
     room.start_run(room.program, "program", options)
     room.judge.note_start(whole=whole)
@@ -295,6 +299,10 @@ def _set_tool(room: Room, command: c.SetTool) -> None:
     room.tables.set_tool(command.number, command.length, command.radius)
 
 
+def _sign(_room: Room, _command: c.Sign) -> None:
+    """Only the sheet wants to know."""
+
+
 def _answer(room: Room, command: c.Answer) -> None:
     room.judge.answer(command.task, command.choice)
 
@@ -379,6 +387,7 @@ _ACTIONS: dict[type, Callable[[Room, Any], None]] = {
     c.SetZero: _set_zero,
     c.SetOffset: _set_offset,
     c.SetTool: _set_tool,
+    c.Sign: _sign,
     c.Answer: _answer,
     c.Hint: _hint,
     c.Finish: _finish,

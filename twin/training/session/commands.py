@@ -217,6 +217,13 @@ class SetTool(Table):
     """[mm]"""
 
 
+class Sign(Table):
+    """Say who is at the panel, for the score sheet."""
+
+    do: Literal["sign"] = "sign"
+    name: Annotated[str, Field(max_length=80)]
+
+
 class Answer(Table):
     """Answer a scene's question."""
 
@@ -289,7 +296,7 @@ SessionCommand = Freeze | Unfreeze | Rewind | StartReplay | EndReplay
 Command = (
     SelectMode | CycleStart | FeedHold | Reset | EmergencyStop | Override | Jog | JogStop
     | Handwheel | Reference | ReturnToPath | Search | Switch | Enter | Edit | Undo | Reload
-    | Spindle | Coolant | ChangeTool | NewBlank | SetZero | SetOffset | SetTool | Answer | Hint
+    | Spindle | Coolant | ChangeTool | NewBlank | SetZero | SetOffset | SetTool | Sign | Answer | Hint
     | Finish | Inject | Repair | SessionCommand
 )  # fmt: skip
 

@@ -39,6 +39,7 @@ from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.block_walk import ModalState
 from twin.training.session.faults import inject
 from twin.training.session.judge import Judge
+from twin.training.session.moment import Moment, moment_of
 from twin.training.session.observed import Notice, block_number
 from twin.training.session.program_run import Inherited, ProgramRun, RunOptions
 from twin.training.session.tables import Tables
@@ -52,6 +53,8 @@ ALARMS_KEPT = 50
 """Alarms that the history shows."""
 WORK_OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59")
 """Rows of the table of work offsets, where the control knows them."""
+MOMENTS_KEPT = 12
+"""Alarms that the score sheet has pictures of."""
 SHORTEST_WAY = 1e-3
 """Way that counts as none when an axis is driven by hand [mm or deg]."""
 ON_PATH = 1e-3
@@ -118,6 +121,7 @@ class Room:
         searched: Line at which the next start begins; 0: the first.
         alarm: The alarm that stands.
         alarms: Those that came, the newest last.
+        moments: How the tool stood in the part at each of them.
         pressed: Whether the emergency stop button is pressed.
         spindle: Whether the spindle turns, and how fast.
         running_down: Whether the spindle, stopped by a reset, still turns while the axes brake.
@@ -172,6 +176,7 @@ class Room:
         self.coolant = False
         self.alarm: Notice | None = None
         self.alarms: deque[Notice] = deque(maxlen=ALARMS_KEPT)
+        self.moments: deque[Moment] = deque(maxlen=MOMENTS_KEPT)
         self.pressed = False
         self.program: Source = preparation.source
         self.lines = tuple(preparation.source.lines)
@@ -353,10 +358,20 @@ class Room:
             block = block_number(self.lines, line) if here else ""
             self.alarm = Notice(code, message, axis, line, self.time_s, finding, block)
             self.alarms.append(self.alarm)
+            self._keep_moment(self.alarm)
             self.judge.note_alarm(code)
         self.give_up()
         self.spindle = self.spindle.stopped()
         self.coolant = False
+
+    def _keep_moment(self, alarm: Notice) -> None:
+        """Keep for the score sheet how the tool stood in the part."""
+        at = self.machine.position - self.tables.longer
+        tip = self.part_frame.position(at[None])[0]
+        stock = None if self.work is None else self.work.map
+        running = self.run is not None and self.running == "program"
+        text = self.lines[alarm.line - 1] if running and 0 < alarm.line <= len(self.lines) else ""
+        self.moments.append(moment_of(alarm, text.strip(), tip, self.tables.tool, stock))
 
     def _end_of_part(self) -> None:
         """What comes when the present part of a program has come to its end."""

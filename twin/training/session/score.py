@@ -1,15 +1,19 @@
 """The score sheet: what was reached and when, with every action; for a course to keep."""
 
+import base64
 import datetime as dt
 import json
 import threading
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import jinja2
 
 from twin.files.atomic import write_text
+from twin.training.scene.phrases import finding_in, translated
 from twin.training.scene.vocabulary import Words, in_language
+from twin.training.session.moment import Moment
 from twin.training.session.session import Session
 from twin.version import __version__
 
@@ -17,11 +21,21 @@ LOG_FILE = "log.jsonl"
 WRITTEN_EVERY_S = 1.0
 """Shortest time between two writings [s]."""
 
+_LABELS = (
+    "tasks", "score", "alarm", "hint", "seconds", "name", "date", "wrong", "why", "right", "line",
+    "section", "from_above",
+)  # fmt: skip
 _TEMPLATE = Path(__file__).with_name("score.html.j2")
 
 
-def score_sheet(session: Session, words: Words) -> dict[str, Any]:
-    """The score sheet as plain data."""
+def score_sheet(session: Session, words: Words, date: str = "") -> dict[str, Any]:
+    """The score sheet as plain data.
+
+    Args:
+        session: The session.
+        words: Language and control.
+        date: When it began.
+    """
     scene, room = session.scene, session.room
     period = room.machine.machine.file.servo_period_s
     language = words.language
@@ -33,6 +47,8 @@ def score_sheet(session: Session, words: Words) -> dict[str, Any]:
         "control": words["title"],
         "machine": room.machine.machine.file.name,
         "twin_version": __version__,
+        "name": session.signature,
+        "date": date,
         "machine_time_s": round(room.time_s, 3),
         "handed_in": room.judge.over,
         "points": room.judge.score,
@@ -41,6 +57,7 @@ def score_sheet(session: Session, words: Words) -> dict[str, Any]:
         "alarms": [
             {"code": code, "name": words.alarm(code).name} for code in room.judge.evidence.alarms
         ],
+        "wrong": [_wrong(moment, words) for moment in tuple(room.moments)],
         "tasks": [
             {
                 "text": in_language(task.text, language),
@@ -62,12 +79,41 @@ def score_sheet(session: Session, words: Words) -> dict[str, Any]:
     }
 
 
-def score_page(sheet: dict[str, Any], words: Words) -> str:
-    """The score sheet as one self-contained page."""
+def _wrong(moment: Moment, words: Words) -> dict[str, Any]:
+    """What went wrong: at which block, why it matters, and what would have been right."""
+    alarm, told = moment.alarm, words.alarm(moment.alarm.code)
+    finding = alarm.finding
+    said = (
+        finding_in(finding, words.language)
+        if finding
+        else translated(alarm.message, words.language)
+    )
+    return {
+        "code": alarm.code,
+        "name": told.name,
+        "time_s": round(alarm.time_s, 3),
+        "line": alarm.line,
+        "block": alarm.block,
+        "text": moment.text,
+        "message": said,
+        "why": told.why,
+        "right": told.advice,
+    }
+
+
+def score_page(sheet: dict[str, Any], words: Words, pictures: Sequence[bytes | None] = ()) -> str:
+    """The score sheet as one self-contained page.
+
+    Args:
+        sheet: As ``score_sheet`` gives it.
+        words: Language and control.
+        pictures: Of what went wrong, as PNG, in the sheet's order.
+    """
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
-    labels = {key: words[key] for key in ("tasks", "score", "alarm", "hint", "seconds")}
-    return template.render(sheet=sheet, words=labels)
+    labels = {key: words[key] for key in _LABELS}
+    shown = [one and base64.b64encode(one).decode("ascii") for one in pictures]
+    return template.render(sheet=sheet, words=labels, pictures=shown)
 
 
 class SheetWriter:
@@ -88,8 +134,10 @@ class SheetWriter:
         self.folder: Path | None = None
         if out is None:
             return
-        now = dt.datetime.now().astimezone().strftime("%Y-%m-%d_%H%M%S")
-        self.folder = out / f"{session.scene.name}_{now}"
+        now = dt.datetime.now().astimezone()
+        self._date = now.strftime("%Y-%m-%d %H:%M")
+        self._pictures: dict[float, bytes | None] = {}
+        self.folder = out / f"{session.scene.name}_{now.strftime('%Y-%m-%d_%H%M%S')}"
         self._due = threading.Event()
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._keep_writing, daemon=True, name="sheet")
@@ -132,7 +180,13 @@ class SheetWriter:
 
     def _write(self, folder: Path) -> None:
         """Write what there is by now: lines are added to the log, the sheet is written anew."""
-        sheet = score_sheet(self._session, self._words)
+        sheet = score_sheet(self._session, self._words, self._date)
+        moments = tuple(self._session.room.moments)
+        known = self._pictures
+        self._pictures = {
+            round(one.alarm.time_s, 3): known.get(round(one.alarm.time_s, 3)) or one.picture()
+            for one in moments
+        }
         actions = sheet["actions"]
         log = folder / LOG_FILE
         lines = [f"{json.dumps(one, ensure_ascii=False)}\n" for one in actions]
@@ -142,5 +196,6 @@ class SheetWriter:
             with log.open("a", encoding="utf-8") as file:
                 file.writelines(lines[self._logged :])
         self._logged = len(lines)
+        pictures = [self._pictures.get(one["time_s"]) for one in sheet["wrong"]]
         write_text(folder / "score.json", json.dumps(sheet, ensure_ascii=False, indent=1))
-        write_text(folder / "score.html", score_page(sheet, self._words))
+        write_text(folder / "score.html", score_page(sheet, self._words, pictures))

@@ -22,6 +22,7 @@ from twin.training.session.commands import (
     Hint,
     Rewind,
     SessionCommand,
+    Sign,
     StartReplay,
     Unfreeze,
     command_data,
@@ -45,6 +46,7 @@ class Session:
         frozen: Time stands still.
         replay: What is being shown again; None: the machine itself is seen.
         refusal: Why the last command was refused, empty when it was not.
+        signature: Who is at the panel, as far as somebody has said.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -59,6 +61,7 @@ class Session:
         self.frozen = False
         self.replay: Replay | None = None
         self.refusal = ""
+        self.signature = ""
         self._done: list[Entry] = []
         self._checkpoints = Checkpoints(self.room)
 
@@ -85,6 +88,8 @@ class Session:
                 if isinstance(command, EmergencyStop):
                     self.replay = None
                 carry_out(self.room, command)
+                if isinstance(command, Sign):
+                    self.signature = command.name.strip()
             self.refusal = ""
         except TwinError as error:
             self.refusal = str(error)
@@ -145,4 +150,5 @@ class Session:
             frozen=self.frozen,
             replaying=replay is not None,
             refusal=self.refusal,
+            signature=self.signature,
         )

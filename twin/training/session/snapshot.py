@@ -96,6 +96,8 @@ class Snapshot:
     replaying: bool = False
     refusal: str = ""
     """Why the last command was refused."""
+    signature: str = ""
+    """Who is at the panel."""
     speed: float = 1.0
     """Machine time per time on the wall, as it has been of late."""
 

@@ -1,5 +1,7 @@
 """Fanuc 0i-MF and 30i, milling, and the Haas mills, whose language is much the same."""
 
+import dataclasses
+
 from twin.nc.control.codes import WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
@@ -9,6 +11,7 @@ from twin.nc.dialects.fanuc import (
     corners,
     decimal_point,
     flow,
+    haas,
     macro_calls,
     offsets,
     programs,
@@ -17,6 +20,7 @@ from twin.nc.dialects.fanuc import (
 )
 from twin.nc.dialects.fanuc.decisions import DECISIONS
 from twin.nc.dialects.fanuc.memory import FANUC as FANUC_VARIANT
+from twin.nc.dialects.fanuc.memory import HAAS as HAAS_VARIANT
 from twin.nc.dialects.fanuc.memory import FanucMemory, acts_on_plain_blocks, memory_of
 from twin.nc.iso import base
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
@@ -36,6 +40,21 @@ def after_motion(control: Control) -> None:
     """A block has moved."""
     corners.blend_after_motion(control)
     macro_calls.call_after_motion(control)
+
+
+_FAMILY = (
+    Mark(r"^[ \t]*O[ \t]*[0-9]{1,8}[ \t;]*$", "O1000 (a program's number)"),
+    Mark(r"\bIF[ \t]*\[.*\](?:[ \t]*)(?:GOTO|THEN)\b", "IF [...] GOTO, IF [...] THEN"),
+    Mark(r"\bWHILE[ \t]*\[.*\][ \t]*DO[ \t]*[1-3]\b", "WHILE [...] DO1"),
+    Mark(r"\bG6[56][ \t]*P[ \t]*[0-9]", "G65 P, G66 P (a macro call)"),
+    Mark(r"#300[06][ \t]*=", "#3000=1 (an alarm)"),
+    Mark(r"[0-9.][ \t]*,[ \t]*[RC][ \t]*[.0-9]", "X10. ,R5."),
+)
+"""What the controls of the family have in common: alone it tells none of them."""
+
+
+def _haas_memory() -> FanucMemory:
+    return FanucMemory(variant=HAAS_VARIANT)
 
 
 FANUC = Dialect(
@@ -91,7 +110,13 @@ FANUC = Dialect(
     units='mm, inches (G20), degrees; numbers without a point count 0.001 mm, 0.0001 inch or 0.001 degree, unless decimal_point = "calculator"; F in mm/min',
     decisions=DECISIONS,
     marks=(
-        Mark(r"^[ \t]*O[ \t]*[0-9]{1,8}(?![0-9<])[ \t]*(?:$|[ (])", "O1000 (a program's number)"),
+        *_FAMILY,
+        Mark(r"\bG54\.1[ \t]*P|\bG54[ \t]*P[ \t]*[0-9]", "G54.1 P"),
+        Mark(r"\bG0?5\.1[ \t]*Q|\bG0?8[ \t]*P[01]\b", "G5.1 Q, G8 P1"),
+        Mark(r"\bG5[01]\.1\b", "G50.1, G51.1 (mirror)"),
+        Mark(r"\bM98[ \t]*P[ \t]*[0-9]{6,}", "M98 P00021000"),
+        Mark(r"\bG(?:107|0?7\.1)[ \t]*C", "G107 C, G7.1 C"),
+        Mark(r"\bG43\.4\b|\bG68\.2\b", "G43.4, G68.2"),
     ),
     start_state={"square_corners": True},
     memory=FanucMemory,
@@ -109,3 +134,33 @@ FANUC = Dialect(
     pointless=decimal_point.pointless,
     count=decimal_point.count,
 )
+
+HAAS = dataclasses.replace(
+    FANUC,
+    name="haas",
+    title="Haas (mills)",
+    g=haas.haas_codes(),
+    instead={**codes.INSTEAD, **haas.INSTEAD},
+    start=haas.START,
+    m=haas.HAAS_M_CODES,
+    word_meanings={
+        **FANUC.word_meanings,
+        "I": "centre along X, from the start of the arc; first radius of G12 and G13",
+        "K": "centre along Z; last radius of G12 and G13",
+        "L": "how often a subprogram runs; holes that a cycle's block drills; kind of data of G10",
+        "P": "dwell, seconds with a point, else milliseconds; program or block; work offset of G154",
+        "Q": "depth of a peck; how much each circle of G12 and G13 is larger",
+        "E": "deviation at corners (G187)",
+    },
+    units=FANUC.units.replace("F in mm/min", "F in mm/min, without a point 0.001 mm/min"),
+    decisions=haas.DECISIONS,
+    marks=(
+        *_FAMILY,
+        Mark(r"\bG154[ \t]*P|\bG1(?:1[0-9]|2[0-9])\b", "G154 P, G110 to G129"),
+        Mark(r"\bG187\b|\bG103[ \t]*P", "G187, G103 P"),
+        Mark(r"\bM97[ \t]*P", "M97 P"),
+        Mark(r"\bG1[23]\b.*\bI[ \t]*[.0-9]", "G12 or G13 with I"),
+    ),
+    memory=_haas_memory,
+)
+"""The Haas mills."""

@@ -142,6 +142,14 @@ def _radius(control: Control, number: int) -> float:
     return radius + (0.0 if row is None else row.radius_wear)
 
 
+def radius_in_force(control: Control) -> float:
+    """The radius of D in force, else of the tool in the spindle [mm]."""
+    number = memory_of(control).radius_number
+    if number is None:
+        number = control.tools.spindle or 0
+    return _radius(control, number)
+
+
 def compile_compensation(side: float) -> CodeWriter:
     """G41 D1, for the compiled tier; where every call names D and no program writes radii."""
 

@@ -1,0 +1,83 @@
+"""The score sheet: who, when, what went wrong at which block, and how it looked."""
+
+import html
+import io
+
+import pytest
+from PIL import Image
+
+from twin.nc.text.source import source_from_text
+from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.scene.vocabulary import LANGUAGES, Words, vocabulary
+from twin.training.session.course import course_of, course_page
+from twin.training.session.score import SheetWriter, score_page, score_sheet
+from twin.training.session.session import Session
+
+
+@pytest.fixture(scope="module")
+def wrecked() -> Session:
+    """A rapid through the blank, twenty millimetres deep."""
+    session = Session(read_scene(scene_path("fagor_first_steps")))
+    session.submit({"do": "sign", "name": " Jan Novák "})
+    text = "%X\nN10 G90 S3000 M3\nN20 G0 X0 Y0 Z-5\nN30 M30"
+    session.room.program, session.room.lines = (
+        source_from_text(text, "test"),
+        tuple(text.split("\n")),
+    )
+    session.submit({"do": "cycle_start"})
+    while session.room.alarm is None:
+        session.advance()
+    return session
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_went_wrong_is_told_with_its_block(wrecked, language):
+    words = Words(language, "fagor8070")
+    sheet = score_sheet(wrecked, words, "2026-01-02 03:04")
+    assert (sheet["name"], sheet["date"]) == ("Jan Novák", "2026-01-02 03:04")
+    (wrong,) = sheet["wrong"]
+    assert (wrong["code"], wrong["block"], wrong["text"]) == (
+        "rapid-into-stock", "N20", "N20 G0 X0 Y0 Z-5",
+    )  # fmt: skip
+    told = words.alarm("rapid-into-stock")
+    assert (wrong["why"], wrong["right"]) == (told.why, told.advice)
+    moment = wrecked.room.moments[0]
+    page = score_page(sheet, words, [moment.picture()])
+    assert told.why in html.unescape(page)
+    assert "data:image/png;base64," in page
+
+
+def test_the_picture_shows_tool_and_part(wrecked):
+    png = wrecked.room.moments[0].picture()
+    assert png is not None
+    picture = Image.open(io.BytesIO(png)).convert("RGB")
+    colours = {colour for _, colour in picture.getcolors(1 << 20) or ()}
+    assert (214, 50, 47) in colours
+    assert (176, 187, 197) in colours
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_alarm_says_why_it_matters(language):
+    assert all(alarm.why for alarm in vocabulary(language).alarms.values())
+
+
+def test_a_program_that_only_ends_has_finished_nothing():
+    session = Session(read_scene(scene_path("fagor_first_steps")))
+    session.submit({"do": "edit", "line": 2, "text": "N90 M30"})
+    session.submit({"do": "cycle_start"})
+    session.advance(50)
+    assert session.room.run is None
+    assert not session.room.judge.evidence.ended_well
+
+
+def test_a_course_lists_the_sheets_of_a_folder(tmp_path, wrecked):
+    writer = SheetWriter(wrecked, Words("en", "fagor8070"), tmp_path)
+    writer.close()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "score.json").write_text("{", encoding="utf-8")
+    rows, unread = course_of(tmp_path)
+    assert [(row.name, row.scene, row.points, row.alarms) for row in rows] == [
+        ("Jan Novák", "fagor_first_steps", 0, ("rapid-into-stock",))
+    ]
+    assert unread == ["other/score.json"]
+    assert "Jan Novák" in course_page(rows)

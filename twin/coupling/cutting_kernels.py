@@ -1,0 +1,331 @@
+"""The machine stepped while its tool cuts: one loop over setpoints, without a way back to Python."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.compilation.kernel import array_kernel, kernel
+from twin.coupling.spindle_kernels import SpindleDrive, lasting_torque, next_speed
+from twin.cutting.forces.tool_strength import ToolStrength
+from twin.cutting.kernels.sweep import Removal, sweep
+from twin.cutting.kernels.tooth_forces import (
+    CutterForm,
+    ForceLaw,
+    Material,
+    ToothBench,
+    add_force_between,
+    tooth_forces,
+)
+from twin.machine.simulation.drive_kernels import Drives
+from twin.machine.simulation.process import Physics
+from twin.machine.simulation.stepping import read_state, step_machine
+from twin.nc.canonical import FloatArray
+
+LOOK_CELLS = 0.25
+"""The material is cut, and looked at anew, when the tip has gone so far since [cells]."""
+LOOK_FEED = 0.05
+"""Or when the feed per tooth has changed by so much of itself."""
+_LONGEST_MEAN_S = 0.05
+"""Longest time that the speed of the feed is averaged over, however seldom a tooth comes [s]."""
+_MM = 1e-3
+_SECONDS = 60.0
+_STILL = 1e-9
+
+WHOLE, BY_FORCE, BY_CHIP, BY_SPEED = 0, 1, 2, 3
+"""Why a tool has lost its edge."""
+
+ANGLE, SPEED, CONTACT, STATE, VALUE, MET, FRESH = range(7)
+"""Numbers in ``Memory.numbers``: direction of the first tooth [turns], speed of the spindle [turns/s], way
+since the cutter met material [mm], why its edge is gone, the value at which it went, whether it meets
+material, whether nothing is known of where it was."""
+
+
+class Place(NamedTuple):
+    """From machine coordinates to the part's frame (``twin.toolpath.part_frame.PartFrame``).
+
+    Attributes:
+        rotary: Column of the axis that turns the part; -1: nothing does.
+        center: Machine X and Y over the axis of rotation [mm].
+        turn_zero: Where the part's frame is parallel to the machine's [deg].
+        longer: How much lower the tip is than that which positions count for [mm].
+    """
+
+    rotary: int
+    center: tuple[float, float]
+    turn_zero: float
+    longer: float
+
+
+class Cut(NamedTuple):
+    """A tool in a material.
+
+    Attributes:
+        material: The height map, which is cut.
+        top: Height above which there is none [mm].
+        cutter: The tool's edges.
+        law: What the material does to them.
+        strength: What the tool gives way to.
+        spindle: What turns it.
+        place: Where the part is.
+    """
+
+    material: Material
+    top: float
+    cutter: CutterForm
+    law: ForceLaw
+    strength: ToolStrength
+    spindle: SpindleDrive
+    place: Place
+
+
+class Memory(NamedTuple):
+    """What is carried from one period to the next.
+
+    Attributes:
+        numbers: See ``ANGLE`` and those after it.
+        rigid: Where the tip would be, were the tool rigid, part's frame, shape (3,) [mm].
+        swept: Where the material was cut up to, shape (2, 3); the second row is the later [mm].
+        speed: Speed of the tip in the mean of a tooth, shape (3,) [mm/s].
+        looked: Feed per tooth when the material was looked at, shape (3,) [mm].
+        bend: Deflection of the tip in the part's frame, shape (3,) [mm].
+        load: What pushes the axes, shape (k,) [N or N m].
+        bench: The teeth's forces.
+        force: On the tool in this period, part's frame, shape (3,) [N].
+        feed: Feed per tooth in this period, shape (3,) [mm].
+        removal: What ``sweep`` sets, shape (1,) each.
+        mark: What it marks with, shape (1,).
+        marks: Where to, of no size.
+    """
+
+    numbers: FloatArray
+    rigid: FloatArray
+    swept: FloatArray
+    speed: FloatArray
+    looked: FloatArray
+    bend: FloatArray
+    load: FloatArray
+    bench: ToothBench
+    force: FloatArray
+    feed: FloatArray
+    removal: Removal
+    mark: FloatArray
+    marks: FloatArray
+
+
+class Felt(NamedTuple):
+    """Columns of ``twin.recording.form.ToolLoad``, set row by row."""
+
+    force: FloatArray
+    peak_force: FloatArray
+    power: FloatArray
+    chip: FloatArray
+    deflection: FloatArray
+    spindle_speed: FloatArray
+    spindle_load: FloatArray
+    broken: FloatArray
+
+
+@array_kernel
+def follow_cutting(
+    physics: Physics,
+    controls: FloatArray,
+    states: FloatArray,
+    commanded: FloatArray,
+    cut: Cut,
+    memory: Memory,
+    felt: Felt,
+) -> None:
+    """Step the machine from setpoint to setpoint while its tool cuts.
+
+    In every period the axes are pushed by the force that the teeth felt at its beginning, in the
+    mean over the angle that they turn in a period.
+
+    Args:
+        physics: The machine.
+        controls: What the drives are told on the way to each setpoint, shape (n, nu).
+        states: Set to the states there, shape (n, width).
+        commanded: Speed that the spindle is told, shape (n,) [turns/s]; NaN: nothing is known of it.
+        cut: Tool and material.
+        memory: Carried on.
+        felt: Set to what the tool felt.
+    """
+    stepper = physics.stepper
+    for row in range(len(controls)):
+        _push(physics, memory.load)
+        physics.control[:] = controls[row]
+        for _ in range(physics.substeps):
+            step_machine(stepper.step, stepper.model, stepper.data)
+        place = states[row].ctypes.data
+        read_state(
+            stepper.get_state, stepper.model, stepper.data, place, np.int64(physics.signature)
+        )
+        cosine, sine = _go_to(physics, states[row], cut, memory)
+        _turn_and_cut(physics.drives.period, commanded[row], cut, memory)
+        _bend(physics.drives.period, cut, memory)
+        _load_axes(cut.place, memory, cosine, sine)
+        _note(cut, memory, felt, row, (cosine, sine))
+    physics.pushed[:] = 0.0
+
+
+@kernel
+def _push(physics: Physics, load: FloatArray) -> None:
+    """``twin.machine.simulation.drive_kernels.hold_pushes`` of one row."""
+    drives = physics.drives
+    for axis in range(len(load)):
+        push = (load[axis] + drives.constant[axis]) * np.sign(drives.scale[axis])
+        physics.pushed[drives.dof[axis]] = push
+        if drives.give_dof[axis] >= 0:
+            physics.pushed[drives.give_dof[axis]] = push
+
+
+@kernel
+def _go_to(physics: Physics, state: FloatArray, cut: Cut, memory: Memory) -> tuple[float, float]:
+    """Move the rigid tool's tip to where the axes are; cosine and sine of the part's turn."""
+    drives, numbers, place = physics.drives, memory.numbers, cut.place
+    x = _axis(drives, state, 0) - place.center[0]
+    y = _axis(drives, state, 1) - place.center[1]
+    z = _axis(drives, state, 2) - place.longer
+    cosine, sine = 1.0, 0.0
+    if place.rotary >= 0:
+        turn = math.radians(_axis(drives, state, place.rotary) - place.turn_zero)
+        cosine, sine = math.cos(turn), math.sin(turn)
+    tip = (cosine * x - sine * y, sine * x + cosine * y, z)
+    # A chip is as thick as the way between two teeth: the speed in the mean of that time.
+    share = _share_of_tooth(cut, memory, drives.period)
+    for k in range(3):
+        if numbers[FRESH] > 0.0:
+            memory.speed[k] = 0.0
+            memory.swept[0, k] = memory.swept[1, k] = tip[k]
+        else:
+            now = (tip[k] - memory.rigid[k]) / drives.period
+            memory.speed[k] += share * (now - memory.speed[k])
+        memory.rigid[k] = tip[k]
+    numbers[FRESH] = 0.0
+    return cosine, sine
+
+
+@kernel
+def _axis(drives: Drives, state: FloatArray, axis: int) -> float:
+    """Where an axis is beyond what gives [mm or deg]."""
+    place = state[drives.qpos[axis]]
+    if drives.give_qpos[axis] >= 0:
+        place += state[drives.give_qpos[axis]]
+    return place / drives.scale[axis]
+
+
+@kernel
+def _share_of_tooth(cut: Cut, memory: Memory, period: float) -> float:
+    """How far a mean over the time between two teeth follows in a period, 0 to 1."""
+    rate = max(abs(memory.numbers[SPEED]) * cut.cutter.teeth, 1.0 / _LONGEST_MEAN_S)
+    return 1.0 - math.exp(-rate * period)
+
+
+@array_kernel
+def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> None:
+    """Turn the spindle, cut, and find what the teeth feel until the next period."""
+    numbers = memory.numbers
+    torque = memory.bench.figures[1] * _MM if numbers[MET] > 0.0 else 0.0
+    told = 0.0 if math.isnan(commanded) else commanded
+    numbers[SPEED] = next_speed(cut.spindle, numbers[SPEED], told, torque, period)
+    memory.force[:] = 0.0
+    if math.isnan(commanded) or numbers[STATE] != WHOLE:
+        numbers[MET] = 0.0
+        return
+    turned = numbers[SPEED] * period
+    if abs(numbers[SPEED]) > cut.strength.speed / _SECONDS:
+        _break(memory, BY_SPEED, abs(numbers[SPEED]) * _SECONDS)
+        return
+    _look(period, cut, memory)
+    if numbers[MET] > 0.0:
+        if memory.bench.figures[2] > cut.strength.chip:
+            _break(memory, BY_CHIP, memory.bench.figures[2])
+        elif memory.bench.figures[0] > cut.strength.force:
+            _break(memory, BY_FORCE, memory.bench.figures[0])
+        else:
+            add_force_between(cut.cutter, memory.bench, numbers[ANGLE], -turned, memory.force)
+    numbers[ANGLE] -= turned
+    numbers[ANGLE] -= math.floor(numbers[ANGLE])
+
+
+@kernel
+def _break(memory: Memory, why: int, value: float) -> None:
+    memory.numbers[STATE], memory.numbers[VALUE], memory.numbers[MET] = why, value, 0.0
+
+
+@array_kernel
+def _look(period: float, cut: Cut, memory: Memory) -> None:
+    """Cut up to where the tool is and look at what is before it, where it has gone far enough."""
+    numbers, swept, looked, feed = memory.numbers, memory.swept, memory.looked, memory.feed
+    pace = math.sqrt(memory.speed[0] ** 2 + memory.speed[1] ** 2 + memory.speed[2] ** 2)
+    if numbers[MET] <= 0.0:
+        numbers[CONTACT] = 0.0
+    numbers[CONTACT] += pace * period
+    teeth = max(abs(numbers[SPEED]) * cut.cutter.teeth, _STILL)
+    # The first tooth cuts no more than the tool has come into the material.
+    share = min(1.0 / teeth, numbers[CONTACT] / max(pace, _STILL))
+    moved, changed, before = 0.0, 0.0, 0.0
+    for k in range(3):
+        feed[k] = memory.speed[k] * share
+        moved += (memory.rigid[k] + memory.bend[k] - swept[1, k]) ** 2
+        changed += (feed[k] - looked[k]) ** 2
+        before += looked[k] ** 2
+    near = LOOK_CELLS * cut.material.grid.cell
+    if moved < near * near and changed <= LOOK_FEED * LOOK_FEED * before:
+        return
+    for k in range(3):
+        swept[0, k] = swept[1, k]
+        swept[1, k] = memory.rigid[k] + memory.bend[k]
+        looked[k] = feed[k]
+    if min(swept[0, 2], swept[1, 2]) >= cut.top:
+        numbers[MET] = 0.0
+        return
+    material = cut.material
+    sweep(
+        material.heights, material.grid, swept, cut.cutter.profile,
+        memory.removal, memory.marks, memory.mark,
+    )  # fmt: skip
+    sense = 1.0 if numbers[SPEED] >= 0.0 else -1.0
+    met = tooth_forces(material, swept[1], feed, cut.cutter, cut.law, sense, memory.bench)
+    numbers[MET] = 1.0 if met else 0.0
+
+
+@kernel
+def _bend(period: float, cut: Cut, memory: Memory) -> None:
+    """Bend the tool by the mean force of a turn."""
+    met = memory.numbers[MET] > 0.0
+    share = _share_of_tooth(cut, memory, period) if met else 1.0
+    for k in range(2):
+        wanted = cut.strength.compliance * memory.bench.mean[k] if met else 0.0
+        memory.bend[k] += share * (wanted - memory.bend[k])
+
+
+@kernel
+def _load_axes(place: Place, memory: Memory, cosine: float, sine: float) -> None:
+    """What the force on the tool pushes the axes with."""
+    force, load, tip = memory.force, memory.load, memory.rigid
+    load[0] = cosine * force[0] + sine * force[1]
+    load[1] = cosine * force[1] - sine * force[0]
+    load[2] = force[2]
+    if place.rotary >= 0:
+        load[place.rotary] = _MM * (tip[0] * force[1] - tip[1] * force[0])
+
+
+@kernel
+def _note(cut: Cut, memory: Memory, felt: Felt, row: int, turn: tuple[float, float]) -> None:
+    """Enter what the tool feels."""
+    numbers, bend = memory.numbers, memory.bend
+    met = numbers[MET] > 0.0
+    speed = numbers[SPEED]
+    torque = memory.bench.figures[1] * _MM if met else 0.0
+    for k in range(3):
+        felt.force[row, k] = memory.load[k]
+    felt.deflection[row, 0] = turn[0] * bend[0] + turn[1] * bend[1]
+    felt.deflection[row, 1] = turn[0] * bend[1] - turn[1] * bend[0]
+    felt.deflection[row, 2] = bend[2]
+    felt.peak_force[row] = memory.bench.figures[0] if met else 0.0
+    felt.power[row] = 2.0 * math.pi * abs(speed) * torque
+    felt.chip[row] = memory.bench.figures[2] if met else 0.0
+    felt.spindle_speed[row] = speed * _SECONDS
+    felt.spindle_load[row] = torque / lasting_torque(cut.spindle, speed)
+    felt.broken[row] = numbers[STATE]

@@ -1,0 +1,275 @@
+"""A tool that cuts while the machine moves: the process that the drives are stepped with."""
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from twin.coupling.cutting_kernels import (
+    BY_CHIP,
+    BY_FORCE,
+    FRESH,
+    SPEED,
+    STATE,
+    VALUE,
+    WHOLE,
+    Cut,
+    Felt,
+    Memory,
+    Place,
+    follow_cutting,
+)
+from twin.coupling.spindle_kernels import SpindleDrive
+from twin.cutting.forces.cutter_form import cutter_form, force_law
+from twin.cutting.forces.materials import Kienzle
+from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
+from twin.cutting.height_map import HeightMap
+from twin.cutting.kernels.sweep import Removal
+from twin.cutting.kernels.tooth_forces import Material, tooth_bench
+from twin.job.job_file import ToolTable
+from twin.machine.description.config import SpindleTable
+from twin.machine.simulation.process import Physics
+from twin.machine.watching.alarms import Alarm
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.nc.canonical import FloatArray
+from twin.recording.form import ToolLoad
+from twin.toolpath.part_frame import PartFrame
+from twin.units import SECONDS_PER_MINUTE
+
+STALLED_SHARE = 0.1
+"""Share of the commanded speed below which a spindle that cuts has stalled."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class ToolBreak:
+    """A tool that lost its edge.
+
+    Attributes:
+        tool: Its number.
+        line: Source line of the program.
+        time_s: When [s].
+        reason: Why, with value and limit.
+    """
+
+    tool: int
+    line: int
+    time_s: float
+    reason: str
+
+    @property
+    def alarm(self) -> Alarm:
+        """As the run's verdict calls it."""
+        message = f"tool {self.tool} broke: {self.reason}"
+        return Alarm("tool-broken", self.line, self.time_s, "", message)
+
+
+class Turning(NamedTuple):
+    """What is in the spindle during some setpoints, and how fast it shall turn.
+
+    Attributes:
+        rows: Which setpoints.
+        tool: The tool.
+        longer: How much lower its tip is than that which positions count for [mm].
+        speed: Of the spindle, shape (n,) [1/min], negative counter-clockwise; NaN where nothing is known.
+    """
+
+    rows: slice
+    tool: ToolTable
+    longer: float
+    speed: FloatArray
+
+
+class Operation(Protocol):
+    """Who knows what is in the spindle when."""
+
+    @property
+    def speed_at_start(self) -> float:
+        """How fast the spindle turns when the machine begins to move [1/min], signed."""
+        ...
+
+    def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
+        """Split setpoints where the tool changes."""
+        ...
+
+
+class CuttingProcess:
+    """Cuts a height map of its own along the simulated motion, and pushes the axes by what the teeth feel.
+
+    Attributes:
+        breaks: The tools that broke, in order.
+        alarm: The spindle's alarm of the last ``follow``.
+        material: The height map as cut so far.
+    """
+
+    def __init__(
+        self,
+        material: HeightMap,
+        resists: Kienzle,
+        operation: Operation,
+        part_frame: PartFrame,
+        spindle: SpindleTable,
+    ) -> None:
+        """Lay the material on the table.
+
+        Args:
+            material: It is cut; nobody else may.
+            resists: What it resists with.
+            operation: What is in the spindle when.
+            part_frame: How the part turns under the tool.
+            spindle: What turns the tool.
+        """
+        self.breaks: list[ToolBreak] = []
+        self.alarm: Alarm | None = None
+        self.material = material
+        self._resists = resists
+        self._operation = operation
+        self._frame = part_frame
+        self._table = spindle
+        self._drive = spindle_drive(spindle)
+        self._memory = _memory(0)
+        self._memory.numbers[SPEED] = operation.speed_at_start / SECONDS_PER_MINUTE
+        self._tool: ToolTable | None = None
+        self._overloaded_s = 0.0
+
+    def begin(self, position: FloatArray) -> None:
+        """Begin with the machine at rest; see ``Process``."""
+        speed = self._memory.numbers[SPEED]
+        self._memory = _memory(len(position))
+        self._memory.numbers[SPEED] = speed
+
+    def lift(self) -> None:
+        """Take the tool off what it cut: what comes next is no way of it."""
+        memory = self._memory
+        memory.numbers[FRESH] = 1.0
+        for column in (memory.load, memory.bend, memory.looked, memory.bench.figures):
+            column[:] = 0.0
+
+    def at_rest(self, count: int) -> ToolLoad:
+        """What a tool feels that does not cut; see ``Process``."""
+        return _load(_felt(count))
+
+    def follow(
+        self, physics: Physics, setpoints: Setpoints, controls: FloatArray, states: FloatArray
+    ) -> ToolLoad:
+        """Step the machine while the tool cuts; see ``Process``."""
+        self.alarm = None
+        felt = _felt(len(setpoints))
+        for turning in self._operation.turnings(setpoints):
+            rows, tool = turning.rows, turning.tool
+            self._mount(tool)
+            cut = self._cut(turning)
+            follow_cutting(
+                physics,
+                controls[rows],
+                states[rows],
+                turning.speed / SECONDS_PER_MINUTE,
+                cut,
+                self._memory,
+                Felt(*(column[rows] for column in felt)),
+            )
+            self._note_break(tool, cut.strength, setpoints[rows], felt.broken[rows])
+            self._watch_spindle(setpoints[rows], turning.speed, felt, rows, physics.drives.period)
+        return _load(felt)
+
+    def _mount(self, tool: ToolTable) -> None:
+        if self._tool is not None and self._tool.number == tool.number:
+            self._tool = tool
+            return
+        self._tool = tool
+        self.lift()
+        broken = any(found.tool == tool.number for found in self.breaks)
+        self._memory.numbers[STATE] = BY_FORCE if broken else WHOLE
+
+    def _cut(self, turning: Turning) -> Cut:
+        tool, frame = turning.tool, self._frame
+        rotary = -1 if frame.rotary is None else frame.rotary
+        return Cut(
+            Material(self.material.heights, self.material.grid),
+            self.material.top,
+            cutter_form(tool),
+            force_law(tool, self._resists),
+            tool_strength(tool),
+            self._drive,
+            Place(rotary, frame.center, frame.turn_zero, turning.longer),
+        )
+
+    def _note_break(
+        self, tool: ToolTable, strength: ToolStrength, setpoints: Setpoints, state: FloatArray
+    ) -> None:
+        row = int(np.argmax(state != WHOLE)) if len(state) else 0
+        known = any(found.tool == tool.number for found in self.breaks)
+        if not len(state) or state[row] == WHOLE or known:
+            return
+        value, why = float(self._memory.numbers[VALUE]), int(state[row])
+        if why == BY_CHIP:
+            reason = (
+                f"a chip of {value:.3g} mm was thicker than the {strength.chip:.3g} mm it bears"
+            )
+        elif why == BY_FORCE:
+            reason = (
+                f"a force of {value:.0f} N was greater than the {strength.force:.0f} N it bears"
+            )
+        else:
+            reason = f"{value:.0f} /min were more than the {strength.speed:.0f} /min it bears"
+        line, time = int(setpoints.line[row]), float(setpoints.time[row])
+        self.breaks.append(ToolBreak(tool.number, line, time, reason))
+
+    def _watch_spindle(
+        self, setpoints: Setpoints, told: FloatArray, felt: Felt, rows: slice, period: float
+    ) -> None:
+        """Raise the alarm of a spindle that stalls, or that gives too much for too long."""
+        load, speed = felt.spindle_load[rows], np.abs(felt.spindle_speed[rows])
+        if self.alarm is not None or not (load > 1.0).any():
+            self._overloaded_s = 0.0
+            return
+        for row, over in enumerate((load > 1.0).tolist()):
+            self._overloaded_s = self._overloaded_s + period if over else 0.0
+            place = int(setpoints.line[row]), float(setpoints.time[row])
+            asked = f"it asks for {100.0 * load[row]:.0f} % of its torque"
+            if over and speed[row] < STALLED_SHARE * abs(told[row]):
+                self.alarm = Alarm(
+                    "spindle-stall", *place, "", f"the cut stalled the spindle: {asked}"
+                )
+                return
+            if self._overloaded_s > self._table.overload_time_s:
+                message = f"the load of the spindle was above 100 % for {self._overloaded_s:.1f} s"
+                self.alarm = Alarm("spindle-overload", *place, "", message)
+                return
+
+
+def spindle_drive(table: SpindleTable) -> SpindleDrive:
+    """The drive of a machine file's spindle."""
+    curve = np.array(table.power, np.float64).reshape(-1, 2)
+    fastest = math.inf if table.max_speed is None else table.max_speed / SECONDS_PER_MINUTE
+    rate = table.acceleration / SECONDS_PER_MINUTE if table.acceleration else math.inf
+    return SpindleDrive(
+        np.ascontiguousarray(curve[:, 0]) / SECONDS_PER_MINUTE,
+        np.ascontiguousarray(curve[:, 1]),
+        table.overload,
+        fastest,
+        rate,
+    )
+
+
+def _memory(axes: int) -> Memory:
+    numbers = np.zeros(7)
+    numbers[FRESH] = 1.0
+    three = np.zeros((6, 3))
+    return Memory(
+        numbers, three[0].copy(), np.zeros((2, 3)), three[1].copy(), three[2].copy(),
+        three[3].copy(), np.zeros(axes), tooth_bench(), three[4].copy(), three[5].copy(),
+        Removal(*np.zeros((3, 1))), np.zeros(1), np.zeros((0, 0)),
+    )  # fmt: skip
+
+
+def _felt(count: int) -> Felt:
+    return Felt(*(np.zeros((count, 3) if name in _SPATIAL else count) for name in Felt._fields))
+
+
+_SPATIAL = ("force", "deflection")
+
+
+def _load(felt: Felt) -> ToolLoad:
+    return ToolLoad(**{**felt._asdict(), "broken": felt.broken != WHOLE})

@@ -1,0 +1,128 @@
+"""What is in the spindle when, and how fast it shall turn: of a program, or of an operator."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from twin.coupling.cutting_process import CuttingProcess, Operation, Turning
+from twin.cutting.forces.materials import kienzle
+from twin.cutting.height_map import blank
+from twin.cutting.program_summary import ProgramSummary
+from twin.cutting.tools import default_cell
+from twin.job.job_file import JobFile, StockTable, ToolTable
+from twin.machine.description.config import Machine
+from twin.motion.setpoints.setpoints import Setpoints
+from twin.nc.canonical import FloatArray
+from twin.toolpath.part_frame import PartFrame
+
+
+class ProgramOperation:
+    """What a program brings into the spindle."""
+
+    def __init__(self, summary: ProgramSummary) -> None:
+        """Go by what a whole program says beside its moves."""
+        self._tools = summary.tools
+        self._first_move = np.array(summary.spindle.first_move)
+        self._speed = np.array([_known(speed) for speed in summary.spindle.values])
+        self._silent = len(self._speed) == 1
+
+    @property
+    def speed_at_start(self) -> float:
+        """A program that never speaks of the spindle finds it turning."""
+        return (self._tools.tools[0].speed or 0.0) if self._silent else 0.0
+
+    def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
+        """Split setpoints where the tool changes; see ``Operation``."""
+        # At the end of a move's path the spindle has heard what comes before the next one.
+        move = np.maximum(setpoints.move + (setpoints.fraction >= 1.0), 0)
+        speed = self._speed[np.searchsorted(self._first_move, move, side="right") - 1]
+        for rows, tool in self._tools.runs(setpoints.move):
+            told = np.full(rows.stop - rows.start, _known(tool.speed))
+            yield Turning(
+                rows, tool, self._tools.longer(tool), told if self._silent else speed[rows]
+            )
+
+
+class OperatorOperation:
+    """What an operator has put into the spindle.
+
+    Attributes:
+        tool: The tool.
+        longer: How much lower its tip is than that which positions count for [mm].
+        speed: How fast the spindle shall turn [1/min], negative counter-clockwise; None: not known.
+    """
+
+    def __init__(self, tool: ToolTable) -> None:
+        self.tool = tool
+        self.longer = 0.0
+        self.speed: float | None = 0.0
+
+    @property
+    def speed_at_start(self) -> float:
+        """As it was told before."""
+        return self.speed or 0.0
+
+    def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
+        """All setpoints at once; see ``Operation``."""
+        if len(setpoints):
+            told = np.full(len(setpoints), _known(self.speed))
+            yield Turning(slice(0, len(setpoints)), self.tool, self.longer, told)
+
+
+def _known(speed: float | None) -> float:
+    return np.nan if speed is None else speed
+
+
+def program_process(
+    job: JobFile,
+    machine: Machine,
+    summary: ProgramSummary,
+    part_frame: PartFrame,
+    part_zero: FloatArray,
+) -> CuttingProcess | None:
+    """What the tools of a program do to the stock of a job.
+
+    Returns:
+        None where the force of the cut is not simulated: the job says so, or names no stock, no
+        material or no speed of the spindle.
+
+    Raises:
+        ConfigError: The stock is too large for its grid, its file cannot be read, or its material
+            is not known.
+    """
+    speeds = [*summary.spindle.values, *(tool.speed for tool in summary.tools.tools)]
+    if job.stock is None or job.cutting_force != "teeth" or not any(speeds):
+        return None
+    cell = job.stock.cell or default_cell(summary.tools.tools, job.stock)
+    return cutting_process(
+        job.stock, cell, ProgramOperation(summary), machine, part_frame, part_zero
+    )
+
+
+def cutting_process(
+    stock: StockTable,
+    cell: float,
+    operation: Operation,
+    machine: Machine,
+    part_frame: PartFrame,
+    part_zero: FloatArray,
+) -> CuttingProcess | None:
+    """What tools do to a stock; None where its material is not named.
+
+    Args:
+        stock: The blank.
+        cell: Of its height map [mm].
+        operation: What is in the spindle when.
+        machine: Its spindle turns the tool.
+        part_frame: How the part turns under the tool.
+        part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+
+    Raises:
+        ConfigError: As for ``program_process``.
+    """
+    resists = kienzle(stock)
+    if resists is None:
+        return None
+    corner = np.asarray(part_zero[:3]) - np.array([*part_frame.center, 0.0])
+    material = blank(stock, corner, cell)
+    return CuttingProcess(material, resists, operation, part_frame, machine.file.spindle)

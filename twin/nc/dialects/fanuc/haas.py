@@ -1,0 +1,222 @@
+"""What the mills of Haas do differently: codes, circular pockets, decisions."""
+
+import dataclasses
+from collections.abc import Mapping
+
+from twin.nc.control.codes import GCode, MCode
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import Decision
+from twin.nc.dialects.fanuc import offsets, programs, transformations
+from twin.nc.dialects.fanuc.codes import M_CODES, codes, passed_over, refused
+from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
+from twin.nc.dialects.fanuc.memory import HAAS
+from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
+
+_LACKING = (5.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
+"""Codes that the control lacks."""
+
+
+def circular_pocket(control: Control, *, clockwise: bool) -> None:
+    """G12, G13: mill a round pocket about where the tool stands.
+
+    I is the radius of the first circle, K that of the last, Q what each is larger, Z the depth that is
+    plunged to first, L how many depths (in G91), D the tool. From the centre a half circle leads to
+    each circle's start at +X, and one back to the centre at the end.
+    """
+    first, last, step = control.take("I"), control.take("K"), control.take("Q")
+    depth, count = control.take("Z"), control.take("L")
+    if first is None:
+        control.fail("cycle-word", "a circular pocket needs I, the radius of its circle")
+    tool = radius_in_force(control)
+    radii = [control.length(first)]
+    if last is not None:
+        if step is None or control.length(step) <= 0.0:
+            control.fail("cycle-word", "a pocket to the radius K needs Q above 0", last)
+        while radii[-1] < control.length(last):
+            radii.append(min(radii[-1] + control.length(step), control.length(last)))
+            if len(radii) > control.settings.step_limit:
+                control.fail("endless-program", "the pocket has too many circles", step)
+    if radii[0] <= tool:
+        message = f"the circle of {radii[0]:g} mm is no larger than the tool of {tool:g} mm radius"
+        control.fail("cycle-size", message, first)
+    often = 1 if count is None else programs.whole(control, count, "repeat-count", "count")
+    if often < 1:
+        control.fail("repeat-count", "a pocket is milled once at least", count)
+    for number in range(often):
+        if depth is not None and (number == 0 or control.modal.incremental):
+            there = list(control.programmed)
+            height = control.length(depth)
+            there[2] = height + (there[2] if control.modal.incremental else 0.0)
+            control.line_to(there, rapid=False)
+        _circles(control, [radius - tool for radius in radii], clockwise=clockwise)
+
+
+def _circles(control: Control, radii: list[float], *, clockwise: bool) -> None:
+    x, y = control.programmed[:2]
+    half = -180.0 if clockwise else 180.0
+    at = 0.0
+    for radius in radii:
+        _arc(control, x + radius, y, (x + (at + radius) / 2.0, y), half if not at else None)
+        _arc(control, x + radius, y, (x, y), 2.0 * half)
+        at = radius
+    _arc(control, x, y, (x + at / 2.0, y), half)
+
+
+def _arc(
+    control: Control, x: float, y: float, center: tuple[float, float], sweep: float | None
+) -> None:
+    """To a place by an arc in the plane X Y, or straight."""
+    there = list(control.programmed)
+    there[0], there[1] = x, y
+    if sweep is None:
+        control.line_to(there, rapid=False)
+    else:
+        control.arc_to(there, (*center, there[2]), sweep)
+
+
+def _pocket(meaning: str, *, clockwise: bool) -> GCode:
+    return GCode(
+        meaning=f"{meaning}: I K Q Z L D",
+        perform=lambda control: circular_pocket(control, clockwise=clockwise),
+    )
+
+
+def _offset(number: int) -> GCode:
+    pair = number - 109
+    return GCode(
+        meaning=f"work offset G154 P{pair} of the job",
+        group="offset",
+        action=offsets.numbered_code(number, pair),
+        ground="manual",
+    )
+
+
+_NO_PROBE = "the twin has no probe to touch with"
+_POSITIONS = "write the positions one by one"
+
+_OWN: Mapping[float, GCode] = {
+    12: _pocket("circular pocket clockwise", clockwise=True),
+    13: _pocket("circular pocket counter-clockwise", clockwise=False),
+    100: dataclasses.replace(
+        codes(HAAS)[50.1], meaning="mirror off", group="mirror", perform=transformations.end_mirror
+    ),
+    101: dataclasses.replace(codes(HAAS)[51.1], meaning="mirror the axes at the places named"),
+    103: passed_over("limit of the blocks that are looked ahead", "P"),
+    154: GCode(
+        meaning="work offset P1 to P99 of the job",
+        group="offset",
+        action=offsets.extended_offset,
+        ground="manual",
+    ),
+    187: passed_over("smoothness: P roughness, E deviation at corners", "PE"),
+    **{number: _offset(number) for number in range(110, 130)},
+    **refused("engraving", "the shapes of its letters are the control's own", 47),
+    **refused("general pocket", "it clears any outline by a way that is the control's own", 150),
+    **refused("bolt holes on a circle, on an arc, on a line", _POSITIONS, 70, 71, 72),
+    **refused("probing", _NO_PROBE, 35, 36, 136),
+    **refused("compensation in space", "the machine's tool does not tilt", 141, 143),
+    **refused("tool centre point control", "the machine's tool does not tilt", 234),
+    **refused("dynamic work offset, tilted plane", "turning in space is not simulated", 254, 268),
+    **refused("feed on the cylinder", "write the rotary axis itself, with G93", 107),
+    **refused("return from a tilted plane", "turning in space is not simulated", 253, 255, 269),
+    **refused("left-hand and any-direction tapping", "the tool stays along Z", 174, 184),
+    **refused("back boring, boring by hand", "write its moves", 77),
+}
+
+
+def haas_codes() -> dict[float, GCode]:
+    """The G codes of the control."""
+    shared = {n: code for n, code in codes(HAAS).items() if n not in _LACKING}
+    return {**shared, **_OWN}
+
+
+START = (0, 17, 21, 40, 49, 50, 54, 64, 67, 69, 80, 90, 94, 97, 98, 100)
+INSTEAD: Mapping[float, str] = {
+    15: "the control has no polar coordinates",
+    16: "write X and Y: the control has no polar coordinates",
+    30: "G28, or G53 and the axes",
+    51.1: "a mirror is G101",
+    54.1: "further work offsets are G154 P",
+    50.1: "a mirror ends by G100",
+}
+
+HAAS_M_CODES: Mapping[int, MCode] = {
+    **M_CODES,
+    97: MCode(
+        meaning="run blocks of this program as a subprogram: P L",
+        late=True,
+        action=programs.call_block,
+        silent=True,
+        ground="manual",
+    ),
+    **{
+        number: MCode(meaning=meaning, ground="manual")
+        for number, meaning in {
+            10: "brake of the fourth axis on",
+            11: "brake of the fourth axis off",
+            12: "brake of the fifth axis on",
+            13: "brake of the fifth axis off",
+            31: "chip conveyor forward",
+            33: "chip conveyor stop",
+            34: "coolant nozzle up",
+            35: "coolant nozzle down",
+            41: "low gear",
+            42: "high gear",
+            83: "air on",
+            84: "air off",
+            88: "coolant through the spindle on",
+            89: "coolant through the spindle off",
+        }.items()
+    },
+}
+"""M codes of the control."""
+
+_SHARED_EXAMPLES = {
+    "rapids_go_straight",
+    "exact_path",
+    "arc_centre_moved_to_fit",
+    "compensation_start",
+    "compensation_corners",
+    "work_offsets",
+    "chip_clearance",
+    "main_ends_by_m99",
+    "kept_variables",
+    "stops_by_variable",
+    "angles",
+}
+DECISIONS: tuple[Decision, ...] = (
+    Decision(
+        "What does a number without a decimal point count?",
+        "Least increments: 0.001 mm, 0.0001 inch, 0.001 degree; F too, 0.001 mm/min. "
+        'decimal_point = "calculator" of the job or the machine file lets it count whole units. The '
+        "first one is warned of.",
+        "Settings 77 and 162 are so when a control comes from its maker.",
+        example="decimal_point",
+    ),
+    Decision(
+        "What does P of a dwell count?",
+        "Milliseconds without a decimal point, seconds with one.",
+        "The manual says so of G4; cycles follow it.",
+        example="dwell",
+    ),
+    Decision(
+        "Which codes are in force when a program starts?",
+        "G0 G17 G21 G40 G49 G50 G54 G64 G67 G69 G80 G90 G94 G97 G98 G100.",
+        "Setting 9, inches or millimetres, is the machine's: here it is millimetres.",
+        example="start_state",
+    ),
+    Decision(
+        "How does G12 or G13 mill its pocket?",
+        "A half circle from the centre to +X, the circle, straight out by Q to the next one, and a "
+        "half circle back to the centre; D's radius is taken from each.",
+        "The manual shows the leads and leaves their shape to the control.",
+        example="circular_pocket",
+    ),
+    Decision(
+        "What do the settings of G92, G52 and D say?",
+        "G52 and G92 shift every work offset (setting 33: FANUC); D holds radii (setting 40).",
+        "Settings decide.",
+        example="settings",
+    ),
+    *(each for each in FANUC_DECISIONS if each.example in _SHARED_EXAMPLES),
+)

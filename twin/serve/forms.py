@@ -1,0 +1,106 @@
+"""The two forms in which a document is sent: XML, and JSON as the reference agent writes it.
+
+MTConnect Part 1 defines the XML. The JSON is version 2 of the form that the institute's own agent answers with:
+attributes are members, text is the member ``value``, and what may stand several times is a list under its name.
+"""
+
+import io
+import json
+import xml.etree.ElementTree as ET  # only writes; nothing from outside is parsed
+from collections.abc import Callable
+from typing import NamedTuple
+
+_JSON_VERSION = 2
+_SINGLE = frozenset(
+    {
+        "Header", "Description", "Devices", "Components", "DataItems", "Streams", "Samples",
+        "Events", "Condition", "Errors",
+    }
+)  # fmt: skip
+"""Elements that stand once at most in their parent."""
+_WHOLE_NUMBERS = frozenset(
+    {
+        "sequence", "instanceId", "bufferSize", "assetBufferSize", "assetCount", "firstSequence",
+        "lastSequence", "nextSequence",
+    }
+)  # fmt: skip
+
+
+class Form(NamedTuple):
+    """How documents are written.
+
+    Attributes:
+        media_type: What HTTP calls it.
+        written: A document's tree as bytes.
+    """
+
+    media_type: str
+    written: Callable[[ET.Element], bytes]
+
+
+def accepted_form(accept: str) -> Form:
+    """The form that a client asks for; XML where it has no wish, or likes both alike.
+
+    Args:
+        accept: The header of that name (RFC 9110, section 12.5.1); empty where there is none.
+    """
+    quality = {"json": 0.0, "xml": 0.0}
+    for part in accept.lower().split(","):
+        media_type, *parameters = (each.strip() for each in part.split(";"))
+        weight = next((each[2:] for each in parameters if each.startswith("q=")), "1")
+        try:
+            value = float(weight)
+        except ValueError:
+            continue  # What cannot be read is no wish.
+        if media_type == "application/json":
+            quality["json"] = max(quality["json"], value)
+        elif media_type in ("text/xml", "application/xml", "text/*", "application/*", "*/*"):
+            quality["xml"] = max(quality["xml"], value)
+    return JSON if quality["json"] > quality["xml"] else XML
+
+
+def _xml(root: ET.Element) -> bytes:
+    out = io.BytesIO()
+    ET.ElementTree(root).write(out, encoding="UTF-8", xml_declaration=True)
+    return out.getvalue()
+
+
+def _json(root: ET.Element) -> bytes:
+    members: dict[str, object] = {"jsonVersion": _JSON_VERSION}
+    header = root.find("Header")
+    if header is not None:
+        members["schemaVersion"] = header.attrib["version"]
+    for child in root:
+        members[child.tag] = _members(child)
+    return json.dumps({root.tag: members}, ensure_ascii=False).encode()
+
+
+def _members(element: ET.Element, *, measured: bool = False) -> dict[str, object]:
+    """An element as an object; of ``measured`` ones the value is a number."""
+    members: dict[str, object] = {
+        name: int(value) if name in _WHOLE_NUMBERS else value
+        for name, value in element.attrib.items()
+    }
+    if element.text:
+        members["value"] = _number(element.text) if measured else element.text
+    for child in element:
+        inner = _members(child, measured=element.tag == "Samples")
+        if child.tag in _SINGLE:
+            members[child.tag] = inner
+        else:
+            several = members.setdefault(child.tag, [])
+            assert isinstance(several, list)
+            several.append(inner)
+    return members
+
+
+def _number(text: str) -> float | str:
+    """What was measured; ``UNAVAILABLE`` stays a word."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+XML = Form("text/xml", _xml)
+JSON = Form("application/json", _json)
