@@ -7,6 +7,7 @@ import h5py
 import pytest
 from command_line import Twin
 
+from twin.commands.pictures import ALARMS_OF_CONTACT
 from twin.files.shipped import resource_root
 
 FOLDER = resource_root("programs") / "alarms" / "fagor8070"
@@ -23,6 +24,8 @@ EXPECTED = {
     "collision_flank": ("collision", 5, "the cutter meets the jaw"),
     "collision_holder": ("collision", 11, "the holder of tool 1 meets the part (8.00 mm deep)"),
     "collision_shank": ("collision", 8, "the shank of tool 1 meets the part (6.00 mm deep)"),
+    "collision_gantry": ("collision", 4, "the block meets the gantry's beam"),
+    "collision_column": ("collision", 4, "the stock meets the column"),
     "collision_turning_clamp": ("collision", 5, "the cutter meets the clamp"),
     "rapid_into_stock": (
         "rapid-into-stock",
@@ -95,8 +98,8 @@ def test_the_alarm_is_raised_at_its_line_and_the_recording_up_to_it_is_kept(
     assert (alarm["code"], alarm["line"]) == (code, line)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     drawn = f"<figcaption>Line {line}, " in page and (tmp_path / "collision.png").is_file()
-    untold = "no picture of the collision: " not in done.stderr
-    assert drawn == (code == "collision" and untold)
+    untold = "no picture of the alarm: " not in done.stderr
+    assert drawn == (code in ALARMS_OF_CONTACT and untold)
     if code == "soft-limit":
         assert alarm["time_s"] == 0.0
         assert not (tmp_path / "recording.h5").exists()

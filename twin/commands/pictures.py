@@ -10,7 +10,12 @@ from twin.run.run import Run
 
 FILM_STEM = "video"
 ALARM_CAMERAS = ("tool", "overview")
-"""What the moment of a collision is seen from: the first of these that the machine has."""
+"""What the moment of a contact is seen from: those of these that the machine has, side by side. The frame and
+the far side of the table are not near the tool."""
+_ALARM_SIZE = (1280, 480)
+"""Of both views together [px]."""
+ALARMS_OF_CONTACT = ("collision", "rapid-into-stock", "spindle-off", "gouge")
+"""Alarms of two things that meet, which a picture shows."""
 
 
 def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> None:
@@ -48,8 +53,8 @@ def film_run(run: Run, dry_run: DryRun, folder: Path, progress: Progress) -> Non
         )
 
 
-def draw_collision(run: Run, dry_run: DryRun, folder: Path) -> None:
-    """Draw the moment of a collision, which is the last of its recording.
+def draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:
+    """Draw the moment at which two things met, which is the last of its recording, near and from afar.
 
     Args:
         run: The run.
@@ -64,6 +69,6 @@ def draw_collision(run: Run, dry_run: DryRun, folder: Path) -> None:
 
     with open_recording(folder / "recording.h5") as recording:
         scene = scene_of(recording, run.preparation, dry_run.summary)
-        cameras = [name for name in ALARM_CAMERAS if name in scene.camera_names()][:1]
+        cameras = [name for name in ALARM_CAMERAS if name in scene.camera_names()]
         shot = Shot(folder / ALARM_STILL_NAME, len(recording))
-        stills(scene, [shot], cameras=cameras, size=(960, 540), quality="draft")
+        stills(scene, [shot], cameras=cameras, size=_ALARM_SIZE, quality="draft")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import typer
 
-from twin.commands.pictures import draw_collision, film_run
+from twin.commands.pictures import ALARMS_OF_CONTACT, draw_contact, film_run
 from twin.compilation.announcement import announce_compilation
 from twin.errors import ExitCode, RenderError
 from twin.run.dry_run import DryRun
@@ -50,21 +50,21 @@ def run_and_print(
             if video and outcome.samples:
                 with run.clock.stage("render"):
                     film_run(run, dry_run, folder, progress)
-            if any(alarm.code == "collision" for alarm in outcome.alarms):
+            if any(alarm.code in ALARMS_OF_CONTACT for alarm in outcome.alarms):
                 with run.clock.stage("render"):
-                    _draw_collision(run, dry_run, folder)
+                    _draw_contact(run, dry_run, folder)
         write_results(run, outcome, folder)
     print_findings(run, outcome)
     typer.echo(summary(run, outcome, folder))
     return outcome.verdict.exit_code
 
 
-def _draw_collision(run: Run, dry_run: DryRun, folder: Path) -> None:
+def _draw_contact(run: Run, dry_run: DryRun, folder: Path) -> None:
     """Draw the moment for the report; the alarm is told where no picture can be made too."""
     try:
-        draw_collision(run, dry_run, folder)
+        draw_contact(run, dry_run, folder)
     except RenderError as error:
-        typer.echo(f"no picture of the collision: {error}", err=True)
+        typer.echo(f"no picture of the alarm: {error}", err=True)
 
 
 def print_findings(run: Run, outcome: Outcome) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile
-from twin.machine.description.config import Machine
+from twin.machine.description.config import Blank, Machine
 from twin.nc.canonical import FloatArray
 
 WORK_HOLDING_HEIGHT = 40.0
@@ -35,6 +35,31 @@ def part_zero(job: JobFile, machine: Machine, spindle_over_table: float) -> Floa
     _write_axes(zero, job.part_zero, machine, "part_zero")
     _require_stock_above_table(job, float(zero[2]), spindle_over_table)
     return zero
+
+
+def with_blank(
+    machine: Machine, job: JobFile, zero: FloatArray, spindle_over_table: float
+) -> Machine:
+    """The machine with the job's stock on its table.
+
+    Args:
+        machine: The machine.
+        job: The job file.
+        zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+        spindle_over_table: As in ``part_zero``.
+    """
+    if job.stock is None:
+        return machine
+    size = job.stock.extent
+    x, y, z = np.array(job.stock.position) + zero[:3] - np.array([*machine.part_frame.center, 0.0])
+    top = z + spindle_over_table - job.tools[0].length
+    return machine.with_blank(
+        Blank(
+            size,
+            (float(x), float(y), float(top) - size[2] / 2.0),
+            round=job.stock.shape in ("cylinder", "tube"),
+        )
+    )
 
 
 def start_position(job: JobFile, machine: Machine) -> FloatArray:

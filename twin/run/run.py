@@ -30,7 +30,7 @@ from twin.recording.reader import LONGEST_TEXT, RecordingHeader, RecordingWriter
 from twin.run.dry_run import DryRun, interpret_all
 from twin.run.machining import Machining
 from twin.run.outcome import Outcome
-from twin.run.placement import part_zero
+from twin.run.placement import part_zero, with_blank
 from twin.run.preparation import Preparation
 from twin.run.progress import Progress
 from twin.run.stages import StageClock
@@ -78,8 +78,10 @@ class Run:
         """
         machine, job = preparation.machine, preparation.job.file
         self.preparation = preparation
-        self.spec: mujoco.MjSpec = build_spec(machine, job.tools[0])
-        self.part_zero = part_zero(job, machine, spindle_over_table_mm(machine))
+        over_table = spindle_over_table_mm(machine)
+        self.part_zero = part_zero(job, machine, over_table)
+        self._machine = with_blank(machine, job, self.part_zero, over_table)
+        self.spec: mujoco.MjSpec = build_spec(self._machine, job.tools[0])
         self.part_frame: PartFrame = machine.part_frame.at(self.part_zero)
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
@@ -211,7 +213,7 @@ class Run:
         return self.clock.watch("plan", settle(planned(), period))
 
     def _simulation(self, setpoints: Iterator[Setpoints], summary: ProgramSummary) -> Simulation:
-        machine, job = self.preparation.machine, self.preparation.job.file
+        machine, job = self._machine, self.preparation.job.file
         load = None
         self._process = program_process(job, machine, summary, self.part_frame, self.part_zero)
         if job.cutting_load and self._process is None:

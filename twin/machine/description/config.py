@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import pydantic
@@ -83,7 +83,8 @@ class AxisTable(Table):
     lugre: LuGreTable | None = None
     """Refines ``dry_friction``; none: Coulomb's law."""
     backlash: NonNegative = 0.0
-    """Free play between motor and axis [mm or deg]; the position loop closes at the motor."""
+    """Free play between motor and axis [mm or deg]; the position loop closes at the motor. Nothing holds an
+    axis within it but friction, load and its own inertia."""
     stiffness: NonNegative = 0.0
     """Of screw, nut and bearings between motor and axis [N/mm or N m/deg]; 0: rigid. With backlash
     rigid walls are springs that half a servo period just follows (1000 N/µm on the X of ``mill4``)."""
@@ -271,6 +272,20 @@ class MachineFile(Table):
         return Axes(names, tuple(self.axes[name].kind for name in names))
 
 
+class Blank(NamedTuple):
+    """The uncut stock on the table.
+
+    Attributes:
+        size: Of the box around it [mm].
+        center: Of that box over the middle of the table [mm].
+        round: An upright cylinder; else the box itself.
+    """
+
+    size: tuple[float, float, float]
+    center: tuple[float, float, float]
+    round: bool
+
+
 class Machine:
     """A machine file that was read, with what other rooms need of it.
 
@@ -279,11 +294,13 @@ class Machine:
         file: Its checked content.
         axes: Names and kinds in the order of every column.
         part_frame: How the part turns under the tool.
+        blank: What is clamped on the table to be cut, if anything.
     """
 
-    def __init__(self, path: Path, file: MachineFile) -> None:
+    def __init__(self, path: Path, file: MachineFile, blank: Blank | None = None) -> None:
         self.path = path
         self.file = file
+        self.blank = blank
         self.axes = file.ordered_axes()
         turning = None if file.table is None else file.table.axis
         self.part_frame = PartFrame(
@@ -304,6 +321,10 @@ class Machine:
         if twice:
             raise ConfigError(f"fixture '{twice[0]}' is named twice")
         return Machine(self.path, self.file.model_copy(update={"fixtures": both}))
+
+    def with_blank(self, blank: Blank) -> "Machine":
+        """This machine with stock on its table."""
+        return Machine(self.path, self.file, blank)
 
     @property
     def model_path(self) -> Path:

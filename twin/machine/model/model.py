@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
-from twin.machine.description.config import Machine
+from twin.machine.description.config import Blank, Machine
 from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
 from twin.machine.model.drives import Drive, tune
@@ -12,6 +12,7 @@ from twin.machine.model.tool_shape import (
     COLLISION_GROUP,
     FRAME_SIDE,
     PART_SIDE,
+    STOCK_SIDE,
     TOOL_SIDE,
     VISUAL_GROUP,
     DefaultTool,
@@ -26,6 +27,8 @@ SPINDLE_NOSE = "spindle_nose"
 """Site on the head at the lower end of the spindle, on its axis."""
 TABLE_TOP = "table_top"
 """Site in the middle of the work-holding surface."""
+BLANK = "stock"
+"""Geom of the stock, as an alarm calls it."""
 ROTARY_TABLE = "rotary_table"
 """Body that the part is clamped to."""
 
@@ -67,6 +70,8 @@ def _complete(spec: mujoco.MjSpec, machine: Machine, tool: ToolShape | None) -> 
     _require_actuators(spec, machine)
     add_drives(spec, machine, drives(machine, compiled(_without(spec, VISUAL_GROUP), machine)))
     _add_fixtures(spec, machine)
+    if machine.blank is not None:
+        _add_blank(spec, machine.blank)
     flange = machine.file.spindle.flange_diameter
     add_tool(spec, tool or DefaultTool(holder=flange / 2.0), flange)
 
@@ -142,6 +147,21 @@ def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
                 conaffinity=TOOL_SIDE | FRAME_SIDE if collides else 0,
                 mass=0.0,
             )
+
+
+def _add_blank(spec: mujoco.MjSpec, blank: Blank) -> None:
+    """To be held against the frame; what is on the tool's side is held against what is left of it."""
+    top, half = spec.site(TABLE_TOP), np.array(blank.size) / 2.0 * MM
+    top.parent.add_geom(
+        name=BLANK,
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER if blank.round else mujoco.mjtGeom.mjGEOM_BOX,
+        size=[half[0], half[2], 0.0] if blank.round else list(half),
+        pos=list(top.pos + np.array(blank.center) * MM),
+        group=COLLISION_GROUP,
+        contype=STOCK_SIDE,
+        conaffinity=FRAME_SIDE,
+        mass=0.0,
+    )
 
 
 def compiled(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:

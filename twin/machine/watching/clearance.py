@@ -24,7 +24,14 @@ import mujoco
 import numpy as np
 
 from twin.machine.description.config import Machine
-from twin.machine.model.tool_shape import COLLISION_GROUP, CUTTER, CUTTING_PARTS, TOOL_SIDE
+from twin.machine.model.tool_shape import (
+    COLLISION_GROUP,
+    CUTTER,
+    CUTTING_PARTS,
+    PART_SIDE,
+    STOCK_SIDE,
+    TOOL_SIDE,
+)
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.machine.watching.plane_kernels import PlaneColumns, find_suspects, least_clearance
 from twin.machine.watching.relative_motion import RelativeMotion
@@ -44,6 +51,8 @@ _FAR = 10.0
 """Distances beyond this are not measured [m]."""
 _BLOCK = 256
 """Samples that are judged at once by the box around them."""
+_ORDER = {side: place for place, side in enumerate((TOOL_SIDE, STOCK_SIDE, PART_SIDE))}
+"""In which order an alarm names two that meet."""
 _NO_PLANE = 1e-6
 """Distance below which two witness points give no direction [mm]."""
 
@@ -339,9 +348,9 @@ def _share_above(ends: FloatArray) -> float:
 
 
 def _pairs(model: mujoco.MjModel) -> list[tuple[int, int]]:
-    """Geoms of different bodies that may not meet, by their bits; the tool's side first."""
+    """Geoms of different bodies that may not meet, by their bits; the tool's side first, frame last."""
     geoms = [index for index in range(model.ngeom) if model.geom_group[index] == COLLISION_GROUP]
-    geoms.sort(key=lambda index: model.geom_contype[index] & TOOL_SIDE == 0)
+    geoms.sort(key=lambda index: _ORDER.get(int(model.geom_contype[index]), len(_ORDER)))
     return [
         (one, two)
         for one, two in itertools.combinations(geoms, 2)

@@ -55,6 +55,7 @@ class Dialect:
         axis_letters: Addresses that name axes.
         motion_words: Addresses that make a block move, the axes among them.
         function_letters: Addresses that belong to an M function of their block.
+        declared_letters: Addresses that belong to an M function that the job or the machine declares.
         references: Addresses whose value names a variable and is not computed.
         repeat_word: Address that says how often its block runs, or empty.
         signed: Addresses that are two words, one above and one below 0.
@@ -106,6 +107,7 @@ class Dialect:
     axis_letters: frozenset[str] = frozenset("XYZABCUVW")
     motion_words: frozenset[str] = frozenset("XYZABCUVWIJKR")
     function_letters: str = ""
+    declared_letters: str = ""
     references: str = ""
     repeat_word: str = ""
     signed: tuple[str, ...] = ()

@@ -271,10 +271,11 @@ class Executor(Control):
 
     def take_function_arguments(self, word: Word) -> dict[str, float]:
         """What belongs to an M function: its own words, and for a spindle start the speed."""
+        letters = self.dialect.function_letters
+        if integer_of(number_of(word)) not in self.dialect.m:
+            letters += self.dialect.declared_letters
         arguments = {
-            address: self.take_computed(address)
-            for address in self.dialect.function_letters
-            if address in self.words
+            address: self.take_computed(address) for address in letters if address in self.words
         }
         if integer_of(number_of(word)) in (3, 4) and self.spindle is not None:
             arguments["S"] = self.spindle

@@ -96,6 +96,11 @@ class ProgramCounter:
         """A part of the program is being run for a caller."""
         return self._now[CALLS] > 0
 
+    @property
+    def depth(self) -> int:
+        """How many parts of the program are being run for callers."""
+        return int(self._now[CALLS])
+
     def next(self) -> Block | None:
         """The next block, or None at the end of the program.
 

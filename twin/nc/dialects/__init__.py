@@ -1,4 +1,4 @@
-"""The controls, a module or a folder each."""
+"""The controls, one module or folder each."""
 
 import re
 from collections.abc import Mapping
@@ -9,13 +9,18 @@ from twin.nc.dialects.codesys import CODESYS
 from twin.nc.dialects.fagor8070 import FAGOR8070
 from twin.nc.dialects.fanuc import FANUC, HAAS
 from twin.nc.dialects.gost import GOST
+from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.dialects.mefi import MEFI
+from twin.nc.dialects.outside import dialects_from_outside
 from twin.nc.text.source import Source
 
-DIALECTS: Mapping[str, Dialect] = {
-    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS)
+OWN: Mapping[str, Dialect] = {
+    dialect.name: dialect for dialect in (GOST, CODESYS, FAGOR8070, MEFI, FANUC, HAAS, LINUXCNC)
 }
-"""Every known dialect by name."""
+"""Those of this package by name."""
+_OUTSIDE, _FAILED = dialects_from_outside(OWN)
+DIALECTS: Mapping[str, Dialect] = {**OWN, **_OUTSIDE}
+"""Every known dialect by name, those of other packages behind."""
 
 
 def dialect_named(name: str) -> Dialect:
@@ -25,6 +30,8 @@ def dialect_named(name: str) -> Dialect:
         UsageError: There is none; the message lists the known ones.
     """
     dialect = DIALECTS.get(name)
+    if dialect is None and name in _FAILED:
+        raise UsageError(f"no dialect '{name}': {_FAILED[name]}")
     if dialect is None:
         raise UsageError(f"no dialect '{name}': known are {', '.join(DIALECTS)}")
     return dialect
@@ -93,4 +100,4 @@ _VALUES = re.compile(r"(?<=[XYZABCIJKRUVWN])[-+]?[0-9.]+(?![0-9.]|[ \t]*=)", re.
 _MOST_SHAPES = 10_000
 
 
-__all__ = ["DIALECTS", "dialect_named", "recognise"]
+__all__ = ["DIALECTS", "OWN", "dialect_named", "recognise"]

@@ -9,7 +9,7 @@ from pathlib import Path
 from twin.files.atomic import write_text
 from twin.nc.control.codes import GCode
 from twin.nc.control.dialect import Dialect
-from twin.nc.dialects import DIALECTS
+from twin.nc.dialects import DIALECTS, OWN
 
 _GROUND = {
     "seed": "the control's own page",
@@ -150,7 +150,7 @@ def page_of(dialect: Dialect) -> Path:
 
 def write_pages() -> None:
     """Write every page anew."""
-    for dialect in DIALECTS.values():
+    for dialect in OWN.values():
         write_text(page_of(dialect), describe(dialect))
 
 

@@ -128,6 +128,8 @@ class Cycle(NamedTuple):
         retract: A ``Retract``.
         lift: How far the tool withdraws between pecks where its words do not say it; 0: to the
             reference plane [mm].
+        repeats_only: The compiled tier drills the holes behind the call, in absolute coordinates; all
+            else is for the interpreter tier.
     """
 
     lasting: bool
@@ -138,6 +140,7 @@ class Cycle(NamedTuple):
     clearance: float = CHIP_CLEARANCE
     retract: int = int(Retract.RAPID)
     lift: float = 0.0
+    repeats_only: bool = False
 
 
 class Hole(NamedTuple):

@@ -13,6 +13,9 @@ import numpy as np
 
 from twin.compilation.compilable import compilable, compilable_as
 
+SAME_NUMBER = 0.0001
+"""RS274/NGC: numbers that differ by less are equal for EQ and NE (LinuxCNC)."""
+
 
 @compilable
 def add(a: float, b: float) -> float:
@@ -72,6 +75,25 @@ def equal(a: float, b: float) -> float:
 def unequal(a: float, b: float) -> float:
     """Whether they are different numbers."""
     return 1.0 if a != b else 0.0
+
+
+@compilable
+def nearly_equal(a: float, b: float) -> float:
+    """Whether they differ by less than ``SAME_NUMBER``."""
+    return 1.0 if abs(a - b) < SAME_NUMBER else 0.0
+
+
+@compilable
+def not_nearly_equal(a: float, b: float) -> float:
+    """Whether they differ by ``SAME_NUMBER`` or more."""
+    return 0.0 if abs(a - b) < SAME_NUMBER else 1.0
+
+
+@compilable
+def positive_remainder(a: float, b: float) -> float:
+    """The remainder of a division, never below 0."""
+    rest = math.fmod(a, b)
+    return rest + abs(b) if rest < 0.0 else rest
 
 
 @compilable
@@ -197,6 +219,12 @@ def direction_in_degrees(x: float, y: float) -> float:
 
 
 @compilable
+def direction_of_quotient(y: float, x: float) -> float:
+    """The direction of a vector, its ordinate first [deg]."""
+    return math.degrees(math.atan2(y, x))
+
+
+@compilable
 def direction_from_zero(y: float, x: float) -> float:
     """The direction of a vector, its ordinate first, from 0 up to 360 [deg]."""
     angle = math.degrees(math.atan2(y, x))
@@ -241,15 +269,21 @@ def nearest_whole(a: float) -> float:
 
 
 @compilable
-def next_whole(a: float) -> float:
-    """The least whole number that is not below it."""
-    return float(math.ceil(a))
-
-
-@compilable
 def nearest_whole_away(a: float) -> float:
     """The nearest whole number; halves go away from 0."""
     return float(math.floor(a + 0.5)) if a >= 0.0 else float(math.ceil(a - 0.5))
+
+
+@compilable
+def whole_below(a: float) -> float:
+    """The greatest whole number that is not above it."""
+    return float(math.floor(a))
+
+
+@compilable
+def next_whole(a: float) -> float:
+    """The least whole number that is not below it."""
+    return float(math.ceil(a))
 
 
 @compilable

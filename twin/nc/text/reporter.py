@@ -30,6 +30,11 @@ class Reporter:
         self.line = 0
         self.warnings: list[Diagnostic] = []
 
+    @property
+    def parts(self) -> tuple[tuple[int, str], ...]:
+        """Files behind the program: number of the first line of each, from 1, and name."""
+        return self._source.parts
+
     def fail(
         self, code: str, message: str, column: int = 0, width: int = 1, hint: str | None = None
     ) -> NoReturn:

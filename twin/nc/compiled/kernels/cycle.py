@@ -34,6 +34,7 @@ from twin.nc.path.rows import Rows, copy
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
+_REPEATS_ONLY = Cycle._fields.index("repeats_only")
 _UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
 _ACROSS = int(Act.ACROSS)
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
@@ -80,6 +81,9 @@ def drill(
         The number of rows after it, ``NO_ROOM``, or ``UNSUPPORTED`` with the cycle untouched.
     """
     plane = constants.planes[int(block.modal[PLANE])]
+    repeats_only = tables.cycles[int(block.modal[CYCLE])][_REPEATS_ONLY] != 0.0
+    if repeats_only and (called[0] or block.modal[INCREMENTAL] != 0.0):
+        return UNSUPPORTED
     taken, hole = _read_cycle(block, called, tables, constants, state)
     if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS:
         return UNSUPPORTED
@@ -127,6 +131,7 @@ def _read_cycle(
         row[5],
         int(row[6]),
         row[7],
+        row[8] != 0.0,
     )
     across = int(constants.planes[int(modal[PLANE])][2])
     remembered, given = constants.hole[0], constants.hole[1]

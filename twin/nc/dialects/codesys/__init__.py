@@ -117,7 +117,7 @@ CODESYS = Dialect(
         Mark(r"\$[A-Z_]\w*\$", "$variable$"),
         Mark(r"\bLET[ \t]+#|\bSUBPROGRAM\b", "LET, SUBPROGRAM"),
         Mark(r"\bG20[ \t]+L|\bL[?!][ \t]*\d", "G20 L, L?, L!"),
-        Mark(r"\bG5[12][ \t]*D|\bG1[56]\b|\bG3[67]\b.*\bD", "G51 D, G52 D, G15, G16, G36 D"),
+        Mark(r"\bG5[12][ \t]*D|\bG16[ \t]*[IJK]|\bG3[67]\b.*\bD", "G51 D, G52 D, G16 I J K, G36 D"),
         Mark(r"\b(?:FF|P[ABC])[ \t]*\d", "FF, PA, PB, PC"),
         Mark(r"\bG0?[89]\b.*\bK[ \t]*-?[\d.]+.*\bR[ \t]*[01]?\.\d", "an ellipse: G8 K R0.5"),
         Mark(r"\bG7[01][ \t]+L[ \t]*\d", "G71 L6"),

@@ -137,7 +137,10 @@ FAGOR8070 = Dialect(
             r"^(?!.*\b(?:G0*8\d|[XY][ \t]*[-+.\d]))[^\"$;]*\bR[ \t]*[\d.]+.*\bQ[ \t]*-?[\d.]+",
             "polar coordinates R and Q without X and Y",
         ),
-        Mark(r"\bG0*(?:30|26[1-5])\b|\bG0*31\b.*\bQ", "G30, G31 with Q, G261 to G265"),
+        Mark(
+            r"\bG0*30[ \t]*[IJ]|\bG0*26[1-5]\b|\bG0*31\b.*\bQ",
+            "G30 with I or J, G31 with Q, G261 to G265",
+        ),
         Mark(r"\bG0*8[1-8]\b.*\bI[ \t]*-?[\d.]", "a cycle with its depth in I"),
         Mark(r"\bG0*3[69][ \t]*I", "G36 or G39 with I"),
         Mark(r"\bG(?:13[6-9]|15[89]|10[89]|19[37])\b", "G136 to G139, G158, G159, G108, G193"),

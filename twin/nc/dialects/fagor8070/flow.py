@@ -4,9 +4,10 @@ import re
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import StatementAction, StatementEffect
+from twin.nc.control.constructs import Construct, Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.dialects.fagor8070.structure import Construct, Structure, structure_of
+from twin.nc.dialects.fagor8070.structure import structure_of
 from twin.nc.dialects.fagor8070.subroutines import lines_around
 from twin.nc.dialects.fagor8070.variables import refuse
 from twin.nc.text.blocks import Location, Statement

@@ -4,8 +4,8 @@ import dataclasses
 from typing import NamedTuple
 
 from twin.nc.bytecode.registers import POLAR_ABSCISSA, POLAR_ORDINATE
+from twin.nc.control.constructs import Structure
 from twin.nc.control.control import Control
-from twin.nc.dialects.fagor8070.structure import Structure
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import Matrix
 from twin.nc.text.blocks import Statement

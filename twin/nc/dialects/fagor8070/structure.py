@@ -1,8 +1,9 @@
 """Which $ keywords of a Fagor program belong together."""
 
-import dataclasses
 import re
 from collections.abc import Sequence
+
+from twin.nc.control.constructs import Branch, Construct, Structure
 
 _KEYWORD = re.compile(
     r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9]+[ \t]*|\[\w+\][ \t]*)?(\$[A-Z]+)(.*)", re.IGNORECASE
@@ -15,56 +16,6 @@ _ENDS = {
     "$ENDSWITCH": "$SWITCH",
 }
 _BRANCHES = {"$ELSEIF": "$IF", "$ELSE": "$IF", "$CASE": "$SWITCH", "$DEFAULT": "$SWITCH"}
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Branch:
-    """A further branch of a construct: its keyword and its line, from 0."""
-
-    keyword: str
-    line: int
-
-
-@dataclasses.dataclass(slots=True, eq=False)
-class Construct:
-    """A condition or a loop.
-
-    Attributes:
-        keyword: That begins it.
-        begin: Its first line, from 0.
-        branches: Further ones, in order.
-        end: Its last line; None where it has none.
-    """
-
-    keyword: str
-    begin: int
-    branches: list[Branch] = dataclasses.field(default_factory=list)
-    end: int | None = None
-
-
-@dataclasses.dataclass(slots=True)
-class Structure:
-    """All constructs of a program.
-
-    Attributes:
-        by_line: The construct that each keyword's line belongs to.
-        constructs: In the order of their beginnings.
-    """
-
-    by_line: dict[int, Construct] = dataclasses.field(default_factory=dict)
-    constructs: list[Construct] = dataclasses.field(default_factory=list)
-    _around: dict[int, list[Construct]] = dataclasses.field(default_factory=dict)
-
-    def around(self, line: int) -> list[Construct]:
-        """The constructs that a line lies in, the outermost first."""
-        found = self._around.get(line)
-        if found is None:
-            found = self._around[line] = [
-                each
-                for each in self.constructs
-                if each.end is not None and each.begin < line < each.end
-            ]
-        return found
 
 
 def structure_of(lines: Sequence[str]) -> Structure:

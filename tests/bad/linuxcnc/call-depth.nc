@@ -1,0 +1,5 @@
+o1 sub
+o1 call
+o1 endsub
+o1 call
+M2

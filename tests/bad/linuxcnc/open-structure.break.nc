@@ -1,0 +1,4 @@
+o100 repeat [3]
+o100 break
+o100 endrepeat
+M2

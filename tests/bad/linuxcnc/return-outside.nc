@@ -1,0 +1,3 @@
+G0 X1
+o1 return
+M2

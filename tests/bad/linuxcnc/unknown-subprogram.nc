@@ -1,0 +1,2 @@
+o<nowhere> call
+M2

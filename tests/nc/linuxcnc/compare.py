@@ -1,0 +1,34 @@
+"""``scripts/rs274 10000 7``: so many random programs, from that seed on, through twin and ``rs274``."""
+
+import collections
+import sys
+import time
+
+from tests.nc.linuxcnc.oracle import RS274, by_twin, difference
+from tests.nc.linuxcnc.random_programs import program
+
+SHOWN = 3
+
+
+def main(count: int = 1000, seed: int = 0) -> int:
+    """Compare; the exit status."""
+    if RS274 is None:
+        print("rs274 is not installed (Debian: linuxcnc-uspace)")
+        return 2
+    begin, differ = time.monotonic(), 0
+    said: collections.Counter[str] = collections.Counter()
+    for number in range(seed, seed + count):
+        text = program(number)
+        found = difference(text)
+        said["refused by both" if by_twin(text).error else "run by both"] += not found
+        if found:
+            differ += 1
+            if differ <= SHOWN:
+                print(f"--- seed {number}\n{text}{found}\n")
+    seconds = time.monotonic() - begin
+    print(f"{count} programs in {seconds:.0f} s: {dict(said)}, {differ} differ")
+    return 1 if differ else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*map(int, sys.argv[1:])))

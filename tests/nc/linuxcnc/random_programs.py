@@ -1,0 +1,318 @@
+"""Programs made at random that hold all that the dialect knows."""
+
+import math
+import random
+
+
+class Author:
+    """Writes one program."""
+
+    def __init__(self, seed: int) -> None:
+        self.random = random.Random(seed)  # noqa: S311 (programs need no cryptography)
+        self.lines: list[str] = []
+        self.labels = 100
+
+    def number(self, low: float = -20.0, high: float = 20.0) -> str:
+        """A number, plain or computed."""
+        value = f"{self.random.uniform(low, high):.{self.random.randrange(4)}f}"
+        kind = self.random.random()
+        if kind < 0.8:
+            return value
+        if kind < 0.87:
+            return f"[{value} + #{self.random.randrange(1, 6)} * 0]"
+        if kind < 0.94:
+            return f"[{self.expression()} * 0 + {value}]"
+        return f"-[0 - {value}]"
+
+    def expression(self, depth: int = 0) -> str:
+        """An expression that has a value."""
+        choose = self.random.random()
+        if depth > 2 or choose < 0.3:
+            return f"{self.random.uniform(0.0, 9.0):.3f}"
+        if choose < 0.4:
+            return f"#{self.random.randrange(1, 6)}"
+        if choose < 0.7:
+            operator = self.random.choice(
+                ["+", "-", "*", "MOD", "EQ", "NE", "GT", "GE", "LT", "LE", "AND", "OR", "XOR"]
+            )
+            right = "[2 + ABS[" + self.expression(depth + 1) + "]]"
+            return f"[{self.expression(depth + 1)} {operator} {right}]"
+        if choose < 0.8:
+            return f"[{self.expression(depth + 1)} / [1 + ABS[{self.expression(depth + 1)}]]]"
+        if choose < 0.85:
+            return f"ATAN[{self.expression(depth + 1)}]/[1 + ABS[{self.expression(depth + 1)}]]"
+        function = self.random.choice(["ABS", "COS", "SIN", "FIX", "FUP", "ROUND", "ABS"])
+        return f"{function}[{self.expression(depth + 1)}]"
+
+    def point(self, letters: str = "XYZ", chance: float = 0.6) -> str:
+        """Some axis words."""
+        words = [f"{each}{self.number()}" for each in letters if self.random.random() < chance]
+        return " ".join(words) or f"{letters[0]}{self.number()}"
+
+    def line(self) -> None:
+        """A straight move."""
+        code = self.random.choice(["G0", "G1", "G1", "G1"])
+        axes = "XYZC" if self.random.random() < 0.3 else "XYZ"
+        polar = self.random.random()
+        if polar < 0.08:
+            self.lines.append(f"{code} @{self.number(1, 20)} ^{self.number(-200, 200)}")
+        elif polar < 0.1:
+            self.lines.append(f"{code} ^{self.number(-200, 200)} Z{self.number()}")
+        else:
+            self.lines.append(f"{code} {self.point(axes)}")
+
+    def arc(self) -> None:
+        """An arc or a helix in any plane, by centre or radius, of several turns."""
+        plane, axes, centers = self.random.choice(
+            [("G17", "XYZ", "IJ"), ("G18", "ZXY", "KI"), ("G19", "YZX", "JK")]
+        )
+        code = self.random.choice(["G2", "G3"])
+        turns = f" P{self.random.randrange(1, 4)}" if self.random.random() < 0.3 else ""
+        rise = f" {axes[2]}{self.number()}" if self.random.random() < 0.4 else ""
+        if self.random.random() < 0.5:
+            radius = self.random.uniform(5.0, 15.0)
+            begin, sweep = (self.random.uniform(-math.pi, math.pi) for _ in range(2))
+            i, j = -radius * math.cos(begin), -radius * math.sin(begin)
+            u = i + radius * math.cos(begin + sweep)
+            v = j + radius * math.sin(begin + sweep)
+            if self.random.random() < 0.15:
+                u = v = 0.0
+            self.lines += [
+                f"{plane} G91",
+                (
+                    f"{code} {axes[0]}{u:.8f} {axes[1]}{v:.8f} {centers[0]}{i:.8f} {centers[1]}{j:.8f}"
+                    f"{rise}{turns}"
+                ),
+                "G90",
+            ]
+        else:
+            u, v = (self.random.uniform(-10.0, 10.0) for _ in range(2))
+            radius = math.hypot(u, v) * self.random.uniform(0.51, 2.0)
+            sign = self.random.choice(["", "-"])
+            self.lines += [
+                f"{plane} G91",
+                f"{code} {axes[0]}{u:.8f} {axes[1]}{v:.8f} R{sign}{radius:.8f}{rise}{turns}",
+                "G90",
+            ]
+        if plane != "G17":
+            self.lines.append("G17")
+
+    def cycle(self) -> None:
+        """A canned cycle, its holes, and its end."""
+        code = self.random.choice([73, 81, 81, 82, 83, 84, 85, 86, 87, 89])
+        words = f" R{self.random.uniform(1, 5):.2f} Z{self.random.uniform(-9, 0):.2f}"
+        if code in (73, 83):
+            words += f" Q{self.random.uniform(0.5, 4):.2f}"
+        if code in (82, 86, 89):
+            words += f" P{self.random.uniform(0, 2):.2f}"
+        if code == 87:
+            words += f" I{self.random.uniform(-2, 2):.2f} J1 K{self.random.uniform(-1, 0):.2f}"
+        repeats = f" L{self.random.randrange(1, 4)}" if self.random.random() < 0.3 else ""
+        self.lines.append("S100 M3")
+        back = self.random.choice(["G98", "G99"])
+        mode = self.random.choice(["G90", "G90", "G91"])
+        if mode == "G91":
+            words = words.replace("Z", "Z-").replace("--", "-").replace("K-", "K")
+        self.lines.append(f"{back} {mode} G{code} {self.point('XY', 0.8)}{words}{repeats}")
+        for _ in range(self.random.randrange(3)):
+            more = f" L{self.random.randrange(1, 3)}" if self.random.random() < 0.2 else ""
+            self.lines.append(f"{self.point('XY', 0.7)}{more}")
+        self.lines.append(self.random.choice(["G80", "G0 X0"]))
+        self.lines.append("G90")
+
+    def offset(self) -> None:
+        """Coordinate systems, presets, tool lengths."""
+        systems = ["G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"]
+        choice = self.random.randrange(14)
+        turn = f" R{self.random.uniform(-90, 90):.2f}" if self.random.random() < 0.3 else ""
+        texts = [
+            self.random.choice(systems),
+            f"G10 L2 P{self.random.randrange(0, 10)} {self.point('XYZC')}{turn}",
+            f"G10 L20 P{self.random.randrange(0, 10)} {self.point('XYZC')}",
+            f"G92 {self.point('XYZC')}",
+            "G92.1",
+            "G92.2",
+            "G92.3",
+            f"G52 {self.point('XYZ')}",
+            f"G21\nT{self.random.choice([1, 2, 99])} M6\nG43",
+            f"G43 H{self.random.choice([1, 2, 99])}",
+            f"G43.1 Z{self.number(0, 20)}",
+            "G49",
+            f"G43.2 H{self.random.choice([1, 2])}",
+            (
+                f"G10 L{self.random.choice([1, 10, 11])} P{self.random.choice([1, 2])}"
+                f" Z{self.number(0, 20)}"
+            ),
+        ]
+        self.lines.append(texts[choice])
+
+    def machine(self) -> None:
+        """Machine coordinates and stored positions."""
+        choice = self.random.randrange(6)
+        texts = [
+            f"G53 G0 {self.point('XYZC')}",
+            f"G53 G1 {self.point('XYZ')}",
+            f"G28 {self.point('XYZ')}",
+            "G30",
+            "G28.1",
+            f"G30 {self.point('Z')}",
+        ]
+        self.lines.append(texts[choice])
+
+    def mode(self) -> None:
+        """Units, distances, corners, feeds."""
+        texts = [
+            "G20",
+            "G21",
+            "G91",
+            "G90",
+            "G64 P0.01",
+            "G61",
+            "G61.1",
+            f"F{self.number(50, 500)}",
+            "G94 F200",
+            "G4 P0.5",
+            "M3 S500",
+            "M5",
+            "M8",
+            "M9",
+            "G97",
+            "(a comment) ; another",
+            "M70",
+            "G93 G1 X5 F2\nG94 F100",
+        ]
+        self.lines.append(self.random.choice(texts))
+
+    def assignment(self) -> None:
+        """Parameters, alone and beside words that use them."""
+        target = self.random.choice(
+            ["#1", "#2", "#3", "#4", "#5", "#[1+2]", "#<x>", "#<_g>", "#31"]
+        )
+        value = self.expression()
+        if self.random.random() < 0.3:
+            self.lines.append(f"#1={value} G0 X#1 Y[#1 MOD 7]")
+        else:
+            self.lines.append(f"{target}={value}")
+
+    def read(self) -> None:
+        """Parameters of the control in a move."""
+        name = self.random.choice(
+            [
+                "#5420",
+                "#5421",
+                "#5422",
+                "#5220",
+                "#<_x>",
+                "#<_z>",
+                "#<_metric>",
+                "#<_coord_system>",
+                "#<_motion_mode>",
+                "#<_plane>",
+                "#<_feed>",
+                "#<_tool_offset>",
+                "#<_incremental>",
+                "#<_ccomp>",
+            ]
+        )
+        self.lines.append(f"G0 Y[{name} / 10]")
+
+    def flow(self, depth: int) -> None:
+        """Conditions, loops and subroutines."""
+        self.labels += 1
+        label = self.random.choice([f"o{self.labels}", f"o<l{self.labels}>"])
+        kind = self.random.randrange(5)
+        if kind == 0:
+            self.lines.append(f"{label} if [{self.expression()} GT 2]")
+            self.some(depth + 1)
+            if self.random.random() < 0.3:
+                self.lines.append(f"{label} elseif [{self.expression()} LT 4]")
+                self.some(depth + 1)
+            if self.random.random() < 0.5:
+                self.lines.append(f"{label} else")
+                self.some(depth + 1)
+            self.lines.append(f"{label} endif")
+        elif kind == 1:
+            self.lines.append(f"{label} repeat [{self.random.randrange(0, 4)}]")
+            self.some(depth + 1)
+            self.lines.append(f"{label} endrepeat")
+        elif kind == 2:
+            self.lines.append(f"#{40 + depth}=0")
+            self.lines.append(f"{label} while [#{40 + depth} LT {self.random.randrange(4)}]")
+            self.some(depth + 1)
+            self.lines.append(f"#{40 + depth}=[#{40 + depth}+1]")
+            if self.random.random() < 0.4:
+                self.labels += 1
+                leave = self.random.choice(["break", "continue"])
+                self.lines += [
+                    f"o{self.labels} if [#{40 + depth} GT 1]",
+                    f"{label} {leave}",
+                    f"o{self.labels} endif",
+                    "G0 X1",
+                ]
+            self.lines.append(f"{label} endwhile")
+        elif kind == 3:
+            self.lines.append(f"#{40 + depth}=0")
+            self.lines.append(f"{label} do")
+            self.some(depth + 1)
+            self.lines.append(f"#{40 + depth}=[#{40 + depth}+1]")
+            self.lines.append(f"{label} while [#{40 + depth} LT {self.random.randrange(4)}]")
+        elif depth == 0:
+            self.lines.append(f"{label} sub")
+            self.lines.append("G0 X[#1 - 2]")
+            self.some(1)
+            value = self.random.choice(["", " [#1 * 2]"])
+            self.lines.append(f"{label} endsub{value}")
+            self.lines.append(f"{label} call [{self.number()}] [{self.number()}]")
+            self.lines.append("G0 X#<_value> Y#1")
+
+    def some(self, depth: int) -> None:
+        """A few blocks."""
+        for _ in range(self.random.randrange(1, 4)):
+            self.block(depth)
+
+    def block(self, depth: int = 0) -> None:
+        """One thing or another."""
+        weights = [8, 4, 2, 3, 1, 2, 2, 1, 2 if depth < 2 else 0]
+        (kind,) = self.random.choices(range(9), weights)
+        if kind == 8:
+            self.flow(depth)
+            return
+        (
+            self.line,
+            self.arc,
+            self.cycle,
+            self.offset,
+            self.machine,
+            self.mode,
+            self.assignment,
+            self.read,
+        )[kind]()
+
+    def slip(self) -> None:
+        """Damage a line, as a person would."""
+        at = self.random.randrange(len(self.lines))
+        line = self.lines[at]
+        self.lines[at] = self.random.choice(
+            [
+                line + " X1",
+                line + " P1",
+                line + " G1",
+                line[: len(line) // 2],
+                line.replace("G", "G1", 1),
+                line.replace(" ", ""),
+                line.lower(),
+                f"N{at} {line}",
+                f"/{line}",
+            ]
+        )
+
+
+def program(seed: int) -> str:
+    """A program."""
+    author = Author(seed)
+    author.lines.append("G21 G90 F100 S500 M3")
+    for _ in range(author.random.randrange(2, 14)):
+        author.block()
+    if author.random.random() < 0.3:
+        author.slip()
+    return "\n".join([*author.lines, "M2", ""])

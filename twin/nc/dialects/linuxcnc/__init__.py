@@ -1,0 +1,158 @@
+"""LinuxCNC 2.9, milling: RS274/NGC."""
+
+from twin.nc.canonical import Corner
+from twin.nc.control.codes import WordEffect
+from twin.nc.control.control import Control
+from twin.nc.control.dialect import Dialect
+from twin.nc.dialects.linuxcnc import (
+    block_compiler,
+    flow,
+    functions,
+    motion,
+    offsets,
+    parameters,
+)
+from twin.nc.dialects.linuxcnc.codes import CODES, GROUPS, START
+from twin.nc.dialects.linuxcnc.decisions import DECISIONS
+from twin.nc.dialects.linuxcnc.expressions import EXPRESSIONS
+from twin.nc.dialects.linuxcnc.library import with_files
+from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
+from twin.nc.iso import base
+from twin.nc.path.drilling_cycle import START as CALL_HEIGHT
+from twin.nc.text.syntax import Comment, Mark, Syntax
+
+_WITH_PITCH = (33, 33.1)
+"""Codes whose feed follows from the spindle's speed."""
+
+
+def _before_motion(control: Control, rapid: bool) -> None:
+    memory, number = memory_of(control), control.active.get("motion")
+    if number not in _WITH_PITCH:
+        motion.check_feed(control, rapid)
+    if number != 5:
+        memory.spline_end = None
+    if memory.control_points and number != 5.2:
+        control.report.line = memory.control_line
+        control.report.fail("code-words", "a NURBS is ended by G5.3 before another motion")
+
+
+def _acts_on_plain_blocks(control: Control) -> bool:
+    """Compensation, absolute centres, a spline, a cycle that returns elsewhere: plain blocks heed them."""
+    memory, modal = memory_of(control), control.modal
+    cycle_elsewhere = False
+    if modal.cycle is not None:
+        height = control.programmed[modal.plane.axes[2]]
+        level = not modal.return_to_reference and height != control.cycle_state[CALL_HEIGHT]
+        cycle_elsewhere = modal.incremental or level
+    return (
+        control.active.get("compensation", 40) != 40
+        or modal.center_absolute
+        or bool(memory.control_points)
+        or memory.spline_end is not None
+        or cycle_elsewhere
+    )
+
+
+def _finish(control: Control) -> None:
+    """The last line is reached without M2, M30 or a second %.
+
+    Raises:
+        ProgramError: It is.
+    """
+    if control.program_counter.is_calling:
+        control.report.fail("return-outside", "the subroutine has no endsub, return or M99")
+    if not memory_of(control).percent_ended:
+        hint = "write M2 or M30 at its end, or the program between two lines with %"
+        control.report.fail("no-end", "the program ends without M2, M30 or %", hint=hint)
+
+
+LINUXCNC = Dialect(
+    name="linuxcnc",
+    title="LinuxCNC 2.9 (RS274/NGC, milling)",
+    code_page="cp1252",
+    syntax=Syntax(
+        address=r"[A-Z@^$]",
+        comments=(Comment("(", ")"), Comment(";")),
+        expressions=EXPRESSIONS,
+        statement=r"O(?=[ \t]*[0-9<#\[])|%",
+        assigned="#",
+    ),
+    groups=GROUPS,
+    g=CODES,
+    instead={
+        15: "polar coordinates are @ and ^",
+        16: "polar coordinates are @ and ^",
+        50: "write G92.1, or scale by parameters",
+        51: "scale by parameters",
+        68: "rotate by G10 L2 P0 R and the angle",
+        69: "end a rotation by G10 L2 P0 R0",
+        65: "call by o<name> call [1] [2]",
+        31: "probe by G38.3",
+        12: "mill a circle by G2 or G3",
+        13: "mill a circle by G2 or G3",
+    },
+    start=START,
+    m=functions.M_CODES,
+    declared_letters="PQ",
+    motion_words=frozenset("XYZABCUVWIJKR@^"),
+    words={
+        "F": functions.set_feed,
+        "$": functions.choose_spindle,
+        "S": WordEffect(base.spindle_speed),
+        "T": functions.select_tool,
+    },
+    words_first=True,
+    statements={"O": flow.O_WORD, "%": flow.percent},
+    word_meanings={
+        "N": "line number",
+        "G": "preparatory code",
+        **dict.fromkeys("XYZABCUVW", "axis"),
+        "@": "polar radius",
+        "^": "polar angle",
+        "I": "centre along X, or to a control point; beside the hole (G87)",
+        "J": "centre along Y, or to a control point; beside the hole (G87)",
+        "K": "centre along Z; way of each turn (G33); top of the counterbore (G87)",
+        "R": "radius of the arc; R plane of a cycle; rotation (G10 L2); tool radius (G10 L1)",
+        "P": "seconds; turns of an arc; number of a system, tool or program; corner tolerance",
+        "Q": "depth of a peck; tool of M61; seconds of M66; tolerance of straight lines (G64)",
+        "L": "kind of G10 and M66; repeats of a cycle; calls of M98; order of a NURBS",
+        "D": "tool whose radius compensates; its diameter (G41.1)",
+        "E": "analog input or output",
+        "H": "tool whose length counts",
+        "F": "feed",
+        "S": "spindle speed",
+        "T": "tool",
+        "$": "spindle",
+        "M": "machine function",
+        "O": "label of a condition, a loop or a subroutine",
+    },
+    units="mm or inches (G20), degrees; F in mm/min, for rotary axes alone in deg/min",
+    decisions=DECISIONS,
+    marks=(
+        Mark(
+            r"^[ \t]*(?:N\d+[ \t]*)?O[ \t]*(?:<[^<>]*>|\d+)[ \t]*(?:sub|endsub|call|if|else|elseif|endif|while"
+            r"|endwhile|do|repeat|endrepeat|return|break|continue)\b",
+            "o100 sub, o<name> call (O-words)",
+        ),
+        Mark(r"#<\w+>", "#<name> (a named parameter)"),
+        Mark(
+            r"\bG(?:28\.1|30\.1|33\.1|38\.[2-5]|4[12]\.1|43\.[12]|61\.1|9[01]\.1|92\.[23]|59\.[123]|5\.[23])(?!\d)",
+            "G61.1, G91.1, G43.1, G59.3 and others with a point",
+        ),
+        Mark(r"\bG0*64[ \t]*P[\d.]+", "G64 P0.01"),
+        Mark(r"[@^][ \t]*-?[\d.]+", "@ and ^ (polar coordinates)"),
+    ),
+    start_state={"corner": Corner.CONTINUOUS},
+    memory=LinuxcncMemory,
+    before_motion=_before_motion,
+    read_variable=parameters.read_variable,
+    write_variable=parameters.write_variable,
+    is_local=parameters.is_local,
+    given_variable=parameters.given_variable,
+    live_variables=parameters.LiveParameters(),
+    library=with_files,
+    prepare=offsets.begin,
+    finish=_finish,
+    compile_block=block_compiler.compile_block,
+    disturbed=_acts_on_plain_blocks,
+)

@@ -1,0 +1,354 @@
+"""Canned cycles of LinuxCNC: G73, G74, G81 to G89.
+
+The words of a cycle stay while the same cycle is in force; another one needs its own R and Z. With
+G91, R counts from the height of the call and Z from R, and L repeats the hole along the way.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from twin.nc.control.codes import GCode, Interpolation
+from twin.nc.control.control import Control
+from twin.nc.control.interpolation import CycleRule
+from twin.nc.control.modal import FeedMode
+from twin.nc.control.state import integer_of
+from twin.nc.dialects.linuxcnc.memory import memory_of
+from twin.nc.dialects.linuxcnc.motion import check_feed, target
+from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
+from twin.nc.path.drilling_cycle import (
+    BOTTOM,
+    DWELL,
+    MOST_PECKS,
+    PECK,
+    REFERENCE,
+    START,
+    Cycle,
+    Pecking,
+    Retract,
+    Values,
+    forget,
+)
+
+CLEARANCE = 0.254
+"""A rapid return ends this far above the bottom of the last peck [mm]: a hundredth of an inch."""
+MOST_REPEATS = 10_000
+"""L of a cycle: more is a slip of the pen."""
+
+
+class Drilling(NamedTuple):
+    """One hole, in programmed coordinates.
+
+    Attributes:
+        reference: R [mm].
+        bottom: Z [mm].
+        clear: Height to which the tool returns [mm].
+        values: What the cycle remembers of its words.
+        back_boring: I, J and K of G87 [mm].
+    """
+
+    reference: float
+    bottom: float
+    clear: float
+    values: Values
+    back_boring: tuple[float, float, float]
+
+
+Work = Callable[[Control, Drilling], None]
+
+
+class Kind(NamedTuple):
+    """What is peculiar to one cycle.
+
+    Attributes:
+        number: Of its code.
+        meaning: For people.
+        words: Its own words besides R and the axes.
+        needed: Those that it must have when it is called.
+        work: What happens at the hole, from R on.
+        cycle: What the compiled tier drills; None: nothing.
+    """
+
+    number: int
+    meaning: str
+    words: str
+    needed: str
+    work: Work
+    cycle: Cycle | None = None
+
+
+_PLACES = {"R": REFERENCE, "P": DWELL, "Q": PECK}
+
+
+def _height(control: Control, height: float, *, rapid: bool = True) -> None:
+    goal = list(control.programmed)
+    goal[control.modal.plane.axes[2]] = height
+    control.line_to(goal, rapid=rapid)
+
+
+def _dwell(control: Control, hole: Drilling) -> None:
+    seconds = hole.values[DWELL]
+    if seconds == seconds and seconds > 0.0:
+        control.dwell(seconds)
+
+
+def _drill(control: Control, hole: Drilling) -> None:
+    _height(control, hole.bottom, rapid=False)
+    _height(control, hole.clear)
+
+
+def _drill_and_wait(control: Control, hole: Drilling) -> None:
+    _height(control, hole.bottom, rapid=False)
+    _dwell(control, hole)
+    _height(control, hole.clear)
+
+
+def _pecks(control: Control, hole: Drilling, *, full: bool) -> None:
+    peck = hole.values[PECK]
+    if peck <= 0.0:
+        control.fail("cycle-depth", "a cycle with pecks needs Q above 0")
+    if (hole.reference - hole.bottom) / peck > MOST_PECKS:
+        control.fail("cycle-depth", f"the hole would need more than {MOST_PECKS} pecks")
+    depth = hole.reference - peck
+    while depth > hole.bottom:
+        _height(control, depth, rapid=False)
+        if full:
+            _height(control, hole.reference)
+        _height(control, min(depth + CLEARANCE, hole.reference))
+        depth -= peck
+    _drill(control, hole)
+
+
+def _drill_deep(control: Control, hole: Drilling) -> None:
+    _pecks(control, hole, full=True)
+
+
+def _break_chips(control: Control, hole: Drilling) -> None:
+    _pecks(control, hole, full=False)
+
+
+def _tap(control: Control, hole: Drilling, *, clockwise: bool) -> None:
+    code = "G84" if clockwise else "G74"
+    sense = memory_of(control).functions.get("spindle")
+    if not control.spindle_turns or sense != (3.0 if clockwise else 4.0):
+        wanted = "M3" if clockwise else "M4"
+        control.fail("spindle-needed", f"{code} needs the spindle turning by {wanted}")
+    speed = {} if control.spindle is None else {"S": control.spindle}
+    _height(control, hole.bottom, rapid=False)
+    control.function("M4" if clockwise else "M3", speed)
+    _dwell(control, hole)
+    _height(control, hole.clear, rapid=False)
+    control.function("M3" if clockwise else "M4", speed)
+
+
+def _tap_right(control: Control, hole: Drilling) -> None:
+    _tap(control, hole, clockwise=True)
+
+
+def _tap_left(control: Control, hole: Drilling) -> None:
+    _tap(control, hole, clockwise=False)
+
+
+def _ream(control: Control, hole: Drilling) -> None:
+    _height(control, hole.bottom, rapid=False)
+    _height(control, hole.reference, rapid=False)
+    _height(control, hole.clear)
+
+
+def _ream_and_wait(control: Control, hole: Drilling) -> None:
+    _height(control, hole.bottom, rapid=False)
+    _dwell(control, hole)
+    _height(control, hole.clear, rapid=False)
+
+
+def _start_again(control: Control, code: str) -> Callable[[], None]:
+    """Check that the spindle turns; what turns it again."""
+    if not control.spindle_turns:
+        control.fail("spindle-needed", f"{code} needs the spindle turning", hint="write M3 before")
+    sense = memory_of(control).functions.get("spindle", 3.0)
+    speed = {} if control.spindle is None else {"S": control.spindle}
+    return lambda: control.function(f"M{int(sense)}", speed)
+
+
+def _bore(control: Control, hole: Drilling) -> None:
+    start = _start_again(control, "G86")
+    _height(control, hole.bottom, rapid=False)
+    _dwell(control, hole)
+    control.function("M5", {})
+    _height(control, hole.clear)
+    start()
+
+
+def _bore_back(control: Control, hole: Drilling) -> None:
+    start = _start_again(control, "G87")
+    first, second, _ = control.modal.plane.axes
+    over = list(control.programmed)
+    beside = list(over)
+    beside[first] += hole.back_boring[0]
+    beside[second] += hole.back_boring[1]
+    control.line_to(beside, rapid=True)
+    control.function("M5", {})
+    _height(control, hole.bottom)
+    _across(control, over)
+    start()
+    _height(control, hole.back_boring[2], rapid=False)
+    _height(control, hole.bottom, rapid=False)
+    control.function("M5", {})
+    _across(control, beside)
+    _height(control, hole.clear)
+    _across(control, over)
+    start()
+
+
+def _across(control: Control, over: list[float]) -> None:
+    goal, axis = list(over), control.modal.plane.axes[2]
+    goal[axis] = control.programmed[axis]
+    control.line_to(goal, rapid=True)
+
+
+# --- one block
+
+
+def _take_words(control: Control, kind: Kind) -> None:
+    """Take the cycle's words; they stay in ``cycle_state`` as they are written.
+
+    Raises:
+        ProgramError: One is missing.
+    """
+    state, memory, plane = control.cycle_state, memory_of(control), control.modal.plane
+    across = control.settings.axes.names[plane.axes[2]]
+    if math.isnan(state[START]):
+        memory.cycle = 0
+        forget(state)
+        state[START], state[1] = control.programmed[plane.axes[2]], float(plane.axes[2])
+    elif state[1] != plane.axes[2]:
+        message = f"G{kind.number} was called in another plane"
+        control.fail("cycle-plane", message, hint="end it by G80 before the plane changes")
+    words = {letter: control.take(letter) for letter in ("R", across, *kind.words)}
+    if memory.cycle != kind.number:
+        missing = [letter for letter in ("R", across, *kind.needed) if words[letter] is None]
+        if missing:
+            control.fail("cycle-word", f"G{kind.number} needs {' and '.join(missing)}")
+        memory.back_boring = (0.0, 0.0, 0.0)
+    for letter, word in words.items():
+        if word is not None and letter in _PLACES:
+            in_mm = letter != "P"
+            state[_PLACES[letter]] = control.length(word) if in_mm else control.number(word)
+    depth = words[across]
+    if depth is not None:
+        state[BOTTOM] = control.length(depth)
+    if kind.words == "IJK":
+        memory.back_boring = tuple(
+            old if (word := words[letter]) is None else control.length(word)
+            for letter, old in zip("IJK", memory.back_boring, strict=True)
+        )
+    memory.cycle = kind.number
+
+
+def _perform(kind: Kind) -> Callable[[Control], None]:
+    def perform(control: Control) -> None:
+        refuse_in_compensation(control)
+        check_feed(control, False)
+        if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
+            control.fail("code-words", "canned cycles need a feed per minute", hint="write G94 F")
+        _refuse_rotary(control)
+        repeats = _repeats(control)
+        _take_words(control, kind)
+        _drill_holes(control, kind, repeats)
+
+    return perform
+
+
+def _refuse_rotary(control: Control) -> None:
+    for letter, word in control.words.items():
+        axis = control.axis_index.get(letter)
+        if axis is not None and not control.linear[axis]:
+            message = "a canned cycle drills where the rotary axes stand"
+            control.fail("code-words", message, word, "turn them in a block of their own")
+
+
+def _repeats(control: Control) -> int:
+    word = control.take("L")
+    if word is None:
+        return 1
+    count = integer_of(control.number(word))
+    if not 1 <= count <= MOST_REPEATS:
+        message = f"{word.text} must count the holes, 1 to {MOST_REPEATS}"
+        control.fail("code-words", message, word)
+    return count
+
+
+def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
+    state, memory = control.cycle_state, memory_of(control)
+    axis, incremental = control.modal.plane.axes[2], control.modal.incremental
+    words = {letter: control.words[letter] for letter in (*"XYZ@^",) if letter in control.words}
+    reference = state[REFERENCE] + (state[START] if incremental else 0.0)
+    bottom = state[BOTTOM] + (reference if incremental else 0.0)
+    if bottom > reference:
+        message = f"G{kind.number} must drill downwards, not from {reference:g} to {bottom:g}"
+        control.fail("cycle-depth", message)
+    start = state[START]
+    if start < reference:
+        _height(control, reference)
+        start = reference
+    clear = reference if control.modal.return_to_reference else start
+    i, j, k = memory.back_boring
+    hole = Drilling(reference, bottom, clear, state, (i, j, k + bottom if incremental else k))
+    current = control.programmed[axis]
+    if not control.modal.return_to_reference:
+        current = start
+    for number in range(repeats):
+        if number and (incremental or not words):
+            control.words.update(words)
+        over = target(control) if number == 0 or incremental else list(control.programmed)
+        over[axis] = current if number == 0 else clear
+        control.line_to(over, rapid=True)
+        _height(control, reference)
+        kind.work(control, hole)
+
+
+_G81 = Cycle(
+    lasting=True,
+    across=BOTTOM,
+    needed=1 << REFERENCE | 1 << BOTTOM,
+    dwells=False,
+    clearance=CLEARANCE,
+    repeats_only=True,
+)
+_PECKING = _G81._replace(needed=_G81.needed | 1 << PECK, pecking=int(Pecking.TO_BOTTOM))
+
+KINDS = (
+    Kind(73, "drilling with chips broken every Q", "Q", "Q", _break_chips),
+    Kind(74, "tapping, left-hand", "P", "", _tap_left),
+    Kind(81, "drilling", "", "", _drill, _G81),
+    Kind(
+        82,
+        "drilling with P seconds at the bottom",
+        "P",
+        "P",
+        _drill_and_wait,
+        _G81._replace(dwells=True),
+    ),
+    Kind(83, "drilling in pecks of Q", "Q", "Q", _drill_deep, _PECKING),
+    Kind(84, "tapping, right-hand", "P", "", _tap_right),
+    Kind(85, "reaming, out with the feed", "", "", _ream, _G81._replace(retract=int(Retract.FEED))),
+    Kind(86, "boring, out with the spindle stopped", "P", "P", _bore),
+    Kind(87, "boring from behind: I J beside the hole, K its top", "IJK", "IJK", _bore_back),
+    Kind(89, "reaming with P seconds at the bottom", "P", "P", _ream_and_wait),
+)
+
+
+def _code(kind: Kind) -> GCode:
+    rule = None
+    if kind.cycle is not None:
+        letters = {letter: place for letter, place in _PLACES.items() if letter in kind.words}
+        rule = CycleRule(f"G{kind.number}", kind.cycle, {"R": REFERENCE, **letters})
+    return GCode(
+        meaning=kind.meaning,
+        group="motion",
+        sets={"cycle": Interpolation(_perform(kind), rule=rule), "interpolation": None},
+        ground="manual",
+    )
+
+
+CYCLES = {kind.number: _code(kind) for kind in KINDS}

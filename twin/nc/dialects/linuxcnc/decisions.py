@@ -1,0 +1,90 @@
+"""Decisions for LinuxCNC: where the twin knows less than the control, or says more than ``rs274``."""
+
+from twin.nc.control.dialect import Decision
+
+DECISIONS = (
+    Decision(
+        "Which codes are in force when a program starts?",
+        "G17 G21 G40 G49 G54 G64 G80 G90 G91.1 G94 G97 G99, as rs274 begins; a G20 of the machine's "
+        "own start is not known.",
+        "They are those of the interpreter; a machine can change them in its file.",
+        example="start_state",
+    ),
+    Decision(
+        "What does tool length count from?",
+        "The job's first tool, whose tip the part zero was taken with: G43 moves Z by how much longer "
+        "a tool is, and without G43 the first tool's length counts.",
+        "The job says where part zero lies, and nothing of the spindle's nose.",
+        example="lengths_against_the_first_tool",
+    ),
+    Decision(
+        "Where do coordinate systems lie?",
+        "Those of the job count from its part zero; G54 is part zero itself where the job gives it no "
+        "values, and others are refused until the job or G10 L2 gives them. Machine coordinates "
+        "(G53, G28, G30, G10 L2, #5221) need the job's part_zero.",
+        "The control keeps them in a file of the machine that no program brings along.",
+        example="systems_of_the_job",
+    ),
+    Decision(
+        "What does a probe meet (G38.3, G38.5)?",
+        "Nothing: the tool goes to the end, #5061 to #5069 are that place and #5070 is 0; G38.2 and "
+        "G38.4 are refused.",
+        "Nothing touches the twin's probe; the control would stop there with an alarm.",
+        example="probing_meets_nothing",
+    ),
+    Decision(
+        "What do inputs give (M66)?",
+        "Inputs are 0: read at once 0, waiting for one to rise runs out after Q seconds with -1.",
+        "The twin has no inputs.",
+        example="inputs_are_zero",
+    ),
+    Decision(
+        "How far may start and end of an arc differ in their distance from the centre?",
+        "By 0.0254 mm or 0.1 % of the radius, as the control allows; the centre is then moved to fit.",
+        "The control draws a spiral between both; the difference is below 0.0254 mm for most arcs.",
+        example="arc_centre_moved_to_fit",
+    ),
+    Decision(
+        "Where does the rapid return of a short peck end (G73, G83)?",
+        "0.254 mm above the peck, and never above R.",
+        "The control overshoots R with pecks shorter than that.",
+        example="short_pecks",
+    ),
+    Decision(
+        "May the plane change while a canned cycle is in force?",
+        "No: end it by G80 first.",
+        "The control takes Z words for those of another axis.",
+        example="plane_within_a_cycle",
+    ),
+    Decision(
+        "What does G95 do while the spindle stands?",
+        "It is refused.",
+        "The control would wait without end.",
+        example="feed_of_a_standing_spindle",
+    ),
+    Decision(
+        "How are splines drawn (G5 to G5.3)?",
+        "As chords that leave G5 and G5.1 by 0.5 um at most; a NURBS by 60 chords for each control "
+        "point.",
+        "The control makes short lines of them as well.",
+        example="splines_as_chords",
+    ),
+    Decision(
+        "What do output and override functions do (M48 to M53, M62 to M68)?",
+        "They change no path, and are passed over.",
+        "The twin has neither outputs nor an operator who turns overrides.",
+        example="functions_without_a_path",
+    ),
+    Decision(
+        "In which unit are the parameters of positions of the machine (#5161, #5211, #5221)?",
+        "Millimetres and degrees.",
+        "The control keeps them in the machine's unit, which the twin's machines have metric.",
+        example="parameters_in_millimetres",
+    ),
+    Decision(
+        "What does M99 in the main program do?",
+        "The program begins anew, until the job's step_limit ends it as endless.",
+        "The control repeats it until somebody stops it.",
+        example="main_program_repeats",
+    ),
+)

@@ -1,0 +1,455 @@
+"""O-words of LinuxCNC: conditions, loops, subroutines; M98 and M99."""
+
+import re
+from collections.abc import Callable
+from typing import NoReturn
+
+from twin.nc.bytecode import opcodes
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.bytecode import number_of_location
+from twin.nc.control.codes import StatementEffect
+from twin.nc.control.constructs import Construct
+from twin.nc.control.control import Control
+from twin.nc.control.state import integer_of
+from twin.nc.dialects.linuxcnc.memory import memory_of
+from twin.nc.dialects.linuxcnc.parameters import LOCAL_PARAMETERS
+from twin.nc.dialects.linuxcnc.saved_state import restore_at_return
+from twin.nc.dialects.linuxcnc.structure import (
+    FILE,
+    KEYWORDS,
+    LOOPS,
+    OWord,
+    name_of_label,
+    o_word,
+    scope,
+    structure,
+)
+from twin.nc.text import arithmetic
+from twin.nc.text.blocks import Location, Statement
+from twin.nc.text.expressions import (
+    Computed,
+    Expression,
+    ExpressionError,
+    Number,
+    Tree,
+    Variable,
+)
+
+WITH_VALUES = ("CALL", "RETURN", "ENDSUB", "IF", "ELSEIF", "WHILE", "REPEAT")
+"""Keywords that values may follow."""
+DEEPEST_CALL = 9
+"""Subroutines that may call each other (``rs274``)."""
+
+
+def refuse(
+    control: Control, statement: Statement, code: str, message: str, hint: str | None = None
+) -> NoReturn:
+    """Refuse a line with an O-word."""
+    width = len(statement.keyword) + len(statement.text.rstrip())
+    control.report.fail(code, message, statement.column, width, hint)
+
+
+def values_of(control: Control, word: OWord, statement: Statement) -> list[tuple[Expression, int]]:
+    """The values behind a keyword, with their columns; each stands in square brackets."""
+    reader, found, at = control.program_counter.lexer.expressions, [], 0
+    text = word.text.rstrip()
+    while at < len(text):
+        if text[at] in " \t":
+            at += 1
+            continue
+        if text[at] != "[":
+            refuse(control, statement, "o-word", "values stand in square brackets here")
+        try:
+            value, end = reader.read_operand(text, at)
+        except ExpressionError as error:
+            column = word.column + (at if error.column is None else error.column)
+            control.report.fail(error.code, str(error), column, 1, error.hint)
+        found.append((value, word.column + at))
+        at = end
+    return found
+
+
+def _condition(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    """Put the one value behind IF, ELSEIF or WHILE on the stack."""
+    assembler.value(*_condition_of(control, statement, word))
+
+
+def _condition_of(control: Control, statement: Statement, word: OWord) -> tuple[Expression, int]:
+    """The one value behind a keyword, and its column.
+
+    Raises:
+        ProgramError: There is none, or more than one.
+    """
+    found = values_of(control, word, statement)
+    if len(found) != 1:
+        hint = f"write o{word.label} {word.keyword.lower()} [#1 LT 5]"
+        message = f"{word.keyword.lower()} needs one value in square brackets"
+        refuse(control, statement, "expression", message, hint)
+    return found[0]
+
+
+def _construct_of(control: Control, statement: Statement, word: OWord) -> Construct:
+    """The construct that a line belongs to.
+
+    Raises:
+        ProgramError: It has no counterpart.
+    """
+    construct = structure(control).by_line.get(control.block.line - 1)
+    if construct is None or construct.end is None:
+        message = f"o{word.label} {word.keyword.lower()} has no counterpart"
+        hint = "every if needs its endif, every loop and every sub its end, with the same label"
+        refuse(control, statement, "open-structure", message, hint)
+    return construct
+
+
+def _behind(construct: Construct) -> Location:
+    """The place behind a construct."""
+    assert construct.end is not None
+    return Location(construct.end + 1, 0)
+
+
+def _line_of(control: Control, line: int) -> tuple[Statement, OWord]:
+    """The O-word of another line, from 0; errors are that line's from now on."""
+    control.report.line = line + 1
+    (block,) = control.program_counter.lexer.blocks(control.program_counter.lines[line], line + 1)
+    assert block.statement is not None
+    word = o_word(block.statement)
+    assert word is not None
+    return block.statement, word
+
+
+def _declare(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    """A label is given once in its subroutine, as far as the program comes to it.
+
+    Raises:
+        ProgramError: Another line has it.
+    """
+    line = control.block.line - 1
+    own = scope(control, line)
+    same = [
+        each
+        for each in structure(control).constructs
+        if each.name == word.label and scope(control, each.begin) == own
+    ]
+    if len(same) == 1:
+        return
+
+    def declare() -> None:
+        before = memory_of(control).labels.setdefault(f"{own}{word.label}", line)
+        if before != line:
+            message = f"o{word.label} is the label of line {before + 1} already"
+            refuse(control, statement, "ambiguous-label", message, "give each its own label")
+
+    assembler.interpreted(declare)
+
+
+def _if(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    _declare(control, statement, word, assembler)
+    construct = _construct_of(control, statement, word)
+    _condition(control, statement, word, assembler)
+    assembler.jump_if(Location(control.block.line, 0))
+    for branch in construct.branches:
+        if branch.keyword == "ELSE":
+            assembler.jump(Location(branch.line + 1, 0))
+            return
+        _condition(control, *_line_of(control, branch.line), assembler)
+        assembler.jump_if(Location(branch.line + 1, 0))
+    assembler.jump(_behind(construct))
+
+
+def _leave(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    assembler.jump(_behind(_construct_of(control, statement, word)))
+
+
+def _nothing(control: Control, statement: Statement, word: OWord, _assembler: Assembler) -> None:
+    _construct_of(control, statement, word)
+
+
+def _while(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    construct = _construct_of(control, statement, word)
+    if construct.keyword == "DO":
+        _condition(control, statement, word, assembler)
+        assembler.jump_if(Location(construct.begin + 1, 0))
+        return
+    _declare(control, statement, word, assembler)
+    _condition(control, statement, word, assembler)
+    assembler.jump_unless(_behind(construct))
+
+
+def _do(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    _declare(control, statement, word, assembler)
+    _construct_of(control, statement, word)
+
+
+def _again(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    assembler.jump(Location(_construct_of(control, statement, word).begin, 0))
+
+
+def _counter_of(construct: Construct) -> Variable:
+    """The variable that counts the rounds of a REPEAT; no program can name it."""
+    return Variable(f"#repeat {construct.begin}")
+
+
+def _is_positive(value: Tree) -> Tree:
+    return Computed("GT", arithmetic.greater, (value, Number(0.0)))
+
+
+def _repeat(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    _declare(control, statement, word, assembler)
+    construct = _construct_of(control, statement, word)
+    value, column = _condition_of(control, statement, word)
+    counter = _counter_of(construct)
+    assembler.value(Computed("ROUND", arithmetic.nearest_whole_away, (value.evaluate,)), column)
+    assembler.assign(counter.name)
+    assembler.value(_is_positive(counter))
+    assembler.jump_unless(_behind(construct))
+
+
+def _end_repeat(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    construct = _construct_of(control, statement, word)
+    counter = _counter_of(construct)
+    assembler.value(Computed("-", arithmetic.subtract, (counter, Number(1.0))))
+    assembler.assign(counter.name)
+    assembler.value(_is_positive(counter))
+    assembler.jump_if(Location(construct.begin + 1, 0))
+
+
+def _enclosing(control: Control, statement: Statement, word: OWord) -> Construct:
+    """The loop with the label that BREAK or CONTINUE names.
+
+    Raises:
+        ProgramError: The line lies in none.
+    """
+    for each in reversed(structure(control).around(control.block.line - 1)):
+        if each.keyword in LOOPS and each.name == word.label:
+            if each.keyword == "REPEAT":
+                hint = "count by a while loop that is left"
+                leave = word.keyword.lower()
+                message = f"the control leaves while and do loops by {leave}, no repeat"
+                refuse(control, statement, "open-structure", message, hint)
+            return each
+    message = f"no loop o{word.label} lies around this line"
+    refuse(control, statement, "open-structure", message)
+
+
+def _break(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    assembler.jump(_behind(_enclosing(control, statement, word)))
+
+
+def _continue(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    construct = _enclosing(control, statement, word)
+    assert construct.end is not None
+    assembler.jump(Location(construct.end, 0))
+
+
+# --- subroutines
+
+
+def _subroutine_line(control: Control, name: str, *, here: int) -> int | None:
+    """The line, from 0, of a subroutine's definition; None where there is none.
+
+    Args:
+        control: The control.
+        name: Its label.
+        here: The line, from 0, of the call: what stands before it comes before a file.
+    """
+    structure(control)
+    lines = memory_of(control).subroutines.get(name, [])
+    files_from = _first_file(control)
+    before = [line for line in lines if line < min(here, files_from)]
+    files = [line for line in lines if line >= files_from]
+    later = [line for line in lines if here <= line < files_from]
+    return next(iter((*before[-1:], *files[:1], *later[:1])), None)
+
+
+def _first_file(control: Control) -> int:
+    """The line, from 0, before the first file behind the program."""
+    parts = control.report.parts
+    return parts[0][0] - 2 if parts else len(control.program_counter.lines)
+
+
+def _called_line(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> int:
+    """First line, from 0, of the subroutine that CALL names.
+
+    Raises:
+        ProgramError: There is none, or it is one for M98.
+    """
+    name, here = word.label, control.block.line - 1
+    if name[0] in "#[":
+        assembler.interpreted(lambda: None)
+        column = statement.text_column + len(statement.text) - len(statement.text.lstrip())
+        name = str(integer_of(control.compute(control.expression(name, column), column)))
+    line = _subroutine_line(control, name, here=here)
+    if line is None:
+        known = ", ".join(f"o{each}" for each in memory_of(control).subroutines) or "none"
+        message = f"there is no subroutine {name}"
+        hint = (
+            f"it stands in the program as o<{name}> sub, or beside it in {name}.ngc; here: {known}"
+        )
+        refuse(control, statement, "unknown-subprogram", message, hint)
+    if line not in structure(control).by_line:
+        message = f"O{name} is a program for M98, and no subroutine"
+        refuse(control, statement, "unknown-subprogram", message, f"write M98 P{name}")
+    if here <= line < _first_file(control):
+        assembler.interpreted(lambda: memory_of(control).called.add(name))
+    return line
+
+
+def _call(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    line = _called_line(control, statement, word, assembler)
+    values = values_of(control, word, statement)
+    if len(values) > LOCAL_PARAMETERS:
+        message = f"a call gives {LOCAL_PARAMETERS} values at most"
+        refuse(control, statement, "call-values", message)
+    for value, column in values:
+        assembler.value(value, column)
+    names = [f"#{number}" for number in range(1, len(values) + 1)]
+    assembler.call(Location(line + 1, 0), DEEPEST_CALL, names)
+
+
+def _sub(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    """A definition that the program comes to: it goes on behind it."""
+    _declare(control, statement, word, assembler)
+    construct = _construct_of(control, statement, word)
+
+    def define() -> None:
+        if control.program_counter.is_calling:
+            message = "a subroutine cannot be defined within another"
+            hint = "end the one before by its endsub"
+            refuse(control, statement, "open-structure", message, hint)
+        if word.label in memory_of(control).called:
+            message = f"o{word.label} was called before this line, which defines it again"
+            refuse(
+                control, statement, "ambiguous-label", message, "end the program by M2 before it"
+            )
+
+    assembler.interpreted(define)
+    assembler.jump(_behind(construct))
+
+
+_TELLS = re.compile(rb"_value|_call_level|M[ \t]*0*7[0-3]", re.IGNORECASE)
+"""What tells of a call's end, or acts at it."""
+
+
+def _is_told(control: Control) -> bool:
+    """The program reads what a call has given, or puts aside what is in force around it."""
+    memory = memory_of(control)
+    if memory.tells_calls is None:
+        memory.tells_calls = control.program_counter.lines.any_holds(_TELLS)
+    return memory.tells_calls
+
+
+def _return(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
+    values = values_of(control, word, statement)
+    if len(values) > 1:
+        refuse(control, statement, "o-word", "a subroutine gives one value back")
+
+    def tell() -> None:
+        value = control.compute(*values[0]) if values else 0.0
+        memory_of(control).returned = (value, bool(values))
+        restore_at_return(control)
+
+    assembler.check_return()
+    if values or _is_told(control):
+        assembler.interpreted(tell)
+    assembler.end_call()
+
+
+def _program_for_m98(
+    control: Control, statement: Statement, word: OWord, assembler: Assembler
+) -> None:
+    """O100 alone: a program that M98 calls, and that the flow may run into."""
+    del control, statement, word, assembler
+
+
+_WORDS: dict[str, Callable[[Control, Statement, OWord, Assembler], None]] = {
+    "SUB": _sub,
+    "ENDSUB": _return,
+    "CALL": _call,
+    "RETURN": _return,
+    "IF": _if,
+    "ELSEIF": _leave,
+    "ELSE": _leave,
+    "ENDIF": _nothing,
+    "WHILE": _while,
+    "ENDWHILE": _again,
+    "DO": _do,
+    "REPEAT": _repeat,
+    "ENDREPEAT": _end_repeat,
+    "BREAK": _break,
+    "CONTINUE": _continue,
+    "": _program_for_m98,
+}
+
+
+def _o_word(control: Control, statement: Statement, assembler: Assembler) -> None:
+    """A line that begins with an O-word."""
+    word = o_word(statement)
+    if word is None:
+        refuse(control, statement, "o-word", "O needs a label", "write o100 or o<name>")
+    write = _WORDS.get(word.keyword)
+    if write is None:
+        known = ", ".join(KEYWORDS).lower()
+        refuse(control, statement, "o-word", f"'{word.keyword.lower()}' follows no O", known)
+    if word.label[0] in "#[" and word.keyword != "CALL":
+        refuse(control, statement, "o-word", "only call can compute its label")
+    if word.keyword not in WITH_VALUES and word.text.strip():
+        message = f"nothing may follow o{word.label} {word.keyword.lower()}"
+        refuse(control, statement, "o-word", message, "write it on a line of its own")
+    write(control, statement, word, assembler)
+
+
+O_WORD = StatementEffect(_o_word)
+
+
+def percent(control: Control, statement: Statement) -> None:
+    """%: the first one begins the program, the second ends it."""
+    memory = memory_of(control)
+    if f"%{statement.text}".startswith(FILE) or memory.percent:
+        memory.percent_ended = not f"%{statement.text}".startswith(FILE)
+        control.program_counter.end()
+        return
+    memory.percent = True
+
+
+# --- M98, M99
+
+
+def call_program(control: Control) -> None:
+    """M98 P L: run the program O and its number, L times, with the caller's parameters."""
+    number, times = control.take("P"), control.take("L")
+    if number is None:
+        control.fail("jump-target", "M98 needs P, the number of the program", hint="write M98 P100")
+    count = 1 if times is None else integer_of(control.number(times))
+    if count < 0:
+        control.fail("repeat-count", "L must count the calls of M98", times)
+    if count == 0:
+        return
+    name = name_of_label(str(integer_of(control.number(number))))
+    line = _subroutine_line(control, name, here=control.block.line - 1)
+    if line is None or line in structure(control).by_line:
+        message = f"there is no program O{name}"
+        hint = f"it begins with O{name} alone, here or in {name}.ngc beside the program"
+        control.fail("unknown-subprogram", message, number, hint)
+    first = Location(line + 1, 0)
+
+    def write(assembler: Assembler) -> None:
+        assembler.constant(float(count))
+        assembler.emit(opcodes.CHECK_CALL, DEEPEST_CALL)
+        assembler.emit(opcodes.REPEAT, number_of_location(first))
+
+    control.perform(write, (number.column, number.width))
+
+
+def return_from_program(control: Control) -> None:
+    """M99: back behind M98; in the main program from its beginning again."""
+    if control.program_counter.is_calling:
+        control.perform(_end_program)
+    else:
+        control.program_counter.go(Location(0, 0))
+        memory_of(control).percent = False
+
+
+def _end_program(assembler: Assembler) -> None:
+    assembler.check_return()
+    assembler.end_call()

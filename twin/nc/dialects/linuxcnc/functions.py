@@ -1,0 +1,172 @@
+"""M codes of LinuxCNC, and F, S, T."""
+
+from collections.abc import Callable
+
+from twin.nc.control.codes import Action, MCode
+from twin.nc.control.control import Control
+from twin.nc.dialects.linuxcnc import saved_state
+from twin.nc.dialects.linuxcnc.flow import call_program, return_from_program
+from twin.nc.dialects.linuxcnc.memory import memory_of
+from twin.nc.iso.tool_compensation import tool_numbered
+from twin.nc.text.blocks import Word
+
+TIMES_OUT = (0.0, 1.0, 2.0, 3.0, 4.0)
+"""Ways in which M66 waits."""
+
+
+def set_feed(control: Control, word: Word) -> None:
+    """F: the feed; F0 is none."""
+    feed = control.number(word)
+    if feed < 0.0:
+        control.fail("feed-range", f"the feed {word.text} is negative", word)
+    control.feed = feed or None
+
+
+def select_tool(control: Control, word: Word) -> None:
+    """T: the tool that comes next; T0 empties the spindle."""
+    number = control.number(word)
+    if number < 0.0 or number != int(number):
+        control.fail("tool-number", f"{word.text} is no tool number", word)
+    control.tools.selected = tool_numbered(control, word) if number else 0
+    memory_of(control).prepared = True
+    control.function(f"T{int(number)}", {})
+
+
+def choose_spindle(control: Control, word: Word) -> None:
+    """$: the number of the spindle; the twin has one."""
+    if control.number(word) not in (0.0, -1.0):
+        control.fail("code-words", f"{word.text}: the machine has the spindle $0 alone", word)
+
+
+def change_tool(control: Control) -> None:
+    """M6: the prepared tool goes into the spindle, which stands then."""
+    if not memory_of(control).prepared:
+        control.fail("tool-number", "M6 needs a tool that T has prepared", hint="write T1 M6")
+    memory_of(control).prepared = False
+    memory_of(control).functions["spindle"] = 5.0
+    control.spindle_turns = False
+    control.tools.change()
+
+
+def set_tool(control: Control) -> None:
+    """M61 Q: the number of the tool that is in the spindle already."""
+    word = control.take("Q")
+    if word is None:
+        control.fail("tool-number", "M61 needs Q, the number of the tool")
+    control.tools.spindle = tool_numbered(control, word) if control.number(word) else 0
+
+
+def _switch(name: str, value: float) -> Action:
+    """Remember what an M function switches, for the parameters that tell it."""
+
+    def action(control: Control) -> None:
+        memory_of(control).functions[name] = value
+
+    return action
+
+
+def _end_coolant(control: Control) -> None:
+    functions = memory_of(control).functions
+    functions["mist"] = functions["flood"] = 0.0
+
+
+def _with_words(letters: str, needed: str) -> Callable[[Control], None]:
+    """Take the words that belong to an M function, some of which it needs."""
+
+    def action(control: Control) -> None:
+        words = {letter: control.take(letter) for letter in letters}
+        missing = [letter for letter in needed if words[letter] is None]
+        if missing:
+            control.fail("code-words", f"the function needs {' and '.join(missing)}")
+
+    return action
+
+
+def read_input(control: Control) -> None:
+    """M66 P, E, L, Q: read an input into #5399.
+
+    Decision: inputs of the twin are 0. Reading one at once gives 0; waiting for one to be high or to
+    rise runs out after Q seconds and gives -1; waiting for one to be low ends at once.
+    """
+    digital, analog, kind, limit = (control.take(letter) for letter in "PELQ")
+    if (digital is None) == (analog is None):
+        control.fail("code-words", "M66 reads a digital input P or an analog input E")
+    how = 0.0 if kind is None else control.number(kind)
+    if how not in TIMES_OUT:
+        control.fail("code-words", "L of M66 is 0 to 4", kind)
+    if analog is not None and how != 0.0:
+        control.fail("code-words", "an analog input E is read at once", kind, "write L0")
+    seconds = 0.0 if limit is None else control.number(limit)
+    if how != 0.0 and seconds <= 0.0:
+        message = "M66 that waits needs Q, the seconds after which it gives up"
+        control.fail("code-words", message, limit)
+    value = 0.0
+    if how in (1.0, 2.0, 3.0):
+        control.dwell(seconds)
+        value = -1.0
+    control.variables.write("#5399", value)
+
+
+def _end_early(control: Control) -> None:
+    control.spindle_turns = False
+    memory_of(control).functions["spindle"] = 5.0
+
+
+def _function(meaning: str, letters: str, needed: str) -> MCode:
+    return MCode(
+        meaning=meaning,
+        group=f"function {meaning}",
+        action=_with_words(letters, needed),
+        silent=True,
+        ground="manual",
+    )
+
+
+M_CODES = {
+    0: MCode(meaning="program stop", group="stop", late=True, ground="manual"),
+    1: MCode(meaning="optional stop", group="stop", late=True, ground="manual"),
+    2: MCode(meaning="end of program", group="stop", late=True, ends=True, ground="manual"),
+    3: MCode(meaning="spindle clockwise", group="spindle", action=_switch("spindle", 3.0),
+             ground="manual"),
+    4: MCode(meaning="spindle counter-clockwise", group="spindle",
+             action=_switch("spindle", 4.0), ground="manual"),
+    5: MCode(meaning="spindle stop", group="spindle", action=_end_early, ground="manual"),
+    6: MCode(meaning="tool change", group="tool", action=change_tool, ground="manual"),
+    7: MCode(meaning="mist on", group="mist", action=_switch("mist", 1.0), ground="manual"),
+    8: MCode(meaning="coolant on", group="flood", action=_switch("flood", 1.0), ground="manual"),
+    9: MCode(meaning="mist and coolant off", group="coolant", action=_end_coolant,
+             ground="manual"),
+    19: MCode(meaning="spindle at the angle R, turning by P, within Q seconds", group="spindle",
+              action=_with_words("RPQ", ""), ground="manual"),
+    30: MCode(meaning="end of program, pallets exchanged", group="stop", late=True, ends=True,
+              ground="manual"),
+    48: _function("feed and speed overrides on", "", ""),
+    49: _function("feed and speed overrides off", "", ""),
+    50: _function("feed override, P1 on, P0 off", "P", ""),
+    51: _function("speed override, P1 on, P0 off", "P", ""),
+    52: _function("adaptive feed, P1 on, P0 off", "P", ""),
+    53: _function("feed hold, P1 on, P0 off", "P", ""),
+    60: MCode(meaning="pallets exchanged, program stop", group="stop", late=True, ground="manual"),
+    61: MCode(meaning="number of the tool in the spindle, Q", group="tool", action=set_tool,
+              silent=True, ground="manual"),
+    62: _function("output P on with the next move", "P", "P"),
+    63: _function("output P off with the next move", "P", "P"),
+    64: _function("output P on", "P", "P"),
+    65: _function("output P off", "P", "P"),
+    66: MCode(meaning="input P or E read into #5399, L how, Q seconds at most", group="input",
+              action=read_input, silent=True, ground="manual"),
+    67: _function("analog output E set to Q with the next move", "EQ", "EQ"),
+    68: _function("analog output E set to Q", "EQ", "EQ"),
+    70: MCode(meaning="what is in force is put aside", group="state", action=saved_state.save,
+              silent=True, ground="manual"),
+    71: MCode(meaning="what was put aside is dropped", group="state", action=saved_state.forget,
+              silent=True, ground="manual"),
+    72: MCode(meaning="what was put aside is put back", group="state",
+              action=saved_state.restore, silent=True, ground="manual"),
+    73: MCode(meaning="what is in force is put aside until the subroutine ends", group="state",
+              action=saved_state.save_until_return, silent=True, ground="manual"),
+    98: MCode(meaning="the program O P is run, L times", group="call", late=True,
+              action=call_program, silent=True, ground="manual"),
+    99: MCode(meaning="end of that program; the main program begins anew", group="call", late=True,
+              action=return_from_program, silent=True, ground="manual"),
+}  # fmt: skip

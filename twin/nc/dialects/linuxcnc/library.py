@@ -1,0 +1,41 @@
+"""Subroutines of LinuxCNC in files of their own beside the program."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from twin.nc.dialects.linuxcnc.structure import FILE
+from twin.nc.text.library import named_files, with_called_files
+from twin.nc.text.source import Source
+
+_CALL = re.compile(
+    r"^[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O[ \t]*(<[^<>]*>|[0-9]+)[ \t]*CALL\b", re.IGNORECASE
+)
+_PROGRAM = re.compile(r"\bM[ \t]*0*98[ \t]*P[ \t]*([0-9]+)", re.IGNORECASE)
+_SOMEWHERE = re.compile(rb"CALL|M[ \t]*0*98", re.IGNORECASE)
+
+
+class _CodePage:
+    code_page = "cp1252"
+
+
+def with_files(source: Source, folder: Path) -> Source:
+    """The program with the subroutines that it calls, as far as they are files of their own.
+
+    Args:
+        source: The program.
+        folder: Where their files lie, called ``name.ngc`` or ``100.ngc``, in any case.
+    """
+    return with_called_files(
+        source, lambda: named_files(folder, (".ngc", ".nc")), _calls, FILE, _CodePage()
+    )
+
+
+def _calls(source: Source) -> Iterator[str]:
+    if source.lines.any_holds(_SOMEWHERE):
+        for line in source.lines:
+            if (call := _CALL.match(line)) is not None:
+                label = re.sub(r"[\s<>]", "", call[1]).upper()
+                yield str(int(label)) if label.isdigit() else label
+            elif (program := _PROGRAM.search(line)) is not None:
+                yield str(int(program[1]))

@@ -1,0 +1,194 @@
+"""Straight motion of LinuxCNC: polar words, machine coordinates, stored positions, threads, probing."""
+
+import math
+
+from twin.nc.control.codes import Action, Interpolation
+from twin.nc.control.control import Control
+from twin.nc.control.interpolation import LineRule
+from twin.nc.control.modal import FeedMode
+from twin.nc.dialects.linuxcnc.memory import memory_of
+from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
+from twin.nc.geometry.planes import XY
+from twin.nc.iso.offsets import machine_zero
+from twin.nc.text.blocks import Word
+
+SHORTEST_PROBE = 0.254
+"""A probing move must be longer than this [mm] (``rs274``)."""
+
+
+def check_feed(control: Control, rapid: bool) -> None:
+    """A move with a feed needs one; with G93 in its own block.
+
+    Raises:
+        ProgramError: There is none.
+    """
+    if rapid:
+        return
+    if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE and not any(
+        word.address == "F" for word in control.block.words
+    ):
+        control.fail(
+            "no-feed", "with G93 every block that cuts needs its F", hint="write F, or G94"
+        )
+    if not control.feed:
+        control.fail(
+            "no-feed",
+            "no feed is programmed, and the control moves nowhere without one",
+            hint="write F in this block or before",
+        )
+
+
+def target(control: Control) -> list[float]:
+    """Take the axis words and @ ^; the programmed position that they ask for, shape (k,)."""
+    radius, angle = control.take("@"), control.take("^")
+    if radius is None and angle is None:
+        return control.target()
+    _refuse_mixed(control, radius or angle)
+    goal = control.target()
+    x, y = goal[0], goal[1]
+    at_origin = x == 0.0 and y == 0.0
+    length, direction = math.hypot(x, y), math.atan2(y, x)
+    incremental = control.modal.incremental
+    if at_origin and (incremental or angle is None):
+        message = "polar coordinates have no direction where the tool stands at their origin"
+        control.fail("code-words", message, radius or angle, "write both @ and ^, with G90")
+    if radius is not None:
+        length = control.length(radius) + (length if incremental else 0.0)
+    if angle is not None:
+        turn = math.radians(control.number(angle))
+        direction = turn + (direction if incremental else 0.0)
+    goal[0], goal[1] = length * math.cos(direction), length * math.sin(direction)
+    return goal
+
+
+def _refuse_mixed(control: Control, word: Word | None) -> None:
+    if "X" in control.words or "Y" in control.words:
+        control.fail("code-words", "a point has X and Y, or @ and ^", word)
+    if control.modal.plane is not XY:
+        control.fail("code-words", "@ and ^ count in the plane of X and Y", word, "write G17")
+
+
+def rapid_line(control: Control) -> None:
+    """G0."""
+    control.line_to(target(control), rapid=True)
+
+
+def feed_line(control: Control) -> None:
+    """G1."""
+    control.line_to(target(control), rapid=False)
+
+
+RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
+FEED = Interpolation(feed_line, rule=LineRule())
+
+
+def in_machine_coordinates(control: Control) -> None:
+    """G53: G0 or G1 to a position in machine coordinates."""
+    refuse_in_compensation(control)
+    mode = control.modal.interpolation
+    if mode not in (RAPID, FEED) or control.modal.cycle is not None:
+        control.fail("machine-coordinates", "G53 moves with G0 or G1 only", hint="write G53 G0 Z0")
+    if control.modal.incremental:
+        control.fail(
+            "machine-coordinates",
+            "G53 counts from machine zero, not with G91",
+            hint="write G90 before",
+        )
+    words = control.take_axis_words()
+    if not words:
+        return
+    assert mode is not None
+    check_feed(control, mode.rapid)
+    zero, goal = machine_zero(control, "G53"), list(control.part)
+    for index, word in words:
+        goal[index] = control.axis_value(index, word) + zero.get(word.address, 0.0)
+    control.line_to(control.frame.to_programmed(goal), rapid=mode.rapid)
+
+
+def go_home(place: int) -> Action:
+    """G28, G30: by the words of the block, if any, to the stored position."""
+
+    def action(control: Control) -> None:
+        refuse_in_compensation(control)
+        zero = machine_zero(control, ("G28", "G30")[place])
+        named = [control.axis_index.get(letter) for letter in control.words]
+        axes = [axis for axis in named if axis is not None]
+        if axes:
+            control.line_to(target(control), rapid=True)
+        goal, stored = list(control.part), memory_of(control).homes[place]
+        for axis in axes or range(len(goal)):
+            goal[axis] = stored[axis] + zero.get(control.settings.axes.names[axis], 0.0)
+        control.line_to(control.frame.to_programmed(goal), rapid=True)
+
+    return action
+
+
+def store_home(place: int) -> Action:
+    """G28.1, G30.1: where the axes stand is the stored position from now on."""
+
+    def action(control: Control) -> None:
+        zero = machine_zero(control, ("G28.1", "G30.1")[place])
+        names = control.settings.axes.names
+        memory_of(control).homes[place] = [
+            value - zero.get(name, 0.0) for name, value in zip(names, control.part, strict=True)
+        ]
+
+    return action
+
+
+# --- moves that follow the spindle
+
+
+def _pitch_feed(control: Control, code: str) -> float:
+    """Feed of a move that goes K further with each turn [mm/min]."""
+    pitch = control.take("K")
+    if pitch is None:
+        control.fail("code-words", f"{code} needs K, the way of each turn")
+    if not control.spindle_turns or not control.spindle:
+        control.fail(
+            "spindle-needed", f"{code} follows a spindle that turns", hint="write S and M3 before"
+        )
+    return abs(control.length(pitch)) * control.spindle
+
+
+def _line_with_feed(control: Control, goal: list[float], feed: float) -> None:
+    modal, before = control.modal, (control.modal.feed_mode, control.feed)
+    modal.feed_mode, control.feed = FeedMode.PER_MINUTE, feed / modal.unit
+    control.line_to(goal, rapid=False)
+    modal.feed_mode, control.feed = before
+
+
+def thread(control: Control) -> None:
+    """G33: a straight move of K with each turn of the spindle."""
+    feed = _pitch_feed(control, "G33")
+    _line_with_feed(control, target(control), feed)
+
+
+def tap(control: Control) -> None:
+    """G33.1: the same and back again, with the spindle reversed."""
+    feed, start = _pitch_feed(control, "G33.1"), list(control.programmed)
+    _line_with_feed(control, target(control), feed)
+    forward = memory_of(control).functions.get("spindle", 3.0) == 3.0
+    speed = {"S": control.spindle or 0.0}
+    control.function("M4" if forward else "M3", speed)
+    _line_with_feed(control, start, feed)
+    control.function("M3" if forward else "M4", speed)
+
+
+THREAD = Interpolation(thread)
+TAP = Interpolation(tap)
+
+
+def probe(control: Control) -> None:
+    """G38.3, G38.5: to the end of the probing path; nothing touches the twin's probe."""
+    refuse_in_compensation(control)
+    check_feed(control, False)
+    goal = target(control)
+    if math.dist(goal[:3], control.programmed[:3]) < SHORTEST_PROBE:
+        control.fail("code-words", f"a probing move is longer than {SHORTEST_PROBE:g} mm")
+    control.function("G38", {})
+    control.line_to(goal, rapid=False)
+    memory_of(control).probe = list(control.programmed)
+
+
+PROBE = Interpolation(probe)

@@ -1,0 +1,332 @@
+"""Coordinate systems, presets and tool offsets of LinuxCNC.
+
+A programmed position is shifted by G92, turned about Z by the system's rotation, and shifted to the
+system's zero; a tool offset shifts it further.
+"""
+
+from twin.nc.control.codes import Action
+from twin.nc.control.control import Control
+from twin.nc.control.settings import ToolData
+from twin.nc.control.state import integer_of
+from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_of
+from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, rotated, transposed
+from twin.nc.geometry.planes import XY
+from twin.nc.iso.offsets import machine_zero
+from twin.nc.iso.tool_compensation import tool_numbered
+from twin.nc.text.blocks import Word
+
+FIXTURE = 9
+"""Number of G59.3, from which G10 L11 counts."""
+
+
+def begin(control: Control) -> None:
+    """Take the job's coordinate systems over; the tool table becomes the program's own."""
+    memory, names = memory_of(control), control.settings.axes.names
+    zeros = [0.0] * len(names)
+    memory.preset, memory.kept_preset = list(zeros), list(zeros)
+    memory.homes, memory.probe = [list(zeros), list(zeros)], list(zeros)
+    for number, system in enumerate(SYSTEMS, 1):
+        values = control.settings.offsets.get(system, {} if number == 1 else None)
+        if values is not None:
+            memory.systems[number] = CoordinateSystem([values.get(name, 0.0) for name in names])
+    control.tools.table = dict(control.tools.table)
+    reframe(control)
+
+
+def turned(system: CoordinateSystem) -> Matrix:
+    """The rotation of a system."""
+    if system.rotation == 0.0:
+        return IDENTITY
+    return rotated(IDENTITY, XY.directions, system.rotation, (0.0, 0.0))[0]
+
+
+def _applied(matrix: Matrix, values: list[float]) -> list[float]:
+    x, y, z = applied(matrix, (values[0], values[1], values[2]))
+    return [x, y, z, *values[3:]]
+
+
+def reframe(control: Control) -> None:
+    """Put system, preset and tool offset into force; nothing moves."""
+    memory = memory_of(control)
+    system = memory.systems[memory.system]
+    matrix = turned(system)
+    control.frame.set_matrix(matrix)
+    control.frame.set_shift("offset", list(system.origin))
+    preset = memory.preset if memory.preset_on else [0.0] * len(memory.preset)
+    control.frame.set_shift("preset", _applied(matrix, preset))
+    control.frame.set_shift("length", tool_shift(control))
+    control.reframed()
+
+
+def tool_shift(control: Control) -> list[float]:
+    """How the tool offset in force moves positions, shape (k,) [mm or deg].
+
+    Decision: lengths count against the job's first tool, whose tip the part zero was taken with.
+    """
+    offset = memory_of(control).tool_offset
+    if offset is None:
+        return [0.0] * len(control.settings.axes)
+    reference = ToolData(0.0, 0.0)
+    return [offset[0], offset[1], offset[2] + control.tools.longer(reference), *offset[3:]]
+
+
+def select_system(number: int) -> Action:
+    """G54 to G59.3."""
+
+    def action(control: Control) -> None:
+        refuse_in_compensation(control)
+        known_system(control, number)
+        memory_of(control).system = number
+        reframe(control)
+
+    return action
+
+
+def known_system(control: Control, number: int) -> CoordinateSystem:
+    """A coordinate system that the job or the program has given values.
+
+    Raises:
+        ProgramError: Neither has.
+    """
+    memory, name = memory_of(control), SYSTEMS[number - 1]
+    if number not in memory.systems:
+        known = ", ".join(SYSTEMS[each - 1] for each in sorted(memory.systems))
+        message = f"neither the job nor the program gives a work offset {name}"
+        key = f'"{name}"' if "." in name else name
+        hint = f"write it under [offsets.{key}], or by G10 L2; known: {known}"
+        control.fail("no-offset", message, control.code_word(float(name[1:])), hint)
+    return memory.systems[number]
+
+
+def refuse_in_compensation(control: Control) -> None:
+    """What shifts coordinates cannot change while the tool's radius is compensated.
+
+    Raises:
+        ProgramError: It is.
+    """
+    if control.active.get("compensation", 40) != 40:
+        message = "coordinates cannot change while radius compensation is in force"
+        control.fail("compensation-change", message, hint="end it by G40 first")
+
+
+# --- G92, G52
+
+
+def preset(control: Control) -> None:
+    """G92: the place where the machine stands gets the coordinates of the block."""
+    memory, words = memory_of(control), _needed_axes(control, "G92")
+    before = memory.preset if memory.preset_on else [0.0] * len(memory.preset)
+    for index, word in words:
+        before[index] += control.programmed[index] - control.axis_value(index, word)
+    _set_preset(control, before)
+
+
+def local_offset(control: Control) -> None:
+    """G52: the zero moves by the words of the block; it shares its values with G92."""
+    memory, words = memory_of(control), _needed_axes(control, "G52")
+    values = list(memory.preset) if memory.preset_on else [0.0] * len(memory.preset)
+    for index, word in words:
+        values[index] = control.axis_value(index, word)
+    _set_preset(control, values)
+
+
+def _set_preset(control: Control, values: list[float]) -> None:
+    memory = memory_of(control)
+    memory.preset, memory.kept_preset, memory.preset_on = list(values), list(values), True
+    reframe(control)
+
+
+def _needed_axes(control: Control, code: str) -> list[tuple[int, Word]]:
+    refuse_in_compensation(control)
+    words = control.take_axis_words()
+    if not words:
+        control.fail("preset", f"{code} needs the axes that it acts on")
+    return words
+
+
+def end_preset(control: Control) -> None:
+    """G92.1: no preset, and none to put back."""
+    refuse_in_compensation(control)
+    memory = memory_of(control)
+    memory.preset, memory.preset_on = [0.0] * len(memory.preset), False
+    memory.kept_preset = list(memory.preset)
+    reframe(control)
+
+
+def suspend_preset(control: Control) -> None:
+    """G92.2: no preset, until G92.3 puts it back."""
+    refuse_in_compensation(control)
+    memory_of(control).preset_on = False
+    reframe(control)
+
+
+def restore_preset(control: Control) -> None:
+    """G92.3."""
+    refuse_in_compensation(control)
+    memory = memory_of(control)
+    memory.preset, memory.preset_on = list(memory.kept_preset), True
+    reframe(control)
+
+
+# --- G10
+
+
+def write_table(control: Control) -> None:
+    """G10 L2, L20: coordinate systems; L1, L10, L11: the tool table."""
+    refuse_in_compensation(control)
+    kind = control.take("L")
+    value = 0 if kind is None else integer_of(control.number(kind))
+    if value not in (1, 2, 10, 11, 20):
+        control.fail("code-words", "G10 needs L1, L2, L10, L11 or L20", kind)
+    number = control.take("P")
+    if number is None or control.number(number) != int(control.number(number)):
+        control.fail(
+            "code-words", "G10 needs P, a whole number", number, "write the system or the tool"
+        )
+    if value in (2, 20):
+        _write_system(control, number, here=value == 20)
+    else:
+        _write_tool(control, number, value)
+
+
+def _write_system(control: Control, number: Word, *, here: bool) -> None:
+    memory, which = memory_of(control), integer_of(control.number(number))
+    if not 0 <= which <= len(SYSTEMS):
+        message = f"{number.text} is no coordinate system"
+        control.fail("code-words", message, number, "P1 is G54, P9 is G59.3, P0 the one in force")
+    which = which or memory.system
+    zero = _zeros(control, "G10 L2") if not here or which not in memory.systems else None
+    system = memory.systems.get(which)
+    if system is None:
+        assert zero is not None
+        system = CoordinateSystem(list(zero))
+    turn, axes = control.take("R"), control.take_axis_words()
+    if turn is not None:
+        if here:
+            control.fail("code-words", "a rotation R is set by G10 L2", turn)
+        system.rotation = control.number(turn)
+    if here:
+        _set_origin_here(control, system, axes)
+    else:
+        assert zero is not None
+        for index, word in axes:
+            system.origin[index] = control.axis_value(index, word) + zero[index]
+    memory.systems[which] = system
+    reframe(control)
+
+
+def _set_origin_here(
+    control: Control, system: CoordinateSystem, axes: list[tuple[int, Word]]
+) -> None:
+    """Move a system so that the place where the machine stands has new coordinates in it."""
+    memory, matrix = memory_of(control), turned(system)
+    preset = memory.preset if memory.preset_on else [0.0] * len(memory.preset)
+    length = control.frame.shift("length")
+    place = [value - shift for value, shift in zip(control.part, length, strict=True)]
+    way = [a - b for a, b in zip(place, system.origin, strict=True)]
+    there = _applied(transposed(matrix), way)
+    for index, word in axes:
+        there[index] = control.axis_value(index, word) + preset[index]
+    turned_there = _applied(matrix, there)
+    system.origin[:] = [a - b for a, b in zip(place, turned_there, strict=True)]
+
+
+def _zeros(control: Control, code: str) -> list[float]:
+    """Part coordinates of machine zero, shape (k,)."""
+    zero = machine_zero(control, code)
+    return [zero.get(name, 0.0) for name in control.settings.axes.names]
+
+
+def _write_tool(control: Control, number: Word, kind: int) -> None:
+    """G10 L1: length Z and radius R of a tool; L10, L11: its length so that Z is where it stands."""
+    which = integer_of(control.number(number))
+    tool = control.tools.table.get(which)
+    if tool is None:
+        known = ", ".join(map(str, control.tools.table)) or "none"
+        message = f"the job has no tool {which}"
+        control.fail("no-such-tool", message, number, f"tools of the job: {known}")
+    for letter in "IJQ":
+        control.take(letter)
+    radius, length = control.take("R"), None
+    axes = control.take_axis_words()
+    for index, word in axes:
+        if index != 2:
+            message = "the twin's tools have a length along Z and a radius"
+            control.fail("tool-offset", message, word, "leave the other axes out")
+        length = control.axis_value(index, word)
+    if length is not None and kind != 1:
+        length = _length_here(control, length, from_fixture=kind == 11)
+    changed = ToolData(
+        tool.radius if radius is None else control.length(radius),
+        tool.length if length is None else length,
+    )
+    control.tools.table = {**control.tools.table, which: changed}
+
+
+def _length_here(control: Control, height: float, *, from_fixture: bool) -> float:
+    """Length of a tool whose tip would stand at a height where the machine stands now [mm]."""
+    memory = memory_of(control)
+    number = FIXTURE if from_fixture else memory.system
+    origin = known_system(control, number).origin[2]
+    preset = 0.0
+    if memory.preset_on and not from_fixture:
+        preset = memory.preset[2]
+    reference = -control.tools.longer(ToolData(0.0, 0.0))
+    spindle = control.part[2] + reference if memory.tool_offset is not None else control.part[2]
+    return spindle - origin - preset - height
+
+
+# --- G43, G49
+
+
+def tool_length(control: Control) -> None:
+    """G43: the length of tool H, else of the tool in the spindle."""
+    word = control.take("H")
+    number = control.tools.spindle if word is None else tool_numbered(control, word)
+    _set_length(control, _offset_of(control, number))
+
+
+def further_tool_length(control: Control) -> None:
+    """G43.2: the length of tool H, or the words of axes, in addition to the offset in force."""
+    word, axes = control.take("H"), control.take_axis_words()
+    if word is None and not axes:
+        control.fail("tool-offset", "G43.2 needs H or words of axes")
+    offset = memory_of(control).tool_offset or [0.0] * len(control.settings.axes)
+    more = [0.0] * len(offset)
+    if word is not None:
+        more = _offset_of(control, tool_numbered(control, word))
+    for index, each in axes:
+        more[index] += control.axis_value(index, each)
+    _set_length(control, [a + b for a, b in zip(offset, more, strict=True)])
+
+
+def given_tool_length(control: Control) -> None:
+    """G43.1: the words of axes are the tool's offset."""
+    axes = control.take_axis_words()
+    if not axes:
+        control.fail(
+            "tool-offset", "G43.1 needs words of axes", hint="write G43.1 Z and the length"
+        )
+    offset = memory_of(control).tool_offset or [0.0] * len(control.settings.axes)
+    offset = list(offset)
+    for index, word in axes:
+        offset[index] = control.axis_value(index, word)
+    _set_length(control, offset)
+
+
+def no_tool_length(control: Control) -> None:
+    """G49."""
+    _set_length(control, None)
+
+
+def _set_length(control: Control, offset: list[float] | None) -> None:
+    memory_of(control).tool_offset = offset
+    reframe(control)
+
+
+def _offset_of(control: Control, number: int | None) -> list[float]:
+    data = control.tools.data(number)
+    length = 0.0 if data is None else data.length
+    offset = [0.0] * len(control.settings.axes)
+    offset[2] = length
+    return offset

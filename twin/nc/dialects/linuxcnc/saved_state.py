@@ -1,0 +1,62 @@
+"""M70 to M73: what is in force is put aside, and put back."""
+
+import dataclasses
+
+from twin.nc.control.control import Control
+from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of
+from twin.nc.dialects.linuxcnc.offsets import reframe
+
+_KEPT_FIELDS = ("interpolation", "cycle")
+_KEPT_GROUPS = ("motion", "not modal", "length")
+"""What neither M72 nor the end of a subroutine puts back."""
+
+
+def _state(control: Control) -> SavedState:
+    return SavedState(control.saved_modal(), control.feed, control.spindle)
+
+
+def save(control: Control) -> None:
+    """M70."""
+    memory_of(control).saved[control.program_counter.depth] = (_state(control), False)
+
+
+def save_until_return(control: Control) -> None:
+    """M73: as M70; the end of the subroutine puts it back."""
+    memory_of(control).saved[control.program_counter.depth] = (_state(control), True)
+
+
+def forget(control: Control) -> None:
+    """M71: nothing is put back."""
+    memory_of(control).saved.pop(control.program_counter.depth, None)
+
+
+def restore(control: Control) -> None:
+    """M72.
+
+    Raises:
+        ProgramError: Nothing was put aside here.
+    """
+    saved = memory_of(control).saved.get(control.program_counter.depth)
+    if saved is None:
+        control.fail("code-words", "M72 puts back what M70 or M73 has put aside, and none has")
+    _put_back(control, saved[0])
+
+
+def restore_at_return(control: Control) -> None:
+    """The end of a subroutine puts back what M73 has put aside in it."""
+    saved = memory_of(control).saved.pop(control.program_counter.depth, None)
+    if saved is not None and saved[1]:
+        _put_back(control, saved[0])
+
+
+def _put_back(control: Control, state: SavedState) -> None:
+    now, active = control.modal, control.active
+    modal = dataclasses.replace(
+        state.modal.modal, **{name: getattr(now, name) for name in _KEPT_FIELDS}
+    )
+    kept = {group: active[group] for group in _KEPT_GROUPS if group in active}
+    control.restore_modal(state.modal._replace(modal=modal, active={**state.modal.active, **kept}))
+    control.feed, control.spindle = state.feed, state.spindle
+    system = f"G{control.active.get('offset', 54)}"
+    memory_of(control).system = SYSTEMS.index(system) + 1
+    reframe(control)

@@ -1,0 +1,109 @@
+"""Which O-words of a program belong together, and what a line with one says."""
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from twin.nc.control.constructs import Branch, Construct, Structure
+from twin.nc.control.control import Control
+from twin.nc.dialects.linuxcnc.memory import memory_of
+from twin.nc.text.blocks import Statement
+
+FILE = "%FILE "
+"""Begins the line in front of a subroutine's file."""
+KEYWORDS = (
+    "SUB", "ENDSUB", "CALL", "RETURN", "IF", "ELSEIF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "DO",
+    "REPEAT", "ENDREPEAT", "BREAK", "CONTINUE",
+)  # fmt: skip
+_LABEL = r"<[^<>]*>|[0-9]+"
+_LINE = re.compile(
+    rf"[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O[ \t]*({_LABEL})[ \t]*([A-Z]*)", re.IGNORECASE
+)
+_WORD = re.compile(rf"[ \t]*({_LABEL}|#[^\[ \t]*|\[[^\]]*\])[ \t]*([A-Z]*)[ \t]*", re.IGNORECASE)
+_COMMENT = re.compile(r"\([^()]*\)")
+_ENDS = {"ENDSUB": "SUB", "ENDIF": "IF", "ENDWHILE": "WHILE", "ENDREPEAT": "REPEAT"}
+LOOPS = ("WHILE", "DO", "REPEAT")
+
+
+class OWord(NamedTuple):
+    """What a line with an O-word says.
+
+    Attributes:
+        label: As it is written, ``100`` or ``<name>``, without blanks.
+        keyword: Upper case; empty for the beginning of a program that M98 calls.
+        text: What follows.
+        column: Where that stands, from 0.
+    """
+
+    label: str
+    keyword: str
+    text: str
+    column: int
+
+
+def name_of_label(label: str) -> str:
+    """One spelling for all ways to write a label."""
+    label = re.sub(r"\s", "", label).lower()
+    return label[1:-1] if label.startswith("<") else str(int(label)) if label.isdigit() else label
+
+
+def o_word(statement: Statement) -> OWord | None:
+    """Read a statement; None where it is none."""
+    text = _COMMENT.sub(lambda match: " " * len(match[0]), statement.text)
+    match = _WORD.match(text)
+    if match is None:
+        return None
+    label = match[1] if match[1][0] in "#[" else name_of_label(match[1])
+    return OWord(label, match[2].upper(), text[match.end() :], statement.text_column + match.end())
+
+
+def structure_of(lines: Iterable[str]) -> tuple[Structure, dict[str, list[int]]]:
+    """Pair the O-words of a program, and find its subroutines; what has no counterpart stays open."""
+    structure, subroutines = Structure(), dict[str, list[int]]()
+    open_ones: list[Construct] = []
+    for line, text in enumerate(lines):
+        if text.startswith(FILE):
+            open_ones = []
+        if "O" not in text.upper() or (match := _LINE.match(text)) is None:
+            continue
+        name, keyword = name_of_label(match[1]), match[2].upper()
+        if keyword in ("SUB", ""):
+            subroutines.setdefault(name, []).append(line)
+        found = _paired(structure, open_ones, name, keyword, line)
+        if found is not None:
+            structure.by_line[line] = found
+    return structure, subroutines
+
+
+def _paired(
+    structure: Structure, open_ones: list[Construct], name: str, keyword: str, line: int
+) -> Construct | None:
+    inner = open_ones[-1] if open_ones else None
+    if inner is not None and inner.name == name:
+        if keyword in ("ELSEIF", "ELSE") and inner.keyword == "IF":
+            inner.branches.append(Branch(keyword, line))
+            return inner
+        ends_do = keyword == "WHILE" and inner.keyword == "DO"
+        if ends_do or _ENDS.get(keyword) == inner.keyword:
+            inner.end = line
+            return open_ones.pop()
+    if keyword in _ENDS.values() or keyword == "DO":
+        construct = Construct(keyword, line, name=name)
+        open_ones.append(construct)
+        structure.constructs.append(construct)
+        return construct
+    return None
+
+
+def structure(control: Control) -> Structure:
+    """The program's structure."""
+    memory = memory_of(control)
+    if memory.structure is None:
+        memory.structure, memory.subroutines = structure_of(control.program_counter.lines)
+    return memory.structure
+
+
+def scope(control: Control, line: int) -> str:
+    """The subroutine that a line, from 0, lies in; labels of others are not its own."""
+    around = structure(control).around(line)
+    return next((f"{each.begin}#" for each in around if each.keyword == "SUB"), "#")
