@@ -85,6 +85,7 @@ class Dialect:
         count: Gives words without a decimal point their value in the units of the others.
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
+        must_end: A program without an end code is wrong.
         finish: Done when the program ends without an end code.
         compile_block: Compiles one of its blocks that is more than plain words; raises
             ``UnsupportedError`` for what is left to the interpreter tier.
@@ -137,6 +138,7 @@ class Dialect:
     count: Callable[[Control, Block], Block] = lambda _control, block: block
     prepare: Action | None = None
     after_motion: Action | None = None
+    must_end: bool = False
     finish: Action | None = None
     compile_block: Callable[[BlockCompiler, Block], None] = BlockCompiler.block
     rapid_feed: Callable[[Control], float] | None = None

@@ -243,7 +243,8 @@ def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
         feed: [mm/min or deg/min]
     """
     mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
-    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / FEED_FACTORS[mode])}"
+    end = "\nM2" if dialect.must_end else ""
+    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / FEED_FACTORS[mode])}{end}"
 
 
 def _written(number: float) -> str:

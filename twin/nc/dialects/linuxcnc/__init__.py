@@ -152,6 +152,7 @@ LINUXCNC = Dialect(
     live_variables=parameters.LiveParameters(),
     library=with_files,
     prepare=offsets.begin,
+    must_end=True,
     finish=_finish,
     compile_block=block_compiler.compile_block,
     disturbed=_acts_on_plain_blocks,
