@@ -34,3 +34,10 @@ def test_the_command_writes_them_without_a_log(twin: Twin, tmp_path: Path) -> No
     assert written == sorted(f"calibrate_{dialect}.nc" for dialect in WORDINGS)
     assert twin("calibrate").code == 2
     assert twin("calibrate", "--out", tmp_path / "a.toml").code == 2
+
+
+def test_jobs_find_a_machine_file_of_one_s_own(twin: Twin, tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text('base = "mill4"\nname = "old mill"\n', encoding="utf-8")
+    done = twin("calibrate", "--programs", tmp_path / "air", "--base", tmp_path / "mine.toml")
+    assert done.code == 0, done.stderr
+    assert package.plan(tmp_path / "air" / "calibrate_mefi.toml").time[-1] < 600.0

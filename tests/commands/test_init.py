@@ -25,6 +25,19 @@ def test_a_first_job_holds_the_program_and_passes_its_own_reader(tmp_path: Path,
     assert "--force replaces it" in again.stderr
 
 
+def test_a_program_that_counts_from_machine_zero_gets_a_place(tmp_path: Path, twin: Twin):
+    program = tmp_path / "post.nc"
+    program.write_text(
+        "N10 G0 G53 Z0\nN20 G54 T1 M6\nN30 G0 X10 Y20 Z5\nN40 G1 Z-6 F200\nN50 X30\nN60 G0 G53 Z0\nN70 M30\n"
+    )
+    written = twin("init", program, "--dialect", "gost")
+    assert written.code == 0, written.stderr
+    file = read_job(tmp_path / "post.toml").file
+    assert file.stock is not None
+    assert list(file.part_zero) == ["Z"]
+    assert twin("interpret", program).code == 0
+
+
 def test_a_program_above_zero_gets_no_stock(tmp_path: Path, twin: Twin):
     (tmp_path / "high.nc").write_text("N10 G0 X0 Z5\nN20 G1 X50 F500\n")
     assert twin("init", tmp_path / "high.nc", "--dialect", "fagor8070").code == 0

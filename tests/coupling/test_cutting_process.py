@@ -14,6 +14,7 @@ from twin.cutting.forces.tool_strength import tool_strength
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.description.config import Machine
 from twin.machine.model.model import build_spec, drives, physics_model
+from twin.machine.simulation.live import LiveMachine
 from twin.machine.simulation.simulate import simulate
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.recording.form import Samples, ToolLoad
@@ -170,3 +171,27 @@ def test_a_material_that_is_not_named_is_not_simulated() -> None:
     assert (
         cutting_process(unnamed, 0.2, operation, machine, machine.part_frame, np.zeros(4)) is None
     )
+
+
+def test_a_live_machine_feels_the_cut_as_a_run_does() -> None:
+    machine = shipped_machine()
+    whole = run([WAY], process(machine))
+    live = LiveMachine(machine)
+    live.step_with(process(machine))
+    parts = [live.follow(WAY[first : first + 10]) for first in range(1, len(WAY), 10)]
+    followed = join(parts)
+    np.testing.assert_array_equal(followed.joint_position, whole.joint_position[1:])
+    np.testing.assert_array_equal(felt(followed).force, felt(whole).force[1:])
+
+
+def test_a_stalled_spindle_stops_a_live_machine() -> None:
+    machine = shipped_machine()
+    tough = TOOL.model_copy(update={"force_limit": 1e9, "chip_limit": 1e9, "diameter": 60.0})
+    live = LiveMachine(machine)
+    live.step_with(process(machine, tool=tough, speed=20.0))
+    for first in range(1, len(WAY), 10):
+        live.follow(WAY[first : first + 10])
+        if live.alarm is not None:
+            break
+    assert live.alarm is not None
+    assert live.alarm.code == "spindle-stall"

@@ -227,3 +227,27 @@ def test_grid_follows_the_tool_and_refuses_what_memory_cannot_hold() -> None:
     assert Cutter(PLATE, small, FRAME, ZERO).map.cell == 0.1
     with pytest.raises(ConfigError, match=r"stock\.cell = 0\.001 .* 80000 x 60000"):
         Cutter(plate(0.001), TOOL, FRAME, ZERO)
+
+
+@pytest.mark.parametrize("pitch", [0.4, 0.6, 1.0])
+@pytest.mark.parametrize("shift", [0.0, 0.25, 0.5])
+def test_a_ridge_between_ball_passes_reads_low_by_its_slope_over_half_a_cell_at_most(
+    samples: Motion, pitch: float, shift: float
+) -> None:
+    """h = R - sqrt(R² - s²/4); e off the ridge it is R - sqrt(R² - (s/2 - e)²), less by s e/(2 R) and a little."""
+    cell, radius = 0.1, 3.0
+    ball = ToolTable(number=1, kind="ball", diameter=2 * radius, flute=8.0)
+    cutter = Cutter(PLATE.model_copy(update={"cell": cell}), ball, FRAME, ZERO)
+    across = shift * cell + pitch * np.arange(-3, 4)
+    for y in across:
+        motion = path(np.linspace(-10.0, 10.0, 200), y, -1.0)
+        cutter.add(samples(motion), np.zeros(200, np.bool_))
+        lift = path(np.linspace(10.0, -10.0, 200), y, 5.0)
+        cutter.add(samples(lift), np.zeros(200, np.bool_))
+    column = int(np.argmin(np.abs(cutter.map.x)))
+    within = np.abs(cutter.map.y - across[3]) <= pitch
+    read = float(cutter.map.heights[within, column].max()) + 1.0
+    exact = radius - math.sqrt(radius**2 - pitch**2 / 4)
+    most = exact - (radius - math.sqrt(radius**2 - (pitch / 2 - cell / 2) ** 2))
+    assert most == pytest.approx(pitch * cell / (4 * radius), rel=0.26)
+    assert exact - most - 1e-9 <= read <= exact + 1e-9

@@ -1,10 +1,11 @@
 """Logs in, a calibration out: the stages in their order, axis by axis."""
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
+from twin.calibrate.fit.give import NO_SECOND_ENCODER, fit_give
 from twin.calibrate.fit.parameters import Parameters, coordinates, of_base
 from twin.calibrate.fit.ramps import axes_with_ramps, find_cycle, find_ramps, predict_ramp
 from twin.calibrate.fit.slow import SlowLog, fit_slow, slow_force
@@ -20,11 +21,13 @@ from twin.calibrate.health import (
     look_at_clock,
     look_at_fit,
 )
+from twin.calibrate.limits import Limits, planner_limits
 from twin.calibrate.refusal import refuse_wrong_force, refuse_wrong_log
 from twin.calibrate.result import FIT, HOLD_OUT, AxisResult, Calibration, Course, LogFigures
 from twin.errors import UsageError
 from twin.logs.machine_log import AxisLog, MachineLog
-from twin.machine.description.config import Machine
+from twin.machine.description.config import AxisTable, Machine
+from twin.machine.model.drives import reflected_inertia
 from twin.machine.model.model import build_spec, compiled, drives
 from twin.nc.canonical import FloatArray
 from twin.units import AxisKind
@@ -77,7 +80,11 @@ def calibrate(
         base = of_base(machine.axis(name), masses[name])
         own = [item for item in fitted if name in item.log.axes]
         fit = _fit(kind, name, own, base, machine.axis(name).velocity)
-        results[name] = AxisResult(kind, fit, _units(kind), _limits(name, own))
+        fit = _with_give(machine, name, fit, own, masses[name])
+        results[name] = AxisResult(
+            kind, fit, _units(kind), _limits(name, own, machine.axis(name)), machine.axis(name),
+            masses[name], machine.file.servo_period_s,
+        )  # fmt: skip
         for item in (item for item in own if item.health.period_s <= SLOW_S):
             told = look_at_fit(name, fit.fitted, filtered=_is_filtered(item, name))
             findings[item.log.name] += tuple(told)
@@ -161,7 +168,10 @@ def _axis_findings(machine: Machine, item: _Log, names: Sequence[str]) -> tuple[
 
 
 def _units(kind: AxisKind) -> dict[str, str]:
-    return {name: way.unit for name, way in coordinates(kind, 1.0).items()}
+    give = {"backlash": "mm", "stiffness": "N/mm"}
+    if kind == "rotary":
+        give = {"backlash": "deg", "stiffness": "N m/deg"}
+    return {name: way.unit for name, way in coordinates(kind, 1.0).items()} | give
 
 
 def _fit(
@@ -193,20 +203,59 @@ def _slow(item: _Log, name: str) -> SlowLog:
     return SlowLog(item.log.axes[name], item.health.stretches, ramps, item.health.period_s)
 
 
-def _limits(name: str, logs: Sequence[_Log]) -> Mapping[str, float]:
-    """What the commands reach: a planner's limits are at least that."""
-    reached = {"velocity": 0.0, "acceleration": 0.0}
-    for item in logs:
-        axis = item.log.axes[name]
-        for begin, end in item.health.stretches:
-            speed: FloatArray = np.gradient(axis.command[begin:end], item.health.period_s)
-            change: FloatArray = np.gradient(speed, item.health.period_s)
-            if item.health.period_s > SLOW_S:
-                speed = axis.more.get("command_velocity", speed)
-                change = axis.more.get("command_acceleration", np.zeros(1))
-            for key, values in (("velocity", speed), ("acceleration", change)):
-                reached[key] = max(reached[key], float(np.quantile(np.abs(values), 0.999)))
-    return reached
+def _limits(name: str, logs: Sequence[_Log], base: AxisTable) -> Limits:
+    slow = all(item.health.period_s > SLOW_S for item in logs)
+    pieces = [
+        (_rows(item.log.axes[name], begin, end), item.health.period_s)
+        for item in logs
+        if slow or item.health.period_s <= SLOW_S
+        for begin, end in item.health.stretches
+    ]
+    return planner_limits(pieces, base, slow=slow)
+
+
+def _rows(axis: AxisLog, begin: int, end: int) -> AxisLog:
+    return dataclasses.replace(
+        axis, command=axis.command[begin:end], actual=axis.actual[begin:end],
+        more={role: values[begin:end] for role, values in axis.more.items()},
+    )  # fmt: skip
+
+
+def _with_give(
+    machine: Machine, name: str, fit: AxisFit, logs: Sequence[_Log], moved: float
+) -> AxisFit:
+    """A fit with backlash and stiffness, where a second encoder tells them."""
+    pieces = [
+        piece
+        for item in logs
+        if item.health.period_s <= SLOW_S and "load" in item.log.axes[name].more
+        for piece in _stretches(item, name)
+    ]
+    if not pieces:
+        absent = dict.fromkeys(("backlash", "stiffness"), NO_SECOND_ENCODER)
+        return dataclasses.replace(fit, undetermined=fit.undetermined | absent)
+    axis = machine.axis(name)
+    mass = fit.parameters.mass if "mass" in fit.fitted else moved
+    fitted, conditional = dict(fit.fitted), dict(fit.conditional)
+    friction = fitted.get("dry_friction") or conditional.get("dry_friction", (None,))[0]
+    give = fit_give(axis.kind, pieces, fit.parameters, mass - reflected_inertia(axis), friction)
+    undetermined = dict(fit.undetermined)
+    if give.backlash is None:
+        undetermined["backlash"] = give.why
+    else:
+        fitted["backlash"] = give.backlash
+    if give.stiffness is None:
+        undetermined["stiffness"] = give.why
+    elif "mass" in fit.fitted:
+        known = fit.fitted["mass"]
+        off = max(known.high - known.value, known.value - known.low) / known.value
+        fitted["stiffness"] = give.stiffness.widened(off * give.stiffness.value)
+    else:
+        conditional["stiffness"] = (give.stiffness, ("mass",))
+        undetermined["stiffness"] = "only its ratio to the mass is told"
+    return dataclasses.replace(
+        fit, fitted=fitted, conditional=conditional, undetermined=undetermined
+    )
 
 
 def _figures(item: _Log, name: str, parameters: Parameters) -> LogFigures:

@@ -9,6 +9,9 @@ from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import OF_THE_LOG
 from twin.calibrate.result import AxisResult, Calibration
 from twin.machine.description.config import AxisTable
+from twin.machine.model.drives import reflected_inertia
+from twin.machine.model.transmission import FASTEST_SPRING, swinging
+from twin.units import to_si
 from twin.version import __version__
 
 
@@ -34,10 +37,14 @@ def machine_text(result: Calibration, *, base: str, name: str) -> str:
 
 def _axis_lines(axis: AxisResult) -> Iterator[str]:
     fit = axis.fit
+    give = list(_give_lines(axis))
+    gives = any(not line.startswith("#") for line in give)
     known = set(AxisTable.model_fields)
     for field in dataclasses.fields(Parameters):
         name, value = field.name, getattr(fit.parameters, field.name)
-        if name in fit.fitted and name not in OF_THE_LOG and name in known:
+        if name == "mass" and name in fit.fitted and gives:
+            yield _motor_line(axis)
+        elif name in fit.fitted and name not in OF_THE_LOG and name in known:
             yield f"{name} = {_number(value)}    # {_span(fit.fitted[name], axis.units[name])}"
         elif name in fit.conditional and name in known:
             interval, given = fit.conditional[name]
@@ -47,6 +54,13 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
             if "current_scale" in given and name == "dry_friction":
                 scale = _number(fit.parameters.current_scale)
                 yield f"current_scale = {scale}    # not determined: what the friction stands on"
+    yield from give
+    for name, value in axis.limits.reached.items():
+        if name in axis.limits.told:
+            limit = _number(axis.limits.told[name])
+            yield f"{name} = {limit}    # what the commands come to again and again"
+        else:
+            yield f"# {name} as in the base: the commands reach {value:.5g}, but no limit"
     for name in OF_THE_LOG:
         if name in fit.fitted:
             yield f"# of the log, not of the machine: {name} {_span(fit.fitted[name], 's', True)}"
@@ -58,6 +72,38 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
         )
     if not fit.fitted and not fit.conditional:
         yield "# nothing was determined"
+
+
+def _give_lines(axis: AxisResult) -> Iterator[str]:
+    """Backlash and stiffness, as far as they are there and can be simulated."""
+    told = axis.fit.fitted | {name: pair[0] for name, pair in axis.fit.conditional.items()}
+    if not axis.base.lead:
+        return
+    if "backlash" in told and told["backlash"].low > 0.0:
+        interval = told["backlash"]
+        span = _span(interval, axis.units["backlash"])
+        yield f"backlash = {_number(interval.value)}    # {span}"
+    if "stiffness" in told:
+        interval = told["stiffness"]
+        unit, span = to_si(axis.kind), _span(interval, axis.units["stiffness"])
+        free = swinging(axis.base, axis.moved)
+        stiffest = free * (FASTEST_SPRING / axis.period_s) ** 2 * unit
+        if interval.value < stiffest:
+            yield f"stiffness = {_number(interval.value)}    # {span}"
+        else:
+            yield f"# stiffness {interval.value:.4g} swings within a servo period: rigid"
+
+
+def _motor_line(axis: AxisResult) -> str:
+    """The mass as inertia of the motor: behind a gap or spring a file has no other way to say it."""
+    base, mass = axis.base, axis.fit.parameters.mass
+    assert base.lead is not None
+    turns = (2.0 * math.pi / (base.lead * to_si(axis.kind))) ** 2
+    carried = axis.moved - reflected_inertia(base)
+    motor = (mass - carried) / turns - base.screw_inertia
+    if motor <= 0.0:
+        return f"# mass {mass:.5g} is less than the base carries: motor_inertia as in the base"
+    return f"motor_inertia = {_number(motor)}    # of a mass of {mass:.5g} that the motor feels"
 
 
 def _span(interval: Interval, unit: str, with_value: bool = False) -> str:

@@ -6,6 +6,7 @@ noise and whatever pulls at rest. Every dialect gets the same motion.
 """
 
 import dataclasses
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -58,12 +59,14 @@ WORDINGS = {
 }
 
 
-def write_programs(machine: Machine, folder: Path) -> list[Path]:
+def write_programs(machine: Machine, folder: Path, named: str = "") -> list[Path]:
     """Write the test programs of a machine, one in each dialect, each with its job file.
 
     Args:
         machine: Within whose travel they stay.
         folder: Where they go.
+        named: What jobs there call the machine: a shipped one's name, its own by default, or the path of
+            its file from there.
 
     Returns:
         The programs.
@@ -73,7 +76,7 @@ def write_programs(machine: Machine, folder: Path) -> list[Path]:
         path = folder / f"calibrate_{dialect}.nc"
         write_text(path, "\n".join(_lines(machine, wording)) + "\n")
         job = [f'program = "{path.name}"', f'dialect = "{dialect}"']
-        job += [f'machine = "{machine.file.name}"', "", "[part_zero]"]
+        job += [f"machine = {json.dumps(named or machine.file.name)}", "", "[part_zero]"]
         job += [f"{axis} = {_zero(machine, axis):.6f}" for axis in SPATIAL_AXES]
         job += ["", "[start]", f"Z = {_CLEAR}", "", "[tolerance]", f"contour_um = {_JUDGED_UM}"]
         write_text(path.with_suffix(".toml"), "\n".join(job) + "\n")

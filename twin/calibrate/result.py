@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import AxisFit
 from twin.calibrate.health import Finding
+from twin.calibrate.limits import Limits
+from twin.machine.description.config import AxisTable
 from twin.nc.canonical import FloatArray
 from twin.units import AxisKind
 
@@ -94,13 +96,19 @@ class AxisResult:
         kind: Of the axis.
         fit: What its logs came to.
         units: Of the parameters, by name.
-        limits: Greatest commanded velocity, acceleration and jerk [mm or deg, per s, s², s³].
+        limits: What the commands reach.
+        base: The axis of the base machine.
+        moved: What its motor feels there [kg or kg m²].
+        period_s: The base's servo period [s].
     """
 
     kind: AxisKind
     fit: AxisFit
     units: Mapping[str, str]
-    limits: Mapping[str, float]
+    limits: Limits
+    base: AxisTable
+    moved: float
+    period_s: float
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -146,7 +154,8 @@ def _axis_contract(axis: AxisResult) -> dict[str, object]:
             for name, (interval, given) in fit.conditional.items()
         },
         "undetermined": dict(fit.undetermined),
-        "limits": dict(axis.limits),
+        "limits": dict(axis.limits.reached),
+        "limits_told": dict(axis.limits.told),
         "correlations": {
             "names": list(fit.names),
             "matrix": [[round(float(value), 4) for value in row] for row in fit.correlations],

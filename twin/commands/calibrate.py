@@ -11,6 +11,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from twin.calibrate.programs import write_programs
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
 from twin.files.shipped import machine_file
@@ -73,7 +74,9 @@ def calibrate_and_print(request: Request) -> ExitCode:
     if request.require is not None and not 0 < request.require < float("inf"):
         raise UsageError(f"--require must be a positive share, not {request.require:g}")
     if request.programs is not None:
-        _write_programs(machine_file(request.base), request.programs)
+        named = _base_for(request.base, request.programs / "job.toml")
+        for path in write_programs(machine, request.programs, named):
+            typer.echo(f"wrote {path}")
     if not request.logs:
         return ExitCode.OK
     _need_scipy()
@@ -106,13 +109,6 @@ def calibrate_and_print(request: Request) -> ExitCode:
         figures.share > request.require for figures in judged
     )
     return ExitCode.FAILED if failed else ExitCode.OK
-
-
-def _write_programs(base: Path, folder: Path) -> None:
-    from twin.calibrate.programs import write_programs
-
-    for path in write_programs(read_machine(base), folder):
-        typer.echo(f"wrote {path}")
 
 
 def _need_scipy() -> None:

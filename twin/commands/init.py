@@ -1,5 +1,6 @@
 """``twin init PROGRAM``: a first job file, with what the program itself tells."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -7,12 +8,19 @@ import typer
 
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
+from twin.job.job_file import JobFile
+from twin.machine.description.config import Machine
+from twin.machine.model.model import spindle_over_table_mm
 from twin.nc.canonical import Function, Moves, concatenate
+from twin.nc.text.diagnostics import ProgramError
+from twin.run.placement import part_zero
 from twin.run.preparation import Preparation, prepare
 
 _MARGIN_MM = 10.0
 """Stock beyond the feed moves, on each side."""
 _LEAST_HEIGHT_MM = 10.0
+_MACHINE_ZERO_UNKNOWN = "no-machine-zero"
+"""The diagnostic of a program that counts from machine zero, where no job says where that lies."""
 
 
 def init_and_print(
@@ -35,8 +43,17 @@ def init_and_print(
         raise UsageError(f"{program}: give the NC program; its job file is what is written")
     if path.exists() and not force:
         raise UsageError(f"{path}: exists already; --force replaces it")
-    preparation = prepare(program, dialect=dialect, machine=machine)
-    write_text(path, job_text(preparation))
+    try:
+        text = job_text(prepare(program, dialect=dialect, machine=machine))
+    except ProgramError as error:
+        if error.diagnostic.code != _MACHINE_ZERO_UNKNOWN:
+            raise
+        # What is cut does not depend on where that lies.
+        anywhere = prepare(
+            program, dialect=dialect, machine=machine, changes=[("job.part_zero.Z", 0.0)]
+        )
+        text = _placed(job_text(anywhere), anywhere.machine)
+    write_text(path, text)
     typer.echo(f"{path}: check the stock and the tools, then: twin run {path}")
     return ExitCode.OK
 
@@ -59,6 +76,15 @@ def job_text(preparation: Preparation) -> str:
         "",
     ]
     return "\n".join(lines)
+
+
+def _placed(text: str, machine: Machine) -> str:
+    """A job's text with the height of program zero, for programs that count from machine zero."""
+    file = JobFile.model_validate(tomllib.loads(text))
+    height = part_zero(file, machine, spindle_over_table_mm(machine))[machine.axes.index("Z")]
+    line = f"part_zero = {{ Z = {height:.3f} }}  # mm: the program counts from machine zero\n"
+    head, gap, rest = text.partition("\n\n")
+    return f"{head}\n{line}{gap[1:]}{rest}"
 
 
 def _stock_lines(moves: Moves) -> list[str]:

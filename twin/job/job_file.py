@@ -196,6 +196,14 @@ class ToleranceTable(Table):
     """Largest following error of a linear axis [µm]; none: not judged."""
     following_mdeg: Positive | None = None
     """Largest following error of a rotary axis [mdeg]; none: not judged."""
+    force_n: Positive | None = None
+    """Greatest cutting force in a turn [N]; none: not judged; force must be simulated, as for the next three."""
+    power_w: Positive | None = None
+    """Greatest power of the cut [W]; none: not judged."""
+    deflection_um: Positive | None = None
+    """Greatest deflection of the tool's tip [µm]; none: not judged."""
+    chip_mm: Positive | None = None
+    """Thickest chip [mm]; none: not judged."""
     cycle_time_s: Positive | None = None
     """Longest machine time of the program [s]; none: not judged."""
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from twin.cutting.cut import CutResult, Cutter
 from twin.cutting.events import CutEvent
+from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.nominal import NominalGouge, NominalWatch
 from twin.cutting.part import write_stl
 from twin.cutting.program_summary import ProgramSummary
@@ -20,7 +21,11 @@ from twin.toolpath.part_frame import PartFrame
 
 
 class Machining:
-    """Cuts the stock of a run chunk by chunk."""
+    """Cuts the stock of a run chunk by chunk.
+
+    Attributes:
+        loads: The greatest of what the tools felt.
+    """
 
     def __init__(
         self,
@@ -43,6 +48,7 @@ class Machining:
             speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
         """
         self._summary = summary
+        self.loads = LoadLog()
         self._spindle = Spindle(held_to_program=speaks_of_spindle)
         self._cutter: Cutter | None = None
         self._nominal: NominalWatch | None = None

@@ -108,4 +108,8 @@ def _cut(outcome: Outcome) -> dict[str, Any] | None:
     if outcome.cut is None:
         return None
     gouge = None if outcome.gouge is None else outcome.gouge.as_json()
-    return {**outcome.cut.as_json(), "nominal_gouge": gouge}
+    cut = {**outcome.cut.as_json(), "nominal_gouge": gouge, "force_simulated": False, "loads": []}
+    greatest = {name: each.value for name, each in outcome.loads.greatest.items()}
+    if greatest:
+        cut |= greatest | {"force_simulated": True, "loads": outcome.loads.as_json()}
+    return cut

@@ -14,9 +14,11 @@ from twin.compare.verdict import Check, judge
 from twin.coupling.cutting_process import CuttingProcess
 from twin.coupling.operations import program_process
 from twin.cutting.forces.axis_load import AxisLoad
+from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.nominal import NominalGouge
 from twin.cutting.program_summary import ProgramSummary
 from twin.errors import ConfigError
+from twin.job.job_file import ToleranceTable
 from twin.machine.description.motion_limits import motion_limits
 from twin.machine.model.model import build_spec, spindle_over_table_mm
 from twin.machine.simulation.simulate import Simulation, simulate
@@ -128,6 +130,7 @@ class Run:
                     with self.clock.stage("cut"):
                         samples, alarm = machining.add(simulated)
                     reached.add(samples)
+                    machining.loads.add(samples)
                     with self.clock.stage("compare"):
                         contour_um = comparison.add(samples)
                         self.trace.add(samples, contour_um)
@@ -153,11 +156,15 @@ class Run:
                 tolerance,
                 alarms,
                 cycle_time_s=duration_s,
-                more=self._gouge_checks(machining.gouge),
+                more=[
+                    *self._gouge_checks(machining.gouge),
+                    *_load_checks(tolerance, machining.loads),
+                ],
             ),
             figures=figures,
             cut=cut,
             gouge=machining.gouge,
+            loads=machining.loads,
             alarms=alarms,
             near_miss=near_miss,
             warnings=dry_run.warnings,
@@ -261,6 +268,22 @@ class Run:
             job=preparation.job.file.model_dump_json(exclude_unset=True),
             machine_file=str(preparation.machine.path.resolve()),
         )
+
+
+_LOADS = {
+    "force_n": ("cutting force", "N"),
+    "power_w": ("power of the cut", "W"),
+    "deflection_um": ("deflection of the tool", "µm"),
+    "chip_mm": ("chip thickness", "mm"),
+}
+"""What a tolerance on a load is called, and its unit."""
+
+
+def _load_checks(tolerance: ToleranceTable, loads: LoadLog) -> Iterator[Check]:
+    for key, (figure, unit) in _LOADS.items():
+        limit, most = getattr(tolerance, key), loads.greatest.get(key)
+        if limit is not None and most is not None:
+            yield Check(key, figure, most.value, limit, unit, most.line, most.time_s)
 
 
 def _text_to_keep(source: Source) -> str:

@@ -316,3 +316,34 @@ def program(seed: int) -> str:
     if author.random.random() < 0.3:
         author.slip()
     return "\n".join([*author.lines, "M2", ""])
+
+
+def contour(seed: int) -> str:
+    """A contour of lines and arcs under radius compensation."""
+    author = Author(seed)
+    chance, lines = author.random, ["G21 G90 G64 F100", "G0 X-30 Y-30"]
+    side = chance.choice(["G41", "G42"])
+    start = chance.choice([f"{side} D1", f"{side}.1 D{chance.uniform(0.5, 6):.2f}"])
+    x, y = round(chance.uniform(-20, -10), 3), round(chance.uniform(-20, -10), 3)
+    lines += [start, f"{chance.choice(['G0', 'G1'])} X{x:.3f} Y{y:.3f}"]
+    heading = chance.uniform(-math.pi, math.pi)
+    for _ in range(chance.randrange(2, 7)):
+        heading += chance.uniform(-2.0, 2.0)
+        way = chance.uniform(8.0, 25.0)
+        kind = chance.random()
+        if kind < 0.6:
+            x, y = x + way * math.cos(heading), y + way * math.sin(heading)
+            lines.append(f"{chance.choice(['G1', 'G1', 'G0'])} X{x:.9f} Y{y:.9f}")
+        elif kind < 0.9:
+            sense = chance.choice([1.0, -1.0])
+            sweep = chance.uniform(0.3, 3.0)
+            inward = heading + sense * math.pi / 2.0
+            i, j = way * math.cos(inward), way * math.sin(inward)
+            outward = inward + math.pi + sense * sweep
+            x, y = x + i + way * math.cos(outward), y + j + way * math.sin(outward)
+            lines.append(f"{'G3' if sense > 0.0 else 'G2'} X{x:.9f} Y{y:.9f} I{i:.9f} J{j:.9f}")
+            heading += sense * sweep
+        else:
+            lines.append(f"G1 Z{chance.uniform(-3, 3):.2f}")
+    lines += ["G40", "G1 X-40 Y-40", "M2", ""]
+    return "\n".join(lines)

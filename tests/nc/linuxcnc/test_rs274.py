@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.nc.linuxcnc.oracle import RS274, difference
-from tests.nc.linuxcnc.random_programs import program
+from tests.nc.linuxcnc.random_programs import contour, program
 from tests.nc.running import ROOT
 
 pytestmark = pytest.mark.skipif(
@@ -20,6 +20,11 @@ PROGRAMS = sorted((ROOT / "programs" / "linuxcnc").glob("*.nc"))
 @pytest.mark.parametrize("seed", range(60))
 def test_random_programs(seed: int) -> None:
     assert not difference(program(seed)), program(seed)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_contours_under_compensation(seed: int) -> None:
+    assert not difference(contour(seed)), contour(seed)
 
 
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)

@@ -177,6 +177,25 @@ def promised_costs(problem: Problem, best: Solution, names: Sequence[str]) -> di
     return promised
 
 
+def linear_intervals(
+    columns: FloatArray, values: FloatArray, batch: IntArray
+) -> tuple[Interval, ...]:
+    """Factors of columns that add up to values, by ordinary least squares.
+
+    Args:
+        columns: Shape (n, p).
+        values: Shape (n,).
+        batch: Which stretch of time each row belongs to, shape (n,).
+    """
+    found, *_ = np.linalg.lstsq(columns, values, rcond=None)
+    rest = values - columns @ found
+    half = _reach(batch) * np.sqrt(np.diag(_covariance(columns, rest, batch)))
+    return tuple(
+        Interval(float(value), float(value - to), float(value + to))
+        for value, to in zip(found, half, strict=True)
+    )
+
+
 def movers(problem: Problem, best: Solution, names: Sequence[str]) -> list[str]:
     """Parameters that were not fitted, and that would move others out of their intervals if they were.
 

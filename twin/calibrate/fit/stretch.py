@@ -24,6 +24,7 @@ class Stretch:
         actual: Logged actual positions, shape (n,) [mm or deg].
         force: Logged force, (n,) [N or N m]; None where none is.
         current: Logged force of unknown scale, (n,); None where none is.
+        load: Logged positions of a second encoder at the axis, (n,) [mm or deg]; None where none is.
         first: The first sample that is looked at.
     """
 
@@ -33,6 +34,7 @@ class Stretch:
     actual: FloatArray
     force: FloatArray | None
     current: FloatArray | None
+    load: FloatArray | None
     first: int
 
     @property
@@ -64,7 +66,14 @@ def stretches_of(
         first = min(len(asked) // 4, 1 + int(_SETTLED_S / period_s))
         found.append(
             Stretch(
-                time[part], command, asked, actual, of("force", part), of("current", part), first
+                time[part],
+                command,
+                asked,
+                actual,
+                of("force", part),
+                of("current", part),
+                of("load", part),
+                first,
             )
         )
     return found

@@ -64,7 +64,7 @@ def _axis(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) -> dict[str
             ]
         ],
         "open": list(fit.undetermined.items()),
-        "limits": [(key, f"{value:.5g}") for key, value in axis.limits.items()],
+        "limits": [(key, f"{value:.5g}") for key, value in axis.limits.reached.items()],
         "correlations": _drawing(correlation_plot(fit.names, fit.correlations)),
         "logs": [_log(figures) for figures in logs if figures.axis == name],
     }  # fmt: skip

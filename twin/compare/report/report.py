@@ -41,8 +41,12 @@ _MEDIA = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 _CUT_FIGURES: tuple[tuple[str, str, Callable[[float], str]], ...] = (
     ("removed_mm3", "Material removed", lambda v: f"{v / 1000.0:,.2f} cm³"),
     ("air_share", "Share of the feed path in air", lambda v: f"{v:.1%}"),
-    ("force_n", "Greatest mean cutting force", lambda v: f"{v:,.0f} N"),
-    ("power_w", "Greatest mean cutting power", lambda v: f"{v:,.0f} W"),
+    ("force_n", "Greatest cutting force", lambda v: f"{v:,.0f} N"),
+    ("power_w", "Greatest power of the cut", lambda v: f"{v:,.0f} W"),
+    ("deflection_um", "Greatest deflection of the tool", lambda v: f"{v:,.0f} µm"),
+    ("chip_mm", "Thickest chip", lambda v: f"{v:.3f} mm"),
+    ("spindle_load", "Greatest load of the spindle", lambda v: f"{v:.0%}"),
+    ("force_simulated", "Force of the cut simulated", lambda v: "yes" if v else "no"),
     ("cell_mm", "Grid of the height map", lambda v: f"{v:g} mm"),
 )
 _CUT_EVENTS = {

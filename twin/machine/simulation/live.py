@@ -9,6 +9,7 @@ from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.model.model import build_spec, clearance_model, physics_model
 from twin.machine.model.tool_shape import ToolShape
+from twin.machine.simulation.process import Process
 from twin.machine.simulation.servo import Servo
 from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError, NearMiss
 from twin.machine.watching.clearance import Clearance
@@ -117,14 +118,21 @@ class LiveMachine:
         if not len(samples):
             return samples
         seen, collision = self._watch.look(samples), self._clearance.look(samples)
-        if seen is None and collision is None:
+        stalled = None if self._servo.process is None else self._servo.process.alarm
+        if seen is None and collision is None and stalled is None:
             return samples
-        raised = filter(None, (seen, collision))
+        raised = filter(None, (seen, collision, stalled))
         self.alarm = min(raised, key=lambda alarm: alarm.time_s)
         end = int(np.searchsorted(samples.setpoint.time, self.alarm.time_s, side="right"))
         self._servo.go_back(end - 1)
         self._stand = samples[end - 1 : end]
         return samples[:end]
+
+    def step_with(self, process: Process | None) -> None:
+        """Let the axes be pushed by what the tool does from now on; None: by nothing."""
+        if process is not None:
+            process.begin(self.position)
+        self._servo.process = process
 
     def hold(self, ticks: int) -> Samples:
         """Step without being asked for anything: the axes come to rest where they are, and stay.

@@ -63,7 +63,7 @@ def machine_zero(control: Control, code: str) -> Mapping[str, float]:
         control.fail(
             "no-machine-zero",
             f"{code} counts from machine zero, and the job does not say where that lies",
-            hint="write part_zero with its Z into the job file",
+            hint="write part_zero with its Z into the job file; twin init writes a first one",
         )
     return zero
 

@@ -33,6 +33,7 @@ class Path:
 
     Attributes:
         position: Where the emitted path has come to, shape (k,) [mm or deg].
+        defer: Takes an event that happens behind moves which a dialect holds back; False: it holds none.
     """
 
     def __init__(self, axes: Axes, start: list[float], refuse: Refuse, warn: Warn) -> None:
@@ -45,6 +46,7 @@ class Path:
         self._loops: Loops | None = None
         self._synchronous: SynchronousAxes | None = None
         self.position = start
+        self.defer: Callable[[Callable[[MoveColumns], None]], bool] = lambda _happen: False
 
     def __len__(self) -> int:
         return len(self._columns)
@@ -130,6 +132,8 @@ class Path:
 
     def event(self, happen: Callable[[MoveColumns], None]) -> None:
         """Something that happens between the moves so far and the next."""
+        if self.defer(happen):
+            return
         self._end_spline(None)
         self._before = None
         if self._rounding is None:

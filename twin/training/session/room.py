@@ -39,6 +39,7 @@ from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.block_walk import ModalState
 from twin.training.session.faults import inject
 from twin.training.session.judge import Judge
+from twin.training.session.live_cut import LiveCut
 from twin.training.session.moment import Moment, moment_of
 from twin.training.session.observed import Notice, block_number
 from twin.training.session.program_run import Inherited, ProgramRun, RunOptions
@@ -110,6 +111,7 @@ class Room:
         machine: The machine with its drives.
         tables: Part zero and tool lengths of its control.
         work: The stock, if there is one.
+        cut: The force of the cut.
         judge: Looks after the tasks.
         tick: Servo periods since the beginning.
         mode: Where the mode switch stands.
@@ -163,6 +165,7 @@ class Room:
         rotary = machine.part_frame.rotary
         turn_zero = 0.0 if rotary is None else float(zero[rotary])
         self.part_frame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
+        self.cut = LiveCut(self.machine, job, self.part_frame, self.tables.true_zero)
         self.work = self._clamped_blank()
         self.mode: Mode = file.start.mode
         self.feed_override = file.start.feed_override
@@ -254,6 +257,11 @@ class Room:
             self._slice(SLICE)
 
     def _slice(self, count: int) -> None:
+        self.cut.turn(
+            self.spindle,
+            self.spindle_override / 100.0,
+            counter_clockwise=self.counter_clockwise,
+        )
         parts: list[Samples] = []
         if self.machine.alarm is None:
             setpoints = self._setpoints(count)
@@ -533,6 +541,7 @@ class Room:
             return None
         head = self.machine.head.above_tip
         stock = _fine(job.stock, self.scene)
+        self.cut.clamp(stock)
         return Workpiece(stock, job.tools[0], self.part_frame, self.tables.true_zero, head)
 
     def mount(self, number: int | None) -> None:
@@ -545,6 +554,7 @@ class Room:
             raise UsageError(f"no tool {number}")
         self.tables.spindle = number
         self.machine.mount(self.tables.tool)
+        self.cut.mount(self.tables.tool, float(self.tables.longer[2]))
         if self.work is not None:
             self.work.mount(self.tables.tool)
 
@@ -573,6 +583,7 @@ class Room:
         self.alarm = None
         if self.work is not None:
             self.work.forgive()
+            self.cut.resume(self.work.map.heights)
 
     @property
     def on_switch(self) -> str:

@@ -45,7 +45,8 @@ def _acts_on_plain_blocks(control: Control) -> bool:
         level = not modal.return_to_reference and height != control.cycle_state[CALL_HEIGHT]
         cycle_elsewhere = modal.incremental or level
     return (
-        control.active.get("compensation", 40) != 40
+        memory.compensation is not None
+        or memory.leading_out
         or modal.center_absolute
         or bool(memory.control_points)
         or memory.spline_end is not None

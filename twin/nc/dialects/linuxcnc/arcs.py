@@ -3,6 +3,8 @@
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
+from twin.nc.dialects.linuxcnc.compensation import in_force
+from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import target
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import Bounds, Point, distance
@@ -70,6 +72,13 @@ def _fitted(control: Control, ends: tuple[Point, Point], center: Point, word: Wo
 def _arc(control: Control, *, clockwise: bool) -> None:
     turns, goal = _turns(control), target(control)
     center = _center(control, goal, clockwise=clockwise)
+    compensation = in_force(control)
+    if memory_of(control).leading_out:
+        message = "behind compensation a straight move must lead out, not an arc"
+        control.fail("compensation-end", message)
+    if compensation is not None and compensation.radius > 0.0:
+        compensation.arc(goal, center, -turns if clockwise else turns)
+        return
     sweep_arc(control, goal, center, clockwise=clockwise, turns=turns - 1)
 
 

@@ -4,12 +4,13 @@ from twin.nc.canonical import Corner
 from twin.nc.control.codes import Action, GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode
-from twin.nc.dialects.linuxcnc import curves, motion, offsets
+from twin.nc.dialects.linuxcnc import compensation, curves, motion, offsets
 from twin.nc.dialects.linuxcnc.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.linuxcnc.cycles import CYCLES
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
 from twin.nc.iso import base
+from twin.nc.iso.tool_compensation import LEFT, RIGHT
 
 _INCH = 25.4
 _LATHE = "it belongs to lathes"
@@ -21,6 +22,7 @@ def _units(unit: float) -> Action:
     """G20, G21: lengths change their unit; a feed that was programmed before stays what it is."""
 
     def action(control: Control) -> None:
+        offsets.refuse_in_compensation(control)
         if control.feed is not None:
             control.feed *= control.modal.unit / unit
         control.modal.unit = unit
@@ -88,6 +90,11 @@ def _feed(meaning: str, mode: FeedMode) -> GCode:
     return GCode(
         meaning=meaning, group="feed", sets={"feed_mode": mode}, action=forget_feed, ground="manual"
     )
+
+
+def _compensated(meaning: str, side: float, *, by_table: bool) -> GCode:
+    begin = compensation.begin_by_table if by_table else compensation.begin_by_diameter
+    return GCode(meaning=meaning, group="compensation", action=begin(side), ground="manual")
 
 
 MOTION = {
@@ -233,16 +240,16 @@ MODAL = {
 }
 
 COMPENSATION = {
-    40: GCode(meaning="radius compensation off", group="compensation", ground="manual"),
-    **{
-        number: _refused(meaning, "the way of its corners is not simulated", "compensation")
-        for number, meaning in (
-            (41, "radius compensation, tool left of the contour"),
-            (42, "radius compensation, tool right of the contour"),
-            (41.1, "the same with the diameter D"),
-            (42.1, "the same with the diameter D"),
-        )
-    },
+    40: GCode(
+        meaning="radius compensation off",
+        group="compensation",
+        action=compensation.end,
+        ground="manual",
+    ),
+    41: _compensated("radius compensation, tool left of the contour", LEFT, by_table=True),
+    42: _compensated("radius compensation, tool right of the contour", RIGHT, by_table=True),
+    41.1: _compensated("tool left of the contour, diameter D", LEFT, by_table=False),
+    42.1: _compensated("tool right of the contour, diameter D", RIGHT, by_table=False),
 }
 
 CODES: dict[float, GCode] = {**MOTION, **NOT_MODAL, **MODAL, **COMPENSATION}

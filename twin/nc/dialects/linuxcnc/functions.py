@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from twin.nc.control.codes import Action, MCode
 from twin.nc.control.control import Control
-from twin.nc.dialects.linuxcnc import saved_state
+from twin.nc.dialects.linuxcnc import compensation, saved_state
 from twin.nc.dialects.linuxcnc.flow import call_program, return_from_program
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.iso.tool_compensation import tool_numbered
@@ -125,7 +125,8 @@ def _function(meaning: str, letters: str, needed: str) -> MCode:
 M_CODES = {
     0: MCode(meaning="program stop", group="stop", late=True, ground="manual"),
     1: MCode(meaning="optional stop", group="stop", late=True, ground="manual"),
-    2: MCode(meaning="end of program", group="stop", late=True, ends=True, ground="manual"),
+    2: MCode(meaning="end of program", group="stop", late=True, ends=True,
+             action=compensation.end, ground="manual"),
     3: MCode(meaning="spindle clockwise", group="spindle", action=_switch("spindle", 3.0),
              ground="manual"),
     4: MCode(meaning="spindle counter-clockwise", group="spindle",
@@ -138,7 +139,7 @@ M_CODES = {
              ground="manual"),
     19: MCode(meaning="spindle at the angle R, turning by P, within Q seconds", group="spindle",
               action=_with_words("RPQ", ""), ground="manual"),
-    30: MCode(meaning="end of program, pallets exchanged", group="stop", late=True, ends=True,
+    30: MCode(meaning="end of program, pallets exchanged", group="stop", late=True, ends=True, action=compensation.end,
               ground="manual"),
     48: _function("feed and speed overrides on", "", ""),
     49: _function("feed and speed overrides off", "", ""),

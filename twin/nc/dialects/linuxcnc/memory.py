@@ -62,6 +62,8 @@ class LinuxcncMemory:
         functions: M functions in force by what they switch.
         cycle: Number of the canned cycle whose words hold; 0: none do.
         back_boring: I, J and K of G87 [mm].
+        compensation: Radius compensation in force, as ``compensation`` has it, or None.
+        leading_out: It has ended, and no straight move has led out yet.
         spline_end: P and Q of the last G5 [mm]; None where another move came since.
         control_points: Of the NURBS that is being given.
         control_line: Line of its last point, from 1.
@@ -89,6 +91,8 @@ class LinuxcncMemory:
     functions: dict[str, float] = dataclasses.field(default_factory=dict)
     cycle: int = 0
     back_boring: tuple[float, ...] = (0.0, 0.0, 0.0)
+    compensation: object = None
+    leading_out: bool = False
     spline_end: tuple[float, float] | None = None
     control_points: list[ControlPoint] = dataclasses.field(default_factory=list)
     control_line: int = 0

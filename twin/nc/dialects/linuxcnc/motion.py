@@ -6,6 +6,7 @@ from twin.nc.control.codes import Action, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import LineRule
 from twin.nc.control.modal import FeedMode
+from twin.nc.dialects.linuxcnc.compensation import in_force
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.geometry.planes import XY
@@ -68,14 +69,23 @@ def _refuse_mixed(control: Control, word: Word | None) -> None:
         control.fail("code-words", "@ and ^ count in the plane of X and Y", word, "write G17")
 
 
+def _straight(control: Control, *, rapid: bool) -> None:
+    goal, compensation = target(control), in_force(control)
+    memory_of(control).leading_out = False
+    if compensation is not None and compensation.radius > 0.0:
+        compensation.line(goal, rapid=rapid)
+    else:
+        control.line_to(goal, rapid=rapid)
+
+
 def rapid_line(control: Control) -> None:
     """G0."""
-    control.line_to(target(control), rapid=True)
+    _straight(control, rapid=True)
 
 
 def feed_line(control: Control) -> None:
     """G1."""
-    control.line_to(target(control), rapid=False)
+    _straight(control, rapid=False)
 
 
 RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
@@ -160,12 +170,14 @@ def _line_with_feed(control: Control, goal: list[float], feed: float) -> None:
 
 def thread(control: Control) -> None:
     """G33: a straight move of K with each turn of the spindle."""
+    refuse_in_compensation(control)
     feed = _pitch_feed(control, "G33")
     _line_with_feed(control, target(control), feed)
 
 
 def tap(control: Control) -> None:
     """G33.1: the same and back again, with the spindle reversed."""
+    refuse_in_compensation(control)
     feed, start = _pitch_feed(control, "G33.1"), list(control.programmed)
     _line_with_feed(control, target(control), feed)
     forward = memory_of(control).functions.get("spindle", 3.0) == 3.0

@@ -104,7 +104,7 @@ def refuse_in_compensation(control: Control) -> None:
     Raises:
         ProgramError: It is.
     """
-    if control.active.get("compensation", 40) != 40:
+    if memory_of(control).compensation is not None:
         message = "coordinates cannot change while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
 
@@ -320,6 +320,7 @@ def no_tool_length(control: Control) -> None:
 
 
 def _set_length(control: Control, offset: list[float] | None) -> None:
+    refuse_in_compensation(control)
     memory_of(control).tool_offset = offset
     reframe(control)
 

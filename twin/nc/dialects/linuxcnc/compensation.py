@@ -1,0 +1,437 @@
+"""Tool radius compensation of LinuxCNC: its own way of leads and corners.
+
+The entry ends beside the programmed point, square to the entry itself. At a convex corner the tool
+turns around the contour's point; at a concave one the move before ends where the two offset paths meet,
+for which it is held until its successor is known. Behind G40 a straight move leads out of where it is.
+"""
+
+import dataclasses
+import math
+from collections.abc import Callable
+from typing import NoReturn
+
+from twin.nc.control.codes import Action
+from twin.nc.control.control import Control
+from twin.nc.dialects.linuxcnc.memory import memory_of
+from twin.nc.geometry.arcs import Point, distance, sweep_between
+from twin.nc.geometry.planes import YZ
+from twin.nc.iso.tool_compensation import tool_numbered
+from twin.nc.path.move_columns import MoveColumns
+from twin.nc.text.blocks import Block
+
+CORNER = 0.05
+"""Angle [rad] from which a corner counts as one (``rs274``)."""
+_QUARTER = math.pi / 2.0
+_SAME = 1e-4
+_TURNED_BACK = 0.001
+"""How much further an arc may sweep when its end is moved [rad]."""
+_MISMATCH = 0.01
+"""How far a moved end may lie beside its arc [mm]."""
+
+
+@dataclasses.dataclass(slots=True)
+class Held:
+    """A move that waits for its successor.
+
+    Attributes:
+        goal: Programmed position of its end, shape (k,); its place in the plane is ``end``.
+        end: Where it ends in the plane, compensated [mm].
+        rapid: At the machine's own speed.
+        direction: Where it was going as programmed [mm]; of a line.
+        center: Of an arc [mm], or None.
+        turns: Of an arc, below 0 clockwise.
+        sweep: How far the arc went as programmed [rad]; 0: its end is not moved.
+        block: Whose move it is.
+        feed: F when it was given.
+    """
+
+    goal: list[float]
+    end: Point
+    rapid: bool
+    direction: Point
+    center: Point | None
+    turns: int
+    sweep: float
+    block: Block
+    feed: float | None
+
+
+Event = Callable[[MoveColumns], None]
+
+
+class Compensation:
+    """Compensation in force.
+
+    Attributes:
+        side: 1 left of the contour, -1 right.
+        radius: Of the tool [mm].
+        entered: The first move has been made.
+    """
+
+    def __init__(self, control: Control, side: float, radius: float) -> None:
+        self._control = control
+        self.side = side
+        self.radius = radius
+        self.entered = False
+        self._queue: list[Held | Event] = []
+        self._here: Point = (0.0, 0.0)
+        self._endpoint: Point | None = None
+
+    # --- moves that the program asks for
+
+    def line(self, goal: list[float], *, rapid: bool) -> None:
+        """A straight move to a programmed position."""
+        plane = self._control.modal.plane
+        start, end = plane.local(self._control.programmed)[:2], plane.local(goal)[:2]
+        if not self.entered:
+            self._enter_by_line(start, end, goal, rapid=rapid)
+        elif start == end:
+            self._hold_line(goal, self._here, (0.0, 0.0), rapid=rapid)
+        else:
+            self._line_behind(start, end, goal, rapid=rapid)
+        self._control.programmed = goal
+
+    def arc(self, goal: list[float], center: Point, turns: int) -> None:
+        """An arc to a programmed position; ``turns`` below 0: clockwise."""
+        plane = self._control.modal.plane
+        start, end = plane.local(self._control.programmed)[:2], plane.local(goal)[:2]
+        radius = distance(center, end)
+        inside = self._is_inside(turns)
+        if inside and radius <= self.radius:
+            self._refuse("the arc's radius must exceed the tool's, which runs inside it")
+        outward = math.atan2(end[1] - center[1], end[0] - center[0])
+        beside = _along(end, outward + math.pi if inside else outward, self.radius)
+        if self.entered:
+            self._arc_behind((start, end, beside), goal, center, turns)
+        else:
+            self._enter_by_arc((start, end, beside), goal, center, turns)
+        self._here = beside
+        self._control.programmed = goal
+
+    def take_event(self, event: Event) -> bool:
+        """Keep what happens behind a move that waits; False where none does."""
+        if self._queue:
+            self._queue.append(event)
+        return bool(self._queue)
+
+    def end(self) -> None:
+        """G40, or the program's end: what waits ends beside the contour's last point."""
+        if self.entered:
+            self._move_ends(self._here)
+        self._let_go()
+
+    # --- the first move
+
+    def _enter_by_line(self, start: Point, end: Point, goal: list[float], *, rapid: bool) -> None:
+        if distance(start, end) <= self.radius:
+            self._refuse("the entry must be longer than the tool's radius")
+        aside = math.atan2(end[1] - start[1], end[0] - start[0]) + self.side * _QUARTER
+        self._endpoint = start
+        beside = _along(end, aside, self.radius)
+        self._hold_line(goal, beside, (math.cos(aside), math.sin(aside)), rapid=rapid)
+        self.entered = True
+
+    def _enter_by_arc(
+        self, points: tuple[Point, Point, Point], goal: list[float], center: Point, turns: int
+    ) -> None:
+        """An arc from the uncompensated start that ends beside the programmed end, as the contour goes."""
+        start, end, beside = points
+        if distance(start, end) <= self.radius:
+            self._refuse("the entry must be longer than the tool's radius")
+        inward = math.atan2(center[1] - beside[1], center[0] - beside[0])
+        corner = math.atan2(start[1] - beside[1], start[0] - beside[0]) - inward
+        if abs(math.cos(corner)) < _SAME:
+            self._refuse("no arc leads from here beside its end")
+        away = distance(start, beside) / 2.0 / math.cos(corner)
+        moved = _along(beside, inward, away)
+        self._hold_arc(goal, beside, moved, turns, _sweep(start, beside, moved, turns))
+        self.entered = True
+
+    # --- moves behind others
+
+    def _line_behind(self, start: Point, end: Point, goal: list[float], *, rapid: bool) -> None:
+        radius, side = self.radius, self.side
+        before = math.atan2(self._here[1] - start[1], self._here[0] - start[0])
+        heading = math.atan2(end[1] - start[1], end[0] - start[0])
+        turn = (before - heading) if side > 0.0 else (heading - before)
+        turn = turn % (2.0 * math.pi) - _QUARTER
+        aside = heading + side * _QUARTER
+        beside, middle = _along(end, aside, radius), _along(start, aside, radius)
+        held = self._held
+        held_arc = held.center is not None
+        concave = turn < -CORNER or turn > math.pi + CORNER
+        if turn > math.pi - CORNER and held_arc and not self._is_inside(held.turns):
+            concave = True
+        if concave and held_arc:
+            self._move_ends(self._arc_meets_line(held, start, heading))
+        elif concave:
+            half = (turn + math.pi) / 2.0
+            if math.tan(half) == 0.0:
+                self._refuse("the contour turns back on itself")
+            back = radius / math.tan(half)
+            self._move_ends(_along(self._here, before + side * _QUARTER, back))
+        elif turn > CORNER:
+            self._turn_around(start, middle, rapid=rapid)
+        else:
+            self._let_go()
+            self._endpoint = self._here
+        self._hold_line(goal, beside, (end[0] - start[0], end[1] - start[1]), rapid=rapid)
+
+    def _arc_behind(
+        self, points: tuple[Point, Point, Point], goal: list[float], center: Point, turns: int
+    ) -> None:
+        start, end, beside = points
+        inside = self._is_inside(turns)
+        before = math.atan2(self._here[1] - start[1], self._here[0] - start[0])
+        before -= self.side * _QUARTER
+        inward = math.atan2(center[1] - start[1], center[0] - start[0])
+        heading = inward - _QUARTER if turns > 0 else inward + _QUARTER
+        turn = (before - heading) if self.side > 0.0 else (heading - before)
+        turn = (turn + _QUARTER) % (2.0 * math.pi) - _QUARTER
+        concave = turn < -CORNER or turn > math.pi + CORNER
+        if abs(turn - math.pi) < CORNER and not inside:
+            concave = True
+        if concave:
+            held, radius = self._held, distance(center, end)
+            new = radius - self.radius if inside else radius + self.radius
+            if held.center is None:
+                meeting = self._line_meets_arc(center, before, turn, (radius, new), turns)
+            else:
+                meeting = self._arc_meets_arc(held, center, new, turns)
+            self._move_ends(meeting)
+        elif turn > CORNER:
+            aside = inward if inside else inward + math.pi
+            self._turn_around(start, _along(start, aside, self.radius), rapid=False)
+        else:
+            self._let_go()
+            self._endpoint = self._here
+        self._hold_arc(goal, beside, center, turns, _sweep(start, end, center, turns))
+
+    def _turn_around(self, point: Point, middle: Point, *, rapid: bool) -> None:
+        """Turn around a convex corner of the contour."""
+        control = self._control
+        self._move_ends(self._here)
+        goal = self._place(control.programmed, middle)
+        if rapid:
+            self._hold_line(goal, middle, (0.0, 0.0), rapid=True)
+        else:
+            self._hold_arc(goal, middle, point, -1 if self.side > 0.0 else 1, 0.0)
+        self._let_go()
+        self._endpoint = middle
+
+    # --- where offset paths meet
+
+    def _arc_meets_line(self, held: Held, start: Point, heading: float) -> Point:
+        assert held.center is not None
+        inside, ccw = self._is_inside(held.turns), held.turns > 0
+        radius = distance(held.center, held.end)
+        across = heading + (_QUARTER if ccw else -_QUARTER)
+        inward = math.atan2(held.center[1] - start[1], held.center[0] - start[0])
+        uncompensated = radius + self.radius if inside else radius - self.radius
+        away = uncompensated * math.cos(across - inward)
+        share = (away - self.radius if inside else away + self.radius) / radius
+        if abs(share) > 1.0:
+            self._refuse("arc and line make a corner that the tool does not fit into")
+        angle = math.acos(share) * (-1.0 if ccw == inside else 1.0)
+        return _along(held.center, angle + across + math.pi, radius)
+
+    def _line_meets_arc(
+        self, center: Point, before: float, turn: float, radii: tuple[float, float], turns: int
+    ) -> Point:
+        radius, new = radii
+        inside, ccw = self._is_inside(turns), turns > 0
+        nominal = radius * math.sin(turn - _QUARTER)
+        share = (nominal + self.radius if inside else nominal - self.radius) / new
+        if abs(share) > 1.0:
+            self._refuse("line and arc make a corner that the tool does not fit into")
+        angle = math.asin(share)
+        if inside:
+            return _along(center, before + (angle if ccw else -angle), new)
+        return _along(center, before + math.pi + (-angle if ccw else angle), new)
+
+    def _arc_meets_arc(self, held: Held, center: Point, new: float, turns: int) -> Point:
+        assert held.center is not None
+        old, apart = distance(held.center, held.end), distance(held.center, center)
+        if old == 0.0 or apart == 0.0:
+            self._refuse("two arcs with the same centre follow each other")
+        share = (old * old + apart * apart - new * new) / (2.0 * old * apart)
+        if abs(share) > 1.0:
+            self._refuse("two arcs make a corner that the tool does not fit into")
+        towards = math.atan2(center[1] - held.center[1], center[0] - held.center[0])
+        back = math.acos(share)
+        if self._is_inside(held.turns) != (turns > 0):
+            back = -back
+        return _along(held.center, towards + back, old)
+
+    # --- the moves that wait
+
+    @property
+    def _held(self) -> Held:
+        """The move that waits for its successor."""
+        return next(each for each in self._queue if isinstance(each, Held))
+
+    def _is_inside(self, turns: int) -> bool:
+        """The tool runs on the inner side of an arc."""
+        return (self.side > 0.0) == (turns > 0)
+
+    def _hold_line(self, goal: list[float], end: Point, direction: Point, *, rapid: bool) -> None:
+        control = self._control
+        held = Held(goal, end, rapid, direction, None, 0, 0.0, control.block, control.feed)
+        self._queue.append(held)
+        self._here = end
+
+    def _hold_arc(
+        self, goal: list[float], end: Point, center: Point, turns: int, sweep: float
+    ) -> None:
+        control = self._control
+        held = Held(goal, end, False, (0.0, 0.0), center, turns, sweep, control.block, control.feed)
+        self._queue.append(held)
+        self._here = end
+
+    def _move_ends(self, end: Point) -> None:
+        """All moves that wait end there; they are let go.
+
+        Raises:
+            ProgramError: One of them would go back, or further around than it was programmed.
+        """
+        for held in self._queue:
+            if isinstance(held, Held):
+                self._move_end(held, end)
+        self._let_go()
+        self._endpoint = end
+
+    def _move_end(self, held: Held, end: Point) -> None:
+        start = self._endpoint
+        if held.center is None:
+            if start is not None:
+                x, y = held.direction
+                if x * (end[0] - start[0]) + y * (end[1] - start[1]) < 0.0:
+                    self._refuse("the tool does not reach into this concave corner", held)
+        else:
+            if abs(distance(held.center, held.end) - distance(held.center, end)) > _MISMATCH:
+                self._refuse("the tool does not reach into this concave corner", held)
+            if held.sweep and start is not None:
+                swept = abs(_sweep(start, end, held.center, held.turns))
+                if swept > abs(held.sweep) + _TURNED_BACK:
+                    self._refuse("the tool does not reach into this concave corner", held)
+        held.end = end
+
+    def _let_go(self) -> None:
+        """Make the moves that wait."""
+        queue, self._queue = self._queue, []
+        self._endpoint = None
+        control = self._control
+        block, feed, programmed = control.block, control.feed, control.programmed
+        for each in queue:
+            if isinstance(each, Held):
+                control.block, control.feed = each.block, each.feed
+                self._make(each)
+            else:
+                control.path.event(each)
+        control.block, control.feed, control.programmed = block, feed, programmed
+
+    def _make(self, held: Held) -> None:
+        control = self._control
+        goal = self._place(held.goal, held.end)
+        if held.center is None:
+            control.line_to(goal, rapid=held.rapid)
+            return
+        plane = control.modal.plane
+        here = plane.local(control.frame.to_programmed(control.part))
+        clockwise = held.turns < 0
+        sweep = sweep_between(here[:2], held.end, held.center, clockwise=clockwise)
+        sweep += 360.0 * (held.turns + 1 if clockwise else held.turns - 1)
+        control.arc_to(goal, plane.world(*held.center, here.height), sweep)
+
+    def _place(self, goal: list[float], end: Point) -> list[float]:
+        """A programmed position moved to another place in the plane."""
+        plane, moved = self._control.modal.plane, list(goal)
+        moved[:3] = plane.world(*end, plane.local(goal).height)
+        return moved
+
+    def _refuse(self, message: str, held: Held | None = None) -> NoReturn:
+        if held is not None:
+            self._control.report.line = held.block.line
+            word = held.block.words[0] if held.block.words else None
+            span = (0, 1) if word is None else (word.column, word.width)
+            self._control.report.fail("compensation-gouge", message, *span)
+        self._control.fail("compensation-gouge", message)
+
+
+def in_force(control: Control) -> Compensation | None:
+    """Compensation, where it is in force."""
+    compensation = memory_of(control).compensation
+    assert compensation is None or isinstance(compensation, Compensation)
+    return compensation
+
+
+def begin_by_table(side: float) -> Action:
+    """G41, G42: the radius of tool D, else of the tool in the spindle."""
+
+    def action(control: Control) -> None:
+        word = control.take("D")
+        _begin_allowed(control)
+        if word is not None and control.number(word) != 0.0:
+            data = control.tools.data(tool_numbered(control, word))
+        else:
+            data = None if word is not None else control.tools.data(control.tools.spindle)
+        _begin(control, side, 0.0 if data is None else data.radius)
+
+    return action
+
+
+def begin_by_diameter(side: float) -> Action:
+    """G41.1, G42.1: D is the tool's diameter."""
+
+    def action(control: Control) -> None:
+        word, orientation = control.take("D"), control.take("L")
+        _begin_allowed(control)
+        if word is None:
+            control.fail("code-words", "the code needs D, the diameter of the tool")
+        if orientation is not None and control.number(orientation) != 0.0:
+            control.fail("code-words", "an orientation L belongs to lathe tools", orientation)
+        _begin(control, side, control.length(word) / 2.0)
+
+    return action
+
+
+def _begin_allowed(control: Control) -> None:
+    if in_force(control) is not None:
+        hint = "end it by G40 before it starts on another side or with another radius"
+        control.fail("compensation-change", "compensation is in force already", hint=hint)
+    if control.modal.plane is YZ:
+        message = "the control compensates in the planes X Y and Z X only"
+        control.fail("compensation-plane", message, hint="write G17 before")
+
+
+def _begin(control: Control, side: float, radius: float) -> None:
+    """Decision: with a radius of 0 the contour itself is driven."""
+    if radius < 0.0:
+        side, radius = -side, -radius
+    memory = memory_of(control)
+    memory.leading_out = False
+    compensation = Compensation(control, side, radius)
+    memory.compensation = compensation
+    control.path.defer = compensation.take_event
+
+
+def end(control: Control) -> None:
+    """G40, or the end of the program."""
+    compensation = in_force(control)
+    if compensation is not None:
+        memory = memory_of(control)
+        compensation.end()
+        memory.leading_out = compensation.entered
+        memory.compensation = None
+        control.path.defer = lambda _happen: False
+
+
+def _along(point: Point, angle: float, way: float) -> Point:
+    """A point further on in a direction [rad]."""
+    return point[0] + way * math.cos(angle), point[1] + way * math.sin(angle)
+
+
+def _sweep(start: Point, end: Point, center: Point, turns: int) -> float:
+    """How far an arc goes around, all turns counted [rad]."""
+    angle = math.radians(sweep_between(start, end, center, clockwise=turns < 0))
+    return angle + 2.0 * math.pi * (turns + 1 if turns < 0 else turns - 1)
