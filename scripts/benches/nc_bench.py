@@ -21,7 +21,7 @@ from benches.row import REPEATS, Row, median_cpu_seconds
 
 from twin.nc.canonical import Axes
 from twin.nc.control.settings import ControlSettings, ToolData
-from twin.nc.dialects import dialect_named
+from twin.nc.dialects import DIALECTS, dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import read_source
 
@@ -30,8 +30,13 @@ PEERS = Path(__file__).resolve().parents[2] / ".peers"
 BLOCKS = LINES
 _AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 _SETTINGS = ControlSettings(
-    axes=_AXES, step_limit=10 * ROUNDS, tools={1: ToolData(radius=2.0, length=60.0)}
+    axes=_AXES,
+    step_limit=10 * ROUNDS,
+    tools={1: ToolData(radius=2.0, length=60.0)},
+    decimal_point="calculator",
 )
+_SAME_LANGUAGE = tuple(each for each in ("fanuc", "linuxcnc") if each in DIALECTS)
+"""Dialects that read these programs as they stand."""
 
 
 def rows() -> Iterator[Row]:
@@ -45,6 +50,9 @@ def rows() -> Iterator[Row]:
                 lambda p=path: _interpret(p, "gost", compiled_from=BLOCKS * 2)
             )
             yield Row("nc", f"{task}, nothing compiled", BLOCKS / cold, "blocks/s")
+            for dialect in _SAME_LANGUAGE:
+                rate = BLOCKS / median_cpu_seconds(lambda p=path, d=dialect: _interpret(p, d))
+                yield Row("nc", f"{task}, {dialect}", rate, "blocks/s")
         for each in programs():
             ours, theirs = Path(folder, "ours.nc"), Path(folder, "theirs.ngc")
             ours.write_text(each.ours)

@@ -29,26 +29,31 @@ class Computing(NamedTuple):
 def programs() -> Iterator[Computing]:
     """Every form that a dialect has, and long programs that compute now and then."""
     for task, dialect, ours, theirs, blocks in _FORMS:
-        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
+        filled = _filled(ours, theirs)
         yield Computing(task, dialect, *filled, blocks * ROUNDS)
     for task, ours, theirs, blocks in _IN_LOOPS:
         texts = (_WHILE.format(ours), _THEIR_WHILE.format(theirs))
-        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in texts)
+        filled = _filled(*texts)
         yield Computing(task, "fagor8070", *filled, blocks * ROUNDS)
-    holes = (text.replace("ROUNDS", str(ROUNDS)) for text in _HOLES)
+    holes = _filled(*_HOLES)
     yield Computing("a loop over holes of G83", "fagor8070", *holes, 4 * ROUNDS)
-    contour = (text.replace("ROUNDS", str(ROUNDS)) for text in _CONTOUR)
+    contour = _filled(*_CONTOUR)
     yield Computing("a contour under G41 in a loop", "fagor8070", *contour, 10 * ROUNDS)
     for task, dialect, ours, theirs, blocks in _CYCLES:
-        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
+        filled = _filled(ours, theirs)
         yield Computing(task, dialect, *filled, blocks * ROUNDS)
     for task, ours, theirs, blocks in _TURNED:
-        filled = (text.replace("ROUNDS", str(ROUNDS)) for text in (ours, theirs))
+        filled = _filled(ours, theirs)
         yield Computing(task, "fagor8070", *filled, blocks * ROUNDS)
     for task, dialect, start, ours, theirs in _NOW_AND_THEN:
         every = f"{LINES:,} lines, every tenth {task}"
         texts = (_long(start, ours), _long("#101=1\n", theirs).replace("M30", "M2"))
         yield Computing(every, dialect, *texts, LINES)
+
+
+def _filled(ours: str, theirs: str) -> tuple[str, str]:
+    """Both programs with the number of rounds."""
+    return ours.replace("ROUNDS", str(ROUNDS)), theirs.replace("ROUNDS", str(ROUNDS))
 
 
 def _long(start: str, tenth: str) -> str:
@@ -154,6 +159,32 @@ _FORMS = (
             "o100 call [#101] [0.5]\n#101=[#101+1]\no110 while [#101 lt ROUNDS]\nM2\n"
         ),
         7,
+    ),
+    (
+        "WHILE, points of a circle",
+        "fanuc",
+        (
+            "O1\n#1=0\nG90 G1 F1000\nWHILE [#1 LT ROUNDS] DO1\nG1 X[50*COS[#1]] Y[50*SIN[#1]]\n#1=#1+1\n"
+            "END1\nM30\n"
+        ),
+        (
+            "#101=0\nG90 G1 F1000\no110 while [#101 lt ROUNDS]\nG1 X[50*cos[#101]] Y[50*sin[#101]]\n"
+            "#101=[#101+1]\no110 endwhile\nM2\n"
+        ),
+        4,
+    ),
+    (
+        "WHILE, G65 with arguments",
+        "fanuc",
+        (
+            "O1\n#1=0\nG90 G1 F1000\nWHILE [#1 LT ROUNDS] DO1\n#1=#1+1\nG65 P2 A[#1*0.1] B3.\nEND1\nM30\n"
+            "O2\nG1 X[#1+#2]\nM99\n"
+        ),
+        (
+            "o100 sub\nG1 X[#1+#2]\no100 endsub\n#101=0\nG90 G1 F1000\no110 while [#101 lt ROUNDS]\n"
+            "#101=[#101+1]\no100 call [#101*0.1] [3]\no110 endwhile\nM2\n"
+        ),
+        6,
     ),
     (
         "G73, a jump with repeat",

@@ -343,3 +343,68 @@ def test_a_program_raises_its_own_alarm() -> None:
     error = bad("O1\nIF [#1 EQ #0] THEN #3000=5 (NO VALUE)\nM30", "fanuc")
     assert error.code == "program-alarm"
     assert "3005: NO VALUE" in error.message
+
+
+# --- contours on a cylinder
+
+DEGREE = 180.0 / math.pi
+"""A radius on which a degree is a millimetre [mm]."""
+
+
+def test_a_feed_on_a_cylinder_counts_along_its_surface() -> None:
+    moves = good(f"O1\nG107 C{DEGREE:.9f}\nG1 C10. F300.\nZ10. C20.\nM30", "fanuc").moves
+    assert moves.feed[0] == pytest.approx(300.0)
+    assert moves.feed[1] == pytest.approx(300.0 / math.sqrt(2.0))
+
+
+def test_an_arc_on_a_cylinder_keeps_its_radius() -> None:
+    text = f"O1\nG18 G107 C{DEGREE:.9f}\nG1 Z5. C0. F300.\nG2 Z0. C5. R5.\nM30"
+    moves = good(text, "fanuc").moves
+    arc = moves.end[1:]
+    # From Z5 C0 clockwise to Z0 C5, less than half a turn: about Z5 C5
+    away = np.hypot(arc[:, 2] - 5.0, arc[:, 3] - 5.0)
+    assert np.allclose(away, 5.0, rtol=0.0, atol=1e-6)
+    chords = np.hypot(*np.diff(np.vstack([[5.0, 0.0], arc[:, 2:]]), axis=0).T)
+    assert (5.0 - np.sqrt(25.0 - chords**2 / 4.0)).max() <= 0.001
+
+
+# --- haas
+
+
+def test_haas_feeds_and_dwells_without_a_point() -> None:
+    assert good("O1\nG1 X1. F300000\nM30", "haas").moves.feed[0] == pytest.approx(300.0)
+    seconds = [
+        e.seconds for e in good("O1\nG4 P2\nG4 P2.\nM30", "haas").events if isinstance(e, Dwell)
+    ]
+    assert seconds == [0.002, 2.0]
+
+
+def test_haas_blocks_run_as_a_subprogram() -> None:
+    text = "O1\nM97 P10 L3\nG0 Y1.\nM30\nN10 G91 G0 X1.\nG90\nM99"
+    position = good(text, "haas").position
+    assert (position["X"], position["Y"]) == (3.0, 1.0)
+
+
+def test_haas_pocket_clears_up_to_its_radius() -> None:
+    tools = {1: ToolData(3.0, 60.0)}
+    moves = good("O1\nG0 X5.\nG13 I5. K10. Q3. Z-1. D1 F100.\nM30", "haas", tools=tools).moves
+    whole = [(r, s) for r, s in zip(moves.radius, moves.sweep, strict=True) if abs(s) == 360.0]
+    assert whole == [(2.0, 360.0), (5.0, 360.0), (7.0, 360.0)]
+    assert moves.end[-1, :2].tolist() == [5.0, 0.0]
+
+
+def test_haas_p_of_m98_is_the_program_alone() -> None:
+    assert bad("O1\nM98 P00022000\nM30\nO2000\nM99", "haas").code == "unknown-subprogram"
+
+
+def test_haas_offsets_beyond_g59() -> None:
+    offsets = {"G54.1 P2": {"X": 7.0}}
+    for code in ("G154 P2", "G111"):
+        assert ends(f"{code}\nG0 X1.", "haas", offsets=offsets) == [(8.0, 0.0, 0.0)]
+
+
+def test_haas_tool_variables_have_their_own_numbers() -> None:
+    tools = {1: ToolData(5.0, 60.0), 2: ToolData(4.0, 70.0)}
+    for variable, wanted in (("#2002", 70.0), ("#2402", 4.0)):
+        made = good(f"O1\n#100={variable}\nG0 X#100\nM30", "haas", tools=tools)
+        assert made.position["X"] == wanted

@@ -1,6 +1,6 @@
 """Dialects that other packages bring: entry points of the group ``twin.dialects``.
 
-Each names a ``Dialect``; ``tests/nc/dialects/outside`` shows a package of twenty lines.
+Each names a ``Dialect``; ``tests/nc/dialects/test_outside.py`` shows a package of twenty lines.
 """
 
 from collections.abc import Container

@@ -21,7 +21,7 @@ from twin.nc.dialects.fanuc import (
 from twin.nc.dialects.fanuc.decisions import DECISIONS
 from twin.nc.dialects.fanuc.memory import FANUC as FANUC_VARIANT
 from twin.nc.dialects.fanuc.memory import HAAS as HAAS_VARIANT
-from twin.nc.dialects.fanuc.memory import FanucMemory, acts_on_plain_blocks, memory_of
+from twin.nc.dialects.fanuc.memory import FanucMemory, acts_on_plain_blocks, holds_any, memory_of
 from twin.nc.iso import base
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -30,8 +30,8 @@ def prepare(control: Control) -> None:
     """Look over the program before it runs."""
     memory, lines = memory_of(control), control.program_counter.lines
     programs.begin(control)
-    memory.writes_offsets = lines.any_holds(offsets.WRITES_OFFSETS)
-    memory.bare_compensation = lines.any_holds(tool_offsets.BARE_COMPENSATION)
+    memory.writes_offsets = holds_any(lines, offsets.WRITES_OFFSETS)
+    memory.bare_compensation = holds_any(lines, tool_offsets.BARE_COMPENSATION)
     offsets.put_into_force(control)
     corners.prepare(control)
 

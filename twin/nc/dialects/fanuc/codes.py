@@ -8,6 +8,7 @@ from twin.nc.control.codes import Action, CodeWriter, GCode, Interpolation, MCod
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode, ModalChanges
 from twin.nc.dialects.fanuc import (
+    cylinder,
     data_setting,
     macro_calls,
     motion,
@@ -112,6 +113,10 @@ _MOTION: Mapping[float, GCode] = {
     64: _g("cutting mode", "corner", corner=Corner.EXACT_PATH),
 }
 _PLACE: Mapping[float, GCode] = {
+    **dict.fromkeys(
+        (7.1, 107),
+        _do("contours on a cylinder: rotary axis and radius, 0 ends it", cylinder.begin_or_end),
+    ),
     10: _do("offsets from the program: L P and values", data_setting.set_data),
     11: passed_over("setting of data off", ""),
     15: _modal("polar coordinates off", "polar", motion.end_polar),

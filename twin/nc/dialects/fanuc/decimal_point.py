@@ -26,6 +26,8 @@ _COUNTS = frozenset({73.0, 74.0, 76.0, 77.0, *map(float, range(81, 90))})
 """Codes whose K counts holes."""
 _SCALED = 51.0
 _TURNED = 68.0
+_CYLINDER = frozenset({7.1, 107.0})
+"""Codes whose rotary axis gives a radius."""
 _UNTOUCHED = frozenset({5.1, 8.0})
 """Codes whose words are switches."""
 
@@ -112,6 +114,8 @@ def _increment(control: Control, address: str, codes: set[float | Expression]) -
     length = (_INCH_INCREMENT, "inch") if inches else (_MILLI, "mm")
     if address == "F":
         return _feed_increment(control, codes, inches=inches)
+    if address in ANGLES and codes & _CYLINDER:
+        return length
     if address in ANGLES or (address == "R" and _TURNED in codes):
         return _MILLI, "degrees"
     if 4.0 in codes:

@@ -117,6 +117,13 @@ DECISIONS: tuple[Decision, ...] = (
         example="main_ends_by_m99",
     ),
     Decision(
+        "How does G107 wrap a contour?",
+        "The rotary axis stands in the place of the plane's axis that an arc does not name; F counts "
+        "along the surface, and an arc is driven in chords that leave it by 0.001 mm at most.",
+        "Parameter 1022 says which axis it stands for.",
+        example="contour_on_a_cylinder",
+    ),
+    Decision(
         "What do #500 to #999 hold before the program has set them?",
         "Nothing: they are vacant, with a warning, unless the job gives them a value.",
         "A control keeps them from run to run.",

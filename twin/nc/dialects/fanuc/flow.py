@@ -6,7 +6,7 @@ from typing import NoReturn
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import StatementAction, StatementEffect
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc.memory import Loop, memory_of
+from twin.nc.dialects.fanuc.memory import Loop, holds_any, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import lines_around
 from twin.nc.dialects.fanuc.variables import ControlVariables, compile_assignment, write_variable
 from twin.nc.text.blocks import Assignment, Location, Statement
@@ -30,7 +30,7 @@ _LOOP = re.compile(
     r"(?:(?:WHILE[^(]*\][ \t]*)?DO[ \t]*(?P<begin>[0-9]+)|END[ \t]*(?P<end>[0-9]+))",
     re.IGNORECASE,
 )
-_LOOP_SOMEWHERE = re.compile(rb"DO[ \t]*[0-9]", re.IGNORECASE)
+_LOOP_SOMEWHERE = letter_patterns("D", rb"[Oo][ \t]*[0-9]")
 _DO = re.compile(r"[ \t]*DO[ \t]*([0-9]+)[ \t]*\Z", re.IGNORECASE)
 _COUNT = re.compile(r"[ \t]*([0-9]+)[ \t]*\Z")
 _BEHIND_CONDITION = re.compile(r"[ \t]*(GOTO|THEN)(?![A-Z])", re.IGNORECASE)
@@ -47,7 +47,7 @@ def refuse(
 def loops_of(lines: Lines, headings: list[int]) -> dict[int, Loop]:
     """The loops of a file by the lines that begin and end them; those without an end have none."""
     found: dict[int, Loop] = {}
-    if not lines.any_holds(_LOOP_SOMEWHERE):
+    if not holds_any(lines, _LOOP_SOMEWHERE):
         return found
     inside: list[Loop] = []
     begins = set(headings)

@@ -1,12 +1,25 @@
 """What only a Fanuc control remembers from block to block."""
 
 import dataclasses
+import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from twin.nc.control.control import Control
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import Vector
 from twin.nc.text.blocks import Word
+from twin.nc.text.lines import Lines
+
+
+def letter_patterns(letter: str, rest: bytes) -> tuple[re.Pattern[bytes], ...]:
+    """A letter of either case with what follows: two patterns, since each is found much faster alone."""
+    return tuple(re.compile(each.encode() + rest) for each in (letter.upper(), letter.lower()))
+
+
+def holds_any(lines: Lines, patterns: Iterable[re.Pattern[bytes]]) -> bool:
+    """Whether one of the patterns stands in any line."""
+    return any(lines.any_holds(pattern) for pattern in patterns)
 
 
 class Variant(NamedTuple):
@@ -130,6 +143,7 @@ class FanucMemory:
         scale: Factors of X, Y and Z, and their centre [mm].
         mirror: Coordinates of the axes of mirror images by column [mm].
         rotation: Angle [deg] and centre [mm] of a rotation in the plane, or None.
+        cylinder: Column of the rotary axis and radius [mm] of G107, or None.
         loops: By their first and last lines, from 0; None before they were asked for.
         modal_call: G66 in force.
         modal_depth: Programs that were being run for callers when it was called.
@@ -156,6 +170,7 @@ class FanucMemory:
     scale: tuple[Vector, Vector] | None = None
     mirror: dict[int, float] = dataclasses.field(default_factory=dict)
     rotation: tuple[float, Point] | None = None
+    cylinder: tuple[int, float] | None = None
     loops: dict[int, Loop] | None = None
     modal_call: ModalCall | None = None
     modal_depth: int = 0
@@ -169,6 +184,7 @@ def memory_of(control: Control) -> FanucMemory:
 
 
 def acts_on_plain_blocks(control: Control) -> bool:
-    """Polar coordinates, a scale or a modal call in force: plain blocks heed them."""
+    """Polar coordinates, a scale, a modal call or a cylinder in force: plain blocks heed them."""
     memory = memory_of(control)
-    return memory.polar or memory.scale is not None or memory.modal_call is not None
+    remembered = (memory.scale, memory.modal_call, memory.cylinder)
+    return memory.polar or any(each is not None for each in remembered)

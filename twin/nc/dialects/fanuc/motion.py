@@ -10,6 +10,7 @@ import math
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import LineRule
+from twin.nc.dialects.fanuc import cylinder
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.dialects.fanuc.transformations import refuse_uneven_arc
 from twin.nc.geometry.arcs import direction
@@ -64,7 +65,7 @@ def rapid_line(control: Control) -> None:
 
 def feed_line(control: Control) -> None:
     """G1."""
-    control.line_to(target(control), rapid=False)
+    cylinder.line_to(control, target(control))
 
 
 def clockwise_arc(control: Control) -> None:
@@ -84,6 +85,8 @@ def _arc(control: Control, *, clockwise: bool) -> None:
         for letter in plane_center_letters(control):
             control.take(letter)
     goal = target(control)
+    if cylinder.arc_to(control, goal, clockwise=clockwise):
+        return
     center = iso_arc_center(control, goal, clockwise=clockwise)
     sweep_arc(control, goal, center, clockwise=clockwise)
 

@@ -10,16 +10,17 @@ import re
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.codes import Action, CodeWriter
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.memory import letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import whole
 from twin.nc.iso.offsets import machine_zero, offset_of_job, select_offset, shift_by
 from twin.nc.iso.offsets import write_offset as write_job_offset
 from twin.nc.text.blocks import Word
 
-WRITES_OFFSETS = re.compile(
-    rb"G0*10(?![0-9.])|#\[|#(?:52|53|70|71|72|73|74|75|76|77|78|79|14)[0-9]"
+WRITES_OFFSETS = (
+    *letter_patterns("G", rb"0*10(?![0-9.])"),
+    re.compile(rb"#(?:\[|5[23][0-9]|7[0-9]|14[0-9]|[12][0-9]{3})"),
 )
-"""What may write work offsets."""
+"""What may write work or tool offsets."""
 LARGEST_EXTENDED = 300
 """G54.1 P1 to P300 (the largest number of pairs that the option has)."""
 

@@ -11,14 +11,14 @@ from pathlib import Path
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.frames import AGAIN, CALLS
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
 from twin.nc.text.blocks import Location, Word
 from twin.nc.text.library import named_files, with_called_files
 from twin.nc.text.lines import Lines
 from twin.nc.text.source import Source
 
 _HEADING = re.compile(r"[ \t]*O[ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE)
-_HEADING_SOMEWHERE = re.compile(rb"O[ \t]*[0-9]", re.IGNORECASE)
+_HEADING_SOMEWHERE = letter_patterns("O", rb"[ \t]*[0-9]")
 _CALL = re.compile(
     r"^[^(]*?(?:M0*98|G0*6[56])(?![0-9.])[^(]*?P[ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE
 )
@@ -68,7 +68,7 @@ def _calls(source: Source) -> Iterator[str]:
 
 def _headings(lines: Lines) -> Iterator[tuple[int, int]]:
     """Lines of headings, from 0, and the numbers of the programs that they begin."""
-    if not lines.any_holds(_HEADING_SOMEWHERE):
+    if not holds_any(lines, _HEADING_SOMEWHERE):
         return
     for line, text in enumerate(lines):
         if (match := _HEADING.match(text)) is not None:

@@ -5,20 +5,19 @@ their numbers; lengths count against the job's first tool. D holds radii (parame
 """
 
 import dataclasses
-import re
 from typing import NoReturn
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.codes import Action, CodeWriter
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc.memory import ToolOffset, memory_of
+from twin.nc.dialects.fanuc.memory import ToolOffset, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import whole
 from twin.nc.iso.tool_compensation import NO_TOOL, compensate, set_length, tool_numbered
 from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import Expression
 
-BARE_COMPENSATION = re.compile(rb"G0*4[12](?![0-9.])(?![^\r\n]*D)", re.IGNORECASE)
+BARE_COMPENSATION = letter_patterns("G", rb"0*4[12](?![0-9.])(?![^\r\n]*[Dd])")
 """Compensation without D in its line."""
 LARGEST_OFFSET = 999
 
