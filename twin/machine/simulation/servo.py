@@ -81,7 +81,6 @@ class Servo:
         self._qpos = np.array([int(joint.qposadr[0]) for joint in joints])
         self._dof = np.array([int(joint.dofadr[0]) for joint in joints])
         servos = [model.actuator(name).id for name in machine.axes.names]
-        forces = [model.actuator(feedforward_name(name)).id for name in machine.axes.names]
         self._setpoint_state = model.actuator_actadr[servos]
         self._integrates = np.flatnonzero([loop.integral_gain > 0 for loop in loops])
         integral = [
@@ -103,10 +102,27 @@ class Servo:
         self._scale = machine.joint_scale
         self._constant = np.array([axis.constant_force for axis in axes])
         self._substeps = round(self._period / model.opt.timestep)
-        everywhere = len(axes)
+        self._drives = self._columns(machine, loops)
+        self._late = _late_drives(machine, model, loops, self._drives)
+        self.process: Process | None = None
+        self._view_data()
+        self._state = np.zeros(0)
+        self._states = np.zeros((0, 0))
+        self._chunk: Setpoints | None = None
+        self._warmstart = np.zeros((1, model.nv))
+
+    def _columns(self, machine: Machine, loops: tuple[Drive, ...]) -> Drives:
+        """What the kernels know of the drives."""
+        model, everywhere, joined = self.model, len(loops), 1 + self.model.nq
+        axes = [machine.axis(name) for name in machine.axes.names]
         driven = list(zip(axes, loops, strict=True))
-        joined = 1 + model.nq
-        self._drives = Drives(
+        servos = [model.actuator(name).id for name in machine.axes.names]
+        forces = [model.actuator(feedforward_name(name)).id for name in machine.axes.names]
+        integral = [
+            model.actuator(integral_name(machine.axes.names[index])).id
+            for index in self._integrates
+        ]
+        return Drives(
             period=self._period,
             scale=self._scale,
             position_gain=self._position_gain,
@@ -143,13 +159,6 @@ class Servo:
                 everywhere, self._integrates, joined + model.nv + self._integral_state
             ),
         )
-        self._late = _late_drives(machine, model, loops, self._drives)
-        self.process: Process | None = None
-        self._view_data()
-        self._state = np.zeros(0)
-        self._states = np.zeros((0, 0))
-        self._chunk: Setpoints | None = None
-        self._warmstart = np.zeros((1, model.nv))
 
     @property
     def last(self) -> Setpoints:

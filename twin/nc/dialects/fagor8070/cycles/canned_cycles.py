@@ -44,27 +44,27 @@ _CLEARANCE = 1.0
 """G82: C where it is missing [mm]."""
 
 
+_PLAIN = Cycle(
+    lasting=False,
+    across=REFERENCE,
+    needed=1 << BOTTOM,
+    pecking=Pecking.NONE,
+    clearance=CHIP_CLEARANCE,
+    retract=Retract.RAPID,
+)
+"""Down with the feed, back with rapid."""
+
+
 def _drilling(
     number: int,
     meaning: str,
     words: Mapping[str, int],
+    cycle: Cycle = _PLAIN,
     *,
-    needed: int = 0,
-    pecking: Pecking = Pecking.NONE,
-    clearance: float = CHIP_CLEARANCE,
-    retract: Retract = Retract.RAPID,
     ground: Ground = "decision",
     options: Mapping[str, tuple[float, ...]] | None = None,
 ) -> GCode:
     """A cycle that drills, by its words besides Z and I; ``options`` change nothing of its path."""
-    cycle = Cycle(
-        lasting=False,
-        across=REFERENCE,
-        needed=1 << BOTTOM | needed,
-        pecking=pecking,
-        clearance=clearance,
-        retract=retract,
-    )
     rule = CycleRule(f"G{number}", cycle, {**words, "I": BOTTOM})
     meaning = f"{meaning}: Z I {' '.join(words)}"
     code = cycle_code(rule, meaning, _hole, ground)
@@ -76,7 +76,7 @@ def _hole(control: Control) -> list[float]:
 
 
 def _with_options(code: GCode, options: Mapping[str, tuple[float, ...]]) -> GCode:
-    """The same cycle with words of which some values are known that change nothing of its path."""
+    """A cycle with words besides, of which some values are known that change nothing of its path."""
 
     def call(control: Control) -> None:
         for letter, known in options.items():
@@ -134,26 +134,31 @@ CYCLES = {
             "C": CLEARANCE,
             "K": DWELL,
         },
-        needed=1 << PECK,
-        pecking=Pecking.TO_BOTTOM,
-        clearance=_CLEARANCE,
+        _PLAIN._replace(
+            needed=_PLAIN.needed | 1 << PECK, pecking=Pecking.TO_BOTTOM, clearance=_CLEARANCE
+        ),
     ),
     83: _drilling(
         83,
         "deep drilling in equal pecks",
         {"J": COUNT, "D": SURFACE, "K": DWELL},
-        needed=1 << COUNT,
-        pecking=Pecking.COUNTED,
+        _PLAIN._replace(needed=_PLAIN.needed | 1 << COUNT, pecking=Pecking.COUNTED),
     ),
-    84: tapping_code(_drilling(84, "tapping", _DWELL, retract=Retract.REVERSED, options=_RIGID)),
+    84: tapping_code(
+        _drilling(84, "tapping", _DWELL, _PLAIN._replace(retract=Retract.REVERSED), options=_RIGID)
+    ),
     85: _drilling(
-        85, "reaming, back with the feed", _DWELL, retract=Retract.FEED, options=_SPINDLE
+        85,
+        "reaming, back with the feed",
+        _DWELL,
+        _PLAIN._replace(retract=Retract.FEED),
+        options=_SPINDLE,
     ),
     86: _drilling(
         86,
         "boring, back with the spindle stopped",
         _DWELL,
-        retract=Retract.STOPPED,
+        _PLAIN._replace(retract=Retract.STOPPED),
         options=_SPINDLE,
     ),
     87: _pocket(87, "rectangular pocket", "DAJKBCLHVMQ", "DJKBCLHVQ"),
