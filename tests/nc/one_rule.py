@@ -120,6 +120,27 @@ CHANGES = (
     Change(
         "path/drilling_cycle", "CHIP_CLEARANCE = 0.5", "CHIP_CLEARANCE = 0.6", "gost/rules/drilling"
     ),
+    Change(
+        "bytecode/effects",
+        "state.shifts[operand, axis] = stack[top + axis]",
+        "state.shifts[operand, axis] = stack[top + axis] + 1.0",
+        "gost/rules/work_offsets",
+    ),
+    Change(
+        "bytecode/coordinates",
+        "state.part[axis] - state.total[axis]",
+        "state.part[axis] - state.total[axis] + 1.0",
+        "gost/codes/G43",
+    ),
+    Change(
+        "bytecode/flow", "stack[top - 1] + width", "stack[top - 1] - width", "fagor8070/rules/flow"
+    ),
+    Change(
+        "bytecode/variables",
+        "memory.common[slot] = value",
+        "memory.common[slot] = value + 1.0",
+        "codesys/codes/G36",
+    ),
     Change("bytecode/frames", "if call[AGAIN] > 0:", "if call[AGAIN] > 1:", "fagor8070/rules/flow"),
 )
 

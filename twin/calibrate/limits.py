@@ -20,6 +20,8 @@ _LOBE = 0.3
 """Above this share of the greatest, a derivative belongs to a ramp."""
 _OFTEN, _ALIKE = 3, 0.95
 """A limit is what so many ramps come to, none of them below this share of the greatest."""
+_STEEP = 8.0
+"""An acceleration that is reached within so many samples shows no jerk, but the samples."""
 _RAPID = 0.3
 """A speed below this share of the base's is taken for a feed."""
 
@@ -62,6 +64,9 @@ def planner_limits(
         for name, found in peaks.items()
         if len(found) >= _OFTEN and found[_OFTEN - 1] > _ALIKE * found[0]
     }
+    longest = max((period for _, period in pieces), default=0.0)
+    if "jerk" in told and reached["acceleration"] < _STEEP * longest * told["jerk"]:
+        told.pop("jerk")
     if told.get("velocity", 0.0) < _RAPID * base.velocity:
         told.pop("velocity", None)
     return Limits(reached, told)

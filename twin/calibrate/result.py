@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping
 
 from twin.calibrate.fit.solve import Interval
-from twin.calibrate.fit.stages import AxisFit
+from twin.calibrate.fit.stages import NOT_ASKED, AxisFit
 from twin.calibrate.health import Finding
 from twin.calibrate.limits import Limits
 from twin.machine.description.config import AxisTable
@@ -185,7 +185,11 @@ def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) 
     shares = max((figures.share for figures in judged), default=math.inf)
     seen = "of a log that it has not seen" if unseen else "of the log that it was fitted to"
     sentence = f"{name}: predicts the {what} {seen} to {100 * shares:.2g} %"
-    open_ones = [told for told in axis.fit.undetermined if told not in axis.fit.conditional]
+    open_ones = [
+        told
+        for told, why in axis.fit.undetermined.items()
+        if told not in axis.fit.conditional and why != NOT_ASKED
+    ]
     if not open_ones:
         return f"{sentence}; nothing is undetermined."
     first = open_ones[0]

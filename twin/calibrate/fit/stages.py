@@ -37,6 +37,8 @@ _FILTER_S = 0.003
 """Where the search for a filter of the log begins [s]."""
 _WRONG = 1e6
 """Weighted residual of what is not finite."""
+NOT_ASKED = "the log does not ask for another value"
+"""Why something that the log could show stays as it is in the base."""
 _DAMPINGS = (0.5, 1.2)
 _WIDE = 0.5
 """A parameter whose interval reaches further than this share to a side is not determined."""
@@ -99,7 +101,7 @@ def fit_axis(
             other.intervals["reset_time_s"], value=best.parameters.reset_time_s
         )
     undetermined |= {
-        name: "the log does not ask for another value" for name in EXTRAS
+        name: NOT_ASKED for name in EXTRAS
         if name not in fitted and name not in undetermined and name not in OF_THE_LOG
     }  # fmt: skip
     if any(stretch.command.every > 1 for stretch in stretches):

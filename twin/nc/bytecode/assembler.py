@@ -50,8 +50,14 @@ class Assembler(abc.ABC):
         self._add(opcodes.CONSTANT, 0, value)
 
     @abc.abstractmethod
-    def emit(self, opcode: int, operand: int = 0) -> None:
-        """Take one of the instructions that do more than compute, move and jump."""
+    def emit(self, opcode: int, operand: int = 0, blamed: Word | None = None) -> None:
+        """Take one of the instructions that do more than compute, move and jump.
+
+        Args:
+            opcode: The instruction.
+            operand: As ``opcodes`` says.
+            blamed: The word to blame; None: that of the topmost value.
+        """
 
     @abc.abstractmethod
     def interpreted(self, action: Callable[[], None]) -> None:
@@ -60,6 +66,14 @@ class Assembler(abc.ABC):
         Raises:
             UnsupportedError: This is the compiled tier.
         """
+
+    def rare(self) -> None:
+        """Leave the block to the interpreter tier; nothing where this is it already."""
+        self.interpreted(lambda: None)
+
+    @abc.abstractmethod
+    def disturbed(self, action: Callable[[], None]) -> None:
+        """What matters only where ``Dialect.disturbed`` keeps the compiled tier from running."""
 
     @abc.abstractmethod
     def known(self, word: Word) -> float:

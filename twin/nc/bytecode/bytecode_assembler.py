@@ -90,8 +90,9 @@ class BytecodeAssembler(Assembler):
         self._bytecode.add(opcode, operand, immediate)
         self.columns.append(self._column)
 
-    def emit(self, opcode: int, operand: int = 0) -> None:
+    def emit(self, opcode: int, operand: int = 0, blamed: Word | None = None) -> None:
         """Append one of the instructions that do more than compute, move and jump."""
+        del blamed
         if not self._has_snapshot:
             self._has_snapshot = True
             self._add(opcodes.SNAPSHOT)
@@ -214,6 +215,9 @@ class BytecodeAssembler(Assembler):
         """The topmost value goes to the variable whose number lies below it."""
         self._number_variables(name)
         self._add(opcodes.STORE_NUMBERED)
+
+    def disturbed(self, action: Callable[[], None]) -> None:
+        """Nothing: the compiled tier does not run then."""
 
     def known(self, word: Word) -> float:
         """The value of a word that is not computed."""

@@ -1,12 +1,13 @@
 """What the compiled loop over plain blocks is given, changes and fills, as tuples of columns."""
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from twin.compilation.compilable import compilable
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.geometry.frame import SHIFTS
 from twin.nc.path.drilling_cycle import VALUES
 from twin.nc.path.rows import Rows, copy, copy_rows
 
@@ -52,6 +53,8 @@ its offset; the polar origin, the last R and Q; the scale; angle and centre of t
 plane; whether the frame's matrix is not the identity; the tool's radius that the program gave; whether
 M3 or M4 is in force; the signs of X, Y and Z, -1 where they are mirrored; what the drilling cycle in force remembers, as
 ``drilling_cycle`` counts it, and the same of the words of the block; the matrix, row by row. NaN: none."""
+Cells: TypeAlias = "memoryview[float]"
+"""A column as Python reads and writes it one by one, without a NumPy object for each value."""
 BAILOUT = -3
 """An instruction or a move is left to the interpreter tier; neither ``UNSUPPORTED`` nor ``NO_ROOM``."""
 MOST_EVENTS = 16
@@ -88,7 +91,6 @@ class BlockTables(NamedTuple):
         bounds: How badly the centre of an arc may fit, as ``arcs.Bounds`` has it, shape (i, 4).
         signed_radius: A negative radius asks for the larger arc, else it is not plain, shape (i,).
         fits_radius: A centre found by its radius is fitted like a given one, shape (i,).
-        linear: Which axes are linear, shape (k,).
     """
 
     field: IntArray
@@ -102,7 +104,6 @@ class BlockTables(NamedTuple):
     bounds: FloatArray
     signed_radius: npt.NDArray[np.bool_]
     fits_radius: npt.NDArray[np.bool_]
-    linear: npt.NDArray[np.bool_]
 
 
 class Constants(NamedTuple):
@@ -116,10 +117,13 @@ class Constants(NamedTuple):
         own_rapid_feed: Feed per second of rapids that the program paces, 0 where they follow F;
             NaN: ``rapid_feed`` counts.
         last_values: Corner tolerance, acceleration and deceleration of every move, shape (3,).
+        linear: Which axes are linear, shape (k,).
         planes: Columns of abscissa, ordinate and normal of each plane, shape (3, 3).
+        directions: Their directions, and at last those of a plane that is none of them,
+            shape (4, 3, 3).
         tools: Numbers of the tools that the job lists, shape (t,).
-        longer: How much longer each is than the first, shape (t,) [mm].
-        radii: Of each, shape (t,) [mm].
+        longer: How much longer each is than the first, and at last any other, shape (t + 1,) [mm].
+        radii: Of each, and at last of any other, NaN where there is none, shape (t + 1,) [mm].
         square_corners: Compensation that begins extends outside corners between lines.
         indirect_leads: It goes around the contour's first and last point.
         over: Room for where the hole lies, shape (k,).
@@ -134,7 +138,9 @@ class Constants(NamedTuple):
     rapid_feed: float
     own_rapid_feed: float
     last_values: FloatArray
+    linear: npt.NDArray[np.bool_]
     planes: IntArray
+    directions: FloatArray
     tools: FloatArray
     longer: FloatArray
     radii: FloatArray
@@ -146,7 +152,7 @@ class Constants(NamedTuple):
 
 
 class State(NamedTuple):
-    """What changes during a run; the arrays are written to.
+    """What both tiers remember of a control; the arrays are written to.
 
     Attributes:
         modal: The modal state, shape (``MODAL``,).
@@ -169,6 +175,32 @@ class State(NamedTuple):
     shifts: FloatArray
     total: FloatArray
     target: FloatArray
+
+
+def new_state(start: list[float]) -> State:
+    """The state of a control that stands at a position, shape (k,), and has run nothing."""
+    registers = np.full(REGISTERS, np.nan)
+    registers[SCALE] = registers[SIGNS:CYCLE_STATE] = 1.0
+    nothing = [POLAR_ABSCISSA, POLAR_ORDINATE, TURNED, RADIUS_GIVEN, SPINDLE_TURNS]
+    registers[OFFSET_ON], registers[nothing] = 1.0, 0.0
+    registers[MATRIX:] = np.identity(3).ravel()
+    axes = len(start)
+    return State(
+        modal=np.zeros(MODAL),
+        active_codes=np.zeros(0, np.int64),
+        programmed=np.array(start),
+        part=np.array(start),
+        event_count=np.zeros(1, np.int64),
+        registers=registers,
+        shifts=np.zeros((len(SHIFTS), axes)),
+        total=np.zeros(axes),
+        target=np.zeros(axes),
+    )
+
+
+def cells(column: FloatArray) -> Cells:
+    """A column, one by one."""
+    return cast("Cells", column.data)
 
 
 class Machine(NamedTuple):

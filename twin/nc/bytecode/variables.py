@@ -165,16 +165,13 @@ class Variables:
         slot = self._slots.get(name)
         if slot is None:
             return self._given(name)
-        value = float(self.common[slot] if slot >= 0 else self.local[self._progress[DEPTH], ~slot])
+        value = float(own_value(self.columns, self._progress[DEPTH], slot))
         return value if value == value else self._given(name)
 
     def write(self, name: str, value: float) -> None:
         """Set a variable."""
-        slot = self.slot(name)
-        if slot >= 0:
-            self.common[slot] = value
-        else:
-            self.local[self._progress[DEPTH], ~slot] = value
+        slot = self.slot(name)  # which may make the columns grow
+        store(self.columns, self._progress[DEPTH], slot, value)
 
     def make_room(self, depth: int) -> None:
         """Let there be a row of local variables for calls so deep."""

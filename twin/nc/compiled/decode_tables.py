@@ -92,7 +92,7 @@ class DecodeTables:
         self.token_kinds = _token_kinds(dialect, settings)
         self.pointed = dialect.pointless(settings)
         self.lines = _line_tables(dialect, self.token_kinds, self.pointed)
-        self.blocks = self._block_tables(dialect, settings)
+        self.blocks = self._block_tables(dialect)
 
     def modal(self, modal: Modal) -> FloatArray:
         """The modal state as the kernel keeps it, shape (``MODAL``,)."""
@@ -132,7 +132,7 @@ class DecodeTables:
         assert isinstance(value, (bool, int, float))
         return float(value)
 
-    def _block_tables(self, dialect: Dialect, settings: ControlSettings) -> BlockTables:
+    def _block_tables(self, dialect: Dialect) -> BlockTables:
         field = np.full(CODES, UNSUPPORTED, np.int64)
         value = np.zeros(CODES)
         group = np.zeros(CODES, np.int64)
@@ -160,7 +160,6 @@ class DecodeTables:
             bounds=np.array([arc.bounds for arc in arcs]),
             fits_radius=np.array([arc.fits_radius for arc in arcs]),
             signed_radius=np.array([arc.signed_radius for arc in arcs]),
-            linear=np.array([kind == "linear" for kind in settings.axes.kinds]),
         )
 
     def _meaning(self, code: GCode) -> tuple[int, float] | None:

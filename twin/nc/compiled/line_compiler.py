@@ -113,15 +113,17 @@ class LineCompiler:
 
     def _compile_block(self, block: Block) -> bool:
         control = self._control
-        before = control.block, control.report.line
-        control.block = block
-        try:
-            self._assembler.begin(block)
-            if not control.settings.skips(block):
-                control.dialect.compile_block(self._compiler, block)
-        except (UnsupportedError, ProgramError):
-            return False
-        finally:
-            control.block, control.report.line = before
+        before, control.block = control.block, block
+        with control.report.quietly() as has_said:
+            try:
+                self._assembler.begin(block)
+                if not control.settings.skips(block):
+                    control.dialect.compile_block(self._compiler, block)
+            except (UnsupportedError, ProgramError):
+                return False
+            finally:
+                control.block = before
+            if has_said():
+                return False
         self._assembler.end()
         return True

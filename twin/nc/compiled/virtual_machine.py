@@ -31,38 +31,24 @@ from twin.nc.bytecode.registers import (
     CYCLE,
     CYCLE_STATE,
     CYCLE_WORDS,
-    IN_SPINDLE,
     MATRIX,
-    PROGRAMMED_FEED,
-    REGISTERS,
-    ROTATION,
-    SCALE,
-    SELECTED,
-    SIGNS,
-    SPINDLE,
-    SPINDLE_TURNS,
-    TURNED,
     Constants,
     Machine,
-    State,
 )
 from twin.nc.bytecode.token_kinds import UNSUPPORTED
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import IntArray
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.entries import Kernels, hot, page_columns
-from twin.nc.compiled.kernels.cycle import MOST_STOPS
 from twin.nc.compiled.line_compiler import LineCompiler
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import FEED_FACTORS
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.compensation.contour import Contour, new_contour
-from twin.nc.path.drilling_cycle import most_acts, no_values
 from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import CHUNK
-from twin.nc.path.rows import Row, Rows
+from twin.nc.path.rows import Row, Rows, new_rows
 from twin.nc.text.lines import Page
 
-_PLANES = np.array([plane.axes for plane in PLANE_ORDER])
 _WORTHWHILE = 4
 """Blocks that a run must have to pay for handing the state over and back."""
 _LONGEST_PAUSE = 256
@@ -89,19 +75,10 @@ class VirtualMachine:
             control.dialect, control.settings, control.interpreted_functions
         )
         self._line_compiler = LineCompiler(control, self._tables, kernels)
-        self._rows = Rows(
-            np.zeros((CHUNK, 5), np.int64),
-            np.zeros((CHUNK, 11)),
-            np.zeros((CHUNK, 3, axes)),
-            np.zeros((CHUNK, 4), np.int64),
-            np.zeros(CHUNK),
+        self._rows = new_rows(CHUNK, CHUNK, axes)
+        state = self._state = control.state._replace(
+            active_codes=np.full(len(self._tables.groups), UNSUPPORTED, np.int64)
         )
-        table = control.tools.table
-        self._tools = np.array([float(number) for number in table])
-        self._longer = np.array([control.tools.longer(tool) for tool in table.values()])
-        self._radii = np.array([tool.radius for tool in table.values()])
-        self._hole = np.zeros((4, most_acts(MOST_STOPS)))
-        state = self._state()
         self._scratch = new_scratch(state)
         self._saved = Saved(
             np.zeros((MOST_CALLS, len(state.modal))),
@@ -124,12 +101,13 @@ class VirtualMachine:
         contour = control.path.begin_rows()
         if contour is None:
             return False
-        state, rows = self._state(), self._rows.first(room)
+        rows = self._rows.first(room)
         control.program_counter.leave_line()
         progress = control.program_counter.progress
         begin = progress[LINE]
         progress[[BLOCKS, MADE]] = 0
-        why = self._run(state, rows, contour)
+        self._enter_state()
+        why = self._run(rows, contour)
         made = int(progress[MADE])
         self.full = why == FULL and room - made < CHUNK
         worthwhile = progress[BLOCKS] >= _WORTHWHILE
@@ -138,14 +116,13 @@ class VirtualMachine:
         self._pause = 1 if worthwhile or why != TRAPPED else min(2 * self._pause, _LONGEST_PAUSE)
         if progress[BLOCKS] == 0 and made == 0 and progress[LINE] == begin:
             return self.full  # it has gone past no line, and let go no move that was held
-        self._keep_saved_codes()
-        self._give_back(state, rows.first(made))
+        self._leave_state(rows.first(made))
         return True
 
-    def _run(self, state: State, rows: Rows, contour: Contour) -> int:
+    def _run(self, rows: Rows, contour: Contour) -> int:
         """Run; why the run ended."""
         line_compiler, progress = self._line_compiler, self._control.program_counter.progress
-        machine = Machine(self._tables.blocks, self._constants(), state, rows)
+        machine = Machine(self._tables.blocks, self._constants(), self._state, rows)
         while True:
             why = self._kernels.run_program(*self._arguments(machine, contour))
             if why == OFF_PAGE:
@@ -160,7 +137,7 @@ class VirtualMachine:
         """Whether the hot kernels could run now, without waiting for the compiler."""
         from twin.compilation.cache import is_compiled
 
-        machine = Machine(self._tables.blocks, self._constants(), self._state(), self._rows)
+        machine = Machine(self._tables.blocks, self._constants(), self._state, self._rows)
         contour = new_contour(len(self._control.settings.axes))
         return is_compiled(hot().run_program, self._arguments(machine, contour))
 
@@ -201,80 +178,26 @@ class VirtualMachine:
 
     def _constants(self) -> Constants:
         control, rapid = self._control, self._control.dialect.rapid_feed
-        return Constants(
-            default_feed=control.settings.default_feed,
-            default_rotary_feed=control.settings.default_rotary_feed,
+        modal = control.modal
+        return control.constants._replace(
             feed_may_lack=control.report.has_said("no-feed"),
             rapid_feed=control.rapid_feed,
             own_rapid_feed=math.nan if rapid is None else rapid(control),
             last_values=np.array(
-                [control.modal.corner_tolerance, control.acceleration, control.deceleration]
+                [modal.corner_tolerance, control.acceleration, control.deceleration]
             ),
-            planes=_PLANES,
-            tools=self._tools,
-            longer=self._longer,
-            radii=self._radii,
-            square_corners=control.modal.square_corners,
-            indirect_leads=control.modal.indirect_leads,
-            over=np.zeros(len(control.part)),
-            room=np.zeros((3, len(control.part))),
-            hole=self._hole,
+            square_corners=modal.square_corners,
+            indirect_leads=modal.indirect_leads,
         )
 
-    def _state(self) -> State:
-        control = self._control
-        return State(
-            modal=self._tables.modal(control.modal),
-            active_codes=np.full(len(self._tables.groups), UNSUPPORTED, np.int64),
-            programmed=np.array(control.programmed),
-            part=np.array(control.part),
-            event_count=np.zeros(1, np.int64),
-            registers=self._registers(),
-            shifts=np.array(control.frame.shifts),
-            total=np.array(control.frame.total),
-            target=np.zeros(len(control.part)),
-        )
-
-    def _registers(self) -> FloatArray:
-        control = self._control
-        registers = np.zeros(REGISTERS)
-        registers[CYCLE_STATE:CYCLE_WORDS], registers[CYCLE_WORDS:MATRIX] = (
-            control.cycle_state,
-            math.nan,
-        )
-        registers[SCALE], registers[ROTATION], registers[SIGNS:CYCLE_STATE] = 1.0, math.nan, 1.0
-        registers[TURNED] = not control.frame.is_identity
-        registers[SPINDLE_TURNS] = control.spindle_turns
-        registers[MATRIX:] = np.ravel(control.frame.matrix)
-        tools = control.tools
-        for place, value in (
-            (PROGRAMMED_FEED, control.feed),
-            (SPINDLE, control.spindle),
-            (SELECTED, tools.selected),
-            (IN_SPINDLE, tools.spindle),
-        ):
-            registers[place] = math.nan if value is None else value
-        for place, number in control.dialect.registers(control).items():
-            registers[place] = number
-        return registers
-
-    def _take_registers(self, registers: list[float]) -> None:
-        control = self._control
-        control.feed, speed, selected, in_spindle = (
-            None if math.isnan(registers[place]) else registers[place]
-            for place in (PROGRAMMED_FEED, SPINDLE, SELECTED, IN_SPINDLE)
-        )
-        control.spindle = speed
-        control.spindle_turns = registers[SPINDLE_TURNS] != 0.0
-        control.tools.selected = None if selected is None else int(selected)
-        control.tools.spindle = None if in_spindle is None else int(in_spindle)
-        control.dialect.take_registers(control, registers)
-
-    def _give_cycle_back(self, state: State) -> None:
-        cycle = self._tables.cycle(state.modal[CYCLE])
-        values = state.registers[CYCLE_STATE:CYCLE_WORDS].tolist()
-        self._control.modal.cycle = cycle
-        self._control.cycle_state = no_values() if cycle is None else values
+    def _enter_state(self) -> None:
+        """What the control keeps as objects goes into the columns of the state."""
+        control, state = self._control, self._state
+        state.modal[:] = self._tables.modal(control.modal)
+        state.active_codes[:] = UNSUPPORTED
+        state.programmed[:], state.part[:] = control.programmed, control.part
+        state.event_count[0] = 0
+        state.registers[CYCLE_WORDS:MATRIX] = math.nan
 
     def _keep_saved_codes(self) -> None:
         """What the run has saved at calls that go on, the control can restore."""
@@ -294,14 +217,16 @@ class VirtualMachine:
             if number != UNSUPPORTED:
                 control.put_into_force(number, control.dialect.g[number])
 
-    def _give_back(self, state: State, rows: Rows) -> None:
-        control = self._control
+    def _leave_state(self, rows: Rows) -> None:
+        """The control takes back what it keeps as objects, and the path what was made."""
+        control, state = self._control, self._state
+        cycle_state = state.registers[CYCLE_STATE:CYCLE_WORDS].copy()
+        self._keep_saved_codes()
         self._put_into_force(state.active_codes)
-        self._give_cycle_back(state)
-        self._take_registers(state.registers.tolist())
-        control.frame.set_shifts(state.shifts.tolist())
-        a, b, c, d, e, f, g, h, i = state.registers[MATRIX:].tolist()
-        control.frame.set_matrix(((a, b, c), (d, e, f), (g, h, i)))
+        control.modal.cycle = self._tables.cycle(state.modal[CYCLE])
+        if control.modal.cycle is not None:
+            state.registers[CYCLE_STATE:CYCLE_WORDS] = cycle_state
+        control.frame.refresh()
         event_count = int(state.event_count[0])
         events = EventRows(rows.events[:event_count], rows.event_values[:event_count])
         moves = Row(rows.codes, rows.values, rows.positions)

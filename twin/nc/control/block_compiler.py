@@ -1,8 +1,6 @@
-"""Compiles the words of a block, sorted by what they do and in their order.
+"""Compiles the blocks of a program in the order of ``block_order``.
 
-``Executor.run`` does what is in force, then actions, words, early functions, the motion or what
-stands in its place, late functions; the instructions do so in the same order. Of a doubtful block
-nothing is compiled: the interpreter tier alone says what is wrong.
+Of a doubtful block nothing is compiled: the interpreter tier alone says what is wrong.
 """
 
 from collections.abc import Iterable, Iterator
@@ -11,26 +9,27 @@ from typing import NamedTuple
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import UnsupportedError
 from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
-from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import GCode, MCode, StatementEffect, Vocabulary
+from twin.nc.control.block_order import conflict_of, in_order, run_in_order
+from twin.nc.control.codes import GCode, MCode, StatementEffect, Vocabulary, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import Expression
 
+_BESIDE_CYCLE = "ST"
+"""Words that may stand beside the call of a cycle: they change nothing of where the tool stands."""
+
 
 class SortedBlock(NamedTuple):
-    """A block by what its words are.
+    """A block by what its words are; the others are those of its control.
 
     Attributes:
         codes: Its G codes, in the order in which they take effect.
         functions: Its M functions, in the order of the text.
-        words: The others.
     """
 
     codes: list[tuple[Word, GCode]]
-    functions: list[tuple[int, MCode]]
-    words: BlockWords
+    functions: list[tuple[Word, MCode]]
 
 
 class BlockCompiler:
@@ -40,6 +39,7 @@ class BlockCompiler:
         control: Whose program it is.
         vocabulary: The codes and words of its dialect.
         assembler: Takes the instructions.
+        acting: Addresses of words that do something by themselves, such as S and T.
     """
 
     def __init__(
@@ -48,48 +48,36 @@ class BlockCompiler:
         self.control = control
         self.vocabulary = vocabulary
         self.assembler = assembler
+        self.acting = frozenset(
+            each for each, do in vocabulary.words.items() if isinstance(do, WordEffect)
+        )
+        self._sorted = SortedBlock([], [])
 
     def sorted(self, words: Iterable[Word]) -> SortedBlock:
-        """Sort the words of a block.
+        """Sort the words of a block; those that are no codes become the control's.
 
         Raises:
             UnsupportedError: It is doubtful.
         """
-        vocabulary = self.vocabulary
         codes: list[tuple[Word, GCode]] = []
-        functions: list[tuple[int, MCode]] = []
+        functions: list[tuple[Word, MCode]] = []
         others: dict[str, Word] = {}
-        seen: set[str] = set()
         for word in words:
             if word.address in ("G", "M"):
                 code = self._code(word)
-                name = code.group or word.text
-                if name in seen:
-                    raise UnsupportedError
-                seen.add(name)
                 if isinstance(code, MCode):
-                    functions.append((_number(word), code))
+                    functions.append((word, code))
                 else:
                     codes.append((word, code))
             elif word.address in others:
                 raise UnsupportedError
             else:
                 others[word.address] = word
+        if conflict_of(codes, functions) is not None:
+            raise UnsupportedError
+        codes = in_order(codes, self.vocabulary.groups)
         self.control.words, self.control.codes = others, codes
-        order = {group: rank for rank, group in enumerate(vocabulary.groups)}
-        codes.sort(key=lambda pair: order.get(pair[1].group, len(order)))
-        return SortedBlock(
-            codes,
-            functions,
-            BlockWords(
-                self.control,
-                others,
-                tuple(_number(word) for word, _ in codes),
-                tuple(number for number, _ in functions),
-                any(code.action is not None for _, code in functions),
-                vocabulary.word_compilers.keys(),
-            ),
-        )
+        return SortedBlock(codes, functions)
 
     def _code(self, word: Word) -> GCode | MCode:
         number, vocabulary = _number(word), self.vocabulary
@@ -129,39 +117,74 @@ class BlockCompiler:
         if not self._acts(words):
             self.assembler.words(words)
             return
-        codes, functions, block = self.sorted(words)
-        acting = [(word, code) for word, code in codes if code.writer is not None]
-        moving_codes = [word for word, code in codes if code.writer is None or code.begins_cycle]
-        if any(code.after is not None or code.once or code.alone for _, code in acting):
+        codes, functions = self._sorted = self.sorted(words)
+        run_in_order(self, codes, functions, words_first=self.vocabulary.words_first)
+
+    def _refuse_beside_cycle(self) -> None:
+        """A drilling cycle has its words: leave what else acts to the interpreter tier.
+
+        Raises:
+            UnsupportedError: Something does.
+        """
+        codes, functions = self._sorted
+        acting = self.control.words.keys() & self.acting - set(_BESIDE_CYCLE)
+        performs = any(code.perform is not None for _, code in codes)
+        if acting or performs or any(function.action is not None for _, function in functions):
             raise UnsupportedError
-        performing = [code for _, code in codes if code.perform is not None]
-        if len(performing) > 1 or (performing and performing[0].writer is None):
+
+    def act(self, word: Word, code: GCode) -> None:
+        """Write what a code does before the block moves."""
+        if code.writer is None:
+            return
+        if code.after is not None or code.once or code.alone:
             raise UnsupportedError
-        if performing and any(code.begins_cycle for _, code in acting):
+        if code.group and not code.begins_cycle:
+            self.assembler.emit(opcodes.ACTIVATE, _number(word))
+        if code.perform is None:
+            code.writer(self.control, self.assembler)
+        if code.begins_cycle:
+            self._refuse_beside_cycle()
+
+    def modal_words(self, reserved: str) -> None:
+        """Write what words such as S and T do."""
+        words = self.control.words
+        for address, effect in self.vocabulary.words.items():
+            if address in words and address not in reserved and isinstance(effect, WordEffect):
+                effect.write(self.control, words.pop(address), self.assembler)
+
+    def run_function(self, word: Word, function: MCode) -> None:
+        """Write an M function."""
+        number, writer = _number(word), function.writer
+        acts = function.action is not None
+        if function.ends or function.silent or (acts and writer is None):
             raise UnsupportedError
-        reserved = performing[0].takes if performing else ""
-        if self.vocabulary.words_first:
-            self._modal_words(block, reserved)
-            self._functions(functions, block, late=False)
-        for word, code in acting:
-            if code.group and not code.begins_cycle:
-                self.assembler.emit(opcodes.ACTIVATE, _number(word))
-            if code.perform is None:
-                self._compile(code, block)
-        if not self.vocabulary.words_first:
-            self._modal_words(block, reserved)
-            self._functions(functions, block, late=False)
-        feed = block.words.get("F")
-        moving = [] if feed is None or "F" in reserved else [block.words.pop("F")]
-        if performing:
-            if moving_codes or moving:
-                self.assembler.codes([*moving_codes, *moving])
-            self._compile(performing[0], block)
-            if block.words:
-                raise UnsupportedError
-        else:
-            self.assembler.words([*moving_codes, *moving, *block.words.values()])
-        self._functions(functions, block, late=True)
+        if any(letter in self.control.words for letter in self.vocabulary.function_letters):
+            raise UnsupportedError
+        if writer is not None:
+            writer(self.control, self.assembler)
+        starts = f"M{number}" in SPINDLE_STARTS
+        self.assembler.emit(opcodes.SPINDLE_FUNCTION if starts else opcodes.FUNCTION, number)
+
+    def move(self, instead: GCode | None) -> None:
+        """Write the motion, or what a code does in its place."""
+        words, codes = self.control.words, self._sorted.codes
+        plain = [word for word, code in codes if code.writer is None or code.begins_cycle]
+        reserved = "" if instead is None else instead.takes
+        if "F" in words and "F" not in reserved:
+            plain.append(words.pop("F"))
+        if instead is None:
+            self.assembler.words([*plain, *words.values()])
+            return
+        if instead.writer is None:
+            raise UnsupportedError
+        if plain:
+            self.assembler.codes(plain)
+        instead.writer(self.control, self.assembler)
+        if words:
+            raise UnsupportedError
+
+    def follow(self, _word: Word, _code: GCode) -> None:
+        """Nothing: codes that act behind the move are not compiled."""
 
     def known_codes(self, words: Iterable[Word]) -> Iterator[GCode]:
         """The G codes among words, as far as the dialect knows them."""
@@ -175,7 +198,7 @@ class BlockCompiler:
         """Whether the block does more than its plain words."""
         functions = 0
         for word in words:
-            if word.address in self.vocabulary.word_compilers:
+            if word.address in self.acting:
                 return True
             if isinstance(word.value, Expression):
                 continue
@@ -189,34 +212,6 @@ class BlockCompiler:
                 if function is not None and function.writer is not None:
                     return True
         return functions > 1
-
-    def _compile(self, code: GCode | MCode, block: BlockWords) -> None:
-        writer = code.writer
-        if writer is None:
-            raise UnsupportedError
-        writer(block, self.assembler)
-
-    def _modal_words(self, block: BlockWords, reserved: str) -> None:
-        compilers = self.vocabulary.word_compilers
-        for address in self.vocabulary.words:
-            if address in block.words and address not in reserved and address in compilers:
-                compilers[address](block, self.assembler)
-
-    def _functions(
-        self, functions: list[tuple[int, MCode]], block: BlockWords, *, late: bool
-    ) -> None:
-        for number, code in functions:
-            if code.late != late:
-                continue
-            if code.ends or code.silent or (code.action is not None and code.writer is None):
-                raise UnsupportedError
-            if any(letter in block.words for letter in self.vocabulary.function_letters):
-                raise UnsupportedError
-            writer = code.writer
-            if writer is not None:
-                writer(block, self.assembler)
-            starts = f"M{number}" in SPINDLE_STARTS
-            self.assembler.emit(opcodes.SPINDLE_FUNCTION if starts else opcodes.FUNCTION, number)
 
 
 def _number(word: Word) -> int:

@@ -5,7 +5,6 @@ from collections.abc import Callable, Mapping
 from typing import Literal, Protocol
 
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.block_words import BlockWords
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import MotionMode
 from twin.nc.control.modal import ModalChanges
@@ -14,10 +13,9 @@ from twin.nc.text.blocks import Statement, Word
 Action = Callable[[Control], None]
 WordAction = Callable[[Control, Word], None]
 StatementAction = Callable[[Control, Statement], None]
-Compiler = Callable[[BlockWords, Assembler], None]
-"""Writes as instructions what a code or a word does, taking the words that belong to it."""
 
 CodeWriter = Callable[[Control, Assembler], None]
+WordWriter = Callable[[Control, Word, Assembler], None]
 StatementWriter = Callable[[Control, Statement, Assembler], None]
 
 
@@ -35,6 +33,18 @@ class Effect:
     def __call__(self, control: Control) -> None:
         """Do it."""
         control.perform(lambda assembler: self.write(control, assembler))
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class WordEffect:
+    """The action of a word that is said as instructions; as ``Effect``."""
+
+    write: WordWriter
+
+    def __call__(self, control: Control, word: Word) -> None:
+        """Do it."""
+        span = word.column, word.width
+        control.perform(lambda assembler: self.write(control, word, assembler), span)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -79,7 +89,8 @@ class GCode:
         once: What it sets holds for its block only.
         alone: No other word may stand in its block.
         refused: Why the twin refuses a code that the control knows; empty: it does not.
-        compiler: Compiles what ``action`` or ``perform`` does; None: it has no compiled form.
+        compiler: Says as instructions what an ``action`` does that is no ``Effect``; None: it has no
+            compiled form.
         ground: On what the meaning rests.
     """
 
@@ -93,11 +104,11 @@ class GCode:
     once: bool = False
     alone: bool = False
     refused: str = ""
-    compiler: Compiler | None = None
+    compiler: CodeWriter | None = None
     ground: Ground = "decision"
 
     @property
-    def writer(self) -> Compiler | None:
+    def writer(self) -> CodeWriter | None:
         """Says what it does as instructions; None: it has no compiled form."""
         return _writer(self.action or self.perform, self.compiler)
 
@@ -124,7 +135,6 @@ class MCode:
         action: What it does besides being reported as a function.
         silent: It is not reported.
         dwell: How long the program waits for it [s].
-        compiler: Compiles what ``action`` does; None: it has no compiled form.
         ground: On what the meaning rests.
     """
 
@@ -135,19 +145,16 @@ class MCode:
     silent: bool = False
     dwell: float = 0.0
     action: Action | None = None
-    compiler: Compiler | None = None
     ground: Ground = "decision"
 
     @property
-    def writer(self) -> Compiler | None:
+    def writer(self) -> CodeWriter | None:
         """Says what it does as instructions; None: it has no compiled form."""
-        return _writer(self.action, self.compiler)
+        return _writer(self.action, None)
 
 
-def _writer(action: Action | None, compiler: Compiler | None) -> Compiler | None:
-    if isinstance(action, Effect):
-        return lambda block, assembler: action.write(block.control, assembler)
-    return compiler
+def _writer(action: Action | None, compiler: CodeWriter | None) -> CodeWriter | None:
+    return action.write if isinstance(action, Effect) else compiler
 
 
 class Vocabulary(Protocol):
@@ -176,11 +183,6 @@ class Vocabulary(Protocol):
     @property
     def words(self) -> Mapping[str, WordAction]:
         """Addresses with a modal meaning, and what they do."""
-        ...
-
-    @property
-    def word_compilers(self) -> Mapping[str, Compiler]:
-        """The compilers of those that have one."""
         ...
 
     @property

@@ -5,18 +5,27 @@ import math
 from collections.abc import Callable, Mapping
 
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.canonical import Corner, Motion
+from twin.nc.bytecode.effects import Affected
+from twin.nc.bytecode.registers import INCREMENTAL, PLANE, PROGRAMMED_FEED, UNIT
+from twin.nc.canonical import Corner, Dwell, Function, Motion
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
+from twin.nc.control.state import number_of
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
-from twin.nc.geometry.planes import Plane, Vector
+from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
+from twin.nc.path.event_columns import EventRows
 from twin.nc.path.move_columns import NAN, Segment
-from twin.nc.path.moves import SMALLEST_MOVE, arc_length, feed_per_minute, line_length, only_turns
+from twin.nc.path.moves import (
+    LARGEST_COORDINATE,
+    SMALLEST_MOVE,
+    arc_length,
+    axis_target,
+    feed_per_minute,
+    line_length,
+    only_turns,
+)
 from twin.nc.path.segments import direction_of
 from twin.nc.text.blocks import Block
-
-LARGEST_COORDINATE = 1e7
-"""Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 
 
 class Control(ControlWords):
@@ -26,9 +35,10 @@ class Control(ControlWords):
         """Take the axis words; the programmed position that they ask for, shape (k,)."""
         target, modal = list(self.programmed), self.modal
         for index, word in self.take_axis_words():
-            value = self.axis_value(index, word)
-            if modal.incremental or word.incremental:
-                value += target[index]
+            incremental = modal.incremental or word.incremental
+            value = axis_target(
+                number_of(word), modal.unit, self.linear[index], incremental, target[index]
+            )
             if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value
@@ -131,26 +141,26 @@ class Control(ControlWords):
         return [1.0, 1.0, 1.0, *shares[3:]] if is_arc else shares
 
     def _feed_per_minute(self, end: list[float], is_arc: bool, length: float) -> float:
-        settings, mode = self.settings, self.modal.feed_mode
-        if self.feed is None:
+        settings, modal, feed = self.settings, self.modal, self.registers[PROGRAMMED_FEED]
+        factor = FEED_FACTORS.get(modal.feed_mode)
+        if feed != feed:
             self.report.warn_once(
                 "no-feed",
                 "no feed is programmed: the machine's default is used",
                 *self._blamed(None),
                 hint="write F in the first block that needs it",
             )
-        elif mode is FeedMode.SECONDS_PER_BLOCK:
-            return length / self.feed * 60.0
-        elif mode is FeedMode.BLOCKS_PER_MINUTE:
-            return length * self.feed
-        factor = FEED_FACTORS.get(mode, self.spindle)
-        if self.feed is not None and mode not in FEED_FACTORS:
+        elif factor is None:
+            if modal.feed_mode is FeedMode.SECONDS_PER_BLOCK:
+                return length / feed * 60.0
+            if modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
+                return length * feed
             self._refuse_standing_spindle()
         return feed_per_minute(
-            NAN if self.feed is None else self.feed,
+            feed,
             not is_arc and only_turns(self.part, end, self.linear),
-            self.modal.unit,
-            factor or 1.0,
+            modal.unit,
+            (self.spindle or 1.0) if factor is None else factor,
             (settings.default_feed, settings.default_rotary_feed),
         )
 
@@ -175,6 +185,30 @@ class Control(ControlWords):
         """Report a function at this place of the path."""
         line, given = self.block.line, dict(arguments)
         self.path.event(lambda columns: columns.function(line, word, given, at))
+
+    def begin_effect(self) -> Affected:
+        """Let the columns show what the control keeps as objects, for an instruction."""
+        state, modal = self.state, self.modal
+        state.event_count[0] = 0
+        state.programmed[:], state.part[:] = self.programmed, self.part
+        state.modal[UNIT], state.modal[INCREMENTAL] = modal.unit, modal.incremental
+        if modal.plane in PLANE_ORDER:
+            state.modal[PLANE] = PLANE_ORDER.index(modal.plane)
+        else:
+            state.modal[PLANE] = len(PLANE_ORDER)
+            self.constants.directions[len(PLANE_ORDER)] = modal.plane.directions
+        return Affected(self.constants, state, self._event_room)
+
+    def end_effect(self) -> None:
+        """Take back what an instruction has changed, and report what happened."""
+        state, room = self.state, self._event_room
+        self.programmed = state.programmed.tolist()
+        self.frame.refresh()
+        for event in EventRows(room.events, room.event_values).part(0, int(state.event_count[0])):
+            if isinstance(event, Dwell):
+                self.dwell(event.seconds)
+            elif isinstance(event, Function):
+                self.function(event.word, event.arguments)
 
     def part_plane(self) -> Plane:
         """The working plane as the part sees it."""

@@ -7,7 +7,6 @@ from pathlib import Path
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.codes import (
     Action,
-    Compiler,
     GCode,
     MCode,
     StatementAction,
@@ -63,7 +62,6 @@ class Dialect:
         series: Addresses that may stand several times in a block with a switch point, in order.
         words: Addresses with a modal meaning, and what they do.
         feed_letter: Address that sets the feed and does no more; empty: there is none.
-        word_compilers: The compilers of those that have one.
         statements: Keywords of statements, and what they do.
         other_statement: What the others do, which begin with a name.
         word_meanings: What the addresses mean, for people.
@@ -87,6 +85,7 @@ class Dialect:
         count: Gives words without a decimal point their value in the units of the others.
         prepare: Done before the first block.
         after_motion: Done when a block has moved.
+        must_end: A program without an end code is wrong.
         finish: Done when the program ends without an end code.
         compile_block: Compiles one of its blocks that is more than plain words; raises
             ``UnsupportedError`` for what is left to the interpreter tier.
@@ -94,8 +93,6 @@ class Dialect:
             None: rapids have the machine's pace.
         disturbed: Something that only this dialect remembers acts on plain blocks, so that the
             interpreter tier must run them; None: nothing can.
-        registers: What the compiled tier is given of its memory, by places in the registers.
-        take_registers: Takes all of them back.
     """
 
     name: str
@@ -118,7 +115,6 @@ class Dialect:
     series: str = ""
     words: Mapping[str, WordAction]
     feed_letter: str = "F"
-    word_compilers: Mapping[str, Compiler] = dataclasses.field(default_factory=dict)
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
     other_statement: StatementAction | None = None
     word_meanings: Mapping[str, str]
@@ -142,12 +138,11 @@ class Dialect:
     count: Callable[[Control, Block], Block] = lambda _control, block: block
     prepare: Action | None = None
     after_motion: Action | None = None
+    must_end: bool = False
     finish: Action | None = None
     compile_block: Callable[[BlockCompiler, Block], None] = BlockCompiler.block
     rapid_feed: Callable[[Control], float] | None = None
     disturbed: Callable[[Control], bool] | None = None
-    registers: Callable[[Control], Mapping[int, float]] = lambda _control: {}
-    take_registers: Callable[[Control, list[float]], None] = lambda _control, _values: None
 
     def refusal(self, code: float) -> str | None:
         """Why a G code that the control knows is refused, given its number; None: it is not."""

@@ -1,14 +1,14 @@
-"""Runs the blocks of a program, whatever its dialect: in which order a block takes effect.
+"""Runs the blocks of a program, whatever its dialect, in the order of ``block_order``.
 
-A block takes effect in a fixed order: modal codes by group, set-up actions, modal words (F, S, T),
-early M functions, the motion or what stands in its place, late M functions, jumps. Every word must
-be used by something; a word that nothing wants is an error, because ignoring it would be a guess.
+Every word must be used by something; a word that nothing wants is an error, because ignoring it would
+be a guess.
 """
 
 from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.block_order import Conflict, conflict_of, in_order, run_in_order
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
@@ -66,37 +66,22 @@ class Executor(Control):
         functions = self._sort_words(block)
         if block.assignments:
             self._assign(block.assignments)
-        codes = self._codes
         restore = self._apply_codes()
-        instead = next((code for _, code in codes if code.perform is not None), None)
-        words_first, reserved = self.dialect.words_first, "" if instead is None else instead.takes
-        if words_first:
-            self._run_words(functions, reserved)
-        for _, code in codes:
-            if code.action is not None:
-                code.action(self)
-        if not words_first:
-            self._run_words(functions, reserved)
-        if instead is not None and instead.perform is not None:
-            instead.perform(self)
-        else:
-            self._move()
-        for _, code in codes:
-            if code.after is not None:
-                code.after(self)
-        for word, function in functions:
-            if function.late:
-                self._run_function(word, function)
+        run_in_order(self, self._codes, functions, words_first=self.dialect.words_first)
         if self.words or self.series:
             self._refuse_unused()
         for replaced in restore:
             self.modal.apply(replaced)
 
-    def _run_words(self, functions: list[tuple[Word, MCode]], reserved: str) -> None:
-        self._run_modal_words(reserved)
-        for word, function in functions:
-            if not function.late:
-                self._run_function(word, function)
+    def act(self, _word: Word, code: GCode) -> None:
+        """What a code does before the block moves."""
+        if code.action is not None:
+            code.action(self)
+
+    def follow(self, _word: Word, code: GCode) -> None:
+        """What a code does when the block has moved."""
+        if code.after is not None:
+            code.after(self)
 
     def _assign(self, assignments: tuple[Assignment, ...]) -> None:
         """Give variables their values, all of them computed before the first is given."""
@@ -175,13 +160,15 @@ class Executor(Control):
         self.series = []
         functions: list[tuple[Word, MCode]] = []
         for word in block.words:
-            if isinstance(word.value, Expression) and word.address not in dialect.references:
-                word = word._replace(value=self.evaluate(word.value, word))
-                if word.value != word.value:
+            address, value = word.address, word.value
+            if isinstance(value, Expression) and address not in dialect.references:
+                value = self.evaluate(value, word)
+                word = word._replace(value=value)
+                if value != value:
                     continue  # computed of a vacant variable: the word is not there
-            if word.address in dialect.signed and number_of(word) < 0.0:
-                word = word._replace(address=f"{word.address}-")
-            address = word.address
+            if address in dialect.signed and number_of(word) < 0.0:
+                address = f"{address}-"
+                word = word._replace(address=address)
             if address == "G":
                 codes.append((word, self._g_code(word)))
             elif address == "M" and not self._takes_m(block):
@@ -194,10 +181,9 @@ class Executor(Control):
                 self.fail("duplicate-word", f"'{address}' stands twice in the block", word)
             else:
                 words[address] = word
-        if len(self._codes) > 1:
-            self._check_groups()
-        if len(functions) > 1:
-            self._check_functions(functions)
+        if len(codes) > 1 or len(functions) > 1:
+            self._refuse_conflict(conflict_of(codes, functions))
+            self.codes = self._codes = in_order(codes, dialect.groups)
         return functions
 
     def _takes_m(self, block: Block) -> bool:
@@ -244,36 +230,24 @@ class Executor(Control):
             )
         return code
 
-    def _check_groups(self) -> None:
-        seen: dict[str, Word] = {}
-        performing: Word | None = None
-        for word, code in self._codes:
-            if code.group and code.group in seen:
-                other = seen[code.group]
-                self.fail(
-                    "conflicting-codes",
-                    f"{other.text} and {word.text} exclude each other ({code.group})",
-                    word,
-                    hint="write them in two blocks",
-                )
-            seen[code.group] = word
-            if code.perform is not None:
-                if performing is not None:
-                    message = f"{performing.text} and {word.text} cannot share a block"
-                    self.fail("conflicting-codes", message, word, hint="write them in two blocks")
-                performing = word
-        order = {group: rank for rank, group in enumerate(self.dialect.groups)}
-        self._codes.sort(key=lambda pair: order.get(pair[1].group, len(order)))
+    def _refuse_conflict(self, conflict: Conflict | None) -> None:
+        """Say which codes cannot share a block.
 
-    def _check_functions(self, functions: list[tuple[Word, MCode]]) -> None:
-        seen: dict[str, Word] = {}
-        for word, function in functions:
-            other = seen.setdefault(function.group or word.text, word)
-            if other is not word:
-                message = f"{other.text} and {word.text} exclude each other"
-                self.fail("conflicting-codes", message, word, hint="write them in two blocks")
+        Raises:
+            ProgramError: There are two.
+        """
+        if conflict is None:
+            return
+        both = f"{conflict.first.text} and {conflict.second.text}"
+        group = f" ({conflict.group})" if conflict.group else ""
+        message = f"{both} exclude each other{group}"
+        if conflict.performs:
+            message = f"{both} cannot share a block"
+        hint = "write them in two blocks"
+        self.fail("conflicting-codes", message, conflict.second, hint=hint)
 
-    def _run_modal_words(self, reserved: str) -> None:
+    def modal_words(self, reserved: str) -> None:
+        """What words such as F, S and T do, but for those that the motion wants."""
         words, modal_words = self.words, self.dialect.words
         if words.keys().isdisjoint(modal_words):
             return
@@ -281,17 +255,18 @@ class Executor(Control):
             if address in words and address not in reserved:
                 action(self, words.pop(address))
 
-    def _run_function(self, word: Word, code: MCode) -> None:
-        if code.action is not None:
-            code.action(self)
-        if code.silent:
+    def run_function(self, word: Word, function: MCode) -> None:
+        """Run an M function."""
+        if function.action is not None:
+            function.action(self)
+        if function.silent:
             return
         arguments, number = self.take_function_arguments(word), integer_of(number_of(word))
         self.spindle_turns = turns_behind(number, self.spindle_turns) != 0.0
         self.function(f"M{number}", arguments)
-        if code.dwell > 0.0:
-            self.dwell(code.dwell)
-        if code.ends:
+        if function.dwell > 0.0:
+            self.dwell(function.dwell)
+        if function.ends:
             self.ended = True
 
     def take_function_arguments(self, word: Word) -> dict[str, float]:
@@ -306,7 +281,11 @@ class Executor(Control):
             arguments["S"] = self.spindle
         return arguments
 
-    def _move(self) -> None:
+    def move(self, instead: GCode | None) -> None:
+        """The motion, or what a code does in its place."""
+        if instead is not None and instead.perform is not None:
+            instead.perform(self)
+            return
         words = self.words
         motion_words = self.dialect.motion_words
         if motion_words.isdisjoint(words) and not any(code.begins_cycle for _, code in self._codes):

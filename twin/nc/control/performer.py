@@ -4,12 +4,13 @@ What goes wrong has its message here; what an instruction does, ``bytecode`` say
 """
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NoReturn
 
-from twin.nc.bytecode import opcodes
+from twin.nc.bytecode import effects, opcodes
 from twin.nc.bytecode.assembler import Assembler, Target, found
 from twin.nc.bytecode.bytecode import MOST_VALUES, Instruction, number_of_location
+from twin.nc.bytecode.effects import BlockPlace, run_effect
 from twin.nc.bytecode.flow import Transfer, count_loop, jumps, transfer
 from twin.nc.bytecode.frames import (
     CALLS,
@@ -20,9 +21,50 @@ from twin.nc.bytecode.frames import (
     go_to,
 )
 from twin.nc.bytecode.variables import store
+from twin.nc.control.compensation import compensate, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import Expression, Tree
+
+_END_IT = "end it by G40 first"
+_FINDINGS: Mapping[int, tuple[str, str, str | None, bool]] = {
+    effects.NEGATIVE_SPEED: ("spindle-range", "the speed {word} is negative", None, True),
+    effects.NO_TOOL_NUMBER: ("tool-number", "{word} is no tool number", None, True),
+    effects.NO_TOOL: (
+        "no-such-tool",
+        "compensation needs a tool, and the job has none",
+        "give the job a tool with its radius and length: [[tools]]",
+        False,
+    ),
+    effects.NEGATIVE_DWELL: ("dwell", "a dwell cannot be negative", None, True),
+    effects.PLANE_COMPENSATED: (
+        "compensation-plane",
+        "the plane cannot change while compensation is in force",
+        _END_IT,
+        False,
+    ),
+    effects.PLANE_ROTATED: (
+        "rotation-active",
+        "the plane cannot change while a rotation turns it",
+        "end it by G73 alone",
+        False,
+    ),
+    effects.MIRROR_SIGN: ("mirror", "a mirror takes -1 or 1 for X, Y and Z", None, True),
+    effects.SCALE_RANGE: ("scale", "a scale lies between 0.001 and 1000", None, True),
+    effects.ROTATED_ALREADY: (
+        "rotation-active",
+        "a rotation is in force",
+        "end it by G73 alone",
+        True,
+    ),
+    effects.TRANSFORM_COMPENSATED: (
+        "compensation-change",
+        "mirror, scale and rotation cannot change while compensation is in force",
+        _END_IT,
+        False,
+    ),
+}
+"""Code, message and hint of what is wrong with an effect, and whether the word is to blame."""
 
 
 class _Gone(Exception):  # noqa: N818 (nothing is wrong)
@@ -51,6 +93,7 @@ class Performer(Assembler):
         self._control = control
         self._stack = [0.0] * MOST_VALUES
         self._top = 0
+        self._word: Word | None = None
         self._to = Transfer(
             here,
             here,
@@ -80,6 +123,7 @@ class Performer(Assembler):
 
     def word_value(self, word: Word | None, default: float = 0.0) -> None:
         """Put the value of a word on the stack, or of a missing one a default."""
+        self._word = self._word if word is None else word
         if word is None:
             self._push(default)
         elif isinstance(word.value, Expression):
@@ -121,9 +165,47 @@ class Performer(Assembler):
         if self._pop():
             self.jump(found(location))
 
-    def emit(self, opcode: int, operand: int = 0) -> None:
+    def disturbed(self, action: Callable[[], None]) -> None:
+        """Do it."""
+        action()
+
+    def emit(self, opcode: int, operand: int = 0, blamed: Word | None = None) -> None:
         """Run one of the instructions that do more than compute, move and jump."""
-        self._add(opcode, operand)
+        self._word = self._word if blamed is None else blamed
+        if opcode == opcodes.COMPENSATE:
+            compensate(self._control, float(operand), float(self._pop()))
+        elif opcode == opcodes.END_COMPENSATION:
+            self._control.path.end_compensation()
+        elif opcode == opcodes.AUXILIARY:
+            self._control.function(f"H{self._pop():g}", {})
+        else:
+            if opcode == opcodes.TOOL and operand:
+                operand = self._look_for_tool()
+            self._run_effect(Instruction(opcode, operand, 0.0))
+
+    def _look_for_tool(self) -> int:
+        """Refuse a tool that the job lacks, or warn of it; 0, since that has been seen to.
+
+        Raises:
+            ProgramError: The job has other tools.
+        """
+        word = self._word
+        if word is not None and self._stack[self._top - 1] != 0.0:
+            tool_numbered(self._control, word)
+        return 0
+
+    def _run_effect(self, instruction: Instruction) -> None:
+        control, on = self._control, self._control.begin_effect()
+        place = BlockPlace(control.block.line, 0, control.path.compensating)
+        top = run_effect(instruction, self._stack, self._top, place, on)
+        if top < 0:
+            code, message, hint, is_of_word = _FINDINGS[top]
+            word = self._word if is_of_word else None
+            span = self._span if word is None else (word.column, word.width)
+            shown = "" if word is None else word.text
+            control.report.fail(code, message.format(word=shown), *span, hint)
+        self._top = top
+        control.end_effect()
 
     def _add(self, opcode: int, operand: int = 0, immediate: float = 0.0) -> None:
         instruction = Instruction(opcode, operand, immediate)
@@ -138,18 +220,10 @@ class Performer(Assembler):
                 go_to(operand, self._control.program_counter.progress)
                 raise _Gone
             self._top -= 1
-        elif opcode == opcodes.DWELL:
-            self._dwell()
         elif opcodes.BEGIN_FOR <= opcode <= opcodes.COUNT_DOWN:
             self._count_loop(instruction)
         else:
             self._transfer(instruction)
-
-    def _dwell(self) -> None:
-        seconds = self._pop()
-        if seconds < 0.0:
-            self._fail("dwell", "a dwell cannot be negative")
-        self._control.dwell(seconds)
 
     def _count_loop(self, instruction: Instruction) -> None:
         columns, depth = self._control.variables.columns, self._to.depth

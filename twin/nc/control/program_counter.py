@@ -136,17 +136,13 @@ class ProgramCounter:
 
     def quiet_blocks(self, line: int) -> tuple[Block, ...] | None:
         """A line's blocks, read before it is run; None where there is something to say of it."""
-        before = self._report.line, len(self._report.warnings)
-        try:
-            blocks = self._lexer.blocks(self._lines[line], line + 1)
-        except ProgramError:
-            return None
-        finally:
-            said = len(self._report.warnings) - before[1]
-            self._report.line = before[0]
-            del self._report.warnings[before[1] :]
-        if said:
-            return None
+        with self._report.quietly() as has_said:
+            try:
+                blocks = self._lexer.blocks(self._lines[line], line + 1)
+            except ProgramError:
+                return None
+            if has_said():
+                return None
         if blocks:
             self._here, self._here_line = blocks, line
         return blocks
@@ -227,14 +223,11 @@ class ProgramCounter:
 
     def _readable_blocks(self, line: int) -> tuple[Block, ...]:
         """A line's blocks; a line that cannot be read has no labels until it is run."""
-        before = self._report.line, len(self._report.warnings)
-        try:
-            return self._blocks(line)
-        except ProgramError:
-            return ()
-        finally:
-            self._report.line = before[0]
-            del self._report.warnings[before[1] :]
+        with self._report.quietly():
+            try:
+                return self._blocks(line)
+            except ProgramError:
+                return ()
 
     def _blocks(self, line: int) -> tuple[Block, ...]:
         if line == self._here_line:

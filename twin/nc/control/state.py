@@ -6,15 +6,32 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import NoReturn, Protocol
 
+import numpy as np
+
+from twin.nc.bytecode.registers import (
+    CYCLE_STATE,
+    CYCLE_WORDS,
+    MATRIX,
+    MOST_EVENTS,
+    PROGRAMMED_FEED,
+    SPINDLE,
+    SPINDLE_TURNS,
+    TURNED,
+    Constants,
+    cells,
+    new_state,
+)
 from twin.nc.bytecode.variables import Variables
 from twin.nc.control.modal import Modal, SavedModal
 from twin.nc.control.program_counter import ProgramCounter
-from twin.nc.control.settings import ControlSettings
+from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.control.tools import Tools
 from twin.nc.geometry.frame import Frame
-from twin.nc.path.drilling_cycle import START, no_values
+from twin.nc.geometry.planes import PLANE_ORDER, XY
+from twin.nc.path.drilling_cycle import MOST_STOPS, START, forget, most_acts
 from twin.nc.path.move_columns import NAN, Segment
 from twin.nc.path.path import Path
+from twin.nc.path.rows import new_rows
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.reporter import Reporter
@@ -64,11 +81,12 @@ class ControlState:
         modal: What stays in force.
         active: Number of the G code in force in each group.
         memory: What only this dialect remembers.
-        frame: From programmed to part coordinates.
+        state: What both tiers remember, as columns.
+        registers: Those of its registers, one by one.
+        constants: What stays, for both tiers.
+        frame: From programmed to part coordinates, on the columns of the state.
         programmed: Where it stands, as its screen shows it, shape (k,) [mm or deg].
         part: Where it stands in part coordinates, shape (k,) [mm or deg].
-        feed: F as programmed, or None.
-        spindle: S as programmed, or None [1/min].
         tools: The tools in use.
         path: Where moves and events go.
         axis_letters: Addresses that name axes.
@@ -84,8 +102,6 @@ class ControlState:
         rapid_acceleration: Acceleration of rapids where the program sets their own [mm/s²]; NaN:
             that of the path.
         rapid_deceleration: Deceleration of rapids, likewise [mm/s²].
-        spindle_turns: M3 or M4 of the program is in force; what a cycle does with the spindle at a hole
-            ends with the hole.
         interpreted_functions: M codes that only the interpreter tier may run: those that wait.
         axis_limits: Largest velocity of single axes, by column [mm/min or deg/min].
         axis_accelerations: Their largest acceleration [mm/s² or deg/s²].
@@ -104,16 +120,24 @@ class ControlState:
         self.active: dict[str, float] = {}
         self.memory = language.memory()
         self.axis_letters = language.axis_letters
-        self.frame = Frame(len(settings.axes))
         self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
         self.part = list(self.programmed)
-        self.feed: float | None = None
-        self.spindle: float | None = None
+        self.state = new_state(self.programmed)
+        columns = self.state.registers
+        self.registers = cells(columns)
+        self.frame = Frame(
+            self.state.shifts,
+            self.state.total,
+            columns[MATRIX:],
+            columns[TURNED : TURNED + 1],
+        )
         self.acceleration = NAN
         self.deceleration = NAN
         self.rapid_acceleration = NAN
         self.rapid_deceleration = NAN
-        self.tools = Tools(settings.tools, any_tool=settings.any_tool)
+        self.tools = Tools(settings.tools, self.registers, any_tool=settings.any_tool)
+        self.constants = self._new_constants()
+        self._event_room = new_rows(0, MOST_EVENTS, len(self.linear))
         self.path = Path(settings.axes, self.part, self._refuse_move, self._warn_of_move)
         lexer = Lexer(language, self.report)
         self.program_counter = ProgramCounter(source, lexer, settings.step_limit, self.report)
@@ -123,13 +147,12 @@ class ControlState:
             self.program_counter.progress,
         )
         self.cycle_values: dict[str, float] = {}
-        self.cycle_state = no_values()
+        self.cycle_state = self.registers[CYCLE_STATE:CYCLE_WORDS]
         self.block = Block(0, 0)
         self.words: dict[str, Word] = {}
         self.codes: Sequence[tuple[Word, HasGroup]] = ()
         self.series: list[Word] = []
         self.rapid_feed = NAN
-        self.spindle_turns = False
         self.interpreted_functions = frozenset(
             number for number, each in settings.m_functions.items() if each.dwell > 0.0
         )
@@ -139,12 +162,64 @@ class ControlState:
         self._last: Segment | None = None
         self.ended = False
 
+    def _new_constants(self) -> Constants:
+        """What stays as it is; a run of the compiled tier puts in what is in force then."""
+        settings, tools, axes = self.settings, self.tools, len(self.linear)
+        other = ToolData(NAN, 0.0) if tools.any is None else tools.any
+        longer = [tools.longer(tool) for tool in tools.table.values()]
+        return Constants(
+            default_feed=settings.default_feed,
+            default_rotary_feed=settings.default_rotary_feed,
+            feed_may_lack=False,
+            rapid_feed=NAN,
+            own_rapid_feed=NAN,
+            last_values=np.full(3, NAN),
+            linear=np.array(self.linear),
+            planes=np.array([plane.axes for plane in PLANE_ORDER]),
+            directions=np.array([plane.directions for plane in (*PLANE_ORDER, XY)]),
+            tools=np.array([float(number) for number in tools.table]),
+            longer=np.array([*longer, 0.0]),
+            radii=np.array([tool.radius for tool in (*tools.table.values(), other)]),
+            square_corners=False,
+            indirect_leads=False,
+            over=np.zeros(axes),
+            room=np.zeros((3, axes)),
+            hole=np.zeros((4, most_acts(MOST_STOPS))),
+        )
+
     def forget_cycle(self) -> None:
         """No cycle is in force any more, and its words hold no longer."""
         if self.cycle_values:
             self.cycle_values = {}
         if not math.isnan(self.cycle_state[START]):
-            self.cycle_state = no_values()
+            forget(self.cycle_state)
+
+    @property
+    def feed(self) -> float | None:
+        """F as programmed, or None."""
+        return _or_none(self.registers[PROGRAMMED_FEED])
+
+    @feed.setter
+    def feed(self, feed: float | None) -> None:
+        self.registers[PROGRAMMED_FEED] = NAN if feed is None else feed
+
+    @property
+    def spindle(self) -> float | None:
+        """S as programmed, or None [1/min]."""
+        return _or_none(self.registers[SPINDLE])
+
+    @spindle.setter
+    def spindle(self, speed: float | None) -> None:
+        self.registers[SPINDLE] = NAN if speed is None else speed
+
+    @property
+    def spindle_turns(self) -> bool:
+        """M3 or M4 of the program is in force; what a cycle does at a hole ends with the hole."""
+        return self.registers[SPINDLE_TURNS] != 0.0
+
+    @spindle_turns.setter
+    def spindle_turns(self, turns: bool) -> None:
+        self.registers[SPINDLE_TURNS] = turns
 
     def saved_modal(self) -> SavedModal:
         """What is in force, to be restored later."""
@@ -197,6 +272,10 @@ class ControlState:
         number = rf"N[ \t]*0*{move.block}(?![0-9])" if move.block >= 0 else r"\S+"
         match = re.search(number, text, re.IGNORECASE)
         return (0, 1) if match is None else (match.start(), len(match[0]))
+
+
+def _or_none(register: float) -> float | None:
+    return None if math.isnan(register) else register
 
 
 def number_of(word: Word) -> float:

@@ -200,7 +200,6 @@ GOST = Dialect(
     start=(*base.START, 64, 98),
     m=base.M_CODES,
     words=base.WORDS,
-    word_compilers=base.WORD_COMPILERS,
     word_meanings=base.WORD_MEANINGS,
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,

@@ -253,7 +253,6 @@ MEFI = Dialect(
     start=base.START,
     m=base.M_CODES,
     words=base.WORDS,
-    word_compilers=base.WORD_COMPILERS,
     word_meanings={
         **base.WORD_MEANINGS,
         "R": "radius of an arc below 180 degrees; reference plane of a cycle",

@@ -78,10 +78,13 @@ def sweep_between(start: Point, end: Point, center: Point, clockwise: bool) -> f
     SAME_ENDS,
     SHORT_RADIUS,
     NEGATIVE_RADIUS,
-) = range(7)
+    OVERDEFINED,
+    WITHOUT_CENTER,
+) = range(9)
 """What is wrong with an arc: nothing; the centre lies on its start or end; these are not equally far
 from it; it would have to be moved far to be so; they are one point, which no radius tells a circle
-through; the radius does not reach from one to the other; it is below 0, where that means nothing."""
+through; the radius does not reach from one to the other; it is below 0, where that means nothing;
+there are a radius and a centre; there is neither."""
 
 
 class Bounds(NamedTuple):
@@ -113,6 +116,69 @@ def fitted_center(start: Point, end: Point, given: Point, bounds: Bounds) -> tup
     if distance(given, center) > max(bounds.shift, bounds.shift_share * larger):
         return FAR_CENTER, center
     return FITS, center
+
+
+class ArcWords(NamedTuple):
+    """The words of an arc, NaN where they are missing.
+
+    Attributes:
+        radius: R [mm].
+        first: The centre word along the abscissa [mm].
+        second: That along the ordinate [mm].
+    """
+
+    radius: float
+    first: float
+    second: float
+
+
+class Sense(NamedTuple):
+    """Sense of an arc, and what a radius means in it.
+
+    Attributes:
+        clockwise: Seen against the plane's normal.
+        signed: A negative radius asks for the larger arc.
+        fits: A centre found by its radius is fitted to both points like a given one.
+    """
+
+    clockwise: bool
+    signed: bool
+    fits: bool
+
+
+@compilable
+def center_of_words(
+    start: Point, end: Point, words: ArcWords, absolute: bool, sense: Sense, bounds: Bounds
+) -> tuple[int, Point]:
+    """What is wrong with the words of an arc, and its centre.
+
+    Args:
+        start: First point.
+        end: Last point.
+        words: Those of the arc.
+        absolute: The centre counts from the plane's zero, not from the start.
+        sense: What a radius means.
+        bounds: How badly a centre may fit.
+    """
+    has_center = words.first == words.first or words.second == words.second
+    center = programmed_center(start, words.first, words.second, absolute)
+    if words.radius == words.radius:
+        if has_center:
+            return OVERDEFINED, start
+        finding, center = center_of_radius(start, end, words.radius, sense.clockwise, sense.signed)
+        if finding != FITS or not sense.fits:
+            return finding, center
+    elif not has_center:
+        return WITHOUT_CENTER, start
+    return fitted_center(start, end, center, bounds)
+
+
+@compilable
+def programmed_center(start: Point, first: float, second: float, absolute: bool) -> Point:
+    """The centre that two words give; a missing one is 0."""
+    first = first if first == first else 0.0
+    second = second if second == second else 0.0
+    return (first, second) if absolute else (start[0] + first, start[1] + second)
 
 
 @compilable

@@ -1,7 +1,5 @@
 """From programmed coordinates to the part's: offsets, presets, turns, mirror, rotation, scale."""
 
-from collections.abc import Iterable
-
 import numpy as np
 import numpy.typing as npt
 
@@ -19,7 +17,8 @@ from twin.nc.geometry.matrices import (
 )
 from twin.nc.geometry.planes import Directions, Plane, Vector, cross
 
-Values = list[float] | npt.NDArray[np.float64]
+FloatArray = npt.NDArray[np.float64]
+Values = list[float] | FloatArray
 
 SHIFTS = ("offset", "preset", "length", "increment", "rotation", "turns")
 """Every shift, in the order in which they are added."""
@@ -86,6 +85,16 @@ def moved_shift(shift: float, part: float, there: float) -> float:
     return shift + part - there
 
 
+@compilable
+def add_up(shifts: FloatArray, total: FloatArray) -> None:
+    """Fill in the sum of all shifts, from the first to the last."""
+    for axis in range(len(total)):
+        value = 0.0
+        for shift in range(len(shifts)):
+            value += shifts[shift, axis]
+        total[axis] = value
+
+
 class Frame:
     """``part = matrix · programmed + shift`` for X, Y, Z; further axes are shifted only.
 
@@ -93,38 +102,61 @@ class Frame:
     that each can be changed without knowing of the others.
     """
 
-    def __init__(self, axis_count: int) -> None:
-        self._shifts: dict[str, list[float]] = {name: [0.0] * axis_count for name in SHIFTS}
-        self.total = [0.0] * axis_count
+    def __init__(
+        self, shifts: FloatArray, total: FloatArray, matrix: FloatArray, turned: FloatArray
+    ) -> None:
+        """Work on columns that others read as well.
+
+        Args:
+            shifts: In the order of ``SHIFTS``, shape (s, k) [mm or deg].
+            total: Their sum, shape (k,) [mm or deg].
+            matrix: Mirror, rotation and scale, row by row, shape (9,).
+            turned: 1 where that is not the identity, else 0, shape (1,).
+        """
+        self._shifts = shifts
+        self._total = total
+        self._matrix = matrix
+        self._turned = turned
+        self.refresh()
+
+    def refresh(self) -> None:
+        """See what the columns hold."""
+        self.total = self._total.tolist()
         """Sum of all shifts, shape (k,) [mm or deg]."""
-        self.matrix = IDENTITY
+        a, b, c, d, e, f, g, h, i = self._matrix.tolist()
+        self.matrix: Matrix = ((a, b, c), (d, e, f), (g, h, i))
         """Mirror, rotation and scale of X, Y, Z."""
-        self.is_identity = True
+        self.is_identity = self._turned[0] == 0.0
         """The matrix is the identity."""
 
     def shift(self, name: str) -> list[float]:
         """The named shift, shape (k,)."""
-        return list(self._shifts[name])
+        return self._shifts[SHIFTS.index(name)].tolist()
 
     def set_shift(self, name: str, values: list[float]) -> None:
         """Replace the named shift."""
-        self._shifts[name] = values
-        self.total = [added(each) for each in zip(*self._shifts.values(), strict=True)]
+        self._shifts[SHIFTS.index(name)] = values
+        self._add_up()
 
     @property
     def shifts(self) -> list[list[float]]:
         """All of them in the order of ``SHIFTS``, shape (s, k)."""
-        return list(self._shifts.values())
+        return self._shifts.tolist()
 
     def set_shifts(self, shifts: list[list[float]]) -> None:
         """Replace all of them, in this order."""
-        self._shifts = dict(zip(SHIFTS, shifts, strict=True))
-        self.total = [added(each) for each in zip(*shifts, strict=True)]
+        self._shifts[:] = shifts
+        self._add_up()
+
+    def _add_up(self) -> None:
+        add_up(self._shifts, self._total)
+        self.total = self._total.tolist()
 
     def set_matrix(self, matrix: Matrix) -> None:
         """Replace mirror, rotation and scale."""
-        self.matrix = matrix
-        self.is_identity = matrix == IDENTITY
+        self._matrix[:] = np.ravel(matrix)
+        self._turned[0] = matrix != IDENTITY
+        self.refresh()
 
     def to_part(self, programmed: list[float]) -> list[float]:
         """Part coordinates of a programmed position, shape (k,)."""
@@ -167,11 +199,3 @@ class Frame:
         if self.is_identity:
             return plane
         return Plane(plane.name, *plane_of_part(self.matrix, plane.directions))
-
-
-def added(values: Iterable[float]) -> float:
-    """The sum from left to right: Python's own has more digits from version to version."""
-    total = 0.0
-    for value in values:
-        total += value
-    return total

@@ -3,9 +3,8 @@
 import re
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import Compiler, GCode, Interpolation, MCode
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import Effect, GCode, Interpolation, MCode, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import LineRule
@@ -14,7 +13,7 @@ from twin.nc.geometry.planes import PLANE_ORDER, XY, YZ, ZX, Plane
 from twin.nc.iso.circular import arc_rule, clockwise_arc, counter_clockwise_arc
 from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
-from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH, refuse_plane_change
+from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
 from twin.nc.text.blocks import Word
 
 
@@ -59,74 +58,41 @@ def set_feed(control: Control, word: Word) -> None:
     control.feed = feed
 
 
-def set_spindle(control: Control, word: Word) -> None:
+def spindle_speed(control: Control, word: Word, assembler: Assembler) -> None:
     """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
-    speed = control.number(word)
-    if speed < 0.0:
-        control.fail("spindle-range", f"the speed {word.text} is negative", word)
-    control.spindle = speed
-    if not any(other.address == "M" and other.value in (3.0, 4.0) for other in control.block.words):
-        control.function("S", {"S": speed})
+    assembler.word_value(word)
+    others = control.block.words
+    starts = any(other.address == "M" and other.value in (3.0, 4.0) for other in others)
+    assembler.emit(opcodes.SPEED, 0 if starts else 1)
 
 
-def compile_spindle(block: BlockWords, assembler: Assembler) -> None:
-    """S, for the compiled tier."""
-    assembler.word_value(block.words.pop("S"))
-    assembler.emit(opcodes.SPEED, 0 if block.starts_spindle() else 1)
-
-
-def compile_tool(block: BlockWords, assembler: Assembler) -> None:
-    """T, for the compiled tier."""
-    assembler.word_value(block.words.pop("T"))
+def next_tool(_control: Control, word: Word, assembler: Assembler) -> None:
+    """T: the tool that comes next."""
+    assembler.word_value(word)
     assembler.emit(opcodes.TOOL)
 
 
-def select_tool(control: Control, word: Word) -> None:
-    """T: the tool that comes next."""
-    number = control.number(word)
-    if number < 0.0 or number != int(number):
-        control.fail("tool-number", f"{word.text} is no tool number", word)
-    control.tools.selected = int(number)
-    control.function(f"T{int(number)}", {})
-
-
-def change_tool(control: Control) -> None:
+def change_tool(_control: Control, assembler: Assembler) -> None:
     """M6: the selected tool goes into the spindle."""
-    control.tools.change()
-
-
-def compile_tool_change(_block: BlockWords, assembler: Assembler) -> None:
-    """M6, for the compiled tier."""
     assembler.emit(opcodes.CHANGE_TOOL)
 
 
-def compile_dwell(letters: str) -> Compiler:
-    """A dwell whose time stands in one of these words, for the compiled tier."""
+def dwell(letters: str, message: str, hint: str) -> Effect:
+    """A dwell whose seconds stand in one of these words; the message where there is none or more."""
 
-    def write(block: BlockWords, assembler: Assembler) -> None:
-        words = [block.words.pop(letter) for letter in letters if letter in block.words]
+    def write(control: Control, assembler: Assembler) -> None:
+        words = [control.words.pop(letter) for letter in letters if letter in control.words]
         if len(words) != 1:
-            raise UnsupportedError
+            control.fail("dwell", message, hint=hint)
         assembler.word_value(words[0])
         assembler.emit(opcodes.DWELL)
 
-    return write
+    return Effect(write)
 
 
-def compile_plane(plane: Plane) -> Compiler:
-    """G17, G18, G19, for the compiled tier."""
-    return lambda _block, assembler: assembler.emit(opcodes.PLANE, PLANE_ORDER.index(plane))
-
-
-def dwell_seconds(control: Control) -> None:
-    """G4: wait for the seconds of P, X or F."""
-    words = [control.words.pop(letter) for letter in "PXF" if letter in control.words]
-    if len(words) != 1:
-        control.fail("dwell", "G4 needs its time", hint="write G4 P and the seconds")
-    seconds = control.number(words[0])
-    if seconds < 0.0:
-        control.fail("dwell", f"{words[0].text} is no time", words[0])
-    control.dwell(seconds)
+def plane_effect(plane: Plane) -> Effect:
+    """G17, G18, G19."""
+    return Effect(lambda _, assembler: assembler.emit(opcodes.PLANE, PLANE_ORDER.index(plane)))
 
 
 def _plane(meaning: str, plane: Plane) -> GCode:
@@ -134,8 +100,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         meaning=meaning,
         group="plane",
         sets={"plane": plane},
-        action=refuse_plane_change,
-        compiler=compile_plane(plane),
+        action=plane_effect(plane),
     )
 
 
@@ -169,9 +134,8 @@ MOTION = {
 DWELL = {
     4: GCode(
         meaning="dwell, seconds in P, X or F",
-        perform=dwell_seconds,
+        perform=dwell("PXF", "G4 needs its time", "write G4 P and the seconds"),
         takes="F",
-        compiler=compile_dwell("PXF"),
     )
 }
 
@@ -233,15 +197,14 @@ M_CODES = {
     3: MCode(meaning="spindle clockwise", group="spindle"),
     4: MCode(meaning="spindle counter-clockwise", group="spindle"),
     5: MCode(meaning="spindle stop", group="spindle", late=True),
-    6: MCode(meaning="tool change", action=change_tool, compiler=compile_tool_change),
+    6: MCode(meaning="tool change", action=Effect(change_tool)),
     7: MCode(meaning="mist on"),
     8: MCode(meaning="coolant on", group="coolant"),
     9: MCode(meaning="coolant off", group="coolant", late=True),
     30: MCode(meaning="end of program and back to its start", group="stop", late=True, ends=True),
 }
 
-WORDS = {"F": set_feed, "S": set_spindle, "T": select_tool}
-WORD_COMPILERS = {"S": compile_spindle, "T": compile_tool}
+WORDS = {"F": set_feed, "S": WordEffect(spindle_speed), "T": WordEffect(next_tool)}
 
 WORD_MEANINGS = {
     "N": "block number",
@@ -280,9 +243,10 @@ def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
         feed: [mm/min or deg/min]
     """
     mode = dialect.start_state.get("feed_mode", FeedMode.PER_MINUTE)
-    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / FEED_FACTORS[mode])}"
+    end = "\nM2" if dialect.must_end else ""
+    return f"N1 G91 G1 {axis}{_written(distance)} F{_written(feed / FEED_FACTORS[mode])}{end}"
 
 
 def _written(number: float) -> str:
-    """A number to a nanometre, without an exponent and without zeros that say nothing."""
-    return f"{number:.6f}".rstrip("0").rstrip(".")
+    """A number to a nanometre with its point, without an exponent and zeros that say nothing."""
+    return f"{number:.6f}".rstrip("0")

@@ -1,12 +1,21 @@
 """Arc blocks: from end point and radius or centre to centre and sweep."""
 
 import dataclasses
+import math
 from typing import NoReturn
 
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry import arcs
-from twin.nc.geometry.arcs import Bounds, Point, distance, sweep_between
+from twin.nc.geometry.arcs import (
+    ArcWords,
+    Bounds,
+    Point,
+    Sense,
+    distance,
+    programmed_center,
+    sweep_between,
+)
 from twin.nc.geometry.planes import Local, Vector
 from twin.nc.text.blocks import Word
 
@@ -81,6 +90,7 @@ def center_of_radius(
 
 
 _FINDINGS = {
+    arcs.OVERDEFINED: ("arc-overdefined", "an arc has a centre or a radius", None),
     arcs.ON_CENTER: ("arc-center", "the centre lies on the arc's start or end", None),
     arcs.UNEQUAL: (
         "arc-center",
@@ -156,22 +166,37 @@ def iso_arc_center(control: Control, target: list[float], *, clockwise: bool) ->
         ProgramError: There is no centre, or it does not fit.
     """
     start, end = start_and_end(control, target)
-    radius = control.take("R")
-    centre = take_center(control, plane_center_letters(control))
+    start, end = start[:2], end[:2]
+    letters = plane_center_letters(control)
+    radius, centre = control.take("R"), take_center(control, letters)
+    words = ArcWords(math.nan, math.nan, math.nan)
+    if centre.words:
+        words = ArcWords(math.nan, *control.modal.plane.local(centre.vector)[:2])
     if radius is not None:
-        if centre.words:
-            control.fail("arc-overdefined", "an arc has a centre or a radius", radius)
-        value = control.length(radius)
-        return center_of_radius(control, start[:2], end[:2], value, radius, clockwise=clockwise)
-    if not centre.words:
-        control.fail(
-            "arc-without-center",
-            "the arc has neither a centre nor a radius",
-            hint=f"write {', '.join(plane_center_letters(control))} or R; or G1 for a line",
-        )
-    offset = control.modal.plane.local(centre.vector)
-    center = (start.abscissa + offset.abscissa, start.ordinate + offset.ordinate)
-    return fitted_center(control, start[:2], end[:2], center, centre.words[0])
+        words = words._replace(radius=control.length(radius))
+    sense = Sense(clockwise, signed=True, fits=False)
+    finding, center = arcs.center_of_words(start, end, words, False, sense, BOUNDS)
+    if finding == arcs.WITHOUT_CENTER:
+        refuse_missing_center(control, ", ".join(letters))
+    if finding != arcs.FITS and radius is not None:
+        refuse_arc(control, finding, radius, abs(words.radius), distance(start, end) / 2.0)
+    if finding != arcs.FITS:
+        given = programmed_center(start, words.first, words.second, absolute=False)
+        refuse_arc(control, finding, centre.words[0], distance(start, given), distance(end, given))
+    return center
+
+
+def refuse_missing_center(control: Control, letters: str) -> NoReturn:
+    """An arc needs one of these words, or R.
+
+    Raises:
+        ProgramError: Always.
+    """
+    control.fail(
+        "arc-without-center",
+        "the arc has neither a centre nor a radius",
+        hint=f"write {letters} or R; or G1 for a line",
+    )
 
 
 def clockwise_arc(control: Control) -> None:

@@ -5,16 +5,14 @@ from collections.abc import Callable, Mapping
 from typing import NoReturn
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import Compiler, GCode, Ground, Interpolation
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import CodeWriter, GCode, Ground, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.path.drilling_cycle import (
     BOTTOM,
     EVERY,
     FACTOR,
-    LENGTHS,
     LIFT,
     MOST_PECKS,
     PECK,
@@ -29,9 +27,6 @@ from twin.nc.path.drilling_cycle import (
     remember,
     write_acts,
 )
-
-_BESIDE = "ST"
-"""Words that may stand beside a cycle on the compiled tier: they change nothing of where the tool stands."""
 
 
 def cycle_code(
@@ -77,7 +72,7 @@ def cycle_code(
         group="cycle",
         sets={"cycle": Interpolation(perform, rule=rule)},
         action=call,
-        compiler=_compile_words(rule.words),
+        compiler=_write_words(rule.words),
         ground=ground,
     )
 
@@ -105,28 +100,24 @@ def take_words(control: Control, rule: CycleRule) -> None:
     for address, value in {**rule.words, _across(control): cycle.across}.items():
         word = control.take(address)
         if word is not None:
-            in_mm = (LENGTHS >> value) & 1
-            given[value] = control.length(word) if in_mm else control.number(word)
+            given[value] = control.number(word)
             if word.incremental:
                 relative[value] = True
-    remember(control.cycle_state, given, relative[REFERENCE], relative[BOTTOM], cycle.lasting)
+    from_where = relative[REFERENCE], relative[BOTTOM]
+    remember(control.cycle_state, given, control.modal.unit, from_where, cycle.lasting)
 
 
-def _compile_words(words: Mapping[str, int]) -> Compiler:
-    """Compile those words; the words of axes stay with those of the hole."""
+def _write_words(words: Mapping[str, int]) -> CodeWriter:
+    """Write those words as instructions; the words of axes stay with those of the hole."""
 
-    def write(block: BlockWords, assembler: Assembler) -> None:
+    def write(control: Control, assembler: Assembler) -> None:
         for address, value in words.items():
-            word = block.take(address)
-            if word is None:
-                continue
-            if word.incremental:
-                raise UnsupportedError
-            assembler.word_value(word)
-            assembler.emit(opcodes.CYCLE_WORD, value)
-        others = block.words.keys() & block.acting_letters
-        if others - set(_BESIDE) or block.functions_act:
-            raise UnsupportedError
+            word = control.take(address)
+            if word is not None and word.incremental:
+                assembler.rare()
+            if word is not None:
+                assembler.word_value(word)
+                assembler.emit(opcodes.CYCLE_WORD, value)
 
     return write
 

@@ -8,9 +8,8 @@ machine zero until the next work offset.
 from collections.abc import Iterable, Mapping
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import Compiler, GCode
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import Effect, GCode
 from twin.nc.control.control import Control
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.text.blocks import Word
@@ -22,6 +21,15 @@ def select_offset(control: Control, name: str, word: Word | None) -> None:
     Raises:
         ProgramError: The job gives it no values.
     """
+    shift_by(control, offset_of_job(control, name, word))
+
+
+def offset_of_job(control: Control, name: str, word: Word | None) -> Mapping[str, float]:
+    """The values that the job gives a work offset; a word asks for it.
+
+    Raises:
+        ProgramError: It gives it none.
+    """
     values = control.settings.offsets.get(name)
     if values is None and name != "G54":
         known = ", ".join(sorted(control.settings.offsets)) or "none"
@@ -32,7 +40,7 @@ def select_offset(control: Control, name: str, word: Word | None) -> None:
             word,
             hint=f"write it under [offsets.{key}]; the job has: {known}",
         )
-    shift_by(control, values or {})
+    return values or {}
 
 
 def cancel_offset(control: Control) -> None:
@@ -62,84 +70,72 @@ def machine_zero(control: Control, code: str) -> Mapping[str, float]:
 
 def shift_by(control: Control, values: Mapping[str, float], *, ends_preset: bool = True) -> None:
     """Put a work offset by its values into force, 0 for axes that it leaves out [mm or deg]."""
+    control.perform(
+        lambda assembler: write_offset(control, values, assembler, ends_preset=ends_preset)
+    )
+
+
+def write_offset(
+    control: Control,
+    values: Mapping[str, float],
+    assembler: Assembler,
+    *,
+    ends_preset: bool = True,
+) -> None:
+    """As ``shift_by``, said as instructions."""
     names = control.settings.axes.names
-    control.frame.set_shift("offset", [values.get(name, 0.0) for name in names])
+    compile_shift("offset", [values.get(name, 0.0) for name in names], assembler)
     if ends_preset:
-        control.frame.set_shift("preset", [0.0] * len(names))
-    control.reframed()
+        compile_shift("preset", [0.0] * len(names), assembler)
+    assembler.emit(opcodes.REFRAME)
 
 
 def compile_shift(name: str, values: Iterable[float], assembler: Assembler) -> None:
-    """A shift with fixed values, for the compiled tier."""
+    """A shift with fixed values."""
     for value in values:
         assembler.constant(value)
     assembler.emit(opcodes.SHIFT, SHIFTS.index(name))
 
 
-def compile_programmed_shift(name: str, block: BlockWords, assembler: Assembler) -> None:
-    """A shift with the block's values, 0 for the axes that it leaves out, for the compiled tier."""
-    words = dict(block.take_axes())
-    for index in range(len(block.control.settings.axes)):
+def programmed_shift(name: str, control: Control, assembler: Assembler) -> None:
+    """A shift with the block's values, 0 for the axes that it leaves out."""
+    words = dict(control.take_axis_words())
+    for index in range(len(control.settings.axes)):
         if index in words:
             assembler.word_value(words[index])
             assembler.emit(opcodes.TO_MILLIMETRES, index)
         else:
             assembler.constant(0.0)
     assembler.emit(opcodes.SHIFT, SHIFTS.index(name))
+    assembler.emit(opcodes.REFRAME)
 
 
-def compile_offset(name: str) -> Compiler:
-    """A work offset of the job, for the compiled tier."""
-
-    def write(block: BlockWords, assembler: Assembler) -> None:
-        settings = block.control.settings
-        values = settings.offsets.get(name)
-        if values is None and name != "G54":
-            raise UnsupportedError
-        names = settings.axes.names
-        compile_shift("offset", [(values or {}).get(axis, 0.0) for axis in names], assembler)
-        compile_shift("preset", [0.0] * len(names), assembler)
-        assembler.emit(opcodes.REFRAME)
-
-    return write
-
-
-def compile_set_position(shift: str) -> Compiler:
-    """New coordinates for where the machine stands, for the compiled tier."""
-
-    def write(block: BlockWords, assembler: Assembler) -> None:
-        words = block.take_axes()
-        if not words or any(word.incremental for _, word in words):
-            raise UnsupportedError
-        assembler.emit(opcodes.BEGIN_TARGET)
-        for index, word in words:
-            assembler.word_value(word)
-            assembler.emit(opcodes.TO_MILLIMETRES, index)
-            assembler.emit(opcodes.TARGET, index)
-        assembler.emit(opcodes.SET_POSITION, SHIFTS.index(shift))
-
-    return write
-
-
-def preset(control: Control) -> None:
+def preset(control: Control, assembler: Assembler) -> None:
     """G92: the place where the machine stands gets the coordinates of the block."""
-    programmed = list(control.programmed)
     words = control.take_axis_words()
     if not words:
         control.fail("preset", "G92 needs the coordinates that this place shall have")
+    set_position(words, "preset", assembler)
+
+
+def set_position(words: Iterable[tuple[int, Word]], shift: str, assembler: Assembler) -> None:
+    """Words of axes give the place where the machine stands other coordinates, by a shift."""
+    assembler.emit(opcodes.BEGIN_TARGET)
     for index, word in words:
-        programmed[index] = control.axis_value(index, word)
-    control.set_position(programmed, "preset")
+        assembler.word_value(word)
+        assembler.emit(opcodes.TO_MILLIMETRES, index)
+        assembler.emit(opcodes.TARGET, index)
+    assembler.emit(opcodes.SET_POSITION, SHIFTS.index(shift))
 
 
 def _work_offset(number: int) -> GCode:
     name = f"G{number}"
-    return GCode(
-        meaning=f"work offset {name} of the job",
-        group="offset",
-        action=lambda control: select_offset(control, name, control.code_word(number)),
-        compiler=compile_offset(name),
-    )
+
+    def write(control: Control, assembler: Assembler) -> None:
+        values = offset_of_job(control, name, control.code_word(number))
+        write_offset(control, values, assembler)
+
+    return GCode(meaning=f"work offset {name} of the job", group="offset", action=Effect(write))
 
 
 OFFSETS = {
@@ -148,8 +144,4 @@ OFFSETS = {
     ),
     **{number: _work_offset(number) for number in range(54, 60)},
 }
-PRESET = {
-    92: GCode(
-        meaning="preset the position", perform=preset, compiler=compile_set_position("preset")
-    )
-}
+PRESET = {92: GCode(meaning="preset the position", perform=Effect(preset))}

@@ -6,12 +6,12 @@ not given is NaN.
 
 import enum
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from twin.compilation.compilable import compilable
 from twin.nc.canonical import FloatArray
 
-Values = list[float] | FloatArray
+Values: TypeAlias = "list[float] | FloatArray | memoryview[float]"
 
 (
     START,
@@ -179,9 +179,20 @@ class Hole(NamedTuple):
     retract: int
 
 
+MOST_STOPS = 500
+"""Stops of a hole that the compiled tier drills: its moves must fit into a chunk."""
+
+
 def no_values() -> list[float]:
-    """What a cycle remembers that has not begun."""
+    """The words of a block that has none."""
     return [math.nan] * VALUES
+
+
+@compilable
+def forget(values: Values) -> None:
+    """No cycle has begun."""
+    for value in range(VALUES):
+        values[value] = math.nan
 
 
 @compilable
@@ -189,8 +200,7 @@ def begin(values: Values, axis: int, height: float, lasting: bool) -> None:
     """A cycle begins at a height [mm] of the axis across its plane."""
     if lasting and values[START] == values[START]:
         return
-    for value in range(VALUES):
-        values[value] = math.nan
+    forget(values)
     values[START], values[AXIS] = height, float(axis)
 
 
@@ -198,20 +208,25 @@ def begin(values: Values, axis: int, height: float, lasting: bool) -> None:
 def remember(
     values: Values,
     given: Values,
-    from_start: bool,
-    from_reference: bool,
+    unit: float,
+    relative: tuple[bool, bool],
     lasting: bool,
 ) -> None:
     """Take the words of a block.
 
     Args:
         values: What the cycle remembers.
-        given: The block's words in millimetres and seconds, in the same places.
-        from_start: The reference plane counts from the height of the call.
-        from_reference: The bottom counts from the reference plane.
+        given: The block's words as they are written, in the same places; lengths become millimetres.
+        unit: Of programmed lengths [mm].
+        relative: Whether the reference plane counts from the height of the call, and whether the
+            bottom counts from the reference plane.
         lasting: As in ``Cycle``; else the reference plane is the height of the call where it is
             not given.
     """
+    from_start, from_reference = relative
+    for value in range(VALUES):
+        if (LENGTHS >> value) & 1:
+            given[value] *= unit
     if given[REFERENCE] == given[REFERENCE]:
         values[REFERENCE] = given[REFERENCE] + (values[START] if from_start else 0.0)
     elif not lasting:

@@ -12,8 +12,25 @@ from twin.nc.geometry.planes import Vector, along
 
 Position = list[float] | FloatArray
 
+LARGEST_COORDINATE = 1e7
+"""Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
 SMALLEST_MOVE = 1e-9
 """A move that goes less far than this goes nowhere [mm or deg]: far below any resolution."""
+
+
+@inlined
+def axis_target(value: float, unit: float, linear: bool, incremental: bool, here: float) -> float:
+    """Where a word wants an axis, programmed coordinates [mm or deg].
+
+    Args:
+        value: Of the word.
+        unit: Of programmed lengths [mm].
+        linear: The axis is a linear one.
+        incremental: The value counts from where it stands.
+        here: Where that is.
+    """
+    target = value * unit if linear else value
+    return target + here if incremental else target
 
 
 @inlined

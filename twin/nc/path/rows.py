@@ -3,6 +3,8 @@
 import math
 from typing import NamedTuple, TypeVar
 
+import numpy as np
+
 from twin.compilation.compilable import compilable_as
 from twin.nc.canonical import Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.path.move_columns import Segment
@@ -93,6 +95,17 @@ class Rows(NamedTuple):
     def row(self, number: int) -> Row:
         """One of the moves."""
         return Row(self.codes[number], self.values[number], self.positions[number])
+
+
+def new_rows(moves: int, events: int, axes: int) -> Rows:
+    """Room for so many moves and events."""
+    return Rows(
+        np.zeros((moves, 5), np.int64),
+        np.zeros((moves, 11)),
+        np.zeros((moves, 3, axes)),
+        np.zeros((events, 4), np.int64),
+        np.zeros(events),
+    )
 
 
 def _copy_one_by_one(source: Column, target: Column) -> None:

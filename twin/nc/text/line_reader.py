@@ -35,6 +35,7 @@ _NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re
 _NAME = re.compile(r"[^\W\d_]\w+(?![\w(\[])")
 """Letters and digits without a bracket behind, as neither a value nor a function is written."""
 
+_tuple = tuple.__new__
 _LETTERS = frozenset(string.ascii_uppercase)
 _LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
 """Cyrillic letters that look like Latin ones: a keyboard left in the wrong layout."""
@@ -78,7 +79,7 @@ class LineReader:
 
     def _plain_words(self) -> bool:
         """Read words with plain numbers; True behind an N where a statement may follow."""
-        line, at = self._line, self._at
+        line, at, add = self._line, self._at, self._words.append
         match_word, name_of = self._grammar.word.match, self._grammar.name
         while (match := match_word(line, at)) is not None:
             address, number, suffix = match.groups()
@@ -88,13 +89,14 @@ class LineReader:
                 self._label(number, begin)
                 if self._grammar.statement is not None:
                     return True
+                add = self._words.append
                 continue
             value = float(number)
             if not -LARGEST_NUMBER <= value <= LARGEST_NUMBER:
                 self._fail("number-range", f"the value is not within ±{LARGEST_NUMBER:g}", begin)
             name = address if address in _LETTERS else name_of(address)
-            pointless = "." not in number
-            self._words.append(Word(name, value, begin, at - begin, bool(suffix), pointless))
+            given = (name, value, begin, at - begin, suffix != "", "." not in number)
+            add(_tuple(Word, given))  # as Word(*given), in a third of the time
         self._at = at
         return False
 

@@ -74,6 +74,7 @@ class Lines(Sequence[str]):
         self._firsts: list[int] = []
         self._count = 0
         self._open: dict[int, Page] = {}
+        self._latest = Page(0, b"")
         fitting = list(encodings) or [_UTF_8]
         for page in _whole_lines(pieces):
             if encodings and not page.isascii():
@@ -111,6 +112,8 @@ class Lines(Sequence[str]):
 
     def page_of(self, line: int) -> Page:
         """The page that a line, from 0, stands on."""
+        if line in self._latest.lines:
+            return self._latest
         number = bisect.bisect_right(self._firsts, line) - 1
         page = self._open.get(number)
         if page is None:
@@ -118,6 +121,7 @@ class Lines(Sequence[str]):
             if len(self._open) == _OPEN_PAGES:
                 del self._open[next(iter(self._open))]
             self._open[number] = page
+        self._latest = page
         return page
 
     def pages(self) -> Iterator[Page]:

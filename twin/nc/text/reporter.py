@@ -1,5 +1,7 @@
 """Where diagnostics are made: the line in question, and whether warnings count as errors."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import NoReturn
 
 from twin.nc.text.diagnostics import Diagnostic, ProgramError, Severity
@@ -82,6 +84,16 @@ class Reporter:
             self._said.add(of)
             diagnostic = self._diagnostic("warning", NOTICE, message, column, width, None)
             self.warnings.append(diagnostic)
+
+    @contextmanager
+    def quietly(self) -> Iterator[Callable[[], bool]]:
+        """Look ahead: what is said within is not said; tells whether there was something to say."""
+        line, said, count = self.line, set(self._said), len(self.warnings)
+        try:
+            yield lambda: len(self.warnings) > count
+        finally:
+            self.line, self._said = line, said
+            del self.warnings[count:]
 
     def has_said(self, code: str) -> bool:
         """Whether ``warn_once`` has given this warning."""

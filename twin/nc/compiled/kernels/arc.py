@@ -3,7 +3,10 @@
 What a centre or a radius means, and which fits, ``geometry.arcs`` says.
 """
 
+import numpy as np
+
 from twin.compilation.compilable import inlined
+from twin.nc.bytecode.coordinates import turn_arc
 from twin.nc.bytecode.registers import (
     CENTER_ABSOLUTE,
     INTERPOLATION,
@@ -15,10 +18,9 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.bytecode.token_kinds import AXIS, CENTER, RADIUS
-from twin.nc.compiled.kernels.frame import turn_arc
 from twin.nc.compiled.kernels.target import PlainBlock, value_of
 from twin.nc.geometry import arcs
-from twin.nc.geometry.arcs import Bounds, Point
+from twin.nc.geometry.arcs import ArcWords, Bounds, Sense
 from twin.nc.geometry.planes import vector_of
 from twin.nc.path.moves import SMALLEST_MOVE, arc_length
 from twin.nc.path.rows import Rows
@@ -52,13 +54,19 @@ def emit_arc(
     display = rows.positions[row, 2]
     start = (state.programmed[first_axis], state.programmed[second_axis])
     end = (display[first_axis], display[second_axis])
-    clear, fits, center = _center_of(block, (first_axis, second_axis, across), start, end, tables)
-    if clear and fits:
-        b = tables.bounds[interpolation]
-        bounds = Bounds(float(b[0]), float(b[1]), float(b[2]), float(b[3]))
-        finding, center = arcs.fitted_center(start, end, center, bounds)
-        clear = finding == arcs.FITS
+    clear, words = _words_of_arc(block, (first_axis, second_axis, across))
     if not clear:
+        return False
+    b = tables.bounds[interpolation]
+    bounds = Bounds(float(b[0]), float(b[1]), float(b[2]), float(b[3]))
+    sense = Sense(
+        tables.clockwise[interpolation],
+        tables.signed_radius[interpolation],
+        tables.fits_radius[interpolation],
+    )
+    absolute = block.modal[CENTER_ABSOLUTE] != 0.0
+    finding, center = arcs.center_of_words(start, end, words, absolute, sense, bounds)
+    if finding != arcs.FITS:
         return False
     sweep = arcs.sweep_between(start, end, center, tables.clockwise[interpolation])
     value = rows.values[row]
@@ -79,26 +87,25 @@ def emit_arc(
 
 
 @inlined
-def _center_of(
-    block: PlainBlock, axes: tuple[int, int, int], start: Point, end: Point, tables: BlockTables
-) -> tuple[bool, bool, Point]:
-    """Whether a block's words give a centre without a doubt, whether it has to fit, and where it is."""
-    interpolation, seen, unit = int(block.modal[INTERPOLATION]), block.seen, block.modal[UNIT]
+def _words_of_arc(block: PlainBlock, axes: tuple[int, int, int]) -> tuple[bool, ArcWords]:
+    """Whether a block's words give an arc in the plane without a doubt, and these words."""
     first_axis, second_axis, across = axes
-    has_first = seen & (1 << (CENTER + first_axis)) != 0
-    has_second = seen & (1 << (CENTER + second_axis)) != 0
-    if seen & (1 << (CENTER + across)):
-        return False, False, start
-    if seen & (1 << RADIUS):
-        in_plane = (1 << (AXIS + first_axis)) | (1 << (AXIS + second_axis))
-        if has_first or has_second or not seen & in_plane:
-            return False, False, start
-        radius, signed = value_of(RADIUS, block) * unit, tables.signed_radius[interpolation]
-        clockwise = tables.clockwise[interpolation]
-        finding, center = arcs.center_of_radius(start, end, radius, clockwise, signed)
-        return finding == arcs.FITS, tables.fits_radius[interpolation], center
-    first = value_of(CENTER + first_axis, block) * unit
-    second = value_of(CENTER + second_axis, block) * unit
-    if block.modal[CENTER_ABSOLUTE] != 0.0:
-        return has_first and has_second, True, (first, second)
-    return has_first or has_second, True, (start[0] + first, start[1] + second)
+    radius = _length_of(RADIUS, block)
+    first, second = _length_of(CENTER + first_axis, block), _length_of(CENTER + second_axis, block)
+    in_plane = (1 << (AXIS + first_axis)) | (1 << (AXIS + second_axis))
+    clear = block.seen & (1 << (CENTER + across)) == 0
+    if radius == radius:
+        clear = clear and block.seen & in_plane != 0
+    elif block.modal[CENTER_ABSOLUTE] != 0.0:
+        clear = clear and first == first and second == second
+    return clear, ArcWords(radius, first, second)
+
+
+@inlined
+def _length_of(token_kind: int, block: PlainBlock) -> float:
+    """Value of a word that counts a length [mm]; NaN where there is none."""
+    return (
+        value_of(token_kind, block) * block.modal[UNIT]
+        if block.seen & (1 << token_kind)
+        else np.nan
+    )

@@ -7,11 +7,11 @@ import numpy as np
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import Instruction
+from twin.nc.bytecode.effects import polar_target
 from twin.nc.bytecode.frames import WORDS, Scratch
 from twin.nc.bytecode.registers import BAILOUT, CYCLE, Machine, copy_state
 from twin.nc.bytecode.token_kinds import NUMBER
 from twin.nc.compiled.kernels.cycle import NO_ROOM
-from twin.nc.compiled.kernels.effects import polar_target
 from twin.nc.compiled.kernels.words import execute_block
 from twin.nc.path.compensation.contour import OFF, STAGE, Contour
 from twin.nc.path.compensation.follow import follow

@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.compilable import compilable
+from twin.nc.bytecode.coordinates import turn_place
+from twin.nc.bytecode.effects import report
 from twin.nc.bytecode.registers import (
     CORNER,
     CYCLE,
@@ -22,22 +24,17 @@ from twin.nc.bytecode.registers import (
 )
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
 from twin.nc.canonical import Corner, FloatArray, Motion, Shape
-from twin.nc.compiled.kernels.effects import report
-from twin.nc.compiled.kernels.frame import turn_place
-from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
-from twin.nc.control.control import LARGEST_COORDINATE
+from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
 from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
-from twin.nc.path.moves import line_length
+from twin.nc.path.moves import LARGEST_COORDINATE, line_length
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
 _REPEATS_ONLY = Cycle._fields.index("repeats_only")
-MOST_STOPS = 500
-"""Stops of a hole: its moves must fit into a chunk."""
 _UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
 _ACROSS = int(Act.ACROSS)
 _RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
@@ -88,16 +85,16 @@ def drill(
     if repeats_only and (called[0] or block.modal[INCREMENTAL] != 0.0):
         return UNSUPPORTED
     taken, hole = _read_cycle(block, called, tables, constants, state)
-    if hole.fault != 0 or hole.stops > MOST_STOPS:
+    if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS:
         return UNSUPPORTED
     rest = block.seen & ~taken
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):
         return UNSUPPORTED
     if block.polar:
-        aim(plane, block, rest, state)
+        aim(constants, block, rest, state)
     target = constants.over
     for axis in range(len(state.part)):
-        target[axis] = axis_target(axis, block, rest, tables, state)
+        target[axis] = target_of_axis(axis, block, rest, constants, state)
         if not abs(target[axis]) <= LARGEST_COORDINATE:
             return UNSUPPORTED
     after = _emit_hole(block, hole, constants, state, rows, row)
@@ -155,12 +152,9 @@ def _read_cycle(
             if value >= 0:
                 given[value] = block.values[word]
                 taken |= 1 << token_kind
-    for value in range(drilling_cycle.VALUES):
-        if (drilling_cycle.LENGTHS >> value) & 1:
-            given[value] *= modal[UNIT]
     relative = modal[INCREMENTAL] != 0.0
     if begins or taken:
-        drilling_cycle.remember(remembered, given, relative, relative, cycle.lasting)
+        drilling_cycle.remember(remembered, given, modal[UNIT], (relative, relative), cycle.lasting)
     return taken, drilling_cycle.hole_of(cycle, remembered, across, modal[TO_REFERENCE] != 0.0)
 
 

@@ -6,6 +6,8 @@ Each does what ``opcodes`` says of it; opcodes of one kind have a function.
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import PART_BITS, BytecodeTable, Instruction
+from twin.nc.bytecode.coordinates import begin_compensation
+from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect
 from twin.nc.bytecode.flow import (
     Transfer,
     arrive,
@@ -31,17 +33,17 @@ from twin.nc.bytecode.frames import (
     Scratch,
     innermost,
 )
-from twin.nc.bytecode.registers import Machine, State, copy_active_codes, copy_state
+from twin.nc.bytecode.registers import CYCLE, Machine, State, copy_active_codes, copy_state
 from twin.nc.bytecode.variables import undo_stores
 from twin.nc.compiled.kernels.block import BlockBegin, run_words
 from twin.nc.compiled.kernels.cycle import NO_ROOM
-from twin.nc.compiled.kernels.effects import BlockPlace, run_effect
 from twin.nc.compiled.kernels.expression import compute
-from twin.nc.compiled.kernels.frame import begin_compensation
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import OFF, STAGE
 from twin.nc.path.compensation.lookahead import hold_events
+from twin.nc.path.drilling_cycle import Cycle
 
+_PECKING = Cycle._fields.index("pecking")
 DONE = -1
 """The block was run."""
 
@@ -99,9 +101,15 @@ def dispatch_loop(
             if after < 0:
                 break
             made = progress[MADE] = after  # not undone: to end it twice is to end it once
-        elif opcode >= opcodes.ACTIVATE:
+        elif opcode == opcodes.ACTIVATE:
+            state.active_codes[machine.tables.group[instruction.operand]] = instruction.operand
+        elif opcode == opcodes.NO_PECKS:
+            if machine.tables.cycles[int(state.modal[CYCLE]), _PECKING] != 0.0:
+                break
+        elif opcode >= opcodes.FUNCTION:
             place = BlockPlace(line, made, contour.counts[STAGE] != OFF)
-            top = run_effect(instruction, stack, top, place, machine)
+            on = Affected(machine.constants, state, machine.rows)
+            top = run_effect(instruction, stack, top, place, on)
         elif opcodes.JUMP <= opcode <= opcodes.JUMP_CASE:
             if jumps(instruction, stack, top):
                 to = going_to(instruction.operand, to)

@@ -3,11 +3,12 @@
 from typing import NamedTuple
 
 from twin.compilation.compilable import compilable, inlined
-from twin.nc.bytecode.registers import INCREMENTAL, UNIT, BlockTables, State
+from twin.nc.bytecode.coordinates import directions
+from twin.nc.bytecode.registers import INCREMENTAL, PLANE, UNIT, Constants, State
 from twin.nc.bytecode.token_kinds import AXIS
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.compiled.kernels.frame import directions
 from twin.nc.geometry.planes import along, put_point
+from twin.nc.path.moves import axis_target
 
 
 class PlainBlock(NamedTuple):
@@ -44,8 +45,8 @@ def value_of(token_kind: int, block: PlainBlock) -> float:
 
 
 @inlined
-def axis_target(
-    axis: int, block: PlainBlock, seen: int, tables: BlockTables, state: State
+def target_of_axis(
+    axis: int, block: PlainBlock, seen: int, constants: Constants, state: State
 ) -> float:
     """Where the block wants an axis, as programmed; a polar block has aimed already.
 
@@ -53,30 +54,31 @@ def axis_target(
         axis: Which.
         block: Its words.
         seen: Those of them that say where it goes, as bits.
-        tables: What blocks mean.
+        constants: What stays.
         state: Where the block begins.
     """
     if block.polar and axis < 3:
         return state.target[axis]
     if not seen & (1 << (AXIS + axis)):
         return state.programmed[axis]
-    value = value_of(AXIS + axis, block)
-    value *= block.modal[UNIT] if tables.linear[axis] else 1.0
-    return value + state.programmed[axis] if block.modal[INCREMENTAL] != 0.0 else value
+    value, unit = value_of(AXIS + axis, block), block.modal[UNIT]
+    incremental = block.modal[INCREMENTAL] != 0.0
+    return axis_target(value, unit, constants.linear[axis], incremental, state.programmed[axis])
 
 
 @compilable
-def aim(plane: IntArray, block: PlainBlock, seen: int, state: State) -> None:
+def aim(constants: Constants, block: PlainBlock, seen: int, state: State) -> None:
     """Abscissa and ordinate of the target and the height of the block, as ``Plane.world`` has them."""
     abscissa, ordinate = state.target[0], state.target[1]
     x, y, z = state.programmed[0], state.programmed[1], state.programmed[2]
-    across = plane[2]
+    plane = int(block.modal[PLANE])
+    across = int(constants.planes[plane, 2])
     if seen & (1 << (AXIS + across)):
-        value = value_of(AXIS + across, block) * block.modal[UNIT]
+        value, unit = value_of(AXIS + across, block), block.modal[UNIT]
         incremental = block.modal[INCREMENTAL] != 0.0
-        height = value + state.programmed[across] if incremental else value
+        height = axis_target(value, unit, True, incremental, state.programmed[across])
         x = height if across == 0 else x
         y = height if across == 1 else y
         z = height if across == 2 else z
-    axes = directions(plane)
+    axes = directions(constants, plane)
     put_point(axes, (abscissa, ordinate), along((x, y, z), axes[2]), state.target)

@@ -8,6 +8,8 @@ left untouched; the control runs it and makes its diagnostics.
 import numpy as np
 
 from twin.compilation.compilable import inlined
+from twin.nc.bytecode.coordinates import turn_place
+from twin.nc.bytecode.effects import is_whole, report
 from twin.nc.bytecode.registers import (
     ARC,
     CODES,
@@ -40,13 +42,10 @@ from twin.nc.bytecode.token_kinds import (
 from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
 from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
-from twin.nc.compiled.kernels.effects import is_whole, report
-from twin.nc.compiled.kernels.frame import turn_place
-from twin.nc.compiled.kernels.target import PlainBlock, aim, axis_target
-from twin.nc.control.control import LARGEST_COORDINATE
+from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.functions import turns_behind
 from twin.nc.path.event_columns import FUNCTION_ALONE
-from twin.nc.path.moves import feed_per_minute, line_length, only_turns
+from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length, only_turns
 from twin.nc.path.rows import copy
 from twin.nc.text.line_reader import LARGEST_LABEL
 
@@ -216,9 +215,9 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
         return UNSUPPORTED
     position = rows.positions[row]
     if block.polar:
-        aim(constants.planes[int(modal[PLANE])], block, seen, state)
+        aim(constants, block, seen, state)
     for axis in range(len(state.part)):
-        target = axis_target(axis, block, seen, tables, state)
+        target = target_of_axis(axis, block, seen, constants, state)
         if not abs(target) <= LARGEST_COORDINATE:
             return UNSUPPORTED
         position[0, axis] = state.part[axis]
@@ -240,7 +239,7 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     elif kind != RAPID_LINE:
         if np.isnan(block.feed) and not constants.feed_may_lack:
             return UNSUPPORTED
-        turning = not is_arc and only_turns(position[0], position[1], tables.linear)
+        turning = not is_arc and only_turns(position[0], position[1], constants.linear)
         otherwise = (constants.default_feed, constants.default_rotary_feed)
         pace = feed_per_minute(block.feed, turning, modal[UNIT], modal[FEED_FACTOR], otherwise)
     rows.values[row, 7] = pace

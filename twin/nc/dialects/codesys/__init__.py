@@ -133,6 +133,4 @@ CODESYS = Dialect(
     rapid_feed=words.own_rapid_feed,
     library=subprograms.with_files,
     disturbed=program.acts_on_plain_blocks,
-    registers=program.registers,
-    take_registers=program.take_registers,
 )

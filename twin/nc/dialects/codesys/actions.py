@@ -3,15 +3,15 @@
 import math
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import LineRule
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
-from twin.nc.iso.offsets import compile_programmed_shift
-from twin.nc.iso.tool_compensation import LEFT, RIGHT, compensate, refuse_plane_change
+from twin.nc.iso import offsets
+from twin.nc.iso.offsets import compile_shift, programmed_shift
+from twin.nc.iso.tool_compensation import refuse_plane_change
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Word
 
@@ -19,31 +19,6 @@ ADDITIONAL = "ABCPQUVW"
 """Letters of additional axes, in the order of their numbers."""
 FIRST_ADDITIONAL = 4
 """Number of the first of them, A (manual)."""
-
-
-def compile_no_shift(block: BlockWords, assembler: Assembler) -> None:
-    """G53.
-
-    Raises:
-        UnsupportedError: It has words.
-    """
-    if block.words:
-        raise UnsupportedError
-    compile_shift(block, assembler)
-
-
-def dwell(control: Control) -> None:
-    """G4: wait T seconds."""
-    word = control.take("T")
-    if word is None or control.number(word) < 0.0:
-        control.fail("dwell", "G4 needs T, its seconds", word, hint="write G4 T1")
-    control.dwell(control.number(word))
-
-
-def compile_shift(block: BlockWords, assembler: Assembler) -> None:
-    """G54; G53, which has no axes."""
-    compile_programmed_shift("offset", block, assembler)
-    assembler.emit(opcodes.REFRAME)
 
 
 def free_plane(control: Control) -> None:
@@ -81,23 +56,6 @@ def probe(control: Control) -> None:
         control.fail("loops", "a probe cannot run where loops are cut out", hint="write G60")
     control.function("G31", {})
     control.line_to(control.target(), rapid=False)
-
-
-def left_of_contour(control: Control) -> None:
-    """G41 D: compensate; D is the radius."""
-    _compensate(control, LEFT)
-
-
-def right_of_contour(control: Control) -> None:
-    """G42 D."""
-    _compensate(control, RIGHT)
-
-
-def _compensate(control: Control, side: float) -> None:
-    word = control.take("D")
-    if word is not None:
-        variables(control).tool_radius = control.length(word)
-    compensate(control, side, variables(control).tool_radius)
 
 
 def smooth_corners(kind: BlendKind) -> Action:
@@ -216,45 +174,41 @@ def lead_into_length(control: Control) -> None:
         control.fail("length-ramp", message, hint="write G0 or G1 behind G43")
 
 
-def _reframed(control: Control) -> None:
-    """The frame has changed: see where it stands, a length that no move has led into apart."""
-    control.reframed()
+def _keep_ramp(control: Control) -> None:
+    """The frame has changed: a length that no move has led into yet still lies before the control."""
     for axis, pending in enumerate(variables(control).length_ramp):
         control.programmed[axis] += pending
 
 
-def reset_shift(control: Control) -> None:
+def reset_shift(control: Control, assembler: Assembler) -> None:
     """G53: decoder and machine coordinates coincide."""
-    control.frame.set_shift("offset", [0.0] * len(control.settings.axes))
-    _reframed(control)
+    compile_shift("offset", [0.0] * len(control.settings.axes), assembler)
+    assembler.emit(opcodes.REFRAME)
+    assembler.disturbed(lambda: _keep_ramp(control))
 
 
-def shift_absolutely(control: Control) -> None:
+def shift_absolutely(control: Control, assembler: Assembler) -> None:
     """G54: the decoder's zero lies at the given position of the machine's coordinates."""
-    _shift(control, [0.0] * len(control.settings.axes))
+    programmed_shift("offset", control, assembler)
+    assembler.disturbed(lambda: _keep_ramp(control))
 
 
 def shift_relatively(control: Control) -> None:
     """G55: the decoder's zero moves on by the given distances."""
-    _shift(control, control.frame.shift("offset"))
-
-
-def _shift(control: Control, shift: list[float]) -> None:
+    shift = control.frame.shift("offset")
     for index, word in control.take_axis_words():
         shift[index] += control.axis_value(index, word)
     control.frame.set_shift("offset", shift)
-    _reframed(control)
+    control.reframed()
+    _keep_ramp(control)
 
 
-def set_reference(control: Control) -> None:
+def set_reference(control: Control, assembler: Assembler) -> None:
     """G56: the place where the machine stands gets the given coordinates.
 
     Decision: the manual's page is not fully known; this is what its title says.
     """
-    programmed = list(control.programmed)
-    for index, word in control.take_axis_words():
-        programmed[index] = control.axis_value(index, word)
-    control.set_position(programmed, "offset")
+    offsets.set_position(control.take_axis_words(), "offset", assembler)
 
 
 def set_position(control: Control) -> None:

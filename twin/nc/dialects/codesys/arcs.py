@@ -36,7 +36,7 @@ def _radius_arc(control: Control, word: Word, *, clockwise: bool) -> None:
     target = control.target()
     start, end = start_and_end(control, target)
     if take_center(control).words:
-        control.fail("arc-overdefined", "an arc has a centre or a radius", word)
+        refuse_arc(control, arcs.OVERDEFINED, word)
     radius = abs(control.length(word))
     finding, center = arcs.center_of_radius(start[:2], end[:2], radius, clockwise, signed=False)
     if finding == arcs.SHORT_RADIUS:

@@ -12,11 +12,13 @@ from twin.nc.dialects.codesys.curves import (
     SPATIAL_SPLINE,
 )
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
-from twin.nc.iso import base, offsets, tool_compensation
+from twin.nc.iso import base
 from twin.nc.iso.base import rapid_line
 from twin.nc.iso.tool_compensation import (
-    compile_compensation_by_radius,
-    compile_end_of_compensation,
+    END_OF_COMPENSATION,
+    LEFT,
+    RIGHT,
+    compensation_by_radius,
 )
 from twin.nc.path.blends import BlendKind
 
@@ -36,7 +38,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=actions.plane_changed,
-        compiler=base.compile_plane(plane),
+        compiler=base.plane_effect(plane).write,
         ground="manual",
     )
 
@@ -53,8 +55,7 @@ CODES: dict[float, GCode] = {
     3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
     4: GCode(
         meaning="dwell, seconds in T",
-        perform=actions.dwell,
-        compiler=base.compile_dwell("T"),
+        perform=base.dwell("T", "G4 needs T, its seconds", "write G4 T1"),
         ground="manual",
     ),
     5: _motion("point of a spline in X Y", FLAT_SPLINE),
@@ -96,22 +97,19 @@ CODES: dict[float, GCode] = {
     40: GCode(
         meaning="radius compensation off",
         group="compensation",
-        action=tool_compensation.end_compensation,
-        compiler=compile_end_of_compensation,
+        action=END_OF_COMPENSATION,
         ground="manual",
     ),
     41: GCode(
         meaning="radius compensation left, radius D",
         group="compensation",
-        action=actions.left_of_contour,
-        compiler=compile_compensation_by_radius(tool_compensation.LEFT),
+        action=compensation_by_radius(LEFT),
         ground="manual",
     ),
     42: GCode(
         meaning="radius compensation right, radius D",
         group="compensation",
-        action=actions.right_of_contour,
-        compiler=compile_compensation_by_radius(tool_compensation.RIGHT),
+        action=compensation_by_radius(RIGHT),
         ground="manual",
     ),
     43: GCode(
@@ -140,14 +138,12 @@ CODES: dict[float, GCode] = {
     ),
     53: GCode(
         meaning="coordinate shift off",
-        perform=actions.reset_shift,
-        compiler=actions.compile_no_shift,
+        perform=Effect(actions.reset_shift),
         ground="manual",
     ),
     54: GCode(
         meaning="coordinate shift, absolute",
-        perform=actions.shift_absolutely,
-        compiler=actions.compile_shift,
+        perform=Effect(actions.shift_absolutely),
         ground="manual",
     ),
     55: GCode(
@@ -155,8 +151,7 @@ CODES: dict[float, GCode] = {
     ),
     56: GCode(
         meaning="set the reference here",
-        perform=actions.set_reference,
-        compiler=offsets.compile_set_position("offset"),
+        perform=Effect(actions.set_reference),
         ground="manual",
     ),
     60: GCode(

@@ -6,7 +6,6 @@ import re
 from collections.abc import Mapping
 
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.registers import RADIUS_GIVEN
 from twin.nc.control.control import Control
 from twin.nc.geometry.planes import Vector
 from twin.nc.path.blends import BlendKind
@@ -96,7 +95,6 @@ class Variables:
     """What a program knows by name.
 
     Attributes:
-        tool_radius: The last D of G41 or G42 [mm].
         length_ramp: What G43 has changed and no move has led into yet [mm].
         smoothing: Distance from a corner at which its moves are cut [mm].
         smoothed_by: What takes the corners' place; None: nothing.
@@ -105,7 +103,6 @@ class Variables:
         subprograms: By name; None before the program was searched for them.
     """
 
-    tool_radius: float = 0.0
     length_ramp: Vector = (0.0, 0.0, 0.0)
     smoothing: float = 0.0
     smoothed_by: BlendKind | None = None
@@ -141,16 +138,6 @@ def read_variable(control: Control, name: str, _index: float | None) -> float:
         None,
         f"give it one in the job: [variables] {name.strip('$')} = 0.0",
     )
-
-
-def registers(control: Control) -> dict[int, float]:
-    """What the compiled tier is given of the memory."""
-    return {RADIUS_GIVEN: variables(control).tool_radius}
-
-
-def take_registers(control: Control, values: list[float]) -> None:
-    """Take it back."""
-    variables(control).tool_radius = values[RADIUS_GIVEN]
 
 
 def is_local(name: str) -> bool:

@@ -1,6 +1,6 @@
 """Fagor CNC 8070, milling model."""
 
-from twin.nc.control.codes import MCode
+from twin.nc.control.codes import Effect, MCode, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.fagor8070 import (
@@ -8,7 +8,6 @@ from twin.nc.dialects.fagor8070 import (
     block_compiler,
     corners,
     frames,
-    memory,
     offset_table,
     statements,
     subroutines,
@@ -18,8 +17,6 @@ from twin.nc.dialects.fagor8070.codes import (
     CODES,
     INSTEAD,
     auxiliary,
-    compile_auxiliary,
-    compile_plain_dwell,
     plain_dwell,
 )
 from twin.nc.dialects.fagor8070.control_variables import LiveVariables
@@ -76,8 +73,7 @@ FAGOR8070 = Dialect(
         **base.M_CODES,
         6: MCode(
             meaning="tool change",
-            action=frames.change_tool,
-            compiler=frames.compile_tool_change,
+            action=Effect(frames.change_tool),
             ground="manual",
         ),
         17: MCode(
@@ -101,20 +97,13 @@ FAGOR8070 = Dialect(
     repeat_word="NR",
     words={
         "F": base.set_feed,
-        "S": base.set_spindle,
-        "T": frames.select_tool,
-        "D": frames.tool_offset,
-        "H": auxiliary,
-        "G04": plain_dwell,
+        "S": WordEffect(base.spindle_speed),
+        "T": WordEffect(frames.next_tool),
+        "D": WordEffect(frames.tool_offset),
+        "H": WordEffect(auxiliary),
+        "G04": WordEffect(plain_dwell),
         "G159": offset_table.numbered_offset,
         "G263": arcs.set_circle_radius,
-    },
-    word_compilers={
-        "S": base.compile_spindle,
-        "T": frames.compile_tool,
-        "D": frames.compile_tool_offset,
-        "H": compile_auxiliary,
-        "G04": compile_plain_dwell,
     },
     statements=statements.STATEMENTS,
     other_statement=statements.other_statement,
@@ -182,6 +171,4 @@ FAGOR8070 = Dialect(
     finish=statements.warn_of_missing_end,
     compile_block=block_compiler.compile_block,
     disturbed=acts_on_plain_blocks,
-    registers=memory.registers,
-    take_registers=memory.take_registers,
 )

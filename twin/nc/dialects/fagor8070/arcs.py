@@ -9,8 +9,9 @@ import math
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import LineRule
-from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.memory import memory_of, polar_origin
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
+from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import (
     SAME_POINT,
     TURN,
@@ -19,6 +20,7 @@ from twin.nc.geometry.arcs import (
     center_tangent,
     center_through,
     distance,
+    programmed_center,
     sweep_between,
     turned,
 )
@@ -26,6 +28,7 @@ from twin.nc.iso.circular import (
     arc_rule,
     center_of_radius,
     fitted_center,
+    refuse_arc,
     start_and_end,
     sweep_arc,
     take_center,
@@ -65,7 +68,7 @@ def _arc(control: Control, *, clockwise: bool) -> None:
     memory = memory_of(control)
     if circle is not None:
         if centre.words:
-            control.fail("arc-overdefined", "an arc has a centre or a radius", circle)
+            refuse_arc(control, arcs.OVERDEFINED, circle)
         value = control.length(circle)
         center = center_of_radius(control, start[:2], end[:2], value, circle, clockwise=clockwise)
     elif memory.circle_radius is not None and not centre.words and not goal.polar:
@@ -75,7 +78,7 @@ def _arc(control: Control, *, clockwise: bool) -> None:
     elif centre.words:
         center = _given_center(control, centre.words, start[:2])
     elif goal.polar:
-        center = memory_of(control).origin
+        center = polar_origin(control)
     else:
         control.fail(
             "arc-without-center",
@@ -218,10 +221,8 @@ def _center_letters(control: Control) -> str:
 def _given_center(control: Control, words: tuple[Word, ...], start: Point) -> Point:
     letters = _center_letters(control)
     values = {word.address: control.length(word) for word in words}
-    abscissa, ordinate = values.get(letters[0], 0.0), values.get(letters[1], 0.0)
-    if control.modal.center_absolute:
-        return (abscissa, ordinate)
-    return (start[0] + abscissa, start[1] + ordinate)
+    first, second = (values.get(letter, math.nan) for letter in letters[:2])
+    return programmed_center(start, first, second, control.modal.center_absolute)
 
 
 def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:

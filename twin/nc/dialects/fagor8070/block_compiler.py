@@ -34,7 +34,7 @@ def _words(compiler: BlockCompiler, block: Block) -> None:
             assembler.value(count)
         else:
             assembler.constant(count)
-        if any(word.address in compiler.vocabulary.word_compilers for word in rest):
+        if any(word.address in compiler.acting for word in rest):
             raise UnsupportedError
         if any(code.begins_cycle for _, code in compiler.sorted(rest).codes):
             raise UnsupportedError

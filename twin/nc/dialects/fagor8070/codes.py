@@ -4,99 +4,49 @@ from collections.abc import Mapping
 from typing import Unpack
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.canonical import Corner
-from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import Action, Compiler, GCode, Interpolation
+from twin.nc.control.codes import Action, CodeWriter, Effect, GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode, ModalChanges
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
 from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
-from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.dialects.fagor8070.offset_table import compile_offset, offset_code
+from twin.nc.dialects.fagor8070.offset_table import offset_code
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
-from twin.nc.iso import base, fixed_cycles, offsets, tool_compensation
-from twin.nc.iso.tool_compensation import compile_compensation_by_tool, compile_end_of_compensation
+from twin.nc.iso import base, fixed_cycles, offsets
+from twin.nc.iso.tool_compensation import (
+    END_OF_COMPENSATION,
+    LEFT,
+    RIGHT,
+    compensation_by_tool,
+)
 from twin.nc.text.blocks import Word
 
 
-def dwell(control: Control) -> None:
-    """G04 K: wait its seconds."""
-    word = control.take("K")
-    if word is None or control.number(word) < 0.0:
-        control.fail("dwell", "G04 needs its seconds", word, hint="write G04 K1.5 or G04 1.5")
-    control.dwell(control.number(word))
-
-
-def compile_plain_dwell(block: BlockWords, assembler: Assembler) -> None:
-    """G04 1.5, for the compiled tier.
-
-    Raises:
-        UnsupportedError: It does not stand alone.
-    """
-    word = block.words.pop("G04")
-    if block.words or block.codes or block.functions:
-        raise UnsupportedError
+def plain_dwell(control: Control, word: Word, assembler: Assembler) -> None:
+    """G04 1.5: the seconds stand right behind the code."""
+    if control.words or len(control.block.words) > 1:
+        control.fail("dwell", "G04 must stand alone in its block", word)
     assembler.word_value(word)
     assembler.emit(opcodes.DWELL)
 
 
-def plain_dwell(control: Control, word: Word) -> None:
-    """G04 1.5: the seconds stand right behind the code."""
-    if control.words or len(control.block.words) > 1:
-        control.fail("dwell", "G04 must stand alone in its block", word)
-    control.dwell(control.number(word))
-
-
-def auxiliary(control: Control, word: Word) -> None:
+def auxiliary(_control: Control, word: Word, assembler: Assembler) -> None:
     """H: an auxiliary function of the machine."""
-    control.function(f"H{control.number(word):g}", {})
-
-
-def compile_auxiliary(block: BlockWords, assembler: Assembler) -> None:
-    """H, for the compiled tier."""
-    assembler.word_value(block.words.pop("H"))
+    assembler.word_value(word)
     assembler.emit(opcodes.AUXILIARY)
 
 
-def _compensate(side: float) -> Action:
-    def action(control: Control) -> None:
-        tool = control.tools.data(control.tools.spindle)
-        if tool is None:
-            control.fail(
-                "no-such-tool",
-                "compensation needs a tool, and the job has none",
-                None,
-                tool_compensation.NO_TOOL,
-            )
-        tool_compensation.compensate(
-            control, side, tool.radius if memory_of(control).offset_on else 0.0
-        )
-
-    return action
-
-
-def forget_polar_values(action: Action | None) -> Action:
+def _forgetting_polar(write: CodeWriter) -> Effect:
     """Work offsets and presets: the last R and Q no longer hold."""
 
-    def both(control: Control) -> None:
-        refuse_change(control)
-        if action is not None:
-            action(control)
-        polar.forget_polar(control)
-
-    return both
-
-
-def _and_forget_polar(compiler: Compiler | None) -> Compiler:
-    assert compiler is not None
-
-    def both(block: BlockWords, assembler: Assembler) -> None:
-        compiler(block, assembler)
+    def both(control: Control, assembler: Assembler) -> None:
+        assembler.disturbed(lambda: refuse_change(control))
+        write(control, assembler)
         assembler.emit(opcodes.FORGET_POLAR)
 
-    return both
+    return Effect(both)
 
 
 def _g(meaning: str, group: str = "", **sets: Unpack[ModalChanges]) -> GCode:
@@ -121,34 +71,19 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         meaning=meaning,
         group="plane",
         sets={"plane": plane},
-        action=frames.change_plane,
-        compiler=base.compile_plane(plane),
+        action=base.plane_effect(plane),
         ground="seed",
     )
 
 
-def _do(
-    meaning: str,
-    action: Action,
-    *,
-    group: str = "",
-    takes: str = "",
-    compiler: Compiler | None = None,
-) -> GCode:
+def _do(meaning: str, action: Action, *, group: str = "", takes: str = "") -> GCode:
     if takes:
-        return GCode(
-            meaning=meaning,
-            group=group,
-            perform=action,
-            takes=takes,
-            compiler=compiler,
-            ground="manual",
-        )
-    return GCode(meaning=meaning, group=group, action=action, compiler=compiler, ground="manual")
+        return GCode(meaning=meaning, group=group, perform=action, takes=takes, ground="manual")
+    return GCode(meaning=meaning, group=group, action=action, ground="manual")
 
 
-def _decided(meaning: str, action: Action, *, compiler: Compiler | None = None) -> GCode:
-    return GCode(meaning=meaning, perform=action, compiler=compiler)
+def _decided(meaning: str, action: Action) -> GCode:
+    return GCode(meaning=meaning, perform=action)
 
 
 def _refused(meaning: str, reason: str, numbers: Mapping[int, None] | range) -> dict[int, GCode]:
@@ -193,8 +128,7 @@ CODES: dict[float, GCode] = {
     3: _motion("arc counter-clockwise, Cartesian or polar", arcs.COUNTER_CLOCKWISE, seed=True),
     4: GCode(
         meaning="dwell, seconds in K or right behind",
-        perform=dwell,
-        compiler=base.compile_dwell("K"),
+        perform=base.dwell("K", "G04 needs its seconds", "write G04 K1.5 or G04 1.5"),
         ground="manual",
     ),
     5: _g("round corner", "corner", corner=Corner.CONTINUOUS),
@@ -202,61 +136,39 @@ CODES: dict[float, GCode] = {
     7: _g("square corner", "corner", corner=Corner.EXACT_STOP),
     8: _once("arc tangent to the last move, this block", interpolation=arcs.TANGENT, cycle=None),
     9: _once("arc through the point I J, this block", interpolation=arcs.THREE_POINTS, cycle=None),
-    10: _do(
-        "mirror off",
-        transformations.mirror_off,
-        compiler=transformations.compile_mirror_off,
-    ),
-    11: _do("mirror X", transformations.mirror_x, compiler=transformations.compile_mirror(0)),
-    12: _do("mirror Y", transformations.mirror_y, compiler=transformations.compile_mirror(1)),
-    13: _do("mirror Z", transformations.mirror_z, compiler=transformations.compile_mirror(2)),
-    14: _decided(
-        "mirror the given axes: X-1",
-        transformations.mirror_axes,
-        compiler=transformations.compile_mirror_axes,
-    ),
+    10: _do("mirror off", Effect(transformations.mirror_off)),
+    11: _do("mirror X", transformations.mirror(0)),
+    12: _do("mirror Y", transformations.mirror(1)),
+    13: _do("mirror Z", transformations.mirror(2)),
+    14: _decided("mirror the given axes: X-1", Effect(transformations.mirror_axes)),
     17: _plane("plane X Y", XY),
     18: _plane("plane Z X", ZX),
     19: _plane("plane Y Z", YZ),
     20: GCode(meaning="any plane: X1 Z2", group="plane", action=frames.any_plane, ground="manual"),
-    30: _do(
-        "polar origin: I J, or where the tool stands",
-        polar.set_polar_origin,
-        compiler=polar.compile_polar_origin,
-    ),
+    30: _do("polar origin: I J, or where the tool stands", Effect(polar.set_polar_origin)),
     31: _do("temporary polar origin at the arc's centre", polar.temporary_polar_origin),
     33: GCode(meaning="threading", refused="the twin's spindle has no angle", ground="manual"),
     36: _decided("corner rounded by the radius I", corners.round_corner),
     **_refused("tangential entry, tangential exit", _LEAD, range(37, 39)),
     39: _decided("corner chamfered at the distance I", corners.chamfer_corner),
-    40: _do(
-        "radius compensation off",
-        tool_compensation.end_compensation,
-        group="compensation",
-        compiler=compile_end_of_compensation,
-    ),
-    41: _do(
-        "compensation, tool left",
-        _compensate(tool_compensation.LEFT),
-        group="compensation",
-        compiler=compile_compensation_by_tool(tool_compensation.LEFT),
-    ),
-    42: _do(
-        "compensation, tool right",
-        _compensate(tool_compensation.RIGHT),
-        group="compensation",
-        compiler=compile_compensation_by_tool(tool_compensation.RIGHT),
-    ),
+    40: _do("radius compensation off", END_OF_COMPENSATION, group="compensation"),
+    41: _do("compensation, tool left", compensation_by_tool(LEFT), group="compensation"),
+    42: _do("compensation, tool right", compensation_by_tool(RIGHT), group="compensation"),
     **_refused("tangential control", "the twin has no axis that turns the tool", range(45, 46)),
     50: _g("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
     51: _passed_over(51, "look-ahead of the CNC 8055: tolerance E and angle A", "AE"),
-    53: _do("offsets cancelled", forget_polar_values(offsets.cancel_offset), group="offset"),
+    53: _do(
+        "offsets cancelled",
+        _forgetting_polar(
+            lambda control, assembler: assembler.interpreted(lambda: offsets.cancel_offset(control))
+        ),
+        group="offset",
+    ),
     **{
         number: _do(
             f"work offset G{number} of the job",
-            forget_polar_values(offset_code(number)),
+            _forgetting_polar(offset_code(number)),
             group="offset",
-            compiler=_and_forget_polar(compile_offset(number)),
         )
         for number in range(54, 60)
     },
@@ -265,16 +177,10 @@ CODES: dict[float, GCode] = {
     63: GCode(meaning="rigid tapping", refused="the twin's spindle has no angle", ground="manual"),
     70: _g("inches", "units", unit=25.4),
     71: _g("millimetres", "units", unit=1.0),
-    72: _do(
-        "scale S, about part zero",
-        transformations.scale,
-        takes="S",
-        compiler=transformations.compile_scale,
-    ),
+    72: _do("scale S, about part zero", Effect(transformations.scale), takes="S"),
     73: GCode(
         meaning="rotation by Q about I J; alone: off",
-        perform=transformations.rotate,
-        compiler=transformations.compile_rotation,
+        perform=Effect(transformations.rotate),
         ground="manual",
     ),
     74: GCode(meaning="home search", refused="the twin starts homed", ground="manual"),
@@ -283,8 +189,7 @@ CODES: dict[float, GCode] = {
     91: _g("incremental coordinates", "distance", incremental=True),
     92: GCode(
         meaning="preset part zero",
-        perform=forget_polar_values(offsets.preset),
-        compiler=_and_forget_polar(offsets.compile_set_position("preset")),
+        perform=_forgetting_polar(offsets.preset),
         ground="manual",
     ),
     93: GCode(
@@ -319,8 +224,7 @@ CODES: dict[float, GCode] = {
     157: GCode(meaning="axes without offset", refused=_UNKNOWN, ground="manual"),
     158: GCode(
         meaning="incremental offset",
-        perform=frames.incremental_offset,
-        compiler=frames.compile_increment,
+        perform=Effect(frames.incremental_offset),
         ground="manual",
     ),
     **_refused("multiple machining", "write the positions one by one", range(160, 166)),

@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
+from twin.nc.bytecode import registers
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.memory import OFFSETS_BY_NUMBER, memory_of, offset_name
 from twin.nc.iso.offsets import machine_zero
@@ -21,13 +22,13 @@ POLAR_ABSCISSA, POLAR_ORDINATE = "V.G.PORGF", "V.G.PORGS"
 _OFFSET = re.compile(r"V\.A\.ORGT\[[ \t]*(P?)([0-9]+)[ \t]*\]\.([A-Z])1?")
 
 _READ: Mapping[str, Callable[[Control], float]] = {
-    POLAR_ABSCISSA: lambda control: memory_of(control).origin[0],
-    POLAR_ORDINATE: lambda control: memory_of(control).origin[1],
+    POLAR_ABSCISSA: lambda control: control.registers[registers.POLAR_ABSCISSA],
+    POLAR_ORDINATE: lambda control: control.registers[registers.POLAR_ORDINATE],
     "V.TM.TOOL": lambda control: float(control.tools.spindle or 0),
     "V.TM.NXTOOL": lambda control: float(control.tools.selected or 0),
     "V.G.TOOL": lambda control: float(control.tools.spindle or 0),
     "V.G.NXTOOL": lambda control: float(control.tools.selected or 0),
-    "V.G.TOD": lambda control: float(memory_of(control).offset_on),
+    "V.G.TOD": lambda control: control.registers[registers.OFFSET_ON],
 }
 
 

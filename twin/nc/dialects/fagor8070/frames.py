@@ -1,24 +1,12 @@
 """Planes, offsets and tools of the Fagor CNC 8070."""
 
 from twin.nc.bytecode import opcodes
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
+from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
-from twin.nc.dialects.fagor8070.memory import memory_of
-from twin.nc.dialects.fagor8070.polar import forget_polar, reset_polar_origin
 from twin.nc.geometry.planes import Plane, Vector, cross
-from twin.nc.iso.offsets import compile_programmed_shift
-from twin.nc.iso.tool_compensation import refuse_plane_change, set_length, tool_numbered
+from twin.nc.iso.offsets import programmed_shift
 from twin.nc.text.blocks import Word
-
-
-def change_plane(control: Control) -> None:
-    """G17, G18, G19: the polar origin goes back to part zero."""
-    refuse_plane_change(control)
-    if memory_of(control).rotation is not None:
-        control.fail("rotation-active", "the plane cannot change while G73 turns it")
-    reset_polar_origin(control)
 
 
 def any_plane(control: Control) -> None:
@@ -26,7 +14,7 @@ def any_plane(control: Control) -> None:
 
     Decision: G03 turns from the abscissa towards the ordinate, whatever axes they are.
     """
-    change_plane(control)
+    control.perform(lambda assembler: assembler.emit(opcodes.PLANE))
     roles: dict[int, Vector] = {}
     for index, word in control.take_axis_words():
         role = int(control.number(word))
@@ -42,85 +30,39 @@ def any_plane(control: Control) -> None:
     control.modal.plane = Plane("G20", roles[1], roles[2], normal)
 
 
-def incremental_offset(control: Control) -> None:
+def incremental_offset(control: Control, assembler: Assembler) -> None:
     """G158 X Y: added to the work offset; without axes it ends."""
-    refuse_change(control)
-    shift = [0.0] * len(control.settings.axes)
-    for index, word in control.take_axis_words():
-        shift[index] = control.axis_value(index, word)
-    control.frame.set_shift("increment", shift)
-    control.reframed()
-    forget_polar(control)
+    assembler.disturbed(lambda: refuse_change(control))
+    programmed_shift("increment", control, assembler)
+    assembler.emit(opcodes.FORGET_POLAR)
 
 
 # --- tools and the rotary axis
 
 
-def tool_offset(control: Control, word: Word) -> None:
+def tool_offset(control: Control, word: Word, assembler: Assembler) -> None:
     """D1: the tool's own length and radius; D0: none."""
-    refuse_change(control)
-    number = control.number(word)
+    assembler.disturbed(lambda: refuse_change(control))
+    number = assembler.known(word)
     if number not in (0.0, 1.0):
         message = f"the job gives every tool one offset, D1, not D{number:g}"
         control.fail("tool-offset", message, word)
-    tool = control.tools.data(control.tools.spindle)
-    longer = 0.0 if number == 0.0 or tool is None else control.tools.longer(tool)
-    memory_of(control).offset_on = number == 1.0
-    set_length(control, longer)
-
-
-def select_tool(control: Control, word: Word) -> None:
-    """T: the tool that M06 brings, known to the job; T0 leaves the spindle empty."""
-    number = int(control.number(word))
-    if control.tools.table and control.number(word) != 0.0:
-        number = tool_numbered(control, word)
-    control.tools.selected = number
-    control.function(f"T{number}", {})
-
-
-def compile_tool_offset(block: BlockWords, assembler: Assembler) -> None:
-    """D0, D1, for the compiled tier.
-
-    Raises:
-        UnsupportedError: It is neither.
-    """
-    value = block.words.pop("D").value
-    if value not in (0.0, 1.0):
-        raise UnsupportedError
-    assembler.emit(opcodes.OFFSET_ON, int(value == 1.0))
+    assembler.emit(opcodes.OFFSET_ON, int(number))
     assembler.emit(opcodes.TOOL_LENGTH)
 
 
-def compile_tool(block: BlockWords, assembler: Assembler) -> None:
-    """T, for the compiled tier."""
-    assembler.word_value(block.words.pop("T"))
-    assembler.emit(opcodes.TOOL, 1)
+def next_tool(control: Control, word: Word, assembler: Assembler) -> None:
+    """T: the tool that M06 brings, known to the job; T0 leaves the spindle empty."""
+    assembler.word_value(word)
+    assembler.emit(opcodes.TOOL, int(bool(control.tools.table)))
 
 
-def compile_tool_change(_block: BlockWords, assembler: Assembler) -> None:
-    """M06, for the compiled tier."""
+def change_tool(control: Control, assembler: Assembler) -> None:
+    """M06: the tool goes into the spindle with its offset D1; T0 has none."""
+    assembler.disturbed(lambda: refuse_change(control))
     assembler.emit(opcodes.CHANGE_TOOL)
     assembler.emit(opcodes.OFFSET_ON, 1)
     assembler.emit(opcodes.TOOL_LENGTH)
-
-
-def compile_increment(block: BlockWords, assembler: Assembler) -> None:
-    """G158, for the compiled tier."""
-    compile_programmed_shift("increment", block, assembler)
-    assembler.emit(opcodes.REFRAME)
-    assembler.emit(opcodes.FORGET_POLAR)
-
-
-def change_tool(control: Control) -> None:
-    """M06: the tool goes into the spindle with its offset D1; T0 has none."""
-    refuse_change(control)
-    control.tools.change()
-    memory_of(control).offset_on = True
-    tool = control.tools.data(control.tools.spindle)
-    if control.tools.spindle == 0 and 0 not in control.tools.table:
-        set_length(control, 0.0)
-    elif tool is not None:
-        set_length(control, control.tools.longer(tool))
 
 
 def turn_in_commanded_direction(control: Control, _rapid: bool) -> None:

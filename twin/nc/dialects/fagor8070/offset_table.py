@@ -2,33 +2,30 @@
 
 import re
 
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import Action, Compiler
+from twin.nc.bytecode.assembler import Assembler
+from twin.nc.control.codes import CodeWriter
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.memory import OFFSETS_BY_NUMBER, memory_of, offset_name
 from twin.nc.dialects.fagor8070.polar import forget_polar
-from twin.nc.iso.offsets import OFFSETS, select_offset, shift_by
+from twin.nc.iso.offsets import offset_of_job, select_offset, shift_by, write_offset
 from twin.nc.text.blocks import Word
 
 _WRITTEN = re.compile(rb"\.ORGT[ \t]*\[", re.IGNORECASE)
 
 
-def offset_code(number: int) -> Action:
-    """G54 to G59, by the number of the G code."""
-    return lambda control: _select(control, f"G{number}", control.code_word(number))
+def offset_code(number: int) -> CodeWriter:
+    """G54 to G59, by the number of the G code; the compiled tier knows the job's values only."""
+    name = f"G{number}"
 
-
-def compile_offset(number: int) -> Compiler:
-    """The same code for the compiled tier, which knows the job's values only."""
-    compiler = OFFSETS[number].compiler
-    assert compiler is not None
-
-    def write(block: BlockWords, assembler: Assembler) -> None:
-        if block.control.program_counter.lines.any_holds(_WRITTEN):
-            raise UnsupportedError
-        compiler(block, assembler)
+    def write(control: Control, assembler: Assembler) -> None:
+        word, memory = control.code_word(number), memory_of(control)
+        if memory.writes_offsets is None:
+            memory.writes_offsets = control.program_counter.lines.any_holds(_WRITTEN)
+        if memory.writes_offsets:
+            assembler.interpreted(lambda: _select(control, name, word))
+        else:
+            write_offset(control, offset_of_job(control, name, word), assembler)
 
     return write
 

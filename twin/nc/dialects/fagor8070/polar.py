@@ -6,12 +6,12 @@ from collections.abc import Iterable
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
+from twin.nc.bytecode.registers import POLAR_ANGLE, POLAR_RADIUS
 from twin.nc.control.block_compiler import BlockCompiler
-from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
-from twin.nc.dialects.fagor8070.memory import memory_of
+from twin.nc.dialects.fagor8070.memory import memory_of, polar_origin
 from twin.nc.geometry.arcs import direction
 from twin.nc.geometry.polar import changed, point_at, seen_from
 from twin.nc.text.blocks import Word
@@ -37,17 +37,10 @@ class Goal:
 
 def forget_polar(control: Control) -> None:
     """The last polar values no longer hold: they are seen anew from where the tool stands."""
-    polar = memory_of(control)
-    polar.radius = polar.angle = None
+    control.registers[POLAR_RADIUS] = control.registers[POLAR_ANGLE] = math.nan
 
 
-def reset_polar_origin(control: Control) -> None:
-    """A change of plane puts the polar origin back to part zero."""
-    memory_of(control).origin = (0.0, 0.0)
-    forget_polar(control)
-
-
-def set_polar_origin(control: Control) -> None:
+def set_polar_origin(control: Control, assembler: Assembler) -> None:
     """G30: I abscissa and J ordinate of the polar origin; neither: where the tool stands.
 
     Raises:
@@ -56,24 +49,9 @@ def set_polar_origin(control: Control) -> None:
     abscissa, ordinate = control.take("I"), control.take("J")
     if (abscissa is None) != (ordinate is None):
         control.fail("polar-origin", "G30 needs both I and J, or neither", abscissa or ordinate)
-    if abscissa is None:
-        origin = control.modal.plane.local(control.programmed)[:2]
-    else:
-        origin = (control.length(abscissa), control.length(ordinate))
-    memory_of(control).origin = origin
-    forget_polar(control)
-
-
-def compile_polar_origin(block: BlockWords, assembler: Assembler) -> None:
-    """G30, for the compiled tier.
-
-    Raises:
-        UnsupportedError: Only one of I and J is given, or the block does more.
-    """
-    words = [block.take("I"), block.take("J")]
-    given = [word for word in words if word is not None]
-    if len(given) == 1 or block.words or len(block.codes) > 1:
-        raise UnsupportedError
+    if control.words or len(control.codes) > 1:
+        assembler.rare()
+    given = [word for word in (abscissa, ordinate) if word is not None]
     for word in given:
         assembler.word_value(word)
     assembler.emit(opcodes.POLAR_ORIGIN, len(given))
@@ -105,25 +83,25 @@ def compile_polar(compiler: BlockCompiler, words: Iterable[Word]) -> None:
     Raises:
         UnsupportedError: It does more than that.
     """
-    assembler = compiler.assembler
-    codes, functions, block = compiler.sorted(words)
+    assembler, control = compiler.assembler, compiler.control
+    codes, functions = compiler.sorted(words)
     cycles = [(word, code) for word, code in codes if code.begins_cycle]
     others = [(word, code) for word, code in codes if not code.begins_cycle]
     for _, code in cycles:
-        if code.compiler is None:
+        if code.writer is None:
             raise UnsupportedError
-        code.compiler(block, assembler)
-    radius, angle, feed = block.take("R"), block.take("Q"), block.take("F")
+        code.writer(control, assembler)
+    radius, angle, feed = control.take("R"), control.take("Q"), control.take("F")
     if (
         functions
-        or block.words.keys() - compiler.control.axis_letters
-        or any(code.compiler or code.action or code.perform for _, code in others)
+        or control.words.keys() - control.axis_letters
+        or any(code.writer or code.action or code.perform for _, code in others)
         or any(word is not None and word.incremental for word in (radius, angle))
     ):
         raise UnsupportedError
     moving = [] if feed is None else [feed]
     assembler.codes([*(word for word, _ in others), *moving])
-    assembler.polar(radius, angle, [*(word for word, _ in cycles), *block.words.values()])
+    assembler.polar(radius, angle, [*(word for word, _ in cycles), *control.words.values()])
 
 
 def refuse_origin_by_g93(control: Control) -> None:
@@ -151,11 +129,8 @@ def temporary_polar_origin(control: Control) -> None:
 
 def current_polar(control: Control) -> tuple[float, float]:
     """R and Q of where the tool stands: as last programmed, else measured [mm, deg]."""
-    polar = memory_of(control)
-    here = control.modal.plane.local(control.programmed)[:2]
-    radius = math.nan if polar.radius is None else polar.radius
-    angle = math.nan if polar.angle is None else polar.angle
-    return seen_from(polar.origin, here, radius, angle)
+    here, registers = control.modal.plane.local(control.programmed)[:2], control.registers
+    return seen_from(polar_origin(control), here, registers[POLAR_RADIUS], registers[POLAR_ANGLE])
 
 
 def take_goal(control: Control, *, arc: bool) -> Goal:
@@ -177,11 +152,11 @@ def take_goal(control: Control, *, arc: bool) -> Goal:
 
 
 def _polar_target(control: Control, *, arc: bool) -> list[float]:
-    polar, plane = memory_of(control), control.modal.plane
+    plane = control.modal.plane
     if control.active.get("offset") == 53:
         message = "polar coordinates are not allowed while G53 is in force (E1530)"
         control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
-    if polar.part_frame is not None:
+    if memory_of(control).part_frame is not None:
         message = "polar coordinates are not allowed while #MCS is in force (E1305)"
         control.fail("polar-origin", message, control.words.get("R") or control.words.get("Q"))
     radius, angle = current_polar(control)
@@ -201,9 +176,9 @@ def _polar_target(control: Control, *, arc: bool) -> list[float]:
         value = control.number(angle_word)
         incremental = control.modal.incremental or angle_word.incremental
         angle = changed(angle, value, incremental)
-    end = point_at(polar.origin, plane.local(control.programmed)[:2], radius, angle)
+    end = point_at(polar_origin(control), plane.local(control.programmed)[:2], radius, angle)
     target[:3] = plane.world(*end, plane.local(target).height)
-    polar.radius, polar.angle = radius, angle
+    control.registers[POLAR_RADIUS], control.registers[POLAR_ANGLE] = radius, angle
     return target
 
 

@@ -10,9 +10,10 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070 import flow, subroutines
 from twin.nc.dialects.fagor8070.known_statements import ENDED_ONLY, PASSED_OVER, REFUSED
 from twin.nc.dialects.fagor8070.machine_coordinates import machine_coordinates
-from twin.nc.dialects.fagor8070.transformations import set_scale
+from twin.nc.dialects.fagor8070.transformations import write_scale
 from twin.nc.dialects.fagor8070.variables import VARIABLE_STATEMENT, assign, refuse
 from twin.nc.text.blocks import Location, Statement
+from twin.nc.text.expressions import Expression
 
 _ROUNDED = (1, 4)
 """Kinds of #ROUNDPAR whose value is how far a rounded corner may lie from the programmed one."""
@@ -45,13 +46,14 @@ def stray_comment_end(control: Control, statement: Statement) -> None:
     refuse(control, statement, "open-comment", "#COMMENT BEGIN is missing")
 
 
-def scale(control: Control, statement: Statement) -> None:
+def _scale(control: Control, statement: Statement, assembler: Assembler) -> None:
     """#SCALE[2]: lengths are multiplied; #SCALE alone or [1] ends it."""
-    text = statement.text.strip()
-    value = 1.0
-    if text:
-        (value,) = _values(control, statement, 1)
-    set_scale(control, value)
+    values = _bracketed(control, statement, 1) if statement.text.strip() else []
+    if values:
+        assembler.value(*values[0])
+    else:
+        assembler.constant(1.0)
+    write_scale(control, assembler)
 
 
 def round_parameters(control: Control, statement: Statement) -> None:
@@ -69,8 +71,15 @@ def round_parameters(control: Control, statement: Statement) -> None:
     control.modal.corner_tolerance = values[1] * control.modal.unit
 
 
-def _values(control: Control, statement: Statement, count: int | None = None) -> list[float]:
+def _values(control: Control, statement: Statement) -> list[float]:
     """The values in the square brackets behind a keyword."""
+    return [control.compute(*each) for each in _bracketed(control, statement)]
+
+
+def _bracketed(
+    control: Control, statement: Statement, count: int | None = None
+) -> list[tuple[Expression, int]]:
+    """The expressions in the square brackets behind a keyword, and the column of each."""
     text = statement.text.rstrip()
     begin = len(text) - len(text.lstrip())
     if not (text[begin : begin + 1] == "[" and text.endswith("]")):
@@ -78,7 +87,7 @@ def _values(control: Control, statement: Statement, count: int | None = None) ->
         refuse(control, statement, "expression", message)
     column = statement.text_column + begin + 1
     found = control.expressions(text[begin + 1 : -1], column, count)
-    return [control.compute(each, column) for each in found]
+    return [(each, column) for each in found]
 
 
 def warning(control: Control, statement: Statement) -> None:
@@ -149,7 +158,7 @@ STATEMENTS: dict[str, StatementAction] = {
     "#COMMENT BEGIN": skip_comment,
     "#COMMENT END": stray_comment_end,
     "#MCS": machine_coordinates,
-    "#SCALE": scale,
+    "#SCALE": StatementEffect(_scale),
     "#ROUNDPAR": round_parameters,
     "#WARNING": warning,
     "#WARNINGSTOP": warning,

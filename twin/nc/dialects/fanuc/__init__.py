@@ -2,6 +2,7 @@
 
 import dataclasses
 
+from twin.nc.control.codes import WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.fanuc import (
@@ -79,13 +80,12 @@ FANUC = Dialect(
     words={
         "O": programs.heading,
         "F": base.set_feed,
-        "S": base.set_spindle,
-        "T": base.select_tool,
+        "S": WordEffect(base.spindle_speed),
+        "T": WordEffect(base.next_tool),
         "H": tool_offsets.set_length_number,
         "D": tool_offsets.set_radius_number,
     },
     words_first=True,
-    word_compilers={"S": base.compile_spindle, "T": base.compile_tool},
     word_meanings={
         "O": "number of the program",
         "N": "block number",

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Unpack
 
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import Action, Compiler, GCode, Interpolation, MCode
+from twin.nc.control.codes import Action, CodeWriter, GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode, ModalChanges
 from twin.nc.dialects.fanuc import (
@@ -23,20 +23,10 @@ from twin.nc.dialects.fanuc.memory import Variant
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
 from twin.nc.iso import base, fixed_cycles
 from twin.nc.iso.tool_compensation import (
+    END_OF_COMPENSATION,
     LEFT,
     RIGHT,
-    compile_end_of_compensation,
-    end_compensation,
-    refuse_plane_change,
 )
-
-
-def dwell(control: Control) -> None:
-    """G4: wait for the seconds of X, or the milliseconds of P."""
-    words = [control.words.pop(letter) for letter in "PX" if letter in control.words]
-    if len(words) != 1 or control.number(words[0]) < 0.0:
-        control.fail("dwell", "G4 needs its time", None, "G4 P500 or G4 X0.5 waits half a second")
-    control.dwell(control.number(words[0]))
 
 
 def _g(meaning: str, group: str = "", **sets: Unpack[ModalChanges]) -> GCode:
@@ -53,18 +43,17 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         meaning=meaning,
         group="plane",
         sets={"plane": plane},
-        action=refuse_plane_change,
-        compiler=base.compile_plane(plane),
+        action=base.plane_effect(plane),
         ground="manual",
     )
 
 
-def _do(meaning: str, action: Action, compiler: Compiler | None = None) -> GCode:
+def _do(meaning: str, action: Action) -> GCode:
     """A code that stands in the place of a move and is not modal."""
-    return GCode(meaning=meaning, perform=action, compiler=compiler, ground="manual")
+    return GCode(meaning=meaning, perform=action, ground="manual")
 
 
-def _modal(meaning: str, group: str, action: Action, compiler: Compiler | None = None) -> GCode:
+def _modal(meaning: str, group: str, action: Action, compiler: CodeWriter | None = None) -> GCode:
     """A modal code that does something before the block moves."""
     return GCode(meaning=meaning, group=group, action=action, compiler=compiler, ground="manual")
 
@@ -107,8 +96,7 @@ _MOTION: Mapping[float, GCode] = {
     3: _motion("arc counter-clockwise, by I J K or R", motion.COUNTER_CLOCKWISE),
     4: GCode(
         meaning="dwell, seconds in X or milliseconds in P",
-        perform=dwell,
-        compiler=base.compile_dwell("PX"),
+        perform=base.dwell("PX", "G4 needs its time", "G4 P500 or G4 X0.5 waits half a second"),
         ground="manual",
     ),
     5.1: passed_over("look-ahead (AI contour control): Q1 on, Q0 off", "QRXYZC"),
@@ -160,9 +148,7 @@ _PLACE: Mapping[float, GCode] = {
     92.1: _do("presets end for the axes named", offsets.end_preset),
 }
 _TOOL: Mapping[float, GCode] = {
-    40: _modal(
-        "radius compensation off", "compensation", end_compensation, compile_end_of_compensation
-    ),
+    40: _modal("radius compensation off", "compensation", END_OF_COMPENSATION),
     41: _modal(
         "compensation by D, tool left",
         "compensation",

@@ -7,14 +7,13 @@ all of them alike; a work offset ends neither (manual).
 
 import re
 
-from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import Action, Compiler
+from twin.nc.control.codes import Action, CodeWriter
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import whole
-from twin.nc.iso.offsets import compile_shift, machine_zero, select_offset, shift_by
+from twin.nc.iso.offsets import machine_zero, offset_of_job, select_offset, shift_by
+from twin.nc.iso.offsets import write_offset as write_job_offset
 from twin.nc.text.blocks import Word
 
 WRITES_OFFSETS = (
@@ -105,20 +104,15 @@ def read_offset(control: Control, name: str | None, axis: str, code: str) -> flo
     return offset_values(control, name).get(axis, 0.0) - zero.get(axis, 0.0)
 
 
-def compile_offset(number: int) -> Compiler:
+def compile_offset(number: int) -> CodeWriter:
     """A work offset of the job, for the compiled tier; not where the program writes offsets."""
     name = f"G{number}"
 
-    def write(block: BlockWords, assembler: Assembler) -> None:
-        settings = block.control.settings
-        values = settings.offsets.get(name)
-        if values is None and name != "G54":
+    def write(control: Control, assembler: Assembler) -> None:
+        if "P" in control.words or memory_of(control).writes_offsets:
             raise UnsupportedError
-        if "P" in block.words or memory_of(block.control).writes_offsets:
-            raise UnsupportedError
-        names = settings.axes.names
-        compile_shift("offset", [(values or {}).get(axis, 0.0) for axis in names], assembler)
-        assembler.emit(opcodes.REFRAME)
+        values = offset_of_job(control, name, control.code_word(number))
+        write_job_offset(control, values, assembler, ends_preset=False)
 
     return write
 

@@ -9,8 +9,7 @@ from typing import NoReturn
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
-from twin.nc.control.codes import Action, Compiler
+from twin.nc.control.codes import Action, CodeWriter
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import ToolOffset, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import whole
@@ -150,12 +149,11 @@ def radius_in_force(control: Control) -> float:
     return _radius(control, number)
 
 
-def compile_compensation(side: float) -> Compiler:
+def compile_compensation(side: float) -> CodeWriter:
     """G41 D1, for the compiled tier; where every call names D and no program writes radii."""
 
-    def write(block: BlockWords, assembler: Assembler) -> None:
-        word, control = block.take("D"), block.control
-        memory = memory_of(control)
+    def write(control: Control, assembler: Assembler) -> None:
+        word, memory = control.take("D"), memory_of(control)
         if word is None or isinstance(word.value, Expression) or memory.bare_compensation:
             raise UnsupportedError
         if memory.writes_offsets or word.value not in control.tools.table:

@@ -1,6 +1,7 @@
 """LinuxCNC 2.9, milling: RS274/NGC."""
 
 from twin.nc.canonical import Corner
+from twin.nc.control.codes import WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.linuxcnc import (
@@ -98,10 +99,9 @@ LINUXCNC = Dialect(
     words={
         "F": functions.set_feed,
         "$": functions.choose_spindle,
-        "S": base.set_spindle,
+        "S": WordEffect(base.spindle_speed),
         "T": functions.select_tool,
     },
-    word_compilers={"S": base.compile_spindle},
     words_first=True,
     statements={"O": flow.O_WORD, "%": flow.percent},
     word_meanings={
@@ -153,6 +153,7 @@ LINUXCNC = Dialect(
     live_variables=parameters.LiveParameters(),
     library=with_files,
     prepare=offsets.begin,
+    must_end=True,
     finish=_finish,
     compile_block=block_compiler.compile_block,
     disturbed=_acts_on_plain_blocks,

@@ -9,21 +9,13 @@ from twin.nc.dialects.linuxcnc.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.linuxcnc.cycles import CYCLES
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
-from twin.nc.iso.base import compile_dwell, compile_plane
+from twin.nc.iso import base
 from twin.nc.iso.tool_compensation import LEFT, RIGHT
 
 _INCH = 25.4
 _LATHE = "it belongs to lathes"
 _NO_UVW = "the twin's machines have no axes U, V, W"
 _NO_PROBE = "nothing touches the twin's probe, and the control would stop with an alarm"
-
-
-def dwell(control: Control) -> None:
-    """G4 P: wait for the seconds of P."""
-    word = control.take("P")
-    if word is None or control.number(word) < 0.0:
-        control.fail("dwell", "G4 needs P, its seconds", word, hint="write G4 P1")
-    control.dwell(control.number(word))
 
 
 def _units(unit: float) -> Action:
@@ -97,7 +89,7 @@ def _plane(meaning: str, plane: Plane) -> GCode:
         group="plane",
         sets={"plane": plane},
         action=change_plane,
-        compiler=compile_plane(plane),
+        compiler=base.plane_effect(plane).write,
         ground="manual",
     )
 
@@ -149,8 +141,7 @@ NOT_MODAL = {
     4: GCode(
         meaning="dwell, P seconds",
         group="not modal",
-        action=dwell,
-        compiler=compile_dwell("P"),
+        action=base.dwell("P", "G4 needs P, its seconds", "write G4 P1"),
         ground="manual",
     ),
     5.3: _once("end of a NURBS", curves.end_nurbs, performs=True),

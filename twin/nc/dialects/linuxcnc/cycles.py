@@ -26,7 +26,8 @@ from twin.nc.path.drilling_cycle import (
     Cycle,
     Pecking,
     Retract,
-    no_values,
+    Values,
+    forget,
 )
 
 CLEARANCE = 0.254
@@ -49,7 +50,7 @@ class Drilling(NamedTuple):
     reference: float
     bottom: float
     clear: float
-    values: list[float]
+    values: Values
     back_boring: tuple[float, float, float]
 
 
@@ -217,7 +218,8 @@ def _take_words(control: Control, kind: Kind) -> None:
     state, memory, plane = control.cycle_state, memory_of(control), control.modal.plane
     across = control.settings.axes.names[plane.axes[2]]
     if math.isnan(state[START]):
-        memory.cycle, state[:] = 0, no_values()
+        memory.cycle = 0
+        forget(state)
         state[START], state[1] = control.programmed[plane.axes[2]], float(plane.axes[2])
     elif state[1] != plane.axes[2]:
         message = f"G{kind.number} was called in another plane"

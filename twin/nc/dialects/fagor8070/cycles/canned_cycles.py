@@ -15,7 +15,6 @@ import dataclasses
 from collections.abc import Mapping
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode, Ground, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
@@ -88,11 +87,11 @@ def _with_options(code: GCode, options: Mapping[str, tuple[float, ...]]) -> GCod
         assert code.action is not None
         code.action(control)
 
-    def write(block: BlockWords, assembler: Assembler) -> None:
-        if any(block.take(letter) is not None for letter in options):
+    def write(control: Control, assembler: Assembler) -> None:
+        if any(control.take(letter) is not None for letter in options):
             raise UnsupportedError
         assert code.compiler is not None
-        code.compiler(block, assembler)
+        code.compiler(control, assembler)
 
     return dataclasses.replace(code, action=call, compiler=write)
 

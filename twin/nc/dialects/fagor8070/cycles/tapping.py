@@ -10,7 +10,6 @@ import dataclasses
 import math
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
-from twin.nc.control.block_words import BlockWords
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.polar import take_goal
@@ -29,10 +28,10 @@ def tapping_code(code: GCode) -> GCode:
         _take_words(control)
         control.modal.cycle = tap
 
-    def write(block: BlockWords, assembler: Assembler) -> None:
-        if block.take("B") is not None or code.compiler is None:
+    def write(control: Control, assembler: Assembler) -> None:
+        if control.take("B") is not None or code.compiler is None:
             raise UnsupportedError
-        code.compiler(block, assembler)
+        code.compiler(control, assembler)
 
     return dataclasses.replace(
         code, meaning=f"{code.meaning} R J; in passes: B H", action=call, compiler=write

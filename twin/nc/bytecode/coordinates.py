@@ -1,4 +1,4 @@
-"""From programmed coordinates to the part's, compiled: ``Frame`` and what changes it.
+"""From programmed coordinates to the part's, on the columns of the state.
 
 What a shift, a mirror, a scale or a rotation does to coordinates, ``geometry.frame`` says.
 """
@@ -16,7 +16,7 @@ from twin.nc.bytecode.registers import (
     Constants,
     State,
 )
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import FloatArray
 from twin.nc.geometry import frame, matrices
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector, vector_of
@@ -71,19 +71,9 @@ def turn_arc(value: FloatArray, state: State) -> None:
 
 
 @compilable
-def add_up(state: State) -> None:
-    """The shifts have changed: their sum."""
-    for axis in range(len(state.total)):
-        total = 0.0
-        for shift in range(len(state.shifts)):
-            total += state.shifts[shift, axis]
-        state.total[axis] = total
-
-
-@compilable
 def reframe(state: State) -> None:
     """The shifts or the matrix have changed: see where the control stands now."""
-    add_up(state)
+    frame.add_up(state.shifts, state.total)
     programmed = state.programmed
     for axis in range(len(state.total)):
         programmed[axis] = state.part[axis] - state.total[axis]
@@ -96,7 +86,7 @@ def transform(constants: Constants, state: State) -> None:
     """Mirror, scale and rotation have changed: the matrix, and where the control stands now."""
     registers = state.registers
     signs = (registers[SIGNS], registers[SIGNS + 1], registers[SIGNS + 2])
-    axes = directions(constants.planes[int(state.modal[PLANE])])
+    axes = directions(constants, int(state.modal[PLANE]))
     center = (registers[ROTATION_ABSCISSA], registers[ROTATION_ORDINATE])
     matrix, shift = frame.composed(signs, registers[SCALE], axes, registers[ROTATION], center)
     put(matrix[0], registers[MATRIX:])
@@ -125,7 +115,7 @@ def begin_compensation(
         return False
     if radius == 0.0:
         return True
-    axes = directions(constants.planes[int(state.modal[PLANE])])
+    axes = directions(constants, int(state.modal[PLANE]))
     signed_offset = side * radius
     if state.registers[TURNED] != 0.0:
         matrix = matrix_of(state)
@@ -145,15 +135,7 @@ def put(vector: Vector, target: FloatArray) -> None:
 
 
 @inlined
-def directions(plane: IntArray) -> Matrix:
-    """Abscissa, ordinate and normal of a plane along the axes: ``Plane.directions``."""
-    return (_along(plane[0]), _along(plane[1]), _along(plane[2]))
-
-
-@inlined
-def _along(axis: int) -> tuple[float, float, float]:
-    return (
-        1.0 if axis == 0 else 0.0,
-        1.0 if axis == 1 else 0.0,
-        1.0 if axis == 2 else 0.0,
-    )
+def directions(constants: Constants, plane: int) -> Matrix:
+    """Abscissa, ordinate and normal of a plane: ``Plane.directions``."""
+    of_plane = constants.directions[plane]
+    return (vector_of(of_plane[0]), vector_of(of_plane[1]), vector_of(of_plane[2]))

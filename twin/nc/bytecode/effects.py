@@ -1,6 +1,6 @@
-"""What blocks do besides moving and computing, compiled: events, tools, shifts of coordinates, polar moves.
+"""What blocks do besides moving and computing: events, tools, shifts of coordinates, polar moves.
 
-Each does what ``opcodes`` says of it; the state is kept before the first of a block.
+Each does what ``opcodes`` says of it, for both tiers. What is wrong comes back as a number below 0.
 """
 
 from typing import NamedTuple
@@ -10,9 +10,9 @@ import numpy as np
 from twin.compilation.compilable import compilable
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import Instruction
+from twin.nc.bytecode.coordinates import directions, reframe, to_part, transform
+from twin.nc.bytecode.flow import Stack
 from twin.nc.bytecode.registers import (
-    BAILOUT,
-    CYCLE,
     CYCLE_WORDS,
     IN_SPINDLE,
     INCREMENTAL,
@@ -33,17 +33,14 @@ from twin.nc.bytecode.registers import (
     SPINDLE_TURNS,
     UNIT,
     Constants,
-    Machine,
     State,
 )
-from twin.nc.canonical import FloatArray
-from twin.nc.compiled.kernels.frame import add_up, reframe, to_part, transform
-from twin.nc.control.control import LARGEST_COORDINATE
 from twin.nc.functions import turns_behind
 from twin.nc.geometry import polar
-from twin.nc.geometry.frame import SHIFTS
+from twin.nc.geometry.arcs import Point
+from twin.nc.geometry.frame import SHIFTS, add_up
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
-from twin.nc.path.drilling_cycle import Cycle
+from twin.nc.geometry.planes import along, vector_of
 from twin.nc.path.event_columns import (
     AUXILIARY,
     DWELL,
@@ -52,13 +49,43 @@ from twin.nc.path.event_columns import (
     SPEED,
     TOOL,
 )
+from twin.nc.path.moves import LARGEST_COORDINATE
 from twin.nc.path.rows import Rows, copy
+from twin.nc.text.expressions import LARGEST_NUMBER
 
+(
+    NEGATIVE_SPEED,
+    NO_TOOL_NUMBER,
+    UNKNOWN_TOOL,
+    NO_TOOL,
+    OTHER_AUXILIARY,
+    NEGATIVE_DWELL,
+    PLANE_COMPENSATED,
+    PLANE_ROTATED,
+    MIRROR_SIGN,
+    SCALE_RANGE,
+    ROTATED_ALREADY,
+    TRANSFORM_COMPENSATED,
+) = range(-110, -98)
+"""What is wrong with an instruction."""
 _NO_EVENT = -1
-_PECKING = Cycle._fields.index("pecking")
 _LENGTH = SHIFTS.index("length")
-LARGEST_TOOL, LARGEST_AUXILIARY = 1e6, 999_999.0
-"""Numbers of tools and of auxiliary functions above these are left to the interpreter tier."""
+LARGEST_TOOL, LARGEST_AUXILIARY = LARGEST_NUMBER, 999_999.0
+"""Numbers of tools and of auxiliary functions that an event can hold."""
+
+
+class Affected(NamedTuple):
+    """What effects change, and what they look up.
+
+    Attributes:
+        constants: What stays.
+        state: What changes.
+        rows: Room for events.
+    """
+
+    constants: Constants
+    state: State
+    rows: Rows
 
 
 class BlockPlace(NamedTuple):
@@ -77,44 +104,42 @@ class BlockPlace(NamedTuple):
 
 @compilable
 def run_effect(
-    instruction: Instruction, stack: FloatArray, top: int, block: BlockPlace, machine: Machine
+    instruction: Instruction, stack: Stack, top: int, block: BlockPlace, on: Affected
 ) -> int:
     """Run one instruction.
 
     Args:
-        instruction: One from ``ACTIVATE`` on.
+        instruction: One from ``FUNCTION`` on.
         stack: Values.
         top: How many there are.
         block: Whose it is.
-        machine: What it runs on.
+        on: What it runs on.
 
     Returns:
-        How many values are left, or ``BAILOUT``.
+        How many values are left, or what is wrong.
     """
-    opcode, operand = instruction.opcode, instruction.operand
-    if opcode == opcodes.ACTIVATE:
-        machine.state.active_codes[machine.tables.group[operand]] = operand
-        return top
+    opcode = instruction.opcode
     if opcode <= opcodes.DWELL:
-        return _report_effect(instruction, stack, top, block, machine)
+        return _report_effect(instruction, stack, top, block, on)
     if opcode <= opcodes.PROGRAMMED_RADIUS:
-        return _use_tool(instruction, stack, top, machine)
+        return _use_tool(instruction, stack, top, on)
     if opcode <= opcodes.TO_MILLIMETRES:
-        return _shift_coordinates(instruction, stack, top, machine)
+        return _shift_coordinates(instruction, stack, top, on)
     if opcode <= opcodes.FORGET_POLAR:
-        return _choose_plane(instruction, stack, top, block, machine)
-    if opcode <= opcodes.CYCLE_WORD:
-        return _prepare_cycle(instruction, stack, top, machine)
-    return _transform(instruction, stack, top, block, machine)
+        return _choose_plane(instruction, stack, top, block, on)
+    if opcode == opcodes.CYCLE_WORD:
+        on.state.registers[CYCLE_WORDS + instruction.operand] = stack[top - 1]
+        return top - 1
+    return _transform(instruction, stack, top, block, on)
 
 
 @compilable
 def _report_effect(
-    instruction: Instruction, stack: FloatArray, top: int, block: BlockPlace, machine: Machine
+    instruction: Instruction, stack: Stack, top: int, block: BlockPlace, on: Affected
 ) -> int:
     """Functions, speeds, tools and dwells, which are reported; as ``run_effect``."""
     opcode, operand = instruction.opcode, instruction.operand
-    registers, constants = machine.state.registers, machine.constants
+    registers, constants = on.state.registers, on.constants
     value = stack[top - 1] if top > 0 else 0.0
     kind, number, amount = FUNCTION_ALONE, operand, np.nan
     if opcode in (opcodes.FUNCTION, opcodes.SPINDLE_FUNCTION):
@@ -123,38 +148,38 @@ def _report_effect(
         kind, amount = FUNCTION_WITH_SPEED, registers[SPINDLE]
     elif opcode == opcodes.SPEED:
         if value < 0.0:
-            return BAILOUT
+            return NEGATIVE_SPEED
         registers[SPINDLE] = value
         kind, amount = SPEED if operand else _NO_EVENT, value
         top -= 1
     elif opcode == opcodes.TOOL:
         if not is_whole(value, LARGEST_TOOL):
-            return BAILOUT
-        if operand and len(constants.tools) > 0 and _tool(constants, value) == BAILOUT:
-            return BAILOUT
+            return NO_TOOL_NUMBER
+        if operand and not _is_listed(constants, value):
+            return UNKNOWN_TOOL
         registers[SELECTED] = value
         kind, number = TOOL, int(value)
         top -= 1
     elif opcode == opcodes.AUXILIARY:
         if not is_whole(value, LARGEST_AUXILIARY):
-            return BAILOUT
+            return OTHER_AUXILIARY
         kind, number = AUXILIARY, int(value)
         top -= 1
     elif opcode == opcodes.DWELL:
         if value < 0.0:
-            return BAILOUT
+            return NEGATIVE_DWELL
         kind, amount = DWELL, value
         top -= 1
     if kind != _NO_EVENT:
-        report(machine.rows, machine.state, block.made, block.line, kind, number, amount)
+        report(on.rows, on.state, block.made, block.line, kind, number, amount)
     return top
 
 
 @compilable
-def _use_tool(instruction: Instruction, stack: FloatArray, top: int, machine: Machine) -> int:
+def _use_tool(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
     """The tool in use, its length and its radius; as ``run_effect``."""
     opcode, operand = instruction.opcode, instruction.operand
-    state, constants = machine.state, machine.constants
+    state, constants = on.state, on.constants
     registers = state.registers
     if opcode == opcodes.CHANGE_TOOL:
         registers[IN_SPINDLE] = registers[SELECTED]
@@ -163,19 +188,16 @@ def _use_tool(instruction: Instruction, stack: FloatArray, top: int, machine: Ma
     elif opcode == opcodes.TOOL_LENGTH:
         longer = 0.0
         if registers[OFFSET_ON] != 0.0:
-            tool = _tool(constants, registers[IN_SPINDLE])
-            if tool == BAILOUT:
-                return BAILOUT
-            longer = constants.longer[tool]
+            longer = constants.longer[_tool(constants, registers[IN_SPINDLE])]
         state.shifts[_LENGTH, :] = 0.0
         state.shifts[_LENGTH, 2] = longer
         reframe(state)
     elif opcode == opcodes.TOOL_RADIUS:
-        tool = _tool(constants, registers[IN_SPINDLE])
-        if tool == BAILOUT:
-            return BAILOUT
+        radius = constants.radii[_tool(constants, registers[IN_SPINDLE])]
+        if np.isnan(radius):
+            return NO_TOOL
         offset = operand == 0 or registers[OFFSET_ON] != 0.0
-        stack[top] = constants.radii[tool] if offset else 0.0
+        stack[top] = radius if offset else 0.0
         top += 1
     elif operand:
         registers[RADIUS_GIVEN] = stack[top - 1] * state.modal[UNIT]
@@ -187,12 +209,10 @@ def _use_tool(instruction: Instruction, stack: FloatArray, top: int, machine: Ma
 
 
 @compilable
-def _shift_coordinates(
-    instruction: Instruction, stack: FloatArray, top: int, machine: Machine
-) -> int:
+def _shift_coordinates(instruction: Instruction, stack: Stack, top: int, on: Affected) -> int:
     """Shifts, and other coordinates for the present position; as ``run_effect``."""
     opcode, operand = instruction.opcode, instruction.operand
-    state = machine.state
+    state = on.state
     if opcode == opcodes.SHIFT:
         top -= len(state.part)
         for axis in range(len(state.part)):
@@ -205,38 +225,37 @@ def _shift_coordinates(
         top -= 1
         state.target[operand] = stack[top]
     elif opcode == opcodes.SET_POSITION:
-        here = machine.constants.over
+        here = on.constants.over
         to_part(state.target, state, here)
         for axis in range(len(state.part)):
             shift = state.shifts[operand, axis]
             state.shifts[operand, axis] = shift + state.part[axis] - here[axis]
             state.programmed[axis] = state.target[axis]
-        add_up(state)
+        add_up(state.shifts, state.total)
     else:
-        unit = state.modal[UNIT] if machine.tables.linear[operand] else 1.0
+        unit = state.modal[UNIT] if on.constants.linear[operand] else 1.0
         stack[top - 1] *= unit
     return top
 
 
 @compilable
 def _choose_plane(
-    instruction: Instruction, stack: FloatArray, top: int, block: BlockPlace, machine: Machine
+    instruction: Instruction, stack: Stack, top: int, block: BlockPlace, on: Affected
 ) -> int:
     """The plane, and what polar coordinates refer to; as ``run_effect``."""
     opcode, operand = instruction.opcode, instruction.operand
-    state = machine.state
+    state = on.state
     registers = state.registers
     if opcode == opcodes.PLANE:
-        doubtful = np.isnan(registers[POLAR_ABSCISSA]) or not np.isnan(registers[ROTATION])
-        if block.compensates or doubtful:
-            return BAILOUT
+        if block.compensates:
+            return PLANE_COMPENSATED
+        if not np.isnan(registers[ROTATION]):
+            return PLANE_ROTATED
         state.modal[PLANE] = operand
         registers[POLAR_ABSCISSA] = registers[POLAR_ORDINATE] = 0.0
     elif opcode == opcodes.POLAR_ORIGIN:
-        if np.isnan(registers[POLAR_ABSCISSA]):
-            return BAILOUT
-        plane, unit = machine.constants.planes[int(state.modal[PLANE])], state.modal[UNIT]
-        abscissa, ordinate = _along(state.programmed, plane[0]), _along(state.programmed, plane[1])
+        unit = state.modal[UNIT]
+        abscissa, ordinate = _in_plane(on.constants, state)
         if operand:
             abscissa, ordinate = stack[top - 2] * unit, stack[top - 1] * unit
         registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE] = abscissa, ordinate
@@ -246,39 +265,26 @@ def _choose_plane(
 
 
 @compilable
-def _prepare_cycle(instruction: Instruction, stack: FloatArray, top: int, machine: Machine) -> int:
-    """Words of drilling cycles; as ``run_effect``."""
-    opcode, operand = instruction.opcode, instruction.operand
-    state = machine.state
-    if opcode == opcodes.NO_PECKS:
-        pecks = machine.tables.cycles[int(state.modal[CYCLE]), _PECKING] != 0.0
-        return BAILOUT if pecks else top
-    top -= 1
-    state.registers[CYCLE_WORDS + operand] = stack[top]
-    return top
-
-
-@compilable
 def _transform(
-    instruction: Instruction, stack: FloatArray, top: int, block: BlockPlace, machine: Machine
+    instruction: Instruction, stack: Stack, top: int, block: BlockPlace, on: Affected
 ) -> int:
     """Mirror, scale and rotation; as ``run_effect``."""
     opcode, operand = instruction.opcode, instruction.operand
-    state = machine.state
+    state = on.state
     registers, unit = state.registers, state.modal[UNIT]
     if opcode == opcodes.MIRROR:
         top -= 1
         if abs(stack[top]) != 1.0:
-            return BAILOUT
+            return MIRROR_SIGN
         registers[SIGNS + operand] = stack[top]
     elif opcode == opcodes.SCALE:
         top -= 1
         if not SMALLEST_SCALE <= stack[top] <= LARGEST_SCALE:
-            return BAILOUT
+            return SCALE_RANGE
         registers[SCALE] = stack[top]
     elif opcode == opcodes.ROTATE:
         if not np.isnan(registers[ROTATION]):
-            return BAILOUT
+            return ROTATED_ALREADY
         top -= 3
         registers[ROTATION] = stack[top]
         registers[ROTATION_ABSCISSA] = stack[top + 1] * unit
@@ -287,8 +293,8 @@ def _transform(
         registers[ROTATION] = np.nan
     else:
         if block.compensates:
-            return BAILOUT
-        transform(machine.constants, state)
+            return TRANSFORM_COMPENSATED
+        transform(on.constants, state)
     return top
 
 
@@ -299,23 +305,26 @@ def is_whole(value: float, largest: float) -> bool:
 
 
 @compilable
-def _tool(constants: Constants, number: float) -> int:
-    """Row of a tool that the job lists, or ``BAILOUT``."""
-    for tool in range(len(constants.tools)):
-        if constants.tools[tool] == number:
-            return tool
-    return BAILOUT
+def _is_listed(constants: Constants, number: float) -> bool:
+    """Whether the job lists a tool."""
+    return _tool(constants, number) < len(constants.tools)
 
 
 @compilable
-def _along(position: FloatArray, axis: int) -> float:
-    """A coordinate as ``Plane.local`` computes it, the sign of zero included."""
-    x, y, z = position[0], position[1], position[2]
-    if axis == 0:
-        return 1.0 * x + 0.0 * y + 0.0 * z
-    if axis == 1:
-        return 0.0 * x + 1.0 * y + 0.0 * z
-    return 0.0 * x + 0.0 * y + 1.0 * z
+def _tool(constants: Constants, number: float) -> int:
+    """Row of a tool; the last for those that the job does not list."""
+    for tool in range(len(constants.tools)):
+        if constants.tools[tool] == number:
+            return tool
+    return len(constants.tools)
+
+
+@compilable
+def _in_plane(constants: Constants, state: State) -> Point:
+    """Abscissa and ordinate of where the control stands."""
+    axes = directions(constants, int(state.modal[PLANE]))
+    here = vector_of(state.programmed)
+    return (along(here, axes[0]), along(here, axes[1]))
 
 
 @compilable
@@ -335,11 +344,8 @@ def polar_target(
         Whether nothing about it is doubtful.
     """
     registers, modal = state.registers, state.modal
-    plane = constants.planes[int(modal[PLANE])]
     origin = (registers[POLAR_ABSCISSA], registers[POLAR_ORDINATE])
-    if np.isnan(origin[0]):
-        return False
-    start = (_along(state.programmed, plane[0]), _along(state.programmed, plane[1]))
+    start = _in_plane(constants, state)
     radius, angle = polar.seen_from(origin, start, registers[POLAR_RADIUS], registers[POLAR_ANGLE])
     incremental = modal[INCREMENTAL] != 0.0
     if seen & 1:
