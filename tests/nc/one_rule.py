@@ -137,9 +137,9 @@ CHANGES = (
     ),
     Change(
         "bytecode/variables",
-        "memory.common[slot] = value",
-        "memory.common[slot] = value + 1.0",
-        "codesys/codes/G36",
+        "memory.local[depth, ~slot] = value",
+        "memory.local[depth, ~slot] = value + 1.0",
+        "fagor8070/rules/flow",
     ),
     Change("bytecode/frames", "if call[AGAIN] > 0:", "if call[AGAIN] > 1:", "fagor8070/rules/flow"),
 )

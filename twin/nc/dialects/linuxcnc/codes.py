@@ -64,6 +64,18 @@ def _motion(meaning: str, interpolation: Interpolation) -> GCode:
     )
 
 
+def _alone_with_axes(action: Action) -> Action:
+    """A code that takes the axis words of its block, so that no motion code can stand beside it."""
+
+    def perform(control: Control) -> None:
+        if any(code.group == "motion" for _, code in control.codes):
+            message = "two codes of the block want its axis words"
+            control.fail("conflicting-codes", message, hint="write them in two blocks")
+        action(control)
+
+    return perform
+
+
 def _once(meaning: str, action: Action, *, performs: bool = False) -> GCode:
     """A code of the group that is not modal."""
     if performs:
@@ -133,14 +145,22 @@ NOT_MODAL = {
         ground="manual",
     ),
     5.3: _once("end of a NURBS", curves.end_nurbs, performs=True),
-    10: _once("L2, L20 coordinate system; L1, L10, L11 tool", offsets.write_table, performs=True),
-    28: _once("rapidly to the first stored position", motion.go_home(0), performs=True),
+    10: _once(
+        "L2, L20 coordinate system; L1, L10, L11 tool",
+        _alone_with_axes(offsets.write_table),
+        performs=True,
+    ),
+    28: _once(
+        "rapidly to the first stored position", _alone_with_axes(motion.go_home(0)), performs=True
+    ),
     28.1: _once("this is the first stored position", motion.store_home(0)),
-    30: _once("rapidly to the second stored position", motion.go_home(1), performs=True),
+    30: _once(
+        "rapidly to the second stored position", _alone_with_axes(motion.go_home(1)), performs=True
+    ),
     30.1: _once("this is the second stored position", motion.store_home(1)),
-    52: _once("local shift of zero", offsets.local_offset, performs=True),
+    52: _once("local shift of zero", _alone_with_axes(offsets.local_offset), performs=True),
     53: _once("in machine coordinates", motion.in_machine_coordinates, performs=True),
-    92: _once("this place gets these coordinates", offsets.preset, performs=True),
+    92: _once("this place gets these coordinates", _alone_with_axes(offsets.preset), performs=True),
     92.1: _once("no preset, its parameters become 0", offsets.end_preset),
     92.2: _once("no preset, its parameters stay", offsets.suspend_preset),
     92.3: _once("the preset is put back", offsets.restore_preset),
