@@ -76,6 +76,12 @@ def in_order(codes: Codes, groups: Sequence[str]) -> list[tuple[Word, GCode]]:
     return sorted(codes, key=lambda pair: order.get(pair[1].group, len(order)))
 
 
+def last_of_each_group(codes: Codes) -> list[tuple[Word, GCode]]:
+    """G codes without those that a later one of their modal group overrules."""
+    last = {code.group: word for word, code in codes}
+    return [(word, code) for word, code in codes if not code.group or last[code.group] is word]
+
+
 class Conflict(NamedTuple):
     """Two codes that cannot share a block.
 

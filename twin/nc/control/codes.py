@@ -181,6 +181,11 @@ class Vocabulary(Protocol):
         ...
 
     @property
+    def last_of_group_counts(self) -> bool:
+        """Of several G codes of a modal group in a block the last one counts."""
+        ...
+
+    @property
     def words(self) -> Mapping[str, WordAction]:
         """Addresses with a modal meaning, and what they do."""
         ...

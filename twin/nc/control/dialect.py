@@ -76,6 +76,8 @@ class Dialect:
             variables are written as they are named.
         words_first: F, S, T and early M functions take effect before what G codes do besides the
             modal state that they set.
+        last_of_group_counts: Of several G codes of a modal group in a block the last one counts; else they
+            are refused.
         is_local: Whether calls with variables of their own have a variable of this name anew.
         given_variable: The value of a variable among those of the job, or None.
         live_variables: Variables that no memory holds: the dialect knows their value itself.
@@ -127,6 +129,7 @@ class Dialect:
     read_variable: Callable[[Control, str, float | None], float] | None = None
     write_variable: Callable[[Control, str, float | None, float, Assignment], None] | None = None
     words_first: bool = False
+    last_of_group_counts: bool = False
     is_local: Callable[[str], bool] = lambda _name: False
     given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
         given.get(name)

@@ -8,7 +8,13 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.block_order import Conflict, conflict_of, in_order, run_in_order
+from twin.nc.control.block_order import (
+    Conflict,
+    conflict_of,
+    in_order,
+    last_of_each_group,
+    run_in_order,
+)
 from twin.nc.control.codes import GCode, Interpolation, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
@@ -182,6 +188,8 @@ class Executor(Control):
             else:
                 words[address] = word
         if len(codes) > 1 or len(functions) > 1:
+            if dialect.last_of_group_counts:
+                codes = last_of_each_group(codes)
             self._refuse_conflict(conflict_of(codes, functions))
             self.codes = self._codes = in_order(codes, dialect.groups)
         return functions

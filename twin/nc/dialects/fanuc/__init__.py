@@ -86,6 +86,7 @@ FANUC = Dialect(
         "D": tool_offsets.set_radius_number,
     },
     words_first=True,
+    last_of_group_counts=True,
     word_meanings={
         "O": "number of the program",
         "N": "block number",
@@ -139,6 +140,7 @@ HAAS = dataclasses.replace(
     FANUC,
     name="haas",
     title="Haas (mills)",
+    last_of_group_counts=False,
     g=haas.haas_codes(),
     instead={**codes.INSTEAD, **haas.INSTEAD},
     start=haas.START,

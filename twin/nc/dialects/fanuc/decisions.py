@@ -24,6 +24,12 @@ DECISIONS: tuple[Decision, ...] = (
         example="start_state",
     ),
     Decision(
+        "What do two G codes of one group mean in a block, as in G90 G28 G91 Z0?",
+        "The last one counts, as the manual says.",
+        "Posts write such blocks.",
+        example="last_of_group",
+    ),
+    Decision(
         "How does rapid positioning go?",
         "Straight to its end.",
         "Parameter 1401 #1 chooses; a straight way is the one that can be checked for collisions.",
