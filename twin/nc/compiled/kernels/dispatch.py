@@ -97,6 +97,9 @@ def dispatch_loop(
             if not begin_compensation(side, stack[top], machine.constants, state, contour):
                 break
         elif opcode == opcodes.END_COMPENSATION:
+            if contour.counts[STAGE] != OFF:
+                hold_events(contour, machine.rows, first_event, state.event_count[0])
+            first_event = state.event_count[0]
             after = leads.end(made, state.event_count[0], contour, machine.rows)
             if after < 0:
                 break
