@@ -6,6 +6,7 @@ thirds of the time. A kernel that makes no array works on what belongs to its ca
 compiled without the counting (``_nrt``, Numba's run time of references).
 """
 
+import sys
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -21,6 +22,11 @@ _SUMS = {"reassoc", "nsz", "nnan"}
 added in any order, and none is NaN."""
 
 Kernel = TypeVar("Kernel", bound=Callable[..., object])
+
+FRAMES = 4000
+"""Depth of calls that the compiler may need: Numba types what a function calls while it types the function,
+some 60 frames a level, and CPython's own limit of 1000 is reached from deep within a caller's stack."""
+sys.setrecursionlimit(max(sys.getrecursionlimit(), FRAMES))
 
 
 def array_kernel(function: Kernel) -> Kernel:
