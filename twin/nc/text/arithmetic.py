@@ -13,6 +13,8 @@ import numpy as np
 
 from twin.compilation.compilable import compilable, compilable_as
 
+LARGEST_WHOLE = 2.0**53
+"""Whole numbers up to here are exact."""
 SAME_NUMBER = 0.0001
 """RS274/NGC: numbers that differ by less are equal for EQ and NE (LinuxCNC)."""
 
@@ -114,18 +116,49 @@ def remainder_of_wholes(a: float, b: float) -> float:
     return math.fmod(nearest_whole_away(a), nearest_whole_away(b))
 
 
+def _from_binary_decimal(a: float) -> float:
+    """As ``from_binary_decimal``; infinite where that is undefined."""
+    number, place, rest = 0.0, 1.0, a
+    if not 0.0 <= a <= LARGEST_WHOLE or a != math.floor(a):
+        return math.inf
+    while rest > 0.0:
+        digit = math.fmod(rest, 16.0)
+        if digit > 9.0:
+            return math.inf
+        number += digit * place
+        place *= 10.0
+        rest = math.floor(rest / 16.0)
+    return number
+
+
+@compilable_as(_from_binary_decimal)
 def from_binary_decimal(a: float) -> float:
     """The number whose decimal digits stand in four bits each."""
-    if a < 0.0 or a != int(a):
-        raise ValueError(a)
-    return float(int(f"{int(a):x}"))
+    return _defined(_from_binary_decimal(a))
 
 
+def _to_binary_decimal(a: float) -> float:
+    """As ``to_binary_decimal``; infinite where that is undefined."""
+    number, place, rest = 0.0, 1.0, a
+    if not 0.0 <= a <= LARGEST_WHOLE or a != math.floor(a):
+        return math.inf
+    while rest > 0.0:
+        number += math.fmod(rest, 10.0) * place
+        place *= 16.0
+        rest = math.floor(rest / 10.0)
+    return number
+
+
+@compilable_as(_to_binary_decimal)
 def to_binary_decimal(a: float) -> float:
-    """A number with its decimal digits in four bits each."""
-    if a < 0.0 or a != int(a):
-        raise ValueError(a)
-    return float(int(f"{int(a)}", 16))
+    """A whole number with its decimal digits in four bits each."""
+    return _defined(_to_binary_decimal(a))
+
+
+def _defined(value: float) -> float:
+    if math.isinf(value):
+        raise ValueError(value)
+    return value
 
 
 @compilable

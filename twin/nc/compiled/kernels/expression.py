@@ -37,6 +37,8 @@ _UNARY = (
     arithmetic.arc_sine_from_zero,
     arithmetic.whole_away,
     arithmetic.opposite,
+    arithmetic.from_binary_decimal,
+    arithmetic.to_binary_decimal,
     math.sin,
     math.cos,
     math.tan,

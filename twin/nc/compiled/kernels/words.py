@@ -213,6 +213,8 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     is_arc = kind == ARC
     if kind == NO_MOTION or (block.polar and is_arc) or (not is_arc and seen & _ARC_WORDS):
         return UNSUPPORTED
+    if kind != RAPID_LINE and np.isnan(block.feed) and not constants.feed_may_lack:
+        return UNSUPPORTED
     position = rows.positions[row]
     if block.polar:
         aim(constants, block, seen, state)
@@ -237,8 +239,6 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     if kind == RAPID_LINE and not np.isnan(own):
         pace = (own if own != 0.0 else block.feed) * 60.0
     elif kind != RAPID_LINE:
-        if np.isnan(block.feed) and not constants.feed_may_lack:
-            return UNSUPPORTED
         turning = not is_arc and only_turns(position[0], position[1], constants.linear)
         otherwise = (constants.default_feed, constants.default_rotary_feed)
         pace = feed_per_minute(block.feed, turning, modal[UNIT], modal[FEED_FACTOR], otherwise)
