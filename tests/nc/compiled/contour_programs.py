@@ -53,6 +53,8 @@ def switched(dialect: str, random_: Random) -> str:
         width, height = random_.uniform(15.0, 40.0), random_.uniform(15.0, 40.0)
         over = random_.uniform(-1.0, 8.0)
         begin = random_.choice(["G41", "G42", "G41 D1", "G42 D2", "G41 M8", "G41 X-5 Y-5"])
+        if dialect in ("fanuc", "haas"):  # where D is needed
+            begin = random_.choice(["G41 D1", "G42 D2", "G41 D1 M8", "G41 D2 X-5 Y-5"])
         if dialect == "codesys" and random_.random() < 0.5:
             begin = random_.choice(["G41 D2.5", "G42 D(#i+1)", "G41 D0", "G42 D-1", "G41 D1 F50"])
         end = random_.choice(["G40 X-20 Y-20", "G40\nX-20 Y-20", "G40 Z5\nM9\nX-9", "G40 M9", ""])

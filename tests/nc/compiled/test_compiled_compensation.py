@@ -7,13 +7,12 @@ from random import Random
 import pytest
 
 from tests.nc.compiled.contour_programs import program, switched
-from tests.nc.compiled.test_both_tiers import ALWAYS, assert_same, general_blocks, seen
-from tests.nc.running import WITH_TABLES
+from tests.nc.compiled.test_both_tiers import ALWAYS, CALCULATOR, assert_same, general_blocks, seen
 from twin.nc.canonical import Function
 from twin.nc.dialects import DIALECTS
 from twin.nc.text.source import source_from_text
 
-JOB = dataclasses.replace(WITH_TABLES, step_limit=2000)
+JOB = dataclasses.replace(CALCULATOR, step_limit=2000)
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
