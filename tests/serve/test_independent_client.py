@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 
 import pytest
+from pymtconnect import mtconnect_client as client
 
 from tests.serve.test_http_server import AXES, FAULT, served
 from twin.serve.agent import Agent
@@ -17,10 +18,6 @@ from twin.serve.clock import Clock
 from twin.serve.device import Component, DataItem, device_of
 from twin.serve.forms import JSON, XML, accepted_form
 from twin.serve.playback import Tick
-
-client = pytest.importorskip(
-    "pymtconnect.mtconnect_client", reason="the client 'pymtconnect' of the extra 'dev' is missing"
-)
 
 PERIOD_S = 0.01
 SHIFT = [

@@ -113,6 +113,7 @@ class Run:
             motion: Moves the machine along the program; None: the twin's own planner and drives.
 
         Raises:
+            ConfigError: A tolerance limits the force of the cut, and nothing simulates that.
             SimulationError: The simulation failed; the recording is not kept.
         """
         comparison, machining = self._comparison(), self._machining(dry_run)
@@ -126,6 +127,8 @@ class Run:
                     motion = self._simulation(setpoints, dry_run.summary)
                 else:
                     self._expect_all(comparison, machining)
+                if self._process is None:
+                    _refuse_unjudged_loads(self.preparation.job.file.tolerance)
                 for simulated in self.clock.watch("simulate", motion):
                     with self.clock.stage("cut"):
                         samples, alarm = machining.add(simulated)
@@ -277,6 +280,20 @@ _LOADS = {
     "chip_mm": ("chip thickness", "mm"),
 }
 """What a tolerance on a load is called, and its unit."""
+
+
+def _refuse_unjudged_loads(tolerance: ToleranceTable) -> None:
+    """A tolerance on what nobody simulates would pass unseen.
+
+    Raises:
+        ConfigError: There is one.
+    """
+    for key, (figure, _) in _LOADS.items():
+        if getattr(tolerance, key) is not None:
+            raise ConfigError(
+                f"tolerance.{key}: the {figure} is not simulated in this job; it needs a [stock] with a "
+                'material, a spindle speed, and cutting_force = "teeth"'
+            )
 
 
 def _load_checks(tolerance: ToleranceTable, loads: LoadLog) -> Iterator[Check]:

@@ -6,6 +6,7 @@ attributes are members, text is the member ``value``, and what may stand several
 
 import io
 import json
+import math
 import xml.etree.ElementTree as ET  # only writes; nothing from outside is parsed
 from collections.abc import Callable
 from typing import NamedTuple
@@ -95,11 +96,12 @@ def _members(element: ET.Element, *, measured: bool = False) -> dict[str, object
 
 
 def _number(text: str) -> float | str:
-    """What was measured; ``UNAVAILABLE`` stays a word."""
+    """What was measured; ``UNAVAILABLE`` stays a word, and so does what JSON has no number for."""
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
         return text
+    return number if math.isfinite(number) else text
 
 
 XML = Form("text/xml", _xml)
