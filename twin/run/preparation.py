@@ -111,7 +111,7 @@ def prepare_job(
     source = read_source(job.program, named)
     language = named or recognise(source)
     if language.library is not None:
-        source = language.library(source, job.program.parent)
+        source = language.library(source, job.program.parent, language)
     return Preparation(
         job=job,
         machine=twin_machine,

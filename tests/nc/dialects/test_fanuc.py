@@ -90,7 +90,7 @@ def test_subprograms_are_read_from_files_beside_the_program(tmp_path: Path) -> N
     (tmp_path / "0030.NC").write_text("G0 Y4.\nM99\n")
     fanuc = dialect_named("fanuc")
     assert fanuc.library is not None
-    source = fanuc.library(read_source(tmp_path / "main.nc"), tmp_path)
+    source = fanuc.library(read_source(tmp_path / "main.nc"), tmp_path, fanuc)
     outcome = good(source.text, "fanuc")
     assert (outcome.position["X"], outcome.position["Y"]) == (1.0, 4.0)
 

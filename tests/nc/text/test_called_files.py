@@ -16,7 +16,7 @@ from twin.nc.text.source import read_source
 def run_files(folder: Path, **files: str) -> Moves:
     for name, text in files.items():
         (folder / name.replace("_", ".")).write_text(text)
-    source = with_globals(read_source(folder / "main.nc", FAGOR8070), folder)
+    source = with_globals(read_source(folder / "main.nc", FAGOR8070), folder, FAGOR8070)
     interpretation = Interpretation(source, FAGOR8070, SETTINGS)
     return concatenate((chunk.moves for chunk in interpretation.chunks()), SETTINGS.axes)
 

@@ -16,7 +16,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.modal import ModalChanges
 from twin.nc.control.settings import ControlSettings
 from twin.nc.text.blocks import Assignment, Block
-from twin.nc.text.source import Source
+from twin.nc.text.source import HasCodePage, Source
 from twin.nc.text.syntax import Mark, Syntax
 
 
@@ -82,7 +82,8 @@ class Dialect:
         given_variable: The value of a variable among those of the job, or None.
         live_variables: Variables that no memory holds: the dialect knows their value itself.
         place_switches: Reports the block's switch points, told the length of its move.
-        library: Adds files that the program calls, looked for in the folder of the program.
+        library: Adds files that the program calls, looked for in the folder of the program and read as the
+            dialect is.
         pointless: Addresses whose numbers without a decimal point ``count`` must look at.
         count: Gives words without a decimal point their value in the units of the others.
         prepare: Done before the first block.
@@ -136,7 +137,7 @@ class Dialect:
     )
     live_variables: Container[str] = frozenset()
     place_switches: Callable[[Control, float], None] | None = None
-    library: Callable[[Source, Path], Source] | None = None
+    library: Callable[[Source, Path, HasCodePage], Source] | None = None
     pointless: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
     count: Callable[[Control, Block], Block] = lambda _control, block: block
     prepare: Action | None = None

@@ -17,7 +17,7 @@ def with_called_files(
     files: Callable[[], dict[str, Path]],
     calls: Callable[[Source], Iterable[str]],
     mark: str,
-    code_page: HasCodePage,
+    dialect: HasCodePage,
 ) -> Source:
     """The program with the files that it calls, and those that they call, as far as found.
 
@@ -26,7 +26,7 @@ def with_called_files(
         files: Gives the files that can be called, by the name that calls them.
         calls: Names that a text calls.
         mark: Begins the line before each file, in front of its name.
-        code_page: Of the files.
+        dialect: How the files are read.
     """
     found: set[str] = set()
     wanted = list(calls(source))
@@ -35,7 +35,7 @@ def with_called_files(
         name = wanted.pop(0)
         if name in known and name not in found:
             found.add(name)
-            fresh = read_source(known[name], code_page)
+            fresh = read_source(known[name], dialect)
             source = source.followed_by(f"{mark}{name}", fresh)
             wanted += calls(fresh)
     return source

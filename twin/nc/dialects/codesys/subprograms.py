@@ -9,7 +9,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.program import Subprogram, assign, variables
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.library import named_files, with_called_files
-from twin.nc.text.source import Source
+from twin.nc.text.source import HasCodePage, Source
 
 DEEPEST_CALL = 14
 """Subprograms within subprograms (manual, before 4.18)."""
@@ -23,20 +23,15 @@ _CALL = re.compile(r"(?:^|[ \t])([A-Z_]\w{2,})[ \t]*[{(]", re.IGNORECASE)
 _CALL_SOMEWHERE = re.compile(rb"[A-Z_][A-Z_0-9]{2,}[ \t]*[{(]", re.IGNORECASE)
 
 
-class _CodePage:
-    code_page = "cp1252"
-
-
-def with_files(source: Source, folder: Path) -> Source:
+def with_files(source: Source, folder: Path, dialect: HasCodePage) -> Source:
     """The program with the subprograms that it calls, as far as they are files of their own.
 
     Args:
         source: The program.
         folder: Where their files lie, called ``name.cnc`` (manual), in any case.
+        dialect: How they are read.
     """
-    return with_called_files(
-        source, lambda: named_files(folder, (".cnc",)), _calls, "// ", _CodePage()
-    )
+    return with_called_files(source, lambda: named_files(folder, (".cnc",)), _calls, "// ", dialect)
 
 
 def _calls(source: Source) -> Iterator[str]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from twin.nc.text.library import named_files, with_called_files
-from twin.nc.text.source import Source
+from twin.nc.text.source import HasCodePage, Source
 
 MARK = "%GLOBAL "
 """Begins the line in front of a global subroutine; a program's own heading has no blank in it."""
@@ -18,21 +18,16 @@ _CALL = re.compile(
 _CALL_SOMEWHERE = re.compile(rb"(?:L|CALL)[ \t]+[A-Z_]", re.IGNORECASE)
 
 
-class CodePage:
-    """What reading a file needs to know."""
-
-    code_page = "cp1252"
-
-
-def with_globals(source: Source, folder: Path) -> Source:
+def with_globals(source: Source, folder: Path, dialect: HasCodePage) -> Source:
     """The program with the global subroutines that it calls, as far as they are found.
 
     Args:
         source: The program.
         folder: Where their files lie, called ``NAME`` or ``NAME.nc`` in any case.
+        dialect: How they are read.
     """
     return with_called_files(
-        source, lambda: named_files(folder, ("", ".nc")), _calls, MARK, CodePage()
+        source, lambda: named_files(folder, ("", ".nc")), _calls, MARK, dialect
     )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from twin.nc.dialects.linuxcnc.structure import FILE
 from twin.nc.text.library import named_files, with_called_files
-from twin.nc.text.source import Source
+from twin.nc.text.source import HasCodePage, Source
 
 _CALL = re.compile(
     r"^[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O[ \t]*(<[^<>]*>|[0-9]+)[ \t]*CALL\b", re.IGNORECASE
@@ -15,19 +15,16 @@ _PROGRAM = re.compile(r"\bM[ \t]*0*98[ \t]*P[ \t]*([0-9]+)", re.IGNORECASE)
 _SOMEWHERE = re.compile(rb"CALL|M[ \t]*0*98", re.IGNORECASE)
 
 
-class _CodePage:
-    code_page = "cp1252"
-
-
-def with_files(source: Source, folder: Path) -> Source:
+def with_files(source: Source, folder: Path, dialect: HasCodePage) -> Source:
     """The program with the subroutines that it calls, as far as they are files of their own.
 
     Args:
         source: The program.
         folder: Where their files lie, called ``name.ngc`` or ``100.ngc``, in any case.
+        dialect: How they are read.
     """
     return with_called_files(
-        source, lambda: named_files(folder, (".ngc", ".nc")), _calls, FILE, _CodePage()
+        source, lambda: named_files(folder, (".ngc", ".nc")), _calls, FILE, dialect
     )
 
 
