@@ -64,6 +64,17 @@ def test_a_cut_within_the_short_torque_is_borne_and_one_beyond_it_stalls() -> No
     assert stalling[-1] == 0.0
 
 
+@pytest.mark.parametrize("commanded", [0.0, -20.0, 5.0])
+def test_an_overloaded_spindle_obeys_a_command_to_slow_down(commanded: float) -> None:
+    drive = spindle_drive(TABLE)
+    torque = 1.01 * 1.5 * lasting_torque(drive, 20.0)
+    free = speeds(commanded, 20.0, 0.0, 400)
+    loaded = speeds(commanded, 20.0, torque, 400)
+    # A cut brakes as well: the spindle is never faster than one that turns freely.
+    assert np.all(np.array(loaded)[:90] <= np.array(free)[:90] + 1e-9)
+    assert loaded[90] < 18.0
+
+
 def test_a_spindle_of_which_nothing_is_known_turns_as_it_is_told() -> None:
     drive = spindle_drive(SpindleTable())
     assert next_speed(drive, 0.0, 50.0, 1e9, PERIOD) == 50.0

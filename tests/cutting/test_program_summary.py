@@ -83,3 +83,14 @@ def test_an_empty_program_has_notes_too() -> None:
     found = summary("M30\n")
     assert found.tools.at(0).number == 1
     assert found.is_rapid(np.array([-1, 0])).tolist() == [False, False]
+
+
+def test_the_end_of_a_silent_program_is_no_word_about_the_spindle() -> None:
+    found = summary("T4 M6\nG1 X2 F100\nG1 X3\nM30\n")
+    assert [found.spindle.at(move) for move in range(2)] == [None, None]
+    assert [found.tools.at(move).speed for move in range(2)] == [500.0, 500.0]
+
+
+def test_a_speed_behind_m3_turns_the_spindle() -> None:
+    found = summary("M3\nS4000\nG1 X2 F100\nM4\nG1 X3\nM5\nS500\nG1 X4\nM30\n")
+    assert [found.spindle.at(move) for move in range(3)] == [4000, -4000, 0]

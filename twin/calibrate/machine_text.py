@@ -9,8 +9,8 @@ from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import OF_THE_LOG
 from twin.calibrate.result import AxisResult, Calibration
 from twin.machine.description.config import AxisTable
+from twin.machine.model.drive_actuators import stiffest
 from twin.machine.model.drives import reflected_inertia
-from twin.machine.model.transmission import FASTEST_SPRING, swinging
 from twin.units import to_si
 from twin.version import __version__
 
@@ -85,10 +85,8 @@ def _give_lines(axis: AxisResult) -> Iterator[str]:
         yield f"backlash = {_number(interval.value)}    # {span}"
     if "stiffness" in told:
         interval = told["stiffness"]
-        unit, span = to_si(axis.kind), _span(interval, axis.units["stiffness"])
-        free = swinging(axis.base, axis.moved)
-        stiffest = free * (FASTEST_SPRING / axis.period_s) ** 2 * unit
-        if interval.value < stiffest:
+        span = _span(interval, axis.units["stiffness"])
+        if interval.value < stiffest(axis.base, axis.moved, axis.period_s):
             yield f"stiffness = {_number(interval.value)}    # {span}"
         else:
             yield f"# stiffness {interval.value:.4g} swings within a servo period: rigid"

@@ -73,6 +73,12 @@ def _known(speed: float | None) -> float:
     return np.nan if speed is None else speed
 
 
+def speeds_are_known(summary: ProgramSummary) -> bool:
+    """Whether the speed of the spindle is told wherever a program may cut."""
+    said = summary.spindle.values[1:]
+    return all(speed is not None for speed in said or [t.speed for t in summary.tools.tools])
+
+
 def program_process(
     job: JobFile,
     machine: Machine,

@@ -72,8 +72,8 @@ def next_speed(
         at_rest = drive.overload * lasting_torque(drive, 0.0)
         if torque > short:
             # The drive gives all that it has, and the cut takes more.
-            slowing = (torque - short) / at_rest * min(rise, wanted + _SLOWEST)
-            return sign * max(0.0, turns - slowing)
+            slowing = (torque - short) / at_rest * min(rise, abs(wanted) + _SLOWEST)
+            return sign * max(0.0, min(turns - slowing, max(wanted, turns - fall)))
         rise = rise * (short - torque) / short if torque < short else 0.0
     if wanted > turns:
         return sign * min(wanted, turns + rise)

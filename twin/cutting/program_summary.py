@@ -23,9 +23,6 @@ from twin.nc.functions import (
 BoolArray = npt.NDArray[np.bool_]
 ValueT = TypeVar("ValueT")
 
-SPINDLE_OFF = SPINDLE_STOPS | PROGRAM_ENDS
-"""The program's end stops the spindle too (ISO 6983-1)."""
-
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Steps(Generic[ValueT]):
@@ -87,6 +84,7 @@ class SummaryBuilder:
         self._tool = job.tools[0]
         self._speed = job.tools[0].speed
         self._turns: float | None = self._speed
+        self._sense = 1.0 if self._speed else 0.0
         self._plan: list[tuple[int, ToolTable]] = [(0, self._tool)]
         self._spindle: list[tuple[int, float | None]] = [(0, self._turns)]
         self._shown: list[tuple[int, FloatArray]] = []
@@ -132,18 +130,16 @@ class SummaryBuilder:
             self._change_tool(self._selected, event.line, move)
         elif word in SPINDLE_STARTS:
             self._speed = event.arguments.get("S", self._speed)
-            self._turn(
-                None
-                if self._speed is None
-                else (1 - 2 * (word == SPINDLE_COUNTER_CLOCKWISE)) * self._speed,
-                move,
-            )
-        elif word in SPINDLE_OFF:
+            self._sense = -1.0 if word == SPINDLE_COUNTER_CLOCKWISE else 1.0
+            self._turn(None if self._speed is None else self._sense * self._speed, move)
+        elif word in SPINDLE_STOPS or (word in PROGRAM_ENDS and len(self._spindle) > 1):
+            # The end of a program that never spoke of the spindle says nothing about it.
+            self._sense = 0.0
             self._turn(0.0, move)
         elif word == SPINDLE_SPEED:
             self._speed = event.arguments["S"]
-            if self._turns:
-                self._turn(float(np.copysign(self._speed, self._turns)), move)
+            if self._sense:
+                self._turn(self._sense * self._speed, move)
 
     def _change_tool(self, number: int, line: int, move: int) -> None:
         tool = self._tools.get(number, EMPTY_SPINDLE if number == 0 else None)

@@ -12,7 +12,7 @@ from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
 from twin.compare.verdict import Check, judge
 from twin.coupling.cutting_process import CuttingProcess
-from twin.coupling.operations import program_process
+from twin.coupling.operations import program_process, speeds_are_known
 from twin.cutting.forces.axis_load import AxisLoad
 from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.nominal import NominalGouge
@@ -127,7 +127,7 @@ class Run:
                     motion = self._simulation(setpoints, dry_run.summary)
                 else:
                     self._expect_all(comparison, machining)
-                if self._process is None:
+                if self._process is None or not speeds_are_known(dry_run.summary):
                     _refuse_unjudged_loads(self.preparation.job.file.tolerance)
                 for simulated in self.clock.watch("simulate", motion):
                     with self.clock.stage("cut"):
@@ -291,8 +291,8 @@ def _refuse_unjudged_loads(tolerance: ToleranceTable) -> None:
     for key, (figure, _) in _LOADS.items():
         if getattr(tolerance, key) is not None:
             raise ConfigError(
-                f"tolerance.{key}: the {figure} is not simulated in this job; it needs a [stock] with a "
-                'material, a spindle speed, and cutting_force = "teeth"'
+                f"tolerance.{key}: the {figure} is not simulated in this job, or not everywhere; it needs a "
+                '[stock] with a material, a spindle speed wherever it is cut, and cutting_force = "teeth"'
             )
 
 

@@ -10,8 +10,7 @@ from twin.nc.iso.base import jog_block
 @pytest.mark.parametrize("dialect", DIALECTS)
 @pytest.mark.parametrize(("axis", "distance"), [("X", -12.3456), ("C", 90.0)])
 def test_jog_goes_by_its_distance_at_its_feed(dialect: str, axis: str, distance: float) -> None:
-    block = jog_block(dialect_named(dialect), axis, distance, 600.0)
-    outcome = run(f"{block}\nM30", dialect)
+    outcome = run(jog_block(dialect_named(dialect), axis, distance, 600.0), dialect)
     assert outcome.error is None
     assert len(outcome.moves) == 1
     delta = outcome.delta(0)

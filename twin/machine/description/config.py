@@ -320,7 +320,7 @@ class Machine:
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
             raise ConfigError(f"fixture '{twice[0]}' is named twice")
-        return Machine(self.path, self.file.model_copy(update={"fixtures": both}))
+        return Machine(self.path, self.file.model_copy(update={"fixtures": both}), self.blank)
 
     def with_blank(self, blank: Blank) -> "Machine":
         """This machine with stock on its table."""
@@ -355,7 +355,7 @@ class Machine:
             raise ConfigError(f"{self.file.name} has the axes {', '.join(self.axes.names)}")
         data = self.file.model_dump(by_alias=True)
         data["axes"][axis].update(fields)
-        return Machine(self.path, checked(data, MachineFile, self.file.name))
+        return Machine(self.path, checked(data, MachineFile, self.file.name), self.blank)
 
 
 def read_machine(path: Path, changes: Sequence[Change] = ()) -> Machine:

@@ -194,6 +194,18 @@ def _refuse_what_swings_up(machine: Machine, name: str, drive: Drive) -> None:
     )
 
 
+def stiffest(axis: AxisTable, moved: float, period_s: float) -> float:
+    """The stiffest spring of an axis that can be simulated [N/mm or N m/deg].
+
+    Args:
+        axis: The axis.
+        moved: What its drive moves [kg or kg m²].
+        period_s: Servo period [s].
+    """
+    fastest = FASTEST_SPRING * MOST_SUBSTEPS / period_s
+    return swinging(axis, moved) * fastest**2 * to_si(axis.kind)
+
+
 def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) -> None:
     """A loop or a spring that swings within a step cannot be simulated with it."""
     axis = machine.axis(name)
@@ -222,14 +234,13 @@ def _refuse_what_outruns_the_clock(machine: Machine, name: str, drive: Drive) ->
         )
     springs = []
     if axis.stiffness:
-        swings = swinging(axis, drive.moved)
-        most_finely = FASTEST_SPRING * MOST_SUBSTEPS
-        springs.append(("stiffness", axis.stiffness, swings, most_finely, "0 is rigid"))
+        most = stiffest(axis, drive.moved, period)
+        springs.append(("stiffness", axis.stiffness, most, "0 is rigid"))
     if axis.lugre is not None:
         bristles = axis.lugre.stiffness
-        springs.append(("lugre.stiffness", bristles, drive.moved, FASTEST, "none is Coulomb"))
-    for key, stiffness, swings, fastest, otherwise in springs:
-        most = swings * (fastest / period) ** 2 * to_si(axis.kind)
+        most = drive.moved * (FASTEST / period) ** 2 * to_si(axis.kind)
+        springs.append(("lugre.stiffness", bristles, most, "none is Coulomb"))
+    for key, stiffness, most, otherwise in springs:
         if stiffness > most:
             raise ConfigError(
                 f"{machine.path}: axes.{name}.{key} = {stiffness:g} swings faster than can "

@@ -8,6 +8,7 @@ from twin.nc.bytecode.bytecode import MOST_ROWS, MOST_STORES, Bytecode
 from twin.nc.bytecode.registers import MOST_WORDS
 from twin.nc.bytecode.variables import NO_SLOT, Variables
 from twin.nc.canonical import NO_BLOCK_NUMBER
+from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import (
     Computed,
@@ -18,6 +19,7 @@ from twin.nc.text.expressions import (
     NumberedVariable,
     OrZero,
     Prefixed,
+    Scaled,
     Tree,
     Variable,
 )
@@ -172,6 +174,8 @@ class BytecodeAssembler(Assembler):
                 self._add(opcodes.LOAD_NUMBERED)
             case OrZero(operand):  # a variable without a value stops the block before
                 self.value(operand)
+            case Scaled(operand, factor):
+                self.value(Computed("*", arithmetic.multiply, (operand, Number(factor))))
             case Negative(operand):
                 self.value(operand)
                 self._add(opcodes.NEGATE)

@@ -113,6 +113,8 @@ class Variables:
         is_local: Callable[[str], bool],
         given: Callable[[str], float | None],
         progress: IntArray,
+        *,
+        vacant: bool = False,
     ) -> None:
         """Without variables.
 
@@ -120,7 +122,10 @@ class Variables:
             is_local: Whether calls have a variable of that name anew.
             given: The job's value of a variable, or None.
             progress: How far the program has come; its ``DEPTH`` is the row of ``local`` in use.
+            vacant: A program can take the value of a variable away, so that the job's is what the main
+                program's variable begins with.
         """
+        self._vacant = vacant
         self._is_local = is_local
         self._given = given
         self._slots: dict[str, int] = {}
@@ -153,11 +158,17 @@ class Variables:
             if number == len(self.given_local):
                 self.local = np.hstack([self.local, np.full_like(self.local, np.nan)])
                 self.given_local = _doubled(self.given_local)
-            self.given_local[number] = given
+            if self._vacant:
+                self.local[0, number] = given
+            else:
+                self.given_local[number] = given
             return ~number
         if number == len(self.common):
             self.common, self.given_common = _doubled(self.common), _doubled(self.given_common)
-        self.given_common[number] = given
+        if self._vacant:
+            self.common[number] = given
+        else:
+            self.given_common[number] = given
         return number
 
     def read(self, name: str) -> float | None:
@@ -165,8 +176,8 @@ class Variables:
         slot = self._slots.get(name)
         if slot is None:
             return self._given(name)
-        value = float(own_value(self.columns, self._progress[DEPTH], slot))
-        return value if value == value else self._given(name)
+        value = float(load(self.columns, self._progress[DEPTH], slot))
+        return value if value == value else None
 
     def write(self, name: str, value: float) -> None:
         """Set a variable."""

@@ -30,6 +30,12 @@ _END_IT = "end it by G40 first"
 _FINDINGS: Mapping[int, tuple[str, str, str | None, bool]] = {
     effects.NEGATIVE_SPEED: ("spindle-range", "the speed {word} is negative", None, True),
     effects.NO_TOOL_NUMBER: ("tool-number", "{word} is no tool number", None, True),
+    effects.OTHER_AUXILIARY: (
+        "number-range",
+        "{word} is no number of a function: whole ones up to 999999 are",
+        None,
+        True,
+    ),
     effects.NO_TOOL: (
         "no-such-tool",
         "compensation needs a tool, and the job has none",
@@ -176,8 +182,6 @@ class Performer(Assembler):
             compensate(self._control, float(operand), float(self._pop()))
         elif opcode == opcodes.END_COMPENSATION:
             self._control.path.end_compensation()
-        elif opcode == opcodes.AUXILIARY:
-            self._control.function(f"H{self._pop():g}", {})
         else:
             if opcode == opcodes.TOOL and operand:
                 operand = self._look_for_tool()

@@ -145,6 +145,7 @@ class ControlState:
             language.is_local,
             lambda name: language.given_variable(settings.variables, name),
             self.program_counter.progress,
+            vacant=language.syntax.expressions is not None and language.syntax.expressions.vacant,
         )
         self.cycle_values: dict[str, float] = {}
         self.cycle_state = self.registers[CYCLE_STATE:CYCLE_WORDS]

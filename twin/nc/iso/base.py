@@ -233,6 +233,19 @@ WORD_MEANINGS = {
 }
 
 
+def require_feed_of_block(control: Control) -> None:
+    """G93: an F holds for its block alone.
+
+    Raises:
+        ProgramError: The block has none.
+    """
+    if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE and not any(
+        word.address == "F" for word in control.block.words
+    ):
+        message = "with G93 every block that cuts needs its F"
+        control.fail("no-feed", message, hint="write F, or G94")
+
+
 def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:
     """One straight move by a distance, in a control's own language.
 

@@ -213,6 +213,19 @@ class OrZero:
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
+class Scaled:
+    """A value times a factor; one that is not there stays so."""
+
+    operand: "Tree"
+    factor: float
+
+    def __call__(self, scope: Scope) -> float:
+        """Its value."""
+        value = self.operand(scope)
+        return value if math.isnan(value) else checked(value * self.factor)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class Negative:
     """A value with a minus before it."""
 
@@ -268,4 +281,6 @@ class Exists:
         return 1.0
 
 
-Tree = Number | Variable | NumberedVariable | OrZero | Negative | Prefixed | Computed | Exists
+Tree = (
+    Number | Variable | NumberedVariable | OrZero | Scaled | Negative | Prefixed | Computed | Exists
+)

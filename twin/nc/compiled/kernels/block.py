@@ -10,7 +10,7 @@ from twin.nc.bytecode.bytecode import Instruction
 from twin.nc.bytecode.effects import polar_target
 from twin.nc.bytecode.frames import WORDS, Scratch
 from twin.nc.bytecode.registers import BAILOUT, CYCLE, Machine, copy_state
-from twin.nc.bytecode.token_kinds import NUMBER
+from twin.nc.bytecode.token_kinds import NUMBER, UNSUPPORTED
 from twin.nc.compiled.kernels.cycle import NO_ROOM
 from twin.nc.compiled.kernels.words import execute_block
 from twin.nc.path.compensation.contour import OFF, STAGE, Contour
@@ -90,6 +90,8 @@ def run_words(
     if opcode == opcodes.RUN_CODES:
         scratch.counts[WORDS] = 1 if words > 0 and scratch.token_kinds[0] == NUMBER else 0
     if contour.counts[STAGE] != OFF:
+        if state.modal[CYCLE] != 0.0:
+            return UNSUPPORTED
         events = state.event_count[0]
         return follow(begun.made, after, begun.first_event, events, contour, machine.rows)
     return after

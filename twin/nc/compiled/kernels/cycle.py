@@ -82,7 +82,8 @@ def drill(
     """
     plane = constants.planes[int(block.modal[PLANE])]
     repeats_only = tables.cycles[int(block.modal[CYCLE])][_REPEATS_ONLY] != 0.0
-    if repeats_only and (called[0] or block.modal[INCREMENTAL] != 0.0):
+    names_place = block.polar or block.seen >> AXIS != 0
+    if repeats_only and (called[0] or block.modal[INCREMENTAL] != 0.0 or not names_place):
         return UNSUPPORTED
     taken, hole = _read_cycle(block, called, tables, constants, state)
     if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS:

@@ -31,9 +31,23 @@ def prepare(control: Control) -> None:
     memory, lines = memory_of(control), control.program_counter.lines
     programs.begin(control)
     memory.writes_offsets = holds_any(lines, offsets.WRITES_OFFSETS)
+    memory.transforms = holds_any(lines, offsets.TRANSFORMS)
     memory.bare_compensation = holds_any(lines, tool_offsets.BARE_COMPENSATION)
     offsets.put_into_force(control)
     corners.prepare(control)
+
+
+def before_motion(control: Control, rapid: bool) -> None:
+    """A block is about to move.
+
+    Raises:
+        ProgramError: G93 without F, or a cycle under radius compensation.
+    """
+    if not rapid:
+        base.require_feed_of_block(control)
+    if control.modal.cycle is not None and control.path.compensating:
+        message = "a cycle cannot drill while radius compensation is in force"
+        control.fail("compensation-change", message, hint="end it by G40 first")
 
 
 def after_motion(control: Control) -> None:
@@ -126,6 +140,7 @@ FANUC = Dialect(
     write_variable=variables.write_variable,
     is_local=variables.is_local,
     live_variables=variables.ControlVariables(),
+    before_motion=before_motion,
     after_motion=after_motion,
     statements={**flow.STATEMENTS, **macro_calls.CALLS_BY_CODE},
     finish=programs.finish,

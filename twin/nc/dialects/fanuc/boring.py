@@ -9,7 +9,7 @@ import dataclasses
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
-from twin.nc.dialects.fanuc.memory import Variant
+from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.motion import target
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
 from twin.nc.iso.drilling import cycle_code, take_words
@@ -28,6 +28,10 @@ def boring_code(number: int, meaning: str, variant: Variant) -> GCode:
 
     def call(control: Control) -> None:
         refuse_scaled_pecks(control, rule.name)
+        memory = memory_of(control)
+        if memory.mirror or memory.rotation is not None:
+            message = f"{rule.name} shifts the tool as the machine stands: no mirror or rotation turns that"
+            control.fail("rotation-active", message, hint="end them first: G50.1, G69")
         begin(control)
 
     def perform(control: Control) -> None:

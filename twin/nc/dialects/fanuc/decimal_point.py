@@ -12,18 +12,20 @@ from twin.nc.control.modal import FeedMode
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.dialects.fanuc.variables import rounding_to, rounds
-from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Block, Word
-from twin.nc.text.expressions import Computed, Expression, Number
+from twin.nc.text.expressions import Expression, Scaled
 
 LENGTHS = frozenset("XYZUVWIJKRQ") | {",R", ",C"}
 ANGLES = frozenset("ABC")
 _MILLI = 0.001
 _INCH_INCREMENT = 0.0001
-_WAITING = frozenset({4.0, 73.0, 74.0, 76.0, 77.0, *map(float, range(81, 90))})
-"""Codes whose P counts milliseconds."""
 _COUNTS = frozenset({73.0, 74.0, 76.0, 77.0, *map(float, range(81, 90))})
-"""Codes whose K counts holes."""
+"""Codes of cycles: their P counts milliseconds, their K holes."""
+_END_CYCLES = frozenset({0.0, 1.0, 2.0, 3.0, 80.0})
+_OWN_P = frozenset({8.0, 10.0, 30.0, 51.0, 54.0, 54.1, 65.0, 66.0, 154.0})
+"""Codes with a P that is no time, also while a cycle is in force."""
+_CALLS = frozenset({97.0, 98.0, 99.0})
+"""M functions with a P that names a program or a block."""
 _SCALED = 51.0
 _TURNED = 68.0
 _CYLINDER = frozenset({7.1, 107.0})
@@ -55,17 +57,22 @@ def count(control: Control, block: Block) -> Block:
     if not any(word.address in looked_at for word in block.words):
         return block
     codes = {word.value for word in block.words if word.address == "G"}
+    calls = any(word.address == "M" and word.value in _CALLS for word in block.words)
     words = [
-        _counted(control, word, codes) if word.address in looked_at else word
+        _counted(control, word, codes, calls=calls) if word.address in looked_at else word
         for word in block.words
     ]
     return block._replace(words=tuple(words))
 
 
-def _counted(control: Control, word: Word, codes: set[float | Expression]) -> Word:
-    cycles = control.modal.cycle is not None or codes & _COUNTS
+def _counted(
+    control: Control, word: Word, codes: set[float | Expression], *, calls: bool = False
+) -> Word:
+    goes_on = control.modal.cycle is not None and codes.isdisjoint(_END_CYCLES)
+    cycles = goes_on or not codes.isdisjoint(_COUNTS)
     if word.address == "P":
-        return _time(control, word) if codes & _WAITING or cycles else _scale(word, codes)
+        waits = 4.0 in codes or (cycles and not calls and codes.isdisjoint(_OWN_P))
+        return _time(control, word) if waits else _scale(word, codes)
     if not word.pointless or not isinstance(word.value, float) or word.value == 0.0:
         return word
     if codes & _UNTOUCHED or (cycles and word.address in "KL"):
@@ -170,5 +177,4 @@ def _scale(word: Word, codes: set[float | Expression]) -> Word:
 
 
 def _times(expression: Expression, factor: float) -> Expression:
-    tree = Computed("*", arithmetic.multiply, (expression.evaluate, Number(factor)))
-    return Expression(expression.text, tree)
+    return Expression(expression.text, Scaled(expression.evaluate, factor))

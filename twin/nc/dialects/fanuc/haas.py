@@ -11,6 +11,7 @@ from twin.nc.dialects.fanuc.codes import M_CODES, codes, passed_over, refused
 from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
 from twin.nc.dialects.fanuc.memory import HAAS
 from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
+from twin.nc.geometry.planes import XY
 
 _LACKING = (5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
 """Codes that the control lacks."""
@@ -27,11 +28,20 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
     depth, count = control.take("Z"), control.take("L")
     if first is None:
         control.fail("cycle-word", "a circular pocket needs I, the radius of its circle")
+    if control.modal.plane is not XY:
+        control.fail("cycle-plane", "a circular pocket lies in the plane X Y", hint="write G17")
+    if step is not None and last is None:
+        control.fail(
+            "cycle-word", "Q makes circles larger up to the radius K, which is missing", step
+        )
     tool = radius_in_force(control)
     radii = [control.length(first)]
     if last is not None:
         if step is None or control.length(step) <= 0.0:
             control.fail("cycle-word", "a pocket to the radius K needs Q above 0", last)
+        if control.length(last) <= radii[0]:
+            message = "the radius K of the last circle is no larger than I, that of the first"
+            control.fail("cycle-size", message, last)
         while radii[-1] < control.length(last):
             radii.append(min(radii[-1] + control.length(step), control.length(last)))
             if len(radii) > control.settings.step_limit:

@@ -33,6 +33,8 @@ class Variant(NamedTuple):
         counting: Address that says how often a cycle's block drills.
         tool_variables: First and last system variable of each column of the offset memory.
         machine_by_motion: G53 moves by the motion code in force, not always rapidly.
+        transformed_keeps_origin: Neither work offsets nor presets nor moves to reference points stand under
+            a scale, a mirror or a rotation.
     """
 
     feed_increments: tuple[float, float] = (1.0, 0.01)
@@ -41,6 +43,7 @@ class Variant(NamedTuple):
     deepest_call: int = 10
     counting: str = "K"
     machine_by_motion: bool = False
+    transformed_keeps_origin: bool = True
     tool_variables: tuple[tuple[int, int, str], ...] = (
         (2001, 2200, "length_wear"),
         (2201, 2400, "length"),
@@ -59,6 +62,7 @@ HAAS = Variant(
     deepest_call=9,
     counting="L",
     machine_by_motion=True,
+    transformed_keeps_origin=False,
     tool_variables=(
         (2001, 2200, "length"),
         (2201, 2400, "length_wear"),
@@ -131,6 +135,7 @@ class FanucMemory:
         common_offset: The external work offset, by axis [mm or deg].
         offset: Name of the work offset in force.
         writes_offsets: Some line of the program may write work offsets.
+        transforms: Some line of the program may scale, mirror or rotate.
         bare_compensation: Some line calls compensation without D.
         tool_offsets: Rows of the offset memory that the program has written, by number.
         length_number: H in force; None: none yet.
@@ -158,6 +163,7 @@ class FanucMemory:
     common_offset: dict[str, float] = dataclasses.field(default_factory=dict)
     offset: str = "G54"
     writes_offsets: bool = False
+    transforms: bool = False
     bare_compensation: bool = False
     tool_offsets: dict[int, ToolOffset] = dataclasses.field(default_factory=dict)
     length_number: int | None = None
@@ -188,3 +194,16 @@ def acts_on_plain_blocks(control: Control) -> bool:
     memory = memory_of(control)
     remembered = (memory.scale, memory.modal_call, memory.cylinder)
     return memory.polar or any(each is not None for each in remembered)
+
+
+def refuse_transformed(control: Control, code: str) -> None:
+    """What changes the origin, or leaves it, under a scale, a mirror or a rotation (manual of G51, G51.1, G68).
+
+    Raises:
+        ProgramError: One is in force, on a control that forbids it.
+    """
+    memory = memory_of(control)
+    transformed = memory.scale is not None or memory.mirror or memory.rotation is not None
+    if memory.variant.transformed_keeps_origin and transformed:
+        message = f"{code} cannot stand while a scale, a mirror or a rotation is in force"
+        control.fail("rotation-active", message, hint="end them first: G50, G50.1, G69")

@@ -10,7 +10,7 @@ import re
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.codes import Action, CodeWriter
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc.memory import letter_patterns, memory_of
+from twin.nc.dialects.fanuc.memory import letter_patterns, memory_of, refuse_transformed
 from twin.nc.dialects.fanuc.programs import whole
 from twin.nc.iso.offsets import machine_zero, offset_of_job, select_offset, shift_by
 from twin.nc.iso.offsets import write_offset as write_job_offset
@@ -21,6 +21,8 @@ WRITES_OFFSETS = (
     re.compile(rb"#(?:\[|5[23][0-9]|7[0-9]|14[0-9]|[12][0-9]{3})"),
 )
 """What may write work or tool offsets."""
+TRANSFORMS = letter_patterns("G", rb"0*(?:51|68)")
+"""What may scale, mirror or rotate."""
 LARGEST_EXTENDED = 300
 """G54.1 P1 to P300 (the largest number of pairs that the option has)."""
 
@@ -61,6 +63,7 @@ def numbered_code(number: int, pair: int) -> Action:
 
 def select(control: Control, name: str, word: Word | None) -> None:
     """Put a work offset into force."""
+    refuse_transformed(control, name)
     memory = memory_of(control)
     if name not in memory.offsets:
         presets = control.frame.shift("preset")
@@ -109,7 +112,8 @@ def compile_offset(number: int) -> CodeWriter:
     name = f"G{number}"
 
     def write(control: Control, assembler: Assembler) -> None:
-        if "P" in control.words or memory_of(control).writes_offsets:
+        memory = memory_of(control)
+        if "P" in control.words or memory.writes_offsets or memory.transforms:
             raise UnsupportedError
         values = offset_of_job(control, name, control.code_word(number))
         write_job_offset(control, values, assembler, ends_preset=False)
@@ -119,6 +123,7 @@ def compile_offset(number: int) -> CodeWriter:
 
 def local_offset(control: Control) -> None:
     """G52: shifts all work offsets; coordinates count from the work offset; 0 ends it."""
+    refuse_transformed(control, "G52")
     words = control.take_axis_words()
     if not words:
         control.fail("preset", "G52 needs the coordinates of the local origin", hint="G52 X10.")
@@ -134,6 +139,7 @@ def preset(control: Control) -> None:
 
     G92 S, the largest speed of the spindle at constant cutting speed, moves nothing.
     """
+    refuse_transformed(control, "G92")
     words = control.take_axis_words()
     if not words:
         control.fail("preset", "G92 needs the coordinates that this place shall have")

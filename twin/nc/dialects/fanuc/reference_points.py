@@ -5,7 +5,7 @@ lie there as well, which is how a control comes from its maker.
 """
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.memory import memory_of, refuse_transformed
 from twin.nc.dialects.fanuc.programs import whole
 from twin.nc.iso.machine_coordinates import machine_frame
 
@@ -28,6 +28,7 @@ def _go_home(control: Control, code: str) -> None:
     if not axes:
         message = f"{code} needs the axes that shall go there, with the point on their way"
         control.fail("reference-point", message, hint=f"G91 {code} Z0")
+    refuse_transformed(control, code)
     with machine_frame(control, code):
         pass  # the reference point must be known before anything moves
     control.line_to(control.target(), rapid=True)

@@ -77,6 +77,7 @@ class Kind(NamedTuple):
     cycle: Cycle | None = None
 
 
+_NAME_PLACES = frozenset("XYZ@^")
 _PLACES = {"R": REFERENCE, "P": DWELL, "Q": PECK}
 
 
@@ -231,6 +232,8 @@ def _take_words(control: Control, kind: Kind) -> None:
             control.fail("cycle-word", f"G{kind.number} needs {' and '.join(missing)}")
         memory.back_boring = (0.0, 0.0, 0.0)
     for letter, word in words.items():
+        if word is not None and letter == "P" and control.number(word) < 0.0:
+            control.fail("dwell", "a dwell cannot be negative", word)
         if word is not None and letter in _PLACES:
             in_mm = letter != "P"
             state[_PLACES[letter]] = control.length(word) if in_mm else control.number(word)
@@ -249,6 +252,11 @@ def _perform(kind: Kind) -> Callable[[Control], None]:
     def perform(control: Control) -> None:
         refuse_in_compensation(control)
         check_feed(control, False)
+        if not _NAME_PLACES & control.words.keys():
+            message = (
+                f"G{kind.number} drills where its block says, and no word of an axis stands in it"
+            )
+            control.fail("code-words", message, hint="write X or Y, or end the cycle by G80")
         if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
             control.fail("code-words", "canned cycles need a feed per minute", hint="write G94 F")
         _refuse_rotary(control)

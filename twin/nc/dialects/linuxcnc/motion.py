@@ -10,6 +10,7 @@ from twin.nc.dialects.linuxcnc.compensation import in_force
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.geometry.planes import XY
+from twin.nc.iso import base
 from twin.nc.iso.offsets import machine_zero
 from twin.nc.text.blocks import Word
 
@@ -25,12 +26,7 @@ def check_feed(control: Control, rapid: bool) -> None:
     """
     if rapid:
         return
-    if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE and not any(
-        word.address == "F" for word in control.block.words
-    ):
-        control.fail(
-            "no-feed", "with G93 every block that cuts needs its F", hint="write F, or G94"
-        )
+    base.require_feed_of_block(control)
     if not control.feed:
         control.fail(
             "no-feed",

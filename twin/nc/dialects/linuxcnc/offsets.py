@@ -291,6 +291,8 @@ def further_tool_length(control: Control) -> None:
     word, axes = control.take("H"), control.take_axis_words()
     if word is None and not axes:
         control.fail("tool-offset", "G43.2 needs H or words of axes")
+    if word is not None and axes:
+        control.fail("tool-offset", "G43.2 takes H or words of axes, not both", word)
     offset = memory_of(control).tool_offset or [0.0] * len(control.settings.axes)
     more = [0.0] * len(offset)
     if word is not None:
