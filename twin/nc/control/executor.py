@@ -39,6 +39,7 @@ class Executor(Control):
         super().__init__(dialect, settings, source)
         self.dialect = dialect
         self._pointless = dialect.pointless(settings)
+        self._special = frozenset(("G", "M", *dialect.signed, *dialect.series))
         self._codes: list[tuple[Word, GCode]] = []
         self.modal.apply(dialect.start_state)
         for number in dialect.start:
@@ -165,8 +166,12 @@ class Executor(Control):
         self.words = words = {}
         self.series = []
         functions: list[tuple[Word, MCode]] = []
+        special = self._special
         for word in block.words:
             address, value = word.address, word.value
+            if address not in special and address not in words and type(value) is float:
+                words[address] = word
+                continue
             if isinstance(value, Expression) and address not in dialect.references:
                 value = self.evaluate(value, word)
                 word = word._replace(value=value)
