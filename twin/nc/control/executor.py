@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.expressions import evaluate
 from twin.nc.control.block_order import (
     Conflict,
     conflict_of,
@@ -97,8 +98,8 @@ class Executor(Control):
             span, target, index = (each.column, each.width), each.target, None
             try:
                 if isinstance(target, NumberedVariable):
-                    index = float(target.index(self))
-                value = float(each.value.evaluate(self))
+                    index = evaluate(target.index, self)
+                value = evaluate(each.value, self)
             except ExpressionError as error:
                 self.report.fail(error.code, str(error), *span, error.hint)
             given.append((each, target.name, index, value))
