@@ -2,6 +2,7 @@
 
 import copy
 import dataclasses
+from collections.abc import Iterable
 
 import mujoco
 import numpy as np
@@ -11,7 +12,7 @@ from mujoco.rollout import Rollout
 from twin.columns import join
 from twin.machine.description.config import Machine
 from twin.machine.model.drives import Drive, feedforward_name, integral_name
-from twin.machine.model.model import drives
+from twin.machine.model.model import drives, moved
 from twin.machine.model.timers import switch_off_timers
 from twin.machine.model.transmission import felt, give_name, give_stiffness, has_give
 from twin.machine.simulation.drive_kernels import (
@@ -80,13 +81,11 @@ class Servo:
         joints = [model.joint(axis.joint) for axis in axes]
         self._qpos = np.array([int(joint.qposadr[0]) for joint in joints])
         self._dof = np.array([int(joint.dofadr[0]) for joint in joints])
-        servos = [model.actuator(name).id for name in machine.axes.names]
-        self._setpoint_state = model.actuator_actadr[servos]
+        self._setpoint_state = model.actuator_actadr[self._actuators(machine.axes.names)]
         self._integrates = np.flatnonzero([loop.integral_gain > 0 for loop in loops])
-        integral = [
-            model.actuator(integral_name(machine.axes.names[index])).id
-            for index in self._integrates
-        ]
+        integral = self._actuators(
+            integral_name(machine.axes.names[index]) for index in self._integrates
+        )
         self._integral_state = model.actuator_actadr[integral]
         self._integral_gain = np.array([loop.integral_gain for loop in loops])
         self._gives = np.flatnonzero([has_give(axis) for axis in axes])
@@ -111,17 +110,18 @@ class Servo:
         self._chunk: Setpoints | None = None
         self._warmstart = np.zeros((1, model.nv))
 
+    def _actuators(self, names: Iterable[str]) -> IntArray:
+        """Numbers of actuators by their names."""
+        return np.array([self.model.actuator(name).id for name in names], np.int64)
+
     def _columns(self, machine: Machine, loops: tuple[Drive, ...]) -> Drives:
         """What the kernels know of the drives."""
         model, everywhere, joined = self.model, len(loops), 1 + self.model.nq
-        axes = [machine.axis(name) for name in machine.axes.names]
+        names = machine.axes.names
+        axes = [machine.axis(name) for name in names]
         driven = list(zip(axes, loops, strict=True))
-        servos = [model.actuator(name).id for name in machine.axes.names]
-        forces = [model.actuator(feedforward_name(name)).id for name in machine.axes.names]
-        integral = [
-            model.actuator(integral_name(machine.axes.names[index])).id
-            for index in self._integrates
-        ]
+        servos, forces = self._actuators(names), self._actuators(map(feedforward_name, names))
+        integral = self._actuators(integral_name(names[index]) for index in self._integrates)
         return Drives(
             period=self._period,
             scale=self._scale,
@@ -139,8 +139,8 @@ class Servo:
             ),
             speed_bulge=np.array(
                 [
-                    axis.velocity_feedforward * loop.velocity_gain / felt(axis, loop.moved)
-                    for axis, loop in driven
+                    axis.velocity_feedforward * loop.velocity_gain / felt(axis, float(size))
+                    for (axis, loop), size in zip(driven, moved(machine, model), strict=True)
                 ]
             )
             * (self._period**2 / 12),
