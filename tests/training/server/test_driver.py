@@ -8,7 +8,7 @@ import pytest
 from twin.nc.control.executor import Executor
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import Words
-from twin.training.server.driver import HELD_S, Driver
+from twin.training.server.driver import CAUGHT_UP_AT_ONCE_S, HELD_S, MOST_BEHIND_S, Driver
 from twin.training.session import program_run
 from twin.training.session.log import Who
 from twin.training.session.program_run import BLOCKS_AT_REST, BLOCKS_FOR_PLANNER
@@ -67,6 +67,20 @@ def test_a_jog_by_a_step_needs_no_held_key(driver):
     place = driver.session.room.machine.position[0]
     run_for(driver, 1.0)
     assert driver.session.room.machine.position[0] == pytest.approx(place + 1.0, abs=1e-3)
+
+
+def test_time_that_the_computer_was_busy_with_others_is_caught_up_and_presses_do_not_wait(driver):
+    ask(driver, "cycle_start")
+    driver._step(0.9)
+    assert driver.session.room.time_s <= CAUGHT_UP_AT_ONCE_S + 0.011
+    ask(driver, "feed_hold")
+    assert driver.session.room.run.held
+    for _ in range(20):
+        driver._step(0.0)
+    assert driver.session.room.time_s == pytest.approx(0.9, abs=0.011)
+    assert driver.lost_s == 0.0
+    driver._step(3.0)
+    assert driver.lost_s == pytest.approx(3.0 - MOST_BEHIND_S, abs=0.011)
 
 
 def test_a_frozen_machine_stands_until_it_goes_on(driver):

@@ -190,7 +190,6 @@ def test_the_machine_is_worked_by_hand_from_the_sheets(room, context):
         page.keyboard.press(way)
     page.hover("#wheel")
     page.mouse.wheel(0, -100)
-    player.until(lambda: player.done("handwheel") == 4, "the handwheel")
     player.until(lambda: abs(machine.machine.position[0] - before - 0.2) < 2e-3, "its way")
     player.until(lambda: machine.run is None and not machine.moving, "rest")
     player.press("reference", "reference")
@@ -201,6 +200,45 @@ def test_the_machine_is_worked_by_hand_from_the_sheets(room, context):
     page.fill("[data-key='radius 1']", "2.5")
     page.press("[data-key='radius 1']", "Tab")
     player.until(lambda: machine.tables.radii[1] == 2.5, "the radius")
+
+
+def test_a_handwheel_that_is_spun_is_heard_to_its_last_click(room, context):
+    player = Player(room, open_page(room, context))
+    page, machine = player.page, player.machine
+    player.press("mode_jog", "mode")
+    page.click("#tab-manual")
+    before = machine.machine.position[0]
+    spin = "(wheel) => { for (let i = 0; i < 400; i += 1) wheel.dispatchEvent(new WheelEvent('wheel', { deltaY: -1 })); }"
+    page.eval_on_selector("#wheel", spin)
+    player.until(lambda: abs(machine.machine.position[0] - before - 40.0) < 2e-3, "its way")
+    assert player.done("handwheel") < 20
+    assert page.evaluate("document.body.dataset.line") == "up"
+
+
+def test_what_the_machine_refuses_is_said_and_taken_back_on_the_page(room, context):
+    player = Player(room, open_page(room, context))
+    page, machine = player.page, player.machine
+    page.click("#tab-tools")
+    length = page.input_value("[data-key='length 1']")
+    for typed in ("6O.5", "", "0x10", "1e3", "0"):
+        page.fill("[data-key='length 1']", typed)
+        page.press("[data-key='length 1']", "Tab")
+        page.wait_for_selector("#message.refusal")
+        player.until(lambda: page.input_value("[data-key='length 1']") == length, "the length")
+    assert machine.tables.lengths[1] == float(length)
+    page.fill("[data-key='length 1']", "61,5")
+    page.press("[data-key='length 1']", "Tab")
+    player.until(lambda: machine.tables.lengths[1] == 61.5, "the length")
+    page.click("#tab-run")
+    player.press("cycle_start", "cycle_start")
+    for _ in range(2):
+        page.click("[data-key='switch dry_run']")
+        page.wait_for_selector("#message.refusal")
+        page.wait_for_selector("[data-key='switch dry_run']:not(:checked)")
+    page.click("#emergency")
+    page.wait_for_selector("#message b")
+    page.keyboard.press("Space")
+    page.wait_for_selector("#message .refusal")
 
 
 def test_a_program_is_begun_in_its_midst_and_held_and_left_and_found_again(room, context):

@@ -264,6 +264,21 @@ def test_malformed_commands_are_refused_in_words(data):
     assert json.dumps(command.model_dump())
 
 
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"do": "jog", "axis": "\ud800", "direction": 1}, {"do": "jog", "axis": "X" * 10**6, "direction": 1},
+        {"do": "\ud800"}, {"do": "x" * 10**6}, {"do": "sign", "name": "\ud800"}, {"do": "search", "line": 10**300},
+        {"do": "inject", "fault": {"kind": "friction", "axis": "\ud800"}}, {"do": "set_tool", "number": 10**300},
+        {"do": "set_tool", "number": 1, "length": "1_0"}, {"do": "set_tool", "number": 1, "length": ""},
+        {"do": "override", "percent": True}, {"do": "switch", "name": "dry_run", "on": "no"},
+    ],
+)  # fmt: skip
+def test_what_is_refused_can_be_shown_to_everybody(session, data):
+    assert not session.submit(data, "trainer")
+    assert len(session.refusal.encode()) < 300
+
+
 def test_a_malformed_command_changes_nothing(session):
     before = session.snapshot()
     assert not session.submit({"do": "jog", "axis": "X", "direction": float("nan")})

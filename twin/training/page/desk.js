@@ -8,10 +8,12 @@ const JOG_KEYS = {
   ArrowRight: ["X", 1], ArrowLeft: ["X", -1], ArrowUp: ["Y", 1], ArrowDown: ["Y", -1], PageUp: ["Z", 1], PageDown: ["Z", -1], Home: ["C", 1], End: ["C", -1],
 };
 const UNHEARD_MS = 600;
+const WHEEL_MS = 50;
+const MOST_CLICKS = 100;
 
 export class Desk {
   constructor(scene, line) {
-    Object.assign(this, { scene, line, step: 1, hand: { feed: null, rapid: false, axis: "", jog_step: "0.1" }, keys: {}, turned: {}, pressing: "", pointer: null, now: null });
+    Object.assign(this, { scene, line, step: 1, hand: { feed: null, rapid: false, axis: "", jog_step: "0.1" }, keys: {}, turned: {}, pressing: "", pointer: null, clicks: 0, wheel: null, now: null });
     const command = (name) => () => line.say({ do: name });
     const at = (id) => document.getElementById(id);
     const add = (where, name, act, given = {}) => at(where).append(this.keys[name] = key("", act, { name, ...given }));
@@ -114,6 +116,20 @@ export class Desk {
     const command = { do: "jog", axis, direction, feed };
     if (this.step !== null || touched) this.line.say({ ...command, step: this.step ?? 0.1 });
     else this.line.hold(command);
+  }
+
+  /** The clicks of the handwheel go out together, so that no turning is too much for the line. */
+  turn_wheel(clicks) {
+    this.clicks += clicks;
+    this.wheel ??= setTimeout(() => this.send_wheel(), WHEEL_MS);
+  }
+
+  send_wheel() {
+    clearTimeout(this.wheel);
+    const clicks = Math.max(-MOST_CLICKS, Math.min(MOST_CLICKS, this.clicks));
+    this.clicks -= clicks;
+    if (clicks) this.line.say({ do: "handwheel", axis: this.hand.axis, clicks, step: Number(this.hand.jog_step) });
+    this.wheel = this.clicks ? setTimeout(() => this.send_wheel(), WHEEL_MS) : null;
   }
 
   release() {

@@ -34,22 +34,25 @@ export function manual_sheet(sheets) {
 }
 
 /** A pad that follows the mouse wheel and the arrow keys. */
-function handwheel({ now, words, line, desk: { hand } }) {
+function handwheel({ now, words, desk }) {
+  const { hand } = desk;
   const choose = (id, values, name) => {
     const made = make("select", { id, "data-key": id, "aria-label": `${words.label("handwheel")}: ${words.label(name)}` }, ...values.map((value) => make("option", { value }, String(value))));
     made.value = hand[name];
-    made.addEventListener("change", () => { hand[name] = made.value; });
+    made.addEventListener("change", () => {
+      desk.send_wheel();
+      hand[name] = made.value;
+    });
     return made;
   };
   hand.axis ||= now.axes[0];
-  const turn = (clicks) => line.say({ do: "handwheel", axis: hand.axis, clicks, step: Number(hand.jog_step) });
   const pad = make("div", { id: "wheel", "data-key": "handwheel", tabindex: 0, role: "group", "aria-label": `${words.label("handwheel")}. ${words.label("handwheel_help")}` }, words.label("handwheel_help"));
-  pad.addEventListener("wheel", (event) => { event.preventDefault(); if (event.deltaY) turn(event.deltaY < 0 ? 1 : -1); }, { passive: false });
+  pad.addEventListener("wheel", (event) => { event.preventDefault(); if (event.deltaY) desk.turn_wheel(event.deltaY < 0 ? 1 : -1); }, { passive: false });
   pad.addEventListener("keydown", (event) => {
     const clicks = { ArrowUp: 1, ArrowDown: -1 }[event.key];
     if (!clicks) return;
     event.preventDefault();
-    turn(clicks);
+    desk.turn_wheel(clicks);
   });
   return [make("h3", {}, words.label("handwheel")), make("div", { class: "row" }, choose("wheel-axis", now.axes, "axis"), choose("wheel-step", WHEEL_STEPS, "jog_step")), pad];
 }

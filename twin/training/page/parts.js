@@ -76,8 +76,15 @@ export class Words {
   }
 }
 
-/** A number as it is typed, with a point or a comma; null where it is none, which the machine refuses. */
+/** A number as it is typed, with a point or a comma; what is none stays a text, which the machine refuses in words. */
 export function number(text) {
-  const found = Number(text.trim().replace(",", "."));
-  return text.trim() === "" || !Number.isFinite(found) ? null : found;
+  return /^\s*[+-]?(\d+[.,]?\d*|[.,]\d+)\s*$/.test(text) ? Number(text.replace(",", ".")) : text;
+}
+
+/** A field whose value goes to the machine when it is entered; where it is refused, the sheet shows the machine's own again. */
+export function field(attributes, send) {
+  const made = make("input", { autocomplete: "off", ...attributes });
+  made.addEventListener("input", () => { delete made.dataset.sent; });
+  made.addEventListener("change", () => { made.dataset.sent = "yes"; send(made.value); });
+  return made;
 }

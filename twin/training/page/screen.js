@@ -57,7 +57,8 @@ export class Screen {
       message.className = "";
       if (now.alarm) {
         const alarm = words.alarm(now.alarm.code), where = words.place(now.alarm);
-        message.replaceChildren(make("b", {}, `${alarm.name}${where}: `), words.text(now.alarm.message), " ", make("span", { class: "advice" }, alarm.advice));
+        const refused = now.refusal ? make("span", { class: "refusal" }, `${words.label("refused")}: ${words.text(now.refusal)} `) : null;
+        message.replaceChildren(...[refused, make("b", {}, `${alarm.name}${where}: `), words.text(now.alarm.message), " ", make("span", { class: "advice" }, alarm.advice)].filter(Boolean));
       } else if (now.refusal) {
         message.className = "refusal";
         message.replaceChildren(`${words.label("refused")}: ${words.text(now.refusal)}`);

@@ -1,7 +1,7 @@
 // The sheets beside the view: tasks, what is done by hand, how programs run, tables, alarms, view, trainer.
 
 import { alarm_sheet, manual_sheet, run_sheet } from "./machine_sheets.js";
-import { act_on, make, number } from "./parts.js";
+import { act_on, field, make, number } from "./parts.js";
 
 const MARKS = { open: "○", done: "●", failed: "×" };
 const BACK_S = [10, 60];
@@ -43,15 +43,17 @@ export class Sheets {
     sheet.setAttribute("aria-labelledby", `tab-${this.sheet}`);
     const acts = now.role === "trainer" || now.has_panel;
     const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets], tools: [now.tools, now.tool], history: [now.alarms], display: [this.shown], trainer: [now.faults, now.frozen, now.replaying] };
-    const drawn = JSON.stringify([this.sheet, words.language, acts, what[this.sheet]]);
+    const drawn = JSON.stringify([this.sheet, words.language, acts, now.refusals, what[this.sheet]]);
     if (drawn === this.drawn) return;
-    const typed = this.drawn && JSON.parse(this.drawn)[0] === this.sheet ? new Map([...sheet.querySelectorAll("input:not([type=checkbox]), select")].map((field) => [field.id, field.value])) : new Map();
+    // What is being typed stays; what has been sent is shown as the machine has it.
+    const typed = this.drawn && JSON.parse(this.drawn)[0] === this.sheet ? new Map([...sheet.querySelectorAll("input:not([type=checkbox]):not([data-sent]), select")].map((one) => [one.dataset.key, one.value])) : new Map();
     this.drawn = drawn;
-    const focus = sheet.contains(document.activeElement) ? document.activeElement.id : "";
+    const focus = sheet.contains(document.activeElement) ? document.activeElement.dataset.key : "";
     sheet.replaceChildren(...this[this.sheet]());
     if (!acts) for (const field of sheet.querySelectorAll("button, input, select")) field.disabled = this.sheet !== "display";
-    for (const [id, value] of typed) if (id && sheet.querySelector(`#${id}`)) sheet.querySelector(`#${id}`).value = value;
-    if (focus) document.getElementById(focus)?.focus();
+    const fields = new Map([...sheet.querySelectorAll("[data-key]")].map((one) => [one.dataset.key, one]));
+    for (const [name, value] of typed) if (fields.has(name)) fields.get(name).value = value;
+    fields.get(focus)?.focus();
   }
 
   button(name, text, act) {
@@ -81,18 +83,17 @@ export class Sheets {
   /** Who is at the panel: it stands on the score sheet. */
   signature() {
     const { now, words, line } = this;
-    const field = make("input", { id: "signature", "data-key": "name", maxlength: 80, value: now.signature, autocomplete: "off", "aria-label": words.label("name") });
-    field.addEventListener("change", () => line.say({ do: "sign", name: field.value }));
-    return make("div", { class: "row name" }, make("label", {}, words.label("name"), field));
+    const name = field({ "data-key": "name", maxlength: 80, value: now.signature, "aria-label": words.label("name") }, (text) => line.say({ do: "sign", name: text }));
+    return make("div", { class: "row name" }, make("label", {}, words.label("name"), name));
   }
 
   offsets() {
     const { now, words, line } = this;
     const rows = now.axes.map((axis, index) => {
-      const field = make("input", { id: `reading-${axis}`, inputmode: "decimal", value: "0", "aria-label": `${words.label("preset_help")} ${axis}` });
-      const set = () => line.say({ do: "set_zero", axis, reading: number(field.value) });
-      field.addEventListener("keydown", (event) => { if (event.key === "Enter") set(); });
-      return make("div", { class: "row tight" }, make("b", {}, axis), make("span", { class: "number" }, now.zero[index].toFixed(3)), field, this.button(`preset ${axis}`, words.label("preset"), set));
+      const reading = make("input", { id: `reading-${axis}`, "data-key": `reading ${axis}`, inputmode: "decimal", value: "0", "aria-label": `${words.label("preset_help")} ${axis}` });
+      const set = () => line.say({ do: "set_zero", axis, reading: number(reading.value) });
+      reading.addEventListener("keydown", (event) => { if (event.key === "Enter") set(); });
+      return make("div", { class: "row tight" }, make("b", {}, axis), make("span", { class: "number" }, now.zero[index].toFixed(3)), reading, this.button(`preset ${axis}`, words.label("preset"), set));
     });
     const table = now.offsets.length ? [make("h3", {}, words.label("work_offsets")), ...now.offsets.flatMap((row) => this.offset_row(...row))] : [];
     return [make("p", { class: "quiet" }, words.label("preset_help")), ...rows, ...table];
@@ -102,9 +103,8 @@ export class Sheets {
   offset_row(name, values) {
     const { now, words, line } = this;
     const fields = now.axes.map((axis, index) => {
-      const field = make("input", { inputmode: "decimal", "data-key": `offset ${name} ${axis}`, value: values[index].toFixed(3), "aria-label": `${name} ${axis}` });
-      field.addEventListener("change", () => line.say({ do: "set_offset", name, axis, value: number(field.value) }));
-      return make("label", {}, axis, field);
+      const given = { inputmode: "decimal", "data-key": `offset ${name} ${axis}`, value: values[index].toFixed(3), "aria-label": `${name} ${axis}` };
+      return make("label", {}, axis, field(given, (text) => line.say({ do: "set_offset", name, axis, value: number(text) })));
     });
     return [make("div", { class: "row offset" }, make("b", {}, name), ...fields)];
   }
@@ -119,15 +119,14 @@ export class Sheets {
     const { now, words } = this;
     return now.tools.flatMap((tool) => {
       const here = tool.number === now.tool;
-      const field = (name, value) => {
-        const made = make("input", { inputmode: "decimal", "data-key": `${name} ${tool.number}`, value: value.toFixed(3), "aria-label": `T${tool.number} ${words.label(name)}` });
-        made.addEventListener("change", () => this.line.say({ do: "set_tool", number: tool.number, [name]: number(made.value) }));
-        return make("label", {}, words.label(name), made);
+      const entry = (name, value) => {
+        const given = { inputmode: "decimal", "data-key": `${name} ${tool.number}`, value: value.toFixed(3), "aria-label": `T${tool.number} ${words.label(name)}` };
+        return make("label", {}, words.label(name), field(given, (text) => this.line.say({ do: "set_tool", number: tool.number, [name]: number(text) })));
       };
       return [
         make("h3", {}, `T${tool.number}${here ? " ◂" : ""}  ${words.label(`tool_${tool.kind}`)}`),
         make("div", { class: "row" }, `${words.label("diameter")} ${tool.diameter}`),
-        make("div", { class: "row" }, field("length", tool.length), field("radius", tool.radius)),
+        make("div", { class: "row" }, entry("length", tool.length), entry("radius", tool.radius)),
         here ? null : make("div", { class: "row" }, this.button(`change tool ${tool.number}`, words.label("change_tool"), () => this.line.say({ do: "change_tool", number: tool.number }))),
         here ? make("div", { class: "row" }, this.button("touch off", words.label("touch_off"), () => this.measure())) : null,
       ].filter(Boolean);

@@ -33,7 +33,7 @@ class FaultTable(Table):
 
     kind: FaultKind
     """What is broken."""
-    axis: str = ""
+    axis: Annotated[str, Field(max_length=8)] = ""
     """The axis that has it; an alarm has none."""
     value: Annotated[float, Field(ge=-1e6, le=1e6)] = 0.0
     """How much, in the unit of its kind."""

@@ -17,8 +17,10 @@ from twin.training.session.snapshot import Snapshot
 
 SHORTEST_REST_S = 0.001
 """What the machine always leaves to the server between two looks at the clock [s]."""
-MOST_BEHIND_S = 0.25
+MOST_BEHIND_S = 1.0
 """How far machine time may fall behind the wall's before it is given up, and shown as lost [s]."""
+CAUGHT_UP_AT_ONCE_S = 0.1
+"""Machine time that is caught up between two looks at what was asked for [s]: a press does not wait for more."""
 REPLAY_SPEED = 4.0
 """Times faster than it was, a session is shown again."""
 HELD_S = 0.1
@@ -167,7 +169,7 @@ class Driver:
     def _go_on(self, passed: float) -> None:
         session = self.session
         if session.replay is not None:
-            session.replay.advance(REPLAY_SPEED * min(passed, MOST_BEHIND_S))
+            session.replay.advance(REPLAY_SPEED * min(passed, CAUGHT_UP_AT_ONCE_S))
             if session.replay.over:
                 session.submit({"do": "end_replay"}, "trainer")
             self._owed_s = 0.0
@@ -181,7 +183,7 @@ class Driver:
         self.lost_s += self._owed_s - kept
         share = kept / self._owed_s if self._owed_s > 0.0 else 1.0
         self._kept_up += 0.02 * (self.speed * share - self._kept_up)
-        slices = int(kept / slice_s)
+        slices = int(min(kept, self.speed * CAUGHT_UP_AT_ONCE_S) / slice_s)
         self._owed_s = kept - slices * slice_s
         session.advance(slices)
 

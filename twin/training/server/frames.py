@@ -71,8 +71,8 @@ def _plain(value: Any) -> Any:
 
 
 def as_texts(words: dict[str, Any]) -> dict[str, str]:
-    """Words as JSON, each for itself."""
-    return {name: json.dumps(value, ensure_ascii=False) for name, value in words.items()}
+    """Words as JSON, each for itself; in ASCII, so that also a name that is no Unicode can be sent."""
+    return {name: json.dumps(value) for name, value in words.items()}
 
 
 class Changes:

@@ -19,8 +19,13 @@ from twin.training.scene.scene_file import (
     Mode,
 )
 
+MOST = 10**9
+"""Beyond what anything is numbered with."""
+
 SPINDLE_SPEEDS = (1.0, 20000.0)
 """Ends of what the spindle turns [1/min]."""
+
+AxisName = Annotated[str, Field(max_length=8)]
 
 LONGEST_TEXT = 2000
 """Characters of a block, of a program's line, of an answer."""
@@ -78,7 +83,7 @@ class Jog(Table):
     """Move one axis by hand."""
 
     do: Literal["jog"] = "jog"
-    axis: str
+    axis: AxisName
     direction: Literal[1, -1]
     step: Annotated[float, Field(gt=0, le=1000)] | None = None
     """How far [mm or deg]; none: until ``jog_stop``."""
@@ -90,7 +95,7 @@ class Handwheel(Table):
     """Turn the handwheel by clicks; the axis follows it."""
 
     do: Literal["handwheel"] = "handwheel"
-    axis: str
+    axis: AxisName
     clicks: Annotated[int, Field(ge=-100, le=100)]
     step: Annotated[float, Field(ge=0.001, le=1.0)]
     """What a click is worth [mm or deg]."""
@@ -112,7 +117,7 @@ class Search(Table):
     """Let the next start begin at a line: what stands before it is only computed."""
 
     do: Literal["search"] = "search"
-    line: Annotated[int, Field(ge=0)]
+    line: Annotated[int, Field(ge=0, le=MOST)]
     """0: from the beginning after all."""
 
 
@@ -141,7 +146,7 @@ class Edit(Table):
     """Write a line of the program anew; several lines replace it by several, none deletes it."""
 
     do: Literal["edit"] = "edit"
-    line: Annotated[int, Field(ge=1)]
+    line: Annotated[int, Field(ge=1, le=MOST)]
     text: Annotated[str, Field(max_length=LONGEST_TEXT)] | None = None
 
 
@@ -179,7 +184,7 @@ class SetZero(Table):
     """Make the place where an axis stands read a value: the part zero moves."""
 
     do: Literal["set_zero"] = "set_zero"
-    axis: str
+    axis: AxisName
     reading: Annotated[float, Field(ge=-10000, le=10000)] = 0.0
 
 
@@ -187,7 +192,7 @@ class ChangeTool(Table):
     """Put a tool into the spindle by hand."""
 
     do: Literal["change_tool"] = "change_tool"
-    number: Annotated[int, Field(ge=0)]
+    number: Annotated[int, Field(ge=0, le=MOST)]
 
 
 class NewBlank(Table):
@@ -200,7 +205,7 @@ class SetOffset(Table):
     """Write the part zero of an axis into the table, machine coordinates; or a work offset of it."""
 
     do: Literal["set_offset"] = "set_offset"
-    axis: str
+    axis: AxisName
     value: Annotated[float, Field(ge=-10000, le=10000)]
     name: Annotated[str, Field(max_length=8)] | None = None
     """Which work offset, counted from part zero; none: part zero itself."""
@@ -210,7 +215,7 @@ class SetTool(Table):
     """Write a tool's length or radius into the tool table."""
 
     do: Literal["set_tool"] = "set_tool"
-    number: Annotated[int, Field(ge=0)]
+    number: Annotated[int, Field(ge=0, le=MOST)]
     length: Annotated[float, Field(gt=0, le=1000)] | None = None
     """[mm]"""
     radius: Annotated[float, Field(ge=0, le=500)] | None = None
@@ -228,7 +233,7 @@ class Answer(Table):
     """Answer a scene's question."""
 
     do: Literal["answer"] = "answer"
-    task: Annotated[int, Field(ge=1)]
+    task: Annotated[int, Field(ge=1, le=MOST)]
     """Number of the task that asks."""
     choice: Annotated[str, Field(max_length=LONGEST_TEXT)]
 
@@ -305,6 +310,7 @@ TRAINERS = (Inject, Repair, Freeze, Unfreeze, Rewind, StartReplay, EndReplay)
 
 WRONG = {
     "float_type": "here belongs a number",
+    "int_type": "here belongs a number",
     "greater_than": "the value must be above {gt:g}",
     "greater_than_equal": "the value begins at {ge:g}",
     "less_than_equal": "the value ends at {le:g}",
@@ -327,9 +333,11 @@ def command_from(data: Any) -> Command:
         UsageError: It is no command; the message says what is wrong with it.
     """
     try:
-        return _ADAPTER.validate_python(data)
+        return _ADAPTER.validate_python(data, strict=True)
     except pydantic.ValidationError as error:
         detail = error.errors()[0]
+        if detail["type"].startswith("union_tag"):
+            raise UsageError("no such command: do") from error
         if detail["type"] in WRONG:
             said = WRONG[detail["type"]].format(**detail.get("ctx", {}))
             raise UsageError(f"{detail['loc'][-1]}: {said}") from error
