@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.expressions import evaluate
 from twin.nc.control.block_order import (
     Conflict,
     codes_that_count,
@@ -39,6 +40,7 @@ class Executor(Control):
         super().__init__(dialect, settings, source)
         self.dialect = dialect
         self._pointless = dialect.pointless(settings)
+        self._special = frozenset(("G", "M", *dialect.signed, *dialect.series))
         self._codes: list[tuple[Word, GCode]] = []
         self.modal.apply(dialect.start_state)
         for number in dialect.start:
@@ -96,8 +98,8 @@ class Executor(Control):
             span, target, index = (each.column, each.width), each.target, None
             try:
                 if isinstance(target, NumberedVariable):
-                    index = float(target.index(self))
-                value = float(each.value.evaluate(self))
+                    index = evaluate(target.index, self)
+                value = evaluate(each.value, self)
             except ExpressionError as error:
                 self.report.fail(error.code, str(error), *span, error.hint)
             given.append((each, target.name, index, value))
@@ -165,8 +167,12 @@ class Executor(Control):
         self.words = words = {}
         self.series = []
         functions: list[tuple[Word, MCode]] = []
+        special = self._special
         for word in block.words:
             address, value = word.address, word.value
+            if address not in special and address not in words and type(value) is float:
+                words[address] = word
+                continue
             if isinstance(value, Expression) and address not in dialect.references:
                 value = self.evaluate(value, word)
                 word = word._replace(value=value)

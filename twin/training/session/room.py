@@ -33,7 +33,7 @@ from twin.nc.iso.base import jog_block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source, source_from_text
 from twin.recording.reader import Samples
-from twin.run.placement import part_zero, start_position
+from twin.run.placement import part_zero, start_position, with_blank
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.block_walk import ModalState
@@ -153,7 +153,8 @@ class Room:
         preparation, file = scene.preparation, scene.file
         machine, job = preparation.machine, preparation.job.file
         self.scene = scene
-        zero = part_zero(job, machine, spindle_over_table_mm(machine))
+        over_table = spindle_over_table_mm(machine)
+        zero = part_zero(job, machine, over_table)
         self.tables = Tables(zero, job.tools, _offsets(scene))
         for axis, error in file.start.zero_error.items():
             self.tables.zero[machine.axes.index(axis)] += error
@@ -161,7 +162,7 @@ class Room:
         stand = start_position(job, machine) + zero
         for axis, value in file.start.position.items():
             stand[machine.axes.index(axis)] = value
-        self.machine = LiveMachine(machine, job.tools[0], stand)
+        self.machine = LiveMachine(with_blank(machine, job, zero, over_table), job.tools[0], stand)
         rotary = machine.part_frame.rotary
         turn_zero = 0.0 if rotary is None else float(zero[rotary])
         self.part_frame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
