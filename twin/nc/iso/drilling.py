@@ -190,8 +190,8 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
     for number in range(write_acts(hole, control.programmed[axis], acts, amounts)):
         act, amount = Act(int(acts[number])), amounts[number]
         if act in (Act.RAPID, Act.FEED, Act.ACROSS):
-            goes_over = act is Act.ACROSS and target is not None
-            there = list(target if goes_over else control.programmed)
+            over = target if act is Act.ACROSS else None
+            there = list(control.programmed if over is None else over)
             there[axis] = amount
             control.line_to(there, rapid=act is not Act.FEED)
         elif act is Act.DWELL:
