@@ -237,7 +237,7 @@ def test_what_the_machine_refuses_is_said_and_taken_back_on_the_page(room, conte
         page.wait_for_selector("[data-key='switch dry_run']:not(:checked)")
     page.click("#emergency")
     page.wait_for_selector("#message b")
-    page.keyboard.press("Space")
+    page.click("[data-key=cycle_start]")
     page.wait_for_selector("#message .refusal")
 
 
