@@ -13,9 +13,9 @@ from twin.nc.canonical import FloatArray, IntArray
 RUN = 128
 """Cells that are looked at together."""
 
-ALL_ROWS = (np.int64(0), np.int64(1))
-EVEN_ROWS = (np.int64(0), np.int64(2))
-ODD_ROWS = (np.int64(1), np.int64(2))
+ALL_ROWS = (0, 1)
+EVEN_ROWS = (0, 2)
+ODD_ROWS = (1, 2)
 """For ``sweep``: all, or what two threads take that cut together."""
 
 _WHOLE = 1.5 * 2.0**52
