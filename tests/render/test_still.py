@@ -132,12 +132,18 @@ def test_a_block_that_spoils_the_part_is_warned_of(scene: Scene, tmp_path: Path)
 
 
 def test_load_bars_are_shares_of_what_tool_and_spindle_bear() -> None:
-    tool, columns = ToolTable(number=1, force_limit=800.0, chip_limit=0.1), np.zeros((8, 1))
+    tool, nothing = ToolTable(number=1, force_limit=800.0, chip_limit=0.1), np.zeros(1)
+    bend = 0.5 * tool_strength(tool).compliance * 800.0
     load = ToolLoad(
-        np.zeros((1, 3)), *columns[1:4], np.zeros((1, 3)), *columns[5:7], columns[7] > 0
+        force=np.zeros((1, 3)),
+        peak_force=np.array([600.0]),
+        power=nothing,
+        chip=np.array([0.11]),
+        deflection=np.array([[bend, 0.0, 0.0]]),
+        spindle_speed=nothing,
+        spindle_load=np.array([0.43]),
+        broken=nothing > 0.0,
     )
-    load.peak_force[0], load.chip[0], load.spindle_load[0] = 600.0, 0.11, 0.43
-    load.deflection[0] = [0.5 * tool_strength(tool).compliance * 800.0, 0.0, 0.0]
     force, spindle, bending, chip = load_bars(load, tool)
     assert (force.text, force.share) == ("600 N", pytest.approx(0.75))
     assert (spindle.text, spindle.share) == ("43 %", pytest.approx(0.43))
