@@ -7,9 +7,9 @@ from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.dialects.fanuc import (
     block_compiler,
-    blocks,
     codes,
     corners,
+    cycles,
     decimal_point,
     flow,
     haas,
@@ -33,7 +33,7 @@ def prepare(control: Control) -> None:
     programs.begin(control)
     memory.writes_offsets = holds_any(lines, offsets.WRITES_OFFSETS)
     memory.transforms = holds_any(lines, offsets.TRANSFORMS)
-    memory.overrules_cycles = holds_any(lines, blocks.OVERRULED_CYCLE)
+    memory.overrules_cycles = holds_any(lines, cycles.OVERRULED_CYCLE)
     memory.bare_compensation = holds_any(lines, tool_offsets.BARE_COMPENSATION)
     offsets.put_into_force(control)
     corners.prepare(control)
@@ -153,7 +153,7 @@ FANUC = Dialect(
     compile_block=block_compiler.compile_block,
     disturbed=acts_on_plain_blocks,
     pointless=decimal_point.pointless,
-    count=blocks.as_read,
+    count=cycles.as_read,
 )
 
 HAAS = dataclasses.replace(
