@@ -113,9 +113,8 @@ def retime(
     done = 0
     if pieces is None:
         return phases.shifted(-gained), found, gained
-    for first, last, worth in find_runs(phases.rows, phases.rows_pieces, pieces, override):
-        if not worth:
-            continue
+    runs = find_runs(phases.rows, phases.rows_pieces, pieces, override)
+    for first, last, _ in runs[runs[:, 2] == 1]:
         reference = phases[first:last].shifted(-gained)
         ends = run_ends(reference.rows, reference.rows_pieces)
         begin = float(reference.rows[0, 0])
@@ -126,6 +125,8 @@ def retime(
         found.append(Retimed(begin, faster, reference))
         gained += reference.end - faster.end
         done = last
+    if not found and gained == 0.0:
+        return phases, found, gained
     return joined([*parts, phases[done:].shifted(-gained)]), found, gained
 
 

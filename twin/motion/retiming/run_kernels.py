@@ -14,8 +14,8 @@ MOST_TURN = 40.0 * math.pi
 """What a run turns by at most [rad]: a longer one is cut, and each part takes its own time to plan."""
 
 AT_FEED = 0.999
-"""Share of the programmed feed from which on it is the feed that bounds a run, not its curve: little is
-to be gained there."""
+"""Share of the programmed feed from which on it is the feed that bounds a phase, not its curve: it is in
+no run."""
 
 REST = 1e-9
 """What is slower at a run's end is rounding [mm/s]."""
@@ -61,11 +61,13 @@ def find_runs(
     """
     found = np.zeros((len(phases), 3), np.int64)
     used = 0
-    first, turned, at_feed = -1, 0.0, False
+    first, turned = -1, 0.0
     for row in range(len(phases) + 1):
         turn = 0.0
         if row < len(phases) and phase_pieces[row, 1] < len(pieces.length):
-            turn = _turn_of(phases, phase_pieces, pieces, row)
+            feed = pieces.feed[phase_pieces[row, 0]] * override
+            if phases[row, 3] <= AT_FEED * feed:
+                turn = _turn_of(phases, phase_pieces, pieces, row)
         inside = turn > 0.0
         joined = inside and first >= 0 and phases[row, 3] > 0.0 and turned < MOST_TURN
         if joined:
@@ -75,13 +77,10 @@ def find_runs(
         if not joined:
             if first >= 0:
                 found[used, 0], found[used, 1] = first, row
-                found[used, 2] = not at_feed and turned >= LEAST_TURN * (1.0 - BARELY)
+                found[used, 2] = turned >= LEAST_TURN * (1.0 - BARELY)
                 used += 1
-            first, turned, at_feed = row if inside else -1, 0.0, False
-        if inside:
-            turned += turn
-            feed = pieces.feed[phase_pieces[row, 0]] * override
-            at_feed |= phases[row, 3] > AT_FEED * feed
+            first, turned = row if inside else -1, 0.0
+        turned += turn
     return found[:used]
 
 
