@@ -69,7 +69,7 @@ class MachineGeometry:
         return json.dumps(dataclasses.asdict(self)) if self else ""
 
     def counted_from(self, origin: FloatArray) -> "MachineGeometry":
-        """The same errors, counted from another place."""
+        """These errors, counted from another place."""
         return dataclasses.replace(self, origin=tuple(float(value) for value in origin))
 
     def contributions(

@@ -180,10 +180,11 @@ def _look(path, move, u, x, y, z):
 
 
 @kernel
-def _minimum_between(path, move, low, high, u, look, x, y, z):
+def _minimum_between(path, move, piece, u, look, x, y, z):
     """Distance and place of the minimum of a convex piece, from what one place of it looks like."""
     here, slope, curvature, speed = look
-    begin, end = low, high
+    begin, end = piece
+    low, high = piece
     for _ in range(_ITERATIONS):
         if slope > 0.0:
             high = u
@@ -247,7 +248,7 @@ def _nearest_on_curve(path, move, low, high, guess, x, y, z):
     guess = min(max(guess, low), high)
     look = _look(path, move, guess, x, y, z)
     if look[2] > _bend(second, third, look[0], look[3], max(guess - low, high - guess)):
-        return _minimum_between(path, move, low, high, guess, look, x, y, z)
+        return _minimum_between(path, move, (low, high), guess, look, x, y, z)
     best, best_u = distance_at(path, move, high, x, y, z), high
     at_low = distance_at(path, move, low, x, y, z)
     if at_low < best:
@@ -272,7 +273,7 @@ def _nearest_on_curve(path, move, low, high, guess, x, y, z):
                 if curvature <= bend and step > smallest:
                     step = half
                     continue
-                here, u = _minimum_between(path, move, start, end, middle, look, x, y, z)
+                here, u = _minimum_between(path, move, (start, end), middle, look, x, y, z)
                 if here < best:
                     best, best_u = here, u
         start, step = end, 4.0 * half

@@ -65,7 +65,7 @@ def _cycle(
 
 
 def _unscaled(number: int, code: GCode) -> GCode:
-    """The same cycle, refused under a scale."""
+    """A cycle that is refused under a scale."""
     action = code.action
     assert action is not None
 

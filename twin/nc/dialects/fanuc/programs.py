@@ -204,7 +204,7 @@ def run_part(control: Control, first: Location, count: int, word: Word) -> None:
 
 
 def compile_call(control: Control, first: Location, count: int, assembler: Assembler) -> None:
-    """The same as instructions."""
+    """``run_part`` as instructions."""
     if count > 1:
         assembler.constant(float(count))
     deepest = memory_of(control).variant.deepest_call

@@ -139,7 +139,7 @@ def waiting_rows(count: int, axes: int) -> Row:
 
 
 def with_more_room(contour: Contour) -> Contour:
-    """The same contour with room for twice as many moves that wait."""
+    """A contour's copy with room for twice as many moves that wait."""
     count = len(contour.waiting.codes)
     waiting = waiting_rows(2 * count, len(contour.here))
     for small, large in zip(contour.waiting, waiting, strict=True):
