@@ -50,11 +50,7 @@ DONE = -1
 
 @inlined
 def dispatch_loop(
-    row: int,
-    table: BytecodeTable,
-    machine: Machine,
-    execution: ExecutionState,
-    scratch: Scratch,
+    row: int, table: BytecodeTable, machine: Machine, execution: ExecutionState, scratch: Scratch
 ) -> int:
     """Run the block that begins at a row; ``DONE``, or why it was left as if not begun.
 
