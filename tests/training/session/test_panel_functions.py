@@ -88,7 +88,7 @@ def test_a_hold_within_a_single_block_goes_on_to_its_end(session):
     do(session, "mode", mode="single")
     for _ in range(2):
         do(session, "cycle_start")
-    session.advance(50)
+    session.advance(100)
     do(session, "feed_hold")
     rest(session)
     assert session.room.line == 2
