@@ -19,7 +19,7 @@ from twin.cutting.kernels.tooth_forces import (
 )
 from twin.machine.simulation.drive_kernels import Drives
 from twin.machine.simulation.process import Physics
-from twin.machine.simulation.stepping import read_state, step_machine
+from twin.machine.simulation.stepping import pass_state, step_machine
 from twin.nc.canonical import FloatArray
 
 LOOK_CELLS = 0.25
@@ -157,7 +157,7 @@ def follow_cutting(
         for _ in range(physics.substeps):
             step_machine(stepper.step, stepper.model, stepper.data)
         place = states[row].ctypes.data
-        read_state(
+        pass_state(
             stepper.get_state, stepper.model, stepper.data, place, np.int64(physics.signature)
         )
         cosine, sine = _go_to(physics, states[row], cut, memory)

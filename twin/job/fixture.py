@@ -6,6 +6,7 @@ import pydantic
 from pydantic import Field
 
 from twin.files.toml import Table
+from twin.job.weight import Weight, upright_weight
 
 Positive = Annotated[float, Field(gt=0)]
 
@@ -26,6 +27,8 @@ class FixtureTable(Table):
     """Cylinder [mm]."""
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Centre of its lower face over the middle of the surface [mm], all axes at zero."""
+    mass: Annotated[float, Field(ge=0)] = 0.0
+    """What it weighs, evenly spread [kg]: the axes below it move that too."""
 
     @pydantic.model_validator(mode="after")
     def _one_shape(self) -> "FixtureTable":
@@ -42,3 +45,10 @@ class FixtureTable(Table):
         assert self.diameter is not None
         assert self.height is not None
         return (self.diameter, self.diameter, self.height)
+
+    @property
+    def weight(self) -> Weight:
+        """What it adds to the table, about the centre of its lower face."""
+        return upright_weight(
+            self.mass, self.extent, (0.0, 0.0, 0.5 * self.extent[2]), is_round=self.size is None
+        )

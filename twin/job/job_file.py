@@ -44,7 +44,10 @@ class StockTable(Table):
     """Grid of the height map [mm]; none: a tenth of the smallest tool's radius, or a fortieth of the
     stock's shorter side where that is less, 0.1 at the finest."""
     material: str | None = None
-    """What it is made of, for the cutting force; none: no force is reckoned."""
+    """What it is made of, for the cutting force and its weight; none: no force is reckoned."""
+    density: Positive | None = None
+    """For its weight, which the axes below it move [g/cm³]; none: its material's, and without one it
+    weighs nothing."""
 
     @pydantic.model_validator(mode="after")
     def _dimensions_fit_shape(self) -> "StockTable":

@@ -82,7 +82,7 @@ def run_on_twin(
     own.mkdir(exist_ok=True)
     install(own, module_folder(start))
     tool, position = preparation.job.file.tools[0], preparation.start + run.part_zero
-    live = LiveMachine(preparation.machine, tool, position)
+    live = LiveMachine(run.machine, tool, position)
     places = _write_program(preparation, own / PROGRAM_NAME, wish.own_program)
     session = wish.display is not None
     with LockstepMotion(live, places, run.part_zero, session=session) as motion:

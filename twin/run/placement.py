@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twin.cutting.blank_weight import blank_weight
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile
 from twin.machine.description.config import Blank, Machine
@@ -47,17 +48,22 @@ def with_blank(
         job: The job file.
         zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         spindle_over_table: As in ``part_zero``.
+
+    Raises:
+        ConfigError: The stock's material is not known.
     """
     if job.stock is None:
         return machine
     size = job.stock.extent
     x, y, z = np.array(job.stock.position) + zero[:3] - np.array([*machine.part_frame.center, 0.0])
     top = z + spindle_over_table - job.tools[0].length
+    weight = blank_weight(job.stock)
     return machine.with_blank(
         Blank(
             size,
             (float(x), float(y), float(top) - size[2] / 2.0),
             round=job.stock.shape in ("cylinder", "tube"),
+            weight=None if weight is None else weight.moved((float(x), float(y), float(top))),
         )
     )
 

@@ -62,6 +62,7 @@ class Run:
 
     Attributes:
         preparation: The job made concrete.
+        machine: Its machine with all that is clamped on the table.
         part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
         part_frame: How the part turns under the tool.
         spec: The model of the machine with the job's first tool in the spindle.
@@ -82,8 +83,8 @@ class Run:
         self.preparation = preparation
         over_table = spindle_over_table_mm(machine)
         self.part_zero = part_zero(job, machine, over_table)
-        self._machine = with_blank(machine, job, self.part_zero, over_table)
-        self.spec: mujoco.MjSpec = build_spec(self._machine, job.tools[0])
+        self.machine = with_blank(machine, job, self.part_zero, over_table)
+        self.spec: mujoco.MjSpec = build_spec(self.machine, job.tools[0])
         self.part_frame: PartFrame = machine.part_frame.at(self.part_zero)
         self.clock = StageClock()
         self.trace = Trace(machine.axes, self.part_frame, self.part_zero)
@@ -223,7 +224,7 @@ class Run:
         return self.clock.watch("plan", settle(planned(), period))
 
     def _simulation(self, setpoints: Iterator[Setpoints], summary: ProgramSummary) -> Simulation:
-        machine, job = self._machine, self.preparation.job.file
+        machine, job = self.machine, self.preparation.job.file
         load = None
         self._process = program_process(job, machine, summary, self.part_frame, self.part_zero)
         if job.cutting_load and self._process is None:

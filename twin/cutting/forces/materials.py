@@ -16,11 +16,13 @@ class Kienzle:
     Attributes:
         kc: Specific cutting force of a chip 1 mm wide and 1 mm thick [N/mm²].
         mc: Its fall with the chip's thickness.
-        source: Where both are published.
+        density: [g/cm³].
+        source: Where the first two are published.
     """
 
     kc: float
     mc: float
+    density: float
     source: str = ""
 
 
@@ -29,7 +31,7 @@ def materials() -> dict[str, Kienzle]:
     """Every known material by the name that a job gives it."""
     tables = load_toml(Path(__file__).with_name("materials.toml"))
     return {
-        name: Kienzle(table["specific_force"], table["exponent"], table["source"])
+        name: Kienzle(table["specific_force"], table["exponent"], table["density"], table["source"])
         for name, table in tables.items()
     }
 

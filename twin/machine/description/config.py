@@ -13,6 +13,7 @@ from twin.files.overrides import Change, changed
 from twin.files.toml import Data, Table, checked, read_toml
 from twin.job.fixture import FixtureTable
 from twin.job.machine_functions import MachineFunctions
+from twin.job.weight import Weight
 from twin.machine.description.geometry import GeometryTable
 from twin.machine.description.variant import on_base
 from twin.nc.canonical import SPATIAL_AXES, Axes, FloatArray
@@ -279,11 +280,13 @@ class Blank(NamedTuple):
         size: Of the box around it [mm].
         center: Of that box over the middle of the table [mm].
         round: An upright cylinder; else the box itself.
+        weight: What it weighs, seen from the middle of the table; None: not known.
     """
 
     size: tuple[float, float, float]
     center: tuple[float, float, float]
     round: bool
+    weight: Weight | None = None
 
 
 class Machine:

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 
 from twin.errors import ConfigError
+from twin.job.weight import Weight
 from twin.machine.description.config import Blank, Machine
 from twin.machine.description.measured_mass import set_measured_masses
 from twin.machine.model.drive_actuators import add_drives
@@ -21,6 +22,7 @@ from twin.machine.model.tool_shape import (
     add_tool,
 )
 from twin.machine.model.transmission import add_inertia
+from twin.nc.canonical import FloatArray
 from twin.units import MM
 
 SPINDLE_NOSE = "spindle_nose"
@@ -31,6 +33,9 @@ BLANK = "stock"
 """Geom of the stock, as an alarm calls it."""
 ROTARY_TABLE = "rotary_table"
 """Body that the part is clamped to."""
+
+_TUNED_FOR = "moved at tuning"
+"""Number field of a model: what the motors felt when their drives were tuned."""
 
 _JOINT_TYPES = {"linear": mujoco.mjtJoint.mjJNT_SLIDE, "rotary": mujoco.mjtJoint.mjJNT_HINGE}
 
@@ -68,7 +73,9 @@ def _complete(spec: mujoco.MjSpec, machine: Machine, tool: ToolShape | None) -> 
     _set_clock(spec, machine)
     _set_inertia(spec, machine)
     _require_actuators(spec, machine)
-    add_drives(spec, machine, drives(machine, compiled(_without(spec, VISUAL_GROUP), machine)))
+    empty = drives(machine, compiled(_without(spec, VISUAL_GROUP), machine))
+    add_drives(spec, machine, empty)
+    spec.add_numeric(name=_TUNED_FOR, data=[drive.moved for drive in empty])
     _add_fixtures(spec, machine)
     if machine.blank is not None:
         _add_blank(spec, machine.blank)
@@ -147,10 +154,25 @@ def _add_fixtures(spec: mujoco.MjSpec, machine: Machine) -> None:
                 conaffinity=TOOL_SIDE | FRAME_SIDE if collides else 0,
                 mass=0.0,
             )
+        _add_weight(spec, fixture.weight.moved(fixture.position))
+
+
+def _add_weight(spec: mujoco.MjSpec, weight: Weight) -> None:
+    """Clamp a weight to the table; it is placed from the middle of the work-holding surface."""
+    if not weight.mass:
+        return
+    top = spec.site(TABLE_TOP)
+    body = top.parent.add_body(pos=list(top.pos + np.array(weight.center) * MM))
+    body.explicitinertial = True
+    body.mass = weight.mass
+    body.ipos = np.zeros(3)
+    body.fullinertia = np.array(weight.inertia)
 
 
 def _add_blank(spec: mujoco.MjSpec, blank: Blank) -> None:
     """To be held against the frame; what is on the tool's side is held against what is left of it."""
+    if blank.weight is not None:
+        _add_weight(spec, blank.weight)
     top, half = spec.site(TABLE_TOP), np.array(blank.size) / 2.0 * MM
     top.parent.add_geom(
         name=BLANK,
@@ -185,19 +207,32 @@ def compiled(spec: mujoco.MjSpec, machine: Machine) -> mujoco.MjModel:
 def drives(machine: Machine, model: mujoco.MjModel) -> tuple[Drive, ...]:
     """Derive every axis's position loop from the masses of the compiled model at home.
 
+    They are those of the empty table: what a job clamps there changes no gain, as no control is
+    tuned anew for each part.
+
     Returns:
         One drive per axis, in the order of ``machine.axes``.
+    """
+    numbers = [model.numeric(index).name for index in range(model.nnumeric)]
+    tuned_for = model.numeric(_TUNED_FOR).data if _TUNED_FOR in numbers else moved(machine, model)
+    return tuple(
+        tune(machine.axis(name), float(size))
+        for name, size in zip(machine.axes.names, tuned_for, strict=True)
+    )
+
+
+def moved(machine: Machine, model: mujoco.MjModel) -> FloatArray:
+    """What the motors feel of a compiled model at home, with all that is on the table.
+
+    Returns:
+        Mass [kg] or moment of inertia [kg m²] of every axis, shape (k,).
     """
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     inertia = np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, inertia)
-    found = []
-    for name in machine.axes.names:
-        axis = machine.axis(name)
-        dof = int(model.joint(axis.joint).dofadr[0])
-        found.append(tune(axis, float(inertia[dof, dof])))
-    return tuple(found)
+    joints = [model.joint(machine.axis(name).joint) for name in machine.axes.names]
+    return np.array([inertia[dof, dof] for dof in (int(joint.dofadr[0]) for joint in joints)])
 
 
 def physics_model(machine: Machine, spec: mujoco.MjSpec) -> mujoco.MjModel:

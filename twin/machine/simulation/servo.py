@@ -2,6 +2,7 @@
 
 import copy
 import dataclasses
+from collections.abc import Iterable
 
 import mujoco
 import numpy as np
@@ -11,7 +12,7 @@ from mujoco.rollout import Rollout
 from twin.columns import join
 from twin.machine.description.config import Machine
 from twin.machine.model.drives import Drive, feedforward_name, integral_name
-from twin.machine.model.model import drives
+from twin.machine.model.model import drives, moved
 from twin.machine.model.timers import switch_off_timers
 from twin.machine.model.transmission import felt, give_name, give_stiffness, has_give
 from twin.machine.simulation.drive_kernels import (
@@ -26,6 +27,7 @@ from twin.machine.simulation.late_drives import LateDrives, Told, is_late
 from twin.machine.simulation.process import Physics, Process
 from twin.machine.simulation.sampling import polyline_node
 from twin.machine.simulation.stepping import stepper
+from twin.machine.simulation.tick_kernels import follow_setpoints, loop_of, step_held
 from twin.machine.watching.alarms import SimulationError
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray, IntArray
@@ -38,7 +40,7 @@ _PUSH = int(mujoco.mjtState.mjSTATE_QFRC_APPLIED)
 _PARTS = (slice(0, 1), slice(1, None))
 """Of rows: what went before, and what follows."""
 _FEW = 8
-"""Steps that are sooner made one by one than by calling ``mujoco.rollout``."""
+"""Servo periods that are sooner stepped one by one than by calling ``mujoco.rollout``."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -56,6 +58,9 @@ class Stand:
     """Speed as each lag shows it, by the lag's name."""
     trails: tuple[FloatArray, FloatArray]
     """How far the filter of the command and half of the dead time are behind [mm or deg]."""
+
+
+_NOT_FINITE = "a setpoint is not a finite number"
 
 
 class Servo:
@@ -80,13 +85,11 @@ class Servo:
         joints = [model.joint(axis.joint) for axis in axes]
         self._qpos = np.array([int(joint.qposadr[0]) for joint in joints])
         self._dof = np.array([int(joint.dofadr[0]) for joint in joints])
-        servos = [model.actuator(name).id for name in machine.axes.names]
-        self._setpoint_state = model.actuator_actadr[servos]
+        self._setpoint_state = model.actuator_actadr[self._actuators(machine.axes.names)]
         self._integrates = np.flatnonzero([loop.integral_gain > 0 for loop in loops])
-        integral = [
-            model.actuator(integral_name(machine.axes.names[index])).id
-            for index in self._integrates
-        ]
+        integral = self._actuators(
+            integral_name(machine.axes.names[index]) for index in self._integrates
+        )
         self._integral_state = model.actuator_actadr[integral]
         self._integral_gain = np.array([loop.integral_gain for loop in loops])
         self._gives = np.flatnonzero([has_give(axis) for axis in axes])
@@ -110,18 +113,20 @@ class Servo:
         self._states = np.zeros((0, 0))
         self._chunk: Setpoints | None = None
         self._warmstart = np.zeros((1, model.nv))
+        self._idle = np.zeros((_FEW, len(loops)))
+
+    def _actuators(self, names: Iterable[str]) -> IntArray:
+        """Numbers of actuators by their names."""
+        return np.array([self.model.actuator(name).id for name in names], np.int64)
 
     def _columns(self, machine: Machine, loops: tuple[Drive, ...]) -> Drives:
         """What the kernels know of the drives."""
         model, everywhere, joined = self.model, len(loops), 1 + self.model.nq
-        axes = [machine.axis(name) for name in machine.axes.names]
+        names = machine.axes.names
+        axes = [machine.axis(name) for name in names]
         driven = list(zip(axes, loops, strict=True))
-        servos = [model.actuator(name).id for name in machine.axes.names]
-        forces = [model.actuator(feedforward_name(name)).id for name in machine.axes.names]
-        integral = [
-            model.actuator(integral_name(machine.axes.names[index])).id
-            for index in self._integrates
-        ]
+        servos, forces = self._actuators(names), self._actuators(map(feedforward_name, names))
+        integral = self._actuators(integral_name(names[index]) for index in self._integrates)
         return Drives(
             period=self._period,
             scale=self._scale,
@@ -139,8 +144,8 @@ class Servo:
             ),
             speed_bulge=np.array(
                 [
-                    axis.velocity_feedforward * loop.velocity_gain / felt(axis, loop.moved)
-                    for axis, loop in driven
+                    axis.velocity_feedforward * loop.velocity_gain / felt(axis, float(size))
+                    for (axis, loop), size in zip(driven, moved(machine, model), strict=True)
                 ]
             )
             * (self._period**2 / 12),
@@ -178,9 +183,11 @@ class Servo:
         Raises:
             SimulationError: MuJoCo warned, or a setpoint is not finite.
         """
+        if self._is_lean and load is None and 0 < len(chunk.time) <= _FEW:
+            return self._follow_few(chunk)
         points = _points(chunk)
         if not all_finite(points):
-            raise SimulationError("a setpoint is not a finite number")
+            raise SimulationError(_NOT_FINITE)
         begun: list[FloatArray] = []
         felt: list[ToolLoad] = []
         past, ahead, following = points, points, chunk
@@ -201,6 +208,32 @@ class Servo:
         self._chunk, self._states = chunk, states
         felt += [] if tool is None else [tool]
         return Samples(chunk, *self._read(points, told, states), join(felt) if felt else None)
+
+    @property
+    def _is_lean(self) -> bool:
+        """Whether one kernel makes a servo period: it has begun, nothing is late, and no tool pushes."""
+        return self._chunk is not None and self.process is None and self._late is None
+
+    def _follow_few(self, chunk: Setpoints) -> Samples:
+        """As ``follow``, with one call of a kernel."""
+        assert self._chunk is not None
+        points, idle = _points(chunk), self._idle[: len(chunk.time)]
+        self._warned[:] = 0
+        self._solver[:] = self._warmstart[0]
+        followed = follow_setpoints(self._loop, self._state, _points(self._chunk), points, idle)
+        states = followed.states
+        if not len(states):
+            raise SimulationError(_NOT_FINITE)
+        self._came_to(states[-1].copy())
+        self._chunk, self._states = chunk, states
+        return Samples(chunk, followed.position, followed.velocity, followed.force)
+
+    def _came_to(self, state: FloatArray) -> None:
+        """Stand in a state that was stepped to; refuse what MuJoCo warned of on the way."""
+        if any(self._warned.tolist()):
+            self._refuse_warnings()
+        self._state = state
+        self._warmstart = self._solver[None].copy()
 
     def _read(
         self, points: Points, told: Told | None, states: FloatArray
@@ -255,7 +288,10 @@ class Servo:
         """Views of MuJoCo's arrays, which are slow to ask for."""
         self._ctrl, self._pushed = self._data.ctrl, self._data.qfrc_applied
         self._warned = self._data.warning.number
+        self._solver = self._data.qacc_warmstart
         addresses = stepper(self.model, self._data)
+        arrays = (self._ctrl, self._pushed, self._solver)
+        self._loop = loop_of(self._drives, addresses, (self._substeps, _STATE), arrays)
         self._physics = Physics(
             addresses, self._ctrl, self._pushed, self._drives, self._substeps, _STATE
         )
@@ -390,37 +426,32 @@ class Servo:
         else:
             states = np.zeros((len(controls), len(self._state)))
             mujoco.mj_setState(self.model, self._data, self._state, _STATE)
-            self._data.qacc_warmstart[:] = self._warmstart[0]
+            self._solver[:] = self._warmstart[0]
             tool = self.process.follow(self._physics, setpoints, controls, states)
         self._pushed[:] = 0.0
-        if self._warned.any():
-            self._refuse_warnings()
-        self._state = states[-1].copy()
-        self._warmstart = self._data.qacc_warmstart[None].copy()
+        self._came_to(states[-1].copy())
         return states, tool
 
     def _roll_alone(self, controls: FloatArray, load: FloatArray | None) -> FloatArray:
         """States at setpoints, of a machine that nothing but a known load pushes, shape (n, width)."""
-        model, data, held = self.model, self._data, _CONTROL
-        pushes = None
-        if load is None and self._constant.any():
+        if load is None:
             load = np.zeros((len(controls), len(self._dof)))
-        if load is not None:
-            pushes, held = hold_pushes(self._drives, load, model.nv), _CONTROL | _PUSH
-        if self._substeps > 1:
-            controls = controls.repeat(self._substeps, axis=0)
-            pushes = None if pushes is None else pushes.repeat(self._substeps, axis=0)
-        if len(controls) <= _FEW * self._substeps:
-            states = self._step_one_by_one(controls, pushes)
-        else:
-            with Rollout(nthread=0) as rollout:
-                rolled, _ = rollout.rollout(
-                    model, data, self._state[None],
-                    (controls if pushes is None else np.hstack([controls, pushes]))[None],
-                    control_spec=held, initial_warmstart=self._warmstart,
-                )  # fmt: skip
-            states = rolled[0]
-        return states if self._substeps == 1 else states[self._substeps - 1 :: self._substeps]
+        if len(controls) <= _FEW:
+            pushes = hold_pushes(self._drives, load, self.model.nv)
+            self._solver[:] = self._warmstart[0]
+            return step_held(self._loop, self._state, controls, pushes)
+        held, steps = _CONTROL, self._substeps
+        if load.any() or self._constant.any():
+            pushes = hold_pushes(self._drives, load, self.model.nv)
+            controls, held = np.hstack([controls, pushes]), _CONTROL | _PUSH
+        if steps > 1:
+            controls = controls.repeat(steps, axis=0)
+        with Rollout(nthread=0) as rollout:
+            rolled, _ = rollout.rollout(
+                self.model, self._data, self._state[None], controls[None],
+                control_spec=held, initial_warmstart=self._warmstart,
+            )  # fmt: skip
+        return rolled[0] if steps == 1 else rolled[0][steps - 1 :: steps]
 
     def _controls(self, past: Points, points: Points, told: Told | None) -> FloatArray:
         """Controls to hold on the way to each setpoint, shape (n, nu), SI."""
@@ -430,20 +461,6 @@ class Servo:
         controls = hold_controls(self._drives, before, after, self.model.nu)
         controls[:, self._drives.force_input] += self._late.held_force(told)
         return controls
-
-    def _step_one_by_one(self, controls: FloatArray, pushes: FloatArray | None) -> FloatArray:
-        """What ``mujoco.rollout`` does, to the last bit."""
-        model, data = self.model, self._data
-        states = np.zeros((len(controls), len(self._state)))
-        mujoco.mj_setState(model, data, self._state, _STATE)
-        data.qacc_warmstart[:] = self._warmstart[0]
-        for row, state in enumerate(states):
-            self._ctrl[:] = controls[row]
-            if pushes is not None:
-                self._pushed[:] = pushes[row]
-            mujoco.mj_step(model, data)
-            mujoco.mj_getState(model, data, state, _STATE)
-        return states
 
     def _refuse_warnings(self) -> None:
         names = ", ".join(

@@ -22,22 +22,24 @@ class Stepper(NamedTuple):
         data: Of its data.
         step: Of ``mj_step``.
         get_state: Of ``mj_getState``.
+        set_state: Of ``mj_setState``.
     """
 
     model: int
     data: int
     step: int
     get_state: int
+    set_state: int
 
 
 def stepper(model: mujoco.MjModel, data: mujoco.MjData) -> Stepper:
     """The addresses for a kernel; model and data must outlive their use."""
     library = _library()
-    step, get_state = (
+    functions = (
         ctypes.cast(function, ctypes.c_void_p).value or 0
-        for function in (library.mj_step, library.mj_getState)
+        for function in (library.mj_step, library.mj_getState, library.mj_setState)
     )
-    return Stepper(model._address, data._address, step, get_state)  # noqa: SLF001 - MuJoCo has no public place for it
+    return Stepper(model._address, data._address, *functions)  # noqa: SLF001 - MuJoCo has no public place for it
 
 
 def _library() -> ctypes.CDLL:
@@ -66,7 +68,9 @@ step_machine: Any = intrinsic(_step)
 """``mj_step(model, data)``: takes the addresses of ``mj_step``, model and data; in kernels alone."""
 
 
-def _read(_context: Any, get_state: Any, model: Any, data: Any, state: Any, signature: Any) -> Any:
+def _pass_state(
+    _context: Any, function: Any, model: Any, data: Any, state: Any, signature: Any
+) -> Any:
     """What Numba asks for: the types, and the code of a call."""
 
     def code(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
@@ -79,9 +83,9 @@ def _read(_context: Any, get_state: Any, model: Any, data: Any, state: Any, sign
         builder.call(function, [*placed, builder.trunc(what, number)])
         return ir.Constant(ir.IntType(64), 0)
 
-    return types.int64(get_state, model, data, state, signature), code
+    return types.int64(function, model, data, state, signature), code
 
 
-read_state: Any = intrinsic(_read)
-"""``mj_getState(model, data, state, signature)``: takes the addresses of ``mj_getState``, model, data and
-state, and the signature; in kernels alone."""
+pass_state: Any = intrinsic(_pass_state)
+"""``mj_getState`` or ``mj_setState(model, data, state, signature)``: takes the addresses of the function,
+model, data and state, and the signature; in kernels alone."""

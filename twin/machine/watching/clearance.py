@@ -33,7 +33,12 @@ from twin.machine.model.tool_shape import (
     TOOL_SIDE,
 )
 from twin.machine.watching.alarms import Alarm, NearMiss
-from twin.machine.watching.plane_kernels import PlaneColumns, find_suspects, least_clearance
+from twin.machine.watching.plane_kernels import (
+    PlaneColumns,
+    find_suspects,
+    follow_suspects,
+    least_clearance,
+)
 from twin.machine.watching.relative_motion import RelativeMotion
 from twin.nc.canonical import FloatArray, IntArray
 from twin.recording.reader import Samples
@@ -88,23 +93,23 @@ class _Plane(NamedTuple):
 class _Planes:
     """The planes of all p pairs, of which t tracks tell."""
 
-    def __init__(self, reach: FloatArray, track: IntArray, width: int) -> None:
+    def __init__(self, reach: FloatArray, track: IntArray, width: int, near: FloatArray) -> None:
         count = len(reach)
         self.track = track
         self.columns = PlaneColumns(
             np.full(count, -np.inf), np.zeros((count, 3)), np.zeros((count, width)),
-            reach, np.zeros(count), track,
+            reach, np.zeros(count), track, near, np.full(count, -TOUCH),
         )  # fmt: skip
 
     def __getitem__(self, pair: int) -> _Plane:
-        clearance, normal, place, reach, slack, _ = self.columns
+        clearance, normal, place, reach, slack, *_ = self.columns
         return _Plane(
             float(clearance[pair]), normal[pair].copy(), place[pair].copy(),
             float(reach[pair]), float(slack[pair]),
         )  # fmt: skip
 
     def __setitem__(self, pair: int, plane: _Plane) -> None:
-        clearance, normal, place, _, slack, _ = self.columns
+        clearance, normal, place, _, slack, *_ = self.columns
         clearance[pair], normal[pair], place[pair] = plane.clearance, plane.normal, plane.place
         slack[pair] = plane.slack
 
@@ -137,15 +142,15 @@ class Clearance:
         self._fixed = [
             sum(pair) - moving for pair, moving in zip(self._pairs, self._moving, strict=True)
         ]
+        cuts = [model.geom(one).name in CUTTING_PARTS for one, _ in self._pairs]
         self._planes = _Planes(
             np.array([reach for _, _, reach in followed]),
             np.array([track for _, track, _ in followed], np.int64),
             3 + machine.axes.kinds.count("rotary"),
+            np.where(cuts, -np.inf, self._worth_reporting),
         )
-        self._all = np.arange(len(self._pairs))
-        self._threshold = np.full(len(self._pairs), -TOUCH)
-        cuts = [model.geom(one).name in CUTTING_PARTS for one, _ in self._pairs]
-        self._near = np.where(cuts, -np.inf, self._worth_reporting)
+        self._near, self._threshold = self._planes.columns.near, self._planes.columns.threshold
+        self._followed = self._motion.followed()
         self._last: FloatArray | None = None
         self._witness = np.zeros(6)
 
@@ -185,25 +190,23 @@ class Clearance:
         if self._last is not None:
             position, known = np.concatenate([self._last, position]), 1
         self._last = position[-1:].copy()
-        tracks = self._motion.tracks(position)
-        suspects = self._suspects(self._all, tracks, known, len(position))
+        tracks, suspects = follow_suspects(
+            self._planes.columns, self._motion.chain, self._followed, position, known, -TOUCH
+        )
         if not len(suspects):
             return None
         way = _Way(samples, position, tracks, known)
         for start in range(known, len(position), _BLOCK):
             block = slice(start, min(start + _BLOCK, len(position)))
-            near = self._suspects(suspects, tracks, block.start, block.stop).tolist()
-            met = [(found, pair) for pair in near if (found := self._along(pair, way, block))]
+            near = find_suspects(
+                self._planes.columns, suspects, tracks, block.start, block.stop, -TOUCH
+            )
+            close = near.tolist()
+            met = [(found, pair) for pair in close if (found := self._along(pair, way, block))]
             if met:
                 (row, depth), pair = min(met)
                 return self._alarm(way, row, depth, pair)
         return None
-
-    def _suspects(self, pairs: IntArray, tracks: FloatArray, first: int, last: int) -> IntArray:
-        """Of some pairs those that their planes do not clear of the box around some samples."""
-        return find_suspects(
-            self._planes.columns, pairs, tracks, first, last, self._near, self._threshold, -TOUCH
-        )
 
     def _along(self, pair: int, way: "_Way", block: slice) -> tuple[int, float] | None:
         """Follow a pair along a block of samples.

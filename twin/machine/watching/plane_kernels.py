@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.kernel import array_kernel, kernel
+from twin.machine.watching.track_kernels import Chain, Followed, follow_tracks
 from twin.nc.canonical import FloatArray, IntArray
 
 
@@ -19,6 +20,8 @@ class PlaneColumns(NamedTuple):
         reach: Farthest that a point of the geom is displaced by turning [mm/rad], shape (p,).
         slack: 1 where there is no plane, and any displacement may bring the two together; else 0.
         track: Which track tells of each pair, shape (p,).
+        near: As in ``least_clearance``, shape (p,).
+        threshold: Likewise.
     """
 
     clearance: FloatArray
@@ -27,6 +30,8 @@ class PlaneColumns(NamedTuple):
     reach: FloatArray
     slack: FloatArray
     track: IntArray
+    near: FloatArray
+    threshold: FloatArray
 
 
 @kernel
@@ -42,10 +47,29 @@ def least_clearance(near: float, threshold: float, touch: float) -> float:
 
 
 @array_kernel
+def follow_suspects(
+    planes: PlaneColumns, chain: Chain, followed: Followed, position: FloatArray, known: int,
+    touch: float,
+) -> tuple[FloatArray, IntArray]:  # fmt: skip
+    """The tracks along samples, and the pairs that are not cleared of the box around all of them.
+
+    Args:
+        planes: Of all pairs.
+        chain: What the axes carry.
+        followed: What is followed.
+        position: Of the axes, shape (n, k) [mm or deg].
+        known: Rows that were looked at before.
+        touch: As in ``least_clearance``.
+    """
+    tracks = follow_tracks(chain, followed, position)
+    every = np.arange(len(planes.track))
+    return tracks, find_suspects(planes, every, tracks, known, len(position), touch)
+
+
+@array_kernel
 def find_suspects(
-    planes: PlaneColumns, pairs: IntArray, tracks: FloatArray, first: int, last: int,
-    near: FloatArray, threshold: FloatArray, touch: float,
-) -> IntArray:  # fmt: skip
+    planes: PlaneColumns, pairs: IntArray, tracks: FloatArray, first: int, last: int, touch: float
+) -> IntArray:
     """The pairs that their planes do not clear wherever their tracks go within boxes.
 
     Args:
@@ -54,8 +78,6 @@ def find_suspects(
         tracks: Shape (t, w, n).
         first: First sample; the boxes are those around it and what follows.
         last: Sample after the last.
-        near: As in ``least_clearance``, of all pairs.
-        threshold: As in ``least_clearance``, of all pairs.
         touch: As in ``least_clearance``.
     """
     width = tracks.shape[1]
@@ -82,7 +104,7 @@ def find_suspects(
                 turned += farthest
         left = planes.clearance[pair] + approach
         left -= planes.reach[pair] * turned + planes.slack[pair] * displaced
-        least = least_clearance(float(near[pair]), float(threshold[pair]), touch)
+        least = least_clearance(float(planes.near[pair]), float(planes.threshold[pair]), touch)
         if left < least:
             suspects[count] = pair
             count += 1

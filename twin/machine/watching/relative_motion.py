@@ -10,7 +10,7 @@ import itertools
 import mujoco
 import numpy as np
 
-from twin.machine.watching.track_kernels import Chain, Followed, follow_tracks
+from twin.machine.watching.track_kernels import Chain, Followed
 from twin.nc.canonical import FloatArray
 from twin.units import MM
 
@@ -44,7 +44,8 @@ class RelativeMotion:
     """The axes of a machine and what hangs on them.
 
     Attributes:
-        seen: What is followed, one for each track that ``tracks`` returns.
+        seen: What is followed, one for each track.
+        chain: The axes and what they carry, for the kernels.
     """
 
     def __init__(self, model: mujoco.MjModel, joints: list[int], scale: FloatArray) -> None:
@@ -57,20 +58,17 @@ class RelativeMotion:
         """
         self._model = model
         self._joints = joints
-        self._scale = scale
         self._data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, self._data)
         hinge = mujoco.mjtJoint.mjJNT_HINGE
         self._hinge = [mujoco.mjtJoint(model.jnt_type[joint]) == hinge for joint in joints]
         self.seen: list[Seen] = []
-        self._chain = self._carriers()
-        self._followed: Followed | None = None
+        self.chain = self._carriers(scale)
 
     def follow(self, seen: Seen) -> int:
         """Follow something; return the number of its track."""
         if seen not in self.seen:
             self.seen.append(seen)
-            self._followed = None
         return self.seen.index(seen)
 
     def view(self, geom: int, frame: int) -> Seen:
@@ -107,22 +105,7 @@ class RelativeMotion:
             body = int(self._model.body_parentid[body])
         return frozenset(found)
 
-    def tracks(self, position: FloatArray) -> FloatArray:
-        """Follow all that is seen along samples.
-
-        Args:
-            position: Of the axes, shape (n, k) [mm or deg].
-
-        Returns:
-            For each of t ``seen`` its point in its frame [mm], and for each rotary axis where it
-            stands [rad] if it turns the two against each other, else 0; shape
-            (t, 3 + rotary axes, n).
-        """
-        if self._followed is None:
-            self._followed = self._points()
-        return follow_tracks(self._chain, self._followed, position * self._scale)
-
-    def _points(self) -> Followed:
+    def followed(self) -> Followed:
         """What is followed, as columns."""
         rotary = [axis for axis, hinge in enumerate(self._hinge) if hinge]
         return Followed(
@@ -135,7 +118,7 @@ class RelativeMotion:
             ).reshape(-1, len(rotary)),
         )
 
-    def _carriers(self) -> Chain:
+    def _carriers(self, scale: FloatArray) -> Chain:
         """The bodies of the model with the joints of the axes."""
         model = self._model
         of_body = [
@@ -154,6 +137,7 @@ class RelativeMotion:
             model.jnt_axis[joints],
             model.jnt_pos[joints],
             model.qpos0[model.jnt_qposadr[joints]],
+            scale,
         )
 
 

@@ -24,6 +24,7 @@ class Chain(NamedTuple):
         along: Direction in which it slides or about which it turns, shape (j, 3).
         anchor: A point that stays where it is when it turns, shape (j, 3) [m].
         rest: Where the model says that it stands, shape (j,) [m or rad].
+        scale: What each axis moves per unit, shape (k,) [m/mm or rad/deg].
     """
 
     parent: IntArray
@@ -35,6 +36,7 @@ class Chain(NamedTuple):
     along: FloatArray
     anchor: FloatArray
     rest: FloatArray
+    scale: FloatArray
 
 
 class Followed(NamedTuple):
@@ -55,18 +57,19 @@ class Followed(NamedTuple):
 
 
 @array_kernel
-def follow_tracks(chain: Chain, followed: Followed, joint: FloatArray) -> FloatArray:
+def follow_tracks(chain: Chain, followed: Followed, position: FloatArray) -> FloatArray:
     """Follow points along samples.
 
     Args:
         chain: The bodies.
         followed: What is followed.
-        joint: Of the axes, shape (n, k) [m or rad].
+        position: Of the axes, shape (n, k) [mm or deg].
 
     Returns:
         Each point in its frame [mm], and where each rotary axis stands [rad] if it turns the two
         against each other, else 0; shape (t, 3 + r, n).
     """
+    joint = position * chain.scale
     count, bodies = len(joint), len(chain.parent)
     tracks = np.zeros((len(followed.frame), 3 + followed.turning.shape[1], count))
     place, turn = np.zeros((bodies, 3)), np.zeros((bodies, 3, 3))

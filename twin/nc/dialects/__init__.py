@@ -43,7 +43,7 @@ def recognise(source: Source) -> Dialect:
     Raises:
         UsageError: No dialect's own words stand in it, or those of several, none of which has all.
     """
-    found = _marks_found(source)
+    found = marks_found(source)
     fitting = [name for name, marks in found.items() if marks]
     everything = {mark for marks in found.values() for mark in marks}
     complete = [name for name in fitting if everything <= set(found[name])]
@@ -72,7 +72,7 @@ def _listed(words: Mapping[str, list[str]]) -> str:
     return "".join(f"\n    {name}: {', '.join(shown)}" for name, shown in words.items())
 
 
-def _marks_found(source: Source) -> dict[str, list[str]]:
+def marks_found(source: Source) -> dict[str, list[str]]:
     """The marks of each dialect that stand in a program."""
     patterns = {
         (dialect.name, mark.shown): re.compile(mark.pattern, re.IGNORECASE)
@@ -95,7 +95,9 @@ def _marks_found(source: Source) -> dict[str, list[str]]:
 
 _BRACKETS = re.compile(r"\([^()]*\)")
 """A comment in every dialect: what it says decides nothing."""
-_VALUES = re.compile(r"(?<=[XYZABCIJKRUVWN])[-+]?[0-9.]+(?![0-9.]|[ \t]*=)", re.IGNORECASE)
+_VALUES = re.compile(
+    r"(?<=[XYZABCIJKRUVWN])[-+]?(?=[.]?[0-9])[0-9.]+(?![0-9.]|[ \t]*=)", re.IGNORECASE
+)
 """Values of words that no mark looks at: without them most lines of long programs are the same."""
 _MOST_SHAPES = 10_000
 

@@ -64,6 +64,7 @@ CODESYS = Dialect(
             for sign in ("", "-")
         },
     },
+    spindle_letter="",
     statements={
         "LET": StatementEffect(program.let),
         "SUBPROGRAM": subprograms.define,
@@ -119,10 +120,12 @@ CODESYS = Dialect(
         Mark(r"\bG20[ \t]+L|\bL[?!][ \t]*\d", "G20 L, L?, L!"),
         Mark(r"\bG5[12][ \t]*D|\bG16[ \t]*[IJK]|\bG3[67]\b.*\bD", "G51 D, G52 D, G16 I J K, G36 D"),
         Mark(r"\b(?:FF|P[ABC])[ \t]*\d", "FF, PA, PB, PC"),
-        Mark(r"\bG0?[89]\b.*\bK[ \t]*-?[\d.]+.*\bR[ \t]*[01]?\.\d", "an ellipse: G8 K R0.5"),
+        Mark(r"\bG0?[89]\b(?!.*\bG[ \t]*\d).*\bI.*\bK.*\bR[ \t]*-?[.\d]", "an ellipse: G8 I K R"),
         Mark(r"\bG7[01][ \t]+L[ \t]*\d", "G71 L6"),
         Mark(r"\bH[ \t]*-?\d+[ \t]*[OL][ \t]*-?[\d.]", "a switch point H with O or L"),
-        Mark(r"[XYZ][^ \t;$\"]*\b(?:SIN|COS|SQRT|PI)\b(?!\[)", "functions with round brackets"),
+        Mark(
+            r"[XYZ](?:[^ \t;$\"]*\b)?(?:SIN|COS|SQRT|PI)\b(?!\[)", "functions with round brackets"
+        ),
     ),
     memory=program.Variables,
     before_motion=words.before_motion,

@@ -58,7 +58,7 @@ def after_motion(control: Control) -> None:
 
 _FAMILY = (
     Mark(r"^[ \t]*O[ \t]*[0-9]{1,8}[ \t;]*$", "O1000 (a program's number)"),
-    Mark(r"\bIF[ \t]*\[.*\](?:[ \t]*)(?:GOTO|THEN)\b", "IF [...] GOTO, IF [...] THEN"),
+    Mark(r"\bIF[ \t]*\[.*\][ \t]*(?:GOTO|THEN)(?![A-Z])", "IF [...] GOTO, IF [...] THEN"),
     Mark(r"\bWHILE[ \t]*\[.*\][ \t]*DO[ \t]*[1-3]\b", "WHILE [...] DO1"),
     Mark(r"\bG6[56][ \t]*P[ \t]*[0-9]", "G65 P, G66 P (a macro call)"),
     Mark(r"#300[06][ \t]*=", "#3000=1 (an alarm)"),

@@ -1,0 +1,124 @@
+"""What lies on the table is moved by the axes below it."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from tests.machine.machine_fixtures import PERIOD, setpoints, shipped_machine
+from twin.cutting.blank_weight import blank_weight
+from twin.job.fixture import FixtureTable
+from twin.job.job_file import JobFile, StockTable
+from twin.machine.description.config import Machine
+from twin.machine.model.model import build_spec, drives, moved, physics_model, spindle_over_table_mm
+from twin.machine.simulation.servo import Servo
+from twin.run.placement import part_zero, with_blank
+
+DISC = StockTable(shape="cylinder", diameter=340.0, height=98.21564381, density=7.85)
+"""70 kg; its inertia about its axis is m r²/2 = 1.01 kg m²."""
+
+
+def clamped(machine: Machine, stock: StockTable) -> Machine:
+    """A machine with a blank on its table."""
+    job = JobFile(program="part.nc", stock=stock)
+    over_table = spindle_over_table_mm(machine)
+    return with_blank(machine, job, part_zero(job, machine, over_table), over_table)
+
+
+def felt(machine: Machine) -> dict[str, float]:
+    """What each motor feels, motor and screw included."""
+    model = physics_model(machine, build_spec(machine))
+    return dict(zip(machine.axes.names, moved(machine, model), strict=True))
+
+
+def test_seventy_kilograms_on_the_table_are_moved_by_x_y_and_c_but_not_by_z() -> None:
+    empty = shipped_machine()
+    before, after = felt(empty), felt(clamped(empty, DISC))
+    for axis in "XY":
+        assert after[axis] - before[axis] == pytest.approx(70.0, rel=1e-5)
+    assert after["C"] - before["C"] == pytest.approx(0.5 * 70.0 * 0.17**2, rel=1e-5)
+    assert after["C"] / before["C"] == pytest.approx(1.40, abs=0.01)
+    assert after["Z"] == before["Z"]
+
+
+def test_what_lies_beside_the_middle_turns_with_its_distance() -> None:
+    """Huygens and Steiner: a fixture's m (x² + y²) comes on top of its own inertia."""
+    empty = shipped_machine()
+    jaw = FixtureTable(name="jaw", size=(100.0, 40.0, 50.0), position=(30.0, -120.0, 0.0), mass=4.0)
+    pin = FixtureTable(name="pin", diameter=40.0, height=60.0, position=(0.0, 90.0, 0.0), mass=2.0)
+    before, after = felt(empty), felt(empty.with_fixtures((jaw, pin)))
+    own = 4.0 * (0.1**2 + 0.04**2) / 12.0 + 0.5 * 2.0 * 0.02**2
+    steiner = 4.0 * (0.03**2 + 0.12**2) + 2.0 * 0.09**2
+    assert after["C"] - before["C"] == pytest.approx(own + steiner, rel=1e-9)
+    assert after["X"] - before["X"] == pytest.approx(6.0, rel=1e-9)
+
+
+def test_the_gains_are_those_of_the_empty_table() -> None:
+    empty = shipped_machine()
+    loaded = clamped(empty, DISC)
+    models = [physics_model(machine, build_spec(machine)) for machine in (empty, loaded)]
+    assert drives(empty, models[0]) == drives(loaded, models[1])
+
+
+def test_a_heavier_table_lags_by_the_force_that_nobody_told_its_drive() -> None:
+    """Told all of velocity and of the empty table's acceleration a, C trails by dJ a / (J w²)."""
+    empty = shipped_machine(velocity_feedforward=1.0, acceleration_feedforward=1.0)
+    loaded = clamped(empty, DISC)
+    rate = 600.0  # deg/s²
+    time = PERIOD * np.arange(301)
+    position, velocity, acceleration = np.zeros((3, len(time), 4))
+    position[:, 3], velocity[:, 3], acceleration[:, 3] = 0.5 * rate * time**2, rate * time, rate
+    lag = []
+    for machine in (empty, loaded):
+        model = physics_model(machine, build_spec(machine))
+        samples = Servo(machine, model).follow(setpoints(position, velocity, acceleration))
+        lag.append(float(position[-1, 3] - samples.joint_position[-1, 3]))
+    frequency = drives(empty, model)[3].natural_frequency
+    share = felt(loaded)["C"] / felt(empty)["C"] - 1.0
+    assert lag[0] == pytest.approx(0.0, abs=1e-5)
+    assert lag[1] == pytest.approx(share * rate / frequency**2, rel=1e-3)
+
+
+def test_a_blank_weighs_by_its_material_and_not_at_all_without_one() -> None:
+    plain = StockTable(shape="box", size=(100.0, 80.0, 20.0))
+    assert blank_weight(plain) is None
+    steel = blank_weight(plain.model_copy(update={"material": "C45"}))
+    assert steel is not None
+    assert steel.mass == pytest.approx(0.16 * 7.85)
+    assert steel.center == (0.0, 0.0, -10.0)
+    light = blank_weight(plain.model_copy(update={"material": "C45", "density": 2.7}))
+    assert light is not None
+    assert light.mass == pytest.approx(0.16 * 2.7)
+
+
+def test_a_tube_lacks_its_bore() -> None:
+    tube = StockTable(shape="tube", diameter=100.0, bore=60.0, height=40.0, density=1.0)
+    found = blank_weight(tube)
+    whole = blank_weight(StockTable(shape="cylinder", diameter=100.0, height=40.0, density=1.0))
+    core = blank_weight(StockTable(shape="cylinder", diameter=60.0, height=40.0, density=1.0))
+    assert found is not None
+    assert whole is not None
+    assert core is not None
+    assert found.mass == pytest.approx(whole.mass - core.mass)
+    assert found.inertia == pytest.approx(np.subtract(whole.inertia, core.inertia))
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_a_shape_from_a_file_weighs_what_its_solid_does(tmp_path: Path, closed: bool) -> None:
+    """A box that stands askew on its corner is the box: same mass, same moments."""
+    mesh = trimesh.creation.box((60.0, 40.0, 20.0))
+    mesh.apply_transform(trimesh.transformations.euler_matrix(0.4, 0.3, 0.2))
+    if not closed:
+        mesh.update_faces(np.arange(len(mesh.faces)) > 0)
+    mesh.export(tmp_path / "part.stl")
+    found = blank_weight(StockTable(shape="stl", file=str(tmp_path / "part.stl"), density=2.0))
+    assert found is not None
+    assert found.mass == pytest.approx(0.096, rel=1e-5)
+    xx, yy, zz, xy, xz, yz = found.inertia
+    moments = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    box = [0.096 * (a**2 + b**2) / 12e6 for a, b in ((20, 40), (20, 60), (40, 60))]
+    assert moments == pytest.approx(box, rel=1e-4)
+    height = mesh.extents[2]
+    assert math.isclose(found.center[2], -0.5 * height, rel_tol=1e-4)
