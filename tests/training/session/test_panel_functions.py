@@ -189,7 +189,8 @@ def test_a_search_does_not_begin_within_a_compensated_contour(session, code, end
     begin = dict(zip(machine.axes.names, (0.0,) * len(machine.axes), strict=True))
     settings = dataclasses.replace(given, start=begin, tools={1: ToolData(radius=1.0, length=60.0)})
     run = ProgramRun(source_from_text(text, "test"), LINUXCNC, settings, machine, options)
-    run.begin(room.standing_setpoint, room.tables.program_zero)
+    where = room.standing_setpoint, room.tables.program_zero
+    run.begin(*where, room.spindle, 1.0)
     assert (run.ending, "compensated" in run.message) == (end or "stop", bool(end))
 
 

@@ -45,7 +45,8 @@ def rest(session: Session) -> None:
 
 
 def speed(session: Session) -> float:
-    return 60.0 * float(np.linalg.norm(session.room.samples.joint_velocity[-1, :3]))
+    """What the axes are told [mm/min]: the joints tremble under the teeth."""
+    return 60.0 * float(np.linalg.norm(session.room.samples.setpoint.velocity[-1, :3]))
 
 
 def test_override_turns_the_feed(session):

@@ -42,8 +42,7 @@ def test_what_went_wrong_is_told_with_its_block(wrecked, language):
     )  # fmt: skip
     told = words.alarm("rapid-into-stock")
     assert (wrong["why"], wrong["right"]) == (told.why, told.advice)
-    moment = wrecked.room.moments[0]
-    page = score_page(sheet, words, [moment.picture()])
+    page = score_page(sheet, words, [one.picture() for one in wrecked.room.moments])
     assert told.why in html.unescape(page)
     assert "data:image/png;base64," in page
 
