@@ -79,7 +79,7 @@ def test_one_direction_tells_backlash_and_neither_of_the_others(log: BallBarLog)
     found = fit_ball_bar(one)
     assert found.lost["X"].value == pytest.approx(GAPS[0], rel=0.05)
     assert (found.squareness, found.lag) == (None, None)
-    (contract,) = calibrate(mill(), [], ball_bars=[one]).as_contract()["ball_bars"]  # type: ignore[misc]
+    (contract,) = calibrate(mill(), [], ball_bars=[one]).as_contract()["ball_bars"]
     assert contract["undetermined"]["squareness"] == ONE_DIRECTION
 
 
