@@ -1,10 +1,11 @@
 """Synthetic machines whose truth is known: do the intervals of ``twin calibrate`` cover it?
 
-``python scripts/calibration_study.py [MACHINES] [SEED] [FIRST]`` draws machines (200 by default) with random
-drives, noise, quantisation, delay and rates from 50 Hz to 4 kHz, with force, with a current or with
-positions alone; half of them have a dead time, a filter of speed or command, an integrator, or a log
-behind a measuring filter; those before FIRST are passed over. It prints by parameter how many intervals cover the truth, and ends with 1
-where less than 90 % or more than 99 % of all do, or where something that is not told is not named.
+``python scripts/calibration_study.py [MACHINES] [SEED] [FIRST]`` draws machines (200 by default) with
+random drives, noise, quantisation, delay and rates from 50 Hz to 4 kHz, with force, with a current or
+with positions alone; half of them have a dead time, a filter of speed or command, an integrator, or a
+log behind a measuring filter. Those before FIRST are passed over. It prints by parameter how many
+intervals cover the truth, and ends with 1 where less than 90 % or more than 99 % of all do, or where
+something that is not told is not named.
 """
 
 import collections
