@@ -28,6 +28,8 @@ from twin.nc.text.source import read_source
 PEERS = Path(__file__).resolve().parents[2] / ".peers"
 """Where ``scripts/bench --peers`` puts them."""
 BLOCKS = LINES
+CONTOUR = LINES // 10
+_HEAD = ("G90 G17", "G1 X0 Y0 Z0 F1000")
 _AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 _SETTINGS = ControlSettings(
     axes=_AXES,
@@ -46,13 +48,13 @@ def rows() -> Iterator[Row]:
             rate = BLOCKS / median_cpu_seconds(lambda p=path: _interpret(p, "gost"))
             for measure in (_nc_gcode_interpreter, _rs274):
                 yield _row(task, rate, BLOCKS, *measure(path))
-            cold = median_cpu_seconds(
-                lambda p=path: _interpret(p, "gost", compiled_from=BLOCKS * 2)
-            )
-            yield Row("nc", f"{task}, nothing compiled", BLOCKS / cold, "blocks/s")
+            yield _cold_row(task, path, BLOCKS)
             for dialect in _SAME_LANGUAGE:
                 rate = BLOCKS / median_cpu_seconds(lambda p=path, d=dialect: _interpret(p, d))
                 yield Row("nc", f"{task}, {dialect}", rate, "blocks/s")
+        contour = Path(folder, "contour.nc")
+        contour.write_text("\n".join([*_HEAD, "G41 D1", *_contour(), "M2", ""]))
+        yield _cold_row(f"{CONTOUR:,} lines of a compensated contour", contour, CONTOUR)
         for each in programs():
             ours, theirs = Path(folder, "ours.nc"), Path(folder, "theirs.ngc")
             ours.write_text(each.ours)
@@ -60,6 +62,12 @@ def rows() -> Iterator[Row]:
             seconds = median_cpu_seconds(lambda o=ours, e=each: _interpret(o, e.dialect))
             task = f"{each.dialect}: {each.task}"
             yield _row(task, each.blocks / seconds, each.blocks, *_rs274(theirs))
+
+
+def _cold_row(task: str, path: Path, blocks: int) -> Row:
+    """The interpreter tier alone."""
+    seconds = median_cpu_seconds(lambda: _interpret(path, "gost", compiled_from=10**9))
+    return Row("nc", f"{task}, nothing compiled", blocks / seconds, "blocks/s")
 
 
 def _row(task: str, rate: float, blocks: int, peer: str, seconds: float | None) -> Row:
@@ -74,7 +82,7 @@ def _programs(folder: Path) -> Iterator[tuple[str, Path]]:
         (f"{BLOCKS * 9 // 10:,} arcs, {BLOCKS // 10:,} helices", _arcs()),
     ):
         path = folder / f"{len(task)}.ngc"
-        path.write_text("\n".join(["G90 G17", "G1 X0 Y0 Z0 F1000", *lines, "M2", ""]))
+        path.write_text("\n".join([*_HEAD, *lines, "M2", ""]))
         yield task, path
 
 
@@ -101,6 +109,14 @@ def _arcs() -> Iterator[str]:
             z = z - 1 if z > -50 else 0
             height = f" Z{z}"
         yield f"G{2 if clockwise else 3} X{x}.000 Y{y}.000{height} I{i}.000 J{j}.000"
+
+
+def _contour() -> Iterator[str]:
+    """A zigzag whose corners the tool fits into."""
+    chance, x = random.Random(3), 0.0  # noqa: S311 (the same)
+    for _ in range(CONTOUR):
+        x += chance.uniform(5.0, 9.0)
+        yield f"G1 X{x:.3f} Y{chance.uniform(0.0, 4.0):.3f}"
 
 
 def _interpret(path: Path, dialect: str, compiled_from: int | None = None) -> int:

@@ -136,6 +136,37 @@ def test_a_sharp_reversal_holds_no_contour_error_for_a_late_tool():
     assert figures.contour.max < 1e-3
 
 
+@pytest.mark.parametrize("angle", [5.0, 15.0, 30.0])
+def test_in_an_acute_corner_of_the_table_the_nearer_leg_counts(angle: float):
+    """The first leg is a circle, by C alone, the second a straight line inside of it.
+
+    A tool between them has |r - R| to the circle and |a cos(d) - b sin(d)| to the line, and goes from the
+    one to the other and back.
+    """
+    radius, turn = 50.0, 30.0
+    slant = np.deg2rad(angle)
+    corner = at(40.0 + radius, -30.0, c=15.0 + turn) - PART_ZERO
+    back = np.array([-np.sin(slant), -np.cos(slant), 0.0, 0.0])
+    moves = moves_of(
+        line(corner - [0.0, 0.0, 0.0, turn], corner), line(corner, corner + 20.0 * back)
+    )
+    setpoint = setpoints(moves, per_move=200)
+    # In the tool's frame at the end of C the circle leaves the corner downwards.
+    below, inside = 5.0, np.zeros(len(setpoint))
+    legs = np.array([radius - np.sqrt(radius**2 - below**2), below * np.tan(slant)])
+    across = 0.5 + 0.3 * np.sin(np.linspace(0.0, 6.0 * np.pi, 140))
+    inside[-140:] = legs[0] + across * (legs[1] - legs[0])
+    joint = setpoint.position.copy()
+    joint[-140:] = corner + PART_ZERO
+    joint[-140:, 0] -= inside[-140:]
+    joint[-140:, 1] -= below
+    _, error = compare(moves, setpoint, joint)
+    x, y = radius - inside[-140:], -below
+    to_circle = np.abs(np.hypot(x, y) - radius)
+    to_line = np.abs((radius - x) * np.cos(slant) + y * np.sin(slant))
+    assert error[-140:] == pytest.approx(1000.0 * np.minimum(to_circle, to_line), abs=1e-3)
+
+
 def test_going_back_over_the_same_line_does_not_hold_the_tool():
     rows: list[Row] = []
     for _ in range(20):

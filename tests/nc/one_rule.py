@@ -118,6 +118,24 @@ CHANGES = (
     ),
     Change("text/arithmetic", "return a + b\n", "return a + b + 1.0\n", "fagor8070/rules/flow"),
     Change(
+        "bytecode/expressions",
+        "binary(operand, stack[place], stack[place + 1])",
+        "binary(operand, stack[place + 1], stack[place])",
+        "fagor8070/rules/flow",
+    ),
+    Change(
+        "geometry/frame",
+        "return (x + total[0], y + total[1], z + total[2])",
+        "return (x + total[0] + 1.0, y + total[1], z + total[2])",
+        "fagor8070/codes/G73",
+    ),
+    Change(
+        "geometry/polar",
+        "origin[0] + radius * cosine",
+        "origin[0] - radius * cosine",
+        "fagor8070/rules/polar",
+    ),
+    Change(
         "path/drilling_cycle", "CHIP_CLEARANCE = 0.5", "CHIP_CLEARANCE = 0.6", "gost/rules/drilling"
     ),
     Change(

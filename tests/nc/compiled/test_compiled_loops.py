@@ -3,7 +3,7 @@
 import dataclasses
 import math
 import struct
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from random import Random
 from unittest import mock
 
@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from tests.nc.compiled.loop_programs import MAKERS, program
 from tests.nc.compiled.test_both_tiers import ALWAYS, assert_same, seen
 from tests.nc.running import SETTINGS, WITH_TABLES, bad
+from twin.nc.bytecode import expressions
 from twin.nc.control.executor import Executor
 from twin.nc.dialects import DIALECTS
 from twin.nc.text.expressions import LARGEST_NUMBER
@@ -66,20 +67,35 @@ SPECIAL = [0.0, -0.0, 1.0, -1.0, 0.5, -0.5, 2.5, -1e-9, 1e12, -1e12, 30.0, 45.0,
 OPERAND = st.sampled_from(SPECIAL) | st.floats(-1e12, 1e12) | st.floats(-1.0, 1.0)
 
 
+def _unary(number: int, a: float) -> float:
+    return expressions.unary(number, a)
+
+
+def _binary(number: int, a: float, b: float) -> float:
+    return expressions.binary(number, a, b)
+
+
+def _ternary(number: int, a: float, b: float, c: float) -> float:
+    return expressions.ternary(number, a, b, c)
+
+
+@pytest.fixture(scope="module")
+def compiled() -> list[Callable[..., float]]:
+    """Functions of one, two and three values as kernels run them."""
+    from twin.compilation.kernel import arithmetic_kernel
+
+    return [arithmetic_kernel(each) for each in (_unary, _binary, _ternary)]
+
+
 @settings(max_examples=400, derandomize=True, deadline=None)
 @given(operands=st.lists(OPERAND, min_size=3, max_size=3))
-def test_operators_and_functions_give_the_same_bits(operands: list[float]) -> None:
-    from twin.nc.compiled.kernels import expression as kernels
-
-    functions: list[tuple[Mapping[Callable[..., float], int], Callable[..., float]]] = [
-        (kernels.UNARY_FUNCTIONS, kernels.unary),
-        (kernels.BINARY_FUNCTIONS, kernels.binary),
-        (kernels.TERNARY_FUNCTIONS, kernels.ternary),
-    ]
-    for count, (numbers, compiled) in enumerate(functions, start=1):
-        for compute, number in numbers.items():
-            given_ = operands[:count]
-            expected, found = _value(compute, given_), compiled(number, *given_)
+def test_operators_and_functions_give_the_same_bits(
+    compiled: list[Callable[..., float]], operands: list[float]
+) -> None:
+    for values, functions in enumerate(expressions.FUNCTIONS, start=1):
+        run, given_ = compiled[values - 1], operands[:values]
+        for number, compute in enumerate(functions):
+            expected, found = _value(compute, given_), run(number, *given_)
             if expected is None:
                 assert not abs(found) <= LARGEST_NUMBER, compute
             else:
@@ -88,19 +104,14 @@ def test_operators_and_functions_give_the_same_bits(operands: list[float]) -> No
 
 @pytest.mark.parametrize("dialect", DIALECTS)
 def test_every_operator_and_function_is_compiled(dialect: str) -> None:
-    from twin.nc.compiled.kernels import expression as kernels
-
     syntax = DIALECTS[dialect].syntax.expressions
     if syntax is None:
         return
-    by_count = {
-        1: kernels.UNARY_FUNCTIONS,
-        2: kernels.BINARY_FUNCTIONS,
-        3: kernels.TERNARY_FUNCTIONS,
-    }
-    assert all(each.compute in kernels.BINARY_FUNCTIONS for each in syntax.operators.values())
-    assert all(each in kernels.UNARY_FUNCTIONS for each in syntax.prefixes.values())
-    assert all(each.compute in by_count[each.arguments] for each in syntax.functions.values())
+    of_one, of_two, _ = expressions.FUNCTIONS
+    assert all(each.compute in of_two for each in syntax.operators.values())
+    assert all(each in of_one for each in syntax.prefixes.values())
+    for function in syntax.functions.values():
+        assert function.compute in expressions.FUNCTIONS[function.arguments - 1]
 
 
 FORMS = {

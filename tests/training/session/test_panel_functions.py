@@ -5,8 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
+from twin.nc.control.settings import ToolData
+from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.text.source import source_from_text
 from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.session.observed import block_number
+from twin.training.session.program_run import ProgramRun, RunOptions
 from twin.training.session.session import Session
 
 
@@ -116,6 +120,13 @@ def test_a_block_with_a_slash_is_left_out_where_the_switch_says_so(session, on):
     assert at(session)[0] == (-5.0 if on else 5.0)
 
 
+def test_what_changes_how_a_program_is_read_cannot_change_while_it_runs(session):
+    do(session, "cycle_start")
+    for name in ("block_skip", "dry_run"):
+        assert "while something runs" in refused(session, "switch", name=name, on=True)
+    do(session, "switch", name="optional_stop", on=True)
+
+
 def test_a_dry_run_goes_at_its_own_feed_and_finishes_nothing(session):
     do(session, "switch", name="dry_run", on=True)
     do(session, "cycle_start")
@@ -165,6 +176,21 @@ def test_a_search_that_finds_nothing_is_told(session):
     assert session.room.alarm is not None
     assert session.room.alarm.message == "the program never comes to line 2"
     assert refused(session, "search", line=9) == "the program has 3 lines"
+
+
+@pytest.mark.parametrize(
+    ("code", "end"), [("G41.1 D2", "program"), ("G41 D1", "program"), ("G40", "")]
+)
+def test_a_search_does_not_begin_within_a_compensated_contour(session, code, end):
+    options = RunOptions(search=4)
+    text = f"G0 X0 Y0\n{code} G1 X5 F500\nG1 Y9\nG1 X20\nG40 X30\nM30"
+    room = session.room
+    machine, given = room.machine.machine, session.scene.preparation.settings
+    begin = dict(zip(machine.axes.names, (0.0,) * len(machine.axes), strict=True))
+    settings = dataclasses.replace(given, start=begin, tools={1: ToolData(radius=1.0, length=60.0)})
+    run = ProgramRun(source_from_text(text, "test"), LINUXCNC, settings, machine, options)
+    run.begin(room.standing_setpoint, room.tables.program_zero)
+    assert (run.ending, "compensated" in run.message) == (end or "stop", bool(end))
 
 
 def test_jog_during_a_hold_and_the_way_back_to_the_path(session):
@@ -269,6 +295,35 @@ def test_an_mdi_block_keeps_the_work_offset(session):
     assert at(session)[0] == 8.0
 
 
+def test_an_offset_that_is_typed_counts_for_the_next_mdi_block(session):
+    do(session, "set_offset", axis="X", value=7.0, name="G55")
+    do(session, "mode", mode="mdi")
+    for text, name in (("G55", "G55"), ("G90 G0 X1", "G54"), ("X1", "")):
+        do(session, "mdi", text=text)
+        do(session, "cycle_start")
+        rest(session)
+        if name:
+            do(session, "set_offset", axis="X", value=9.0, name=name)
+    assert at(session)[0] == 10.0
+
+
+def test_going_back_into_a_run_takes_the_offsets_that_it_began_with(session):
+    load(session, "N10 G55 G90 G1 X-30 F6000\nN20 X-20\nN30 X-30\nN40 X-10 F200\nN50 M30")
+    do(session, "set_offset", axis="X", value=7.0, name="G55")
+    do(session, "cycle_start")
+    for _ in range(45):
+        session.advance(10)
+    assert session.room.run is not None
+    there, then = at(session)[0], session.room.time_s
+    rest(session)
+    do(session, "set_offset", axis="X", value=50.0, name="G55")
+    session.rewind(session.room.time_s - then)
+    assert session.room.run is not None
+    assert at(session)[0] == there
+    rest(session)
+    assert at(session)[0] == -3.0
+
+
 def test_typed_tool_data_reach_the_control(session):
     number = session.room.tables.spindle
     do(session, "set_tool", number=number, radius=4.0)
@@ -352,6 +407,17 @@ def test_an_alarm_names_the_block_by_its_number(session):
     alarm = session.room.alarm
     assert alarm is not None
     assert (alarm.code, alarm.line, alarm.block) == ("soft-limit", 2, "N20")
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [("N20 G1 X9", "N20"), ("/ n0030 X1", "N30"), ("X1 (N20)", ""), ("N40 G77 X1", "N40"), ("N50 X=(", "N50"), ("(N20)", ""), ("", "")],
+)  # fmt: skip
+def test_the_number_of_a_block_is_what_its_language_reads(text, number):
+    program = source_from_text(f"G0 X0\n{text}\nM30", "test")
+    dialect = read_scene(scene_path("fagor_first_steps")).preparation.dialect
+    assert block_number(dialect, program, 2) == number
+    assert block_number(dialect, program, 0) == block_number(dialect, program, 9) == ""
 
 
 def test_a_jog_changes_nothing_that_is_in_force(session):

@@ -81,3 +81,21 @@ def test_a_course_lists_the_sheets_of_a_folder(tmp_path, wrecked):
     ]
     assert unread == ["other/score.json"]
     assert "Jan Novák" in course_page(rows)
+
+
+@pytest.mark.parametrize(
+    "wrong", ['"points": 1e999', '"points": 1e400, "of": NaN', '"alarms": ' + "[" * 100_000, '"name": "\\ud800"', "\xff"]
+)  # fmt: skip
+def test_a_course_is_not_ended_by_a_sheet_that_is_none(tmp_path, wrong):
+    good = '"scene": "a", "points": 1, "of": 2, "handed_in": true, "hints": 0, "alarms": []'
+    for folder, text in (
+        ("bad", f"{{{good}, {wrong}"),
+        ("good", f'{{{good}, "name": "\\u001b[2J"}}'),
+    ):
+        (tmp_path / folder).mkdir()
+        closed = text if text.endswith("}") else text + "}"
+        (tmp_path / folder / "score.json").write_text(closed, encoding="latin-1")
+    rows, unread = course_of(tmp_path)
+    assert unread == ["bad/score.json"]
+    assert [(row.name, row.points) for row in rows] == [(" [2J", 1)]
+    assert "score.html" in course_page(rows)

@@ -5,7 +5,13 @@ from typing import NamedTuple
 
 from twin.compilation.kernel import kernel
 from twin.nc.canonical import FloatArray, IntArray
-from twin.toolpath.nearest_kernels import distance_at, nearest_between, walk
+from twin.toolpath.nearest_kernels import (
+    derivatives,
+    distance_at,
+    nearest_between,
+    speed_at,
+    walk,
+)
 
 _TIE_MM = 1e-7
 """Of places equally near within this, the last up to the command is taken: a path that goes back
@@ -16,6 +22,11 @@ step as long as the error stays below half the radius of curvature."""
 _ERRORS = 4.0
 """Where a corner is cut the place leaps around it, over a path of twice the error at a right angle
 and four times at one of 53 degrees."""
+_BLUNT = -0.6
+"""Cosine of the turn of the path beyond which a corner is more acute than that."""
+_GAP = 4.0
+"""The place leaps back around an acute corner as long as its legs are apart by less than twice the
+error; so many errors leave room for how that is measured."""
 
 
 class Commanded(NamedTuple):
@@ -88,7 +99,8 @@ def follow(path, first, point, commanded, reach_s, state, found):
             low_move, low_u = move, u
         else:
             high_move, high_u = move, u
-        low_move, low_u = walk(path, low_move, low_u, -margin)
+        around = _way_around(path, move, u, step + error)
+        low_move, low_u = walk(path, low_move, low_u, -margin - around)
         back_move, back_u = _place(commanded, late, first)
         if low_move < back_move or (low_move == back_move and low_u < back_u):
             low_move, low_u = back_move, back_u
@@ -118,3 +130,31 @@ def _place(commanded, row, first):
     if move < 0:
         return -first, 0.0
     return move - first, commanded.fraction[row]
+
+
+@kernel
+def _way_around(path, move, u, error):
+    """How far back a place may leap around the acute corner where its move begins [mm].
+
+    Both legs of a corner are equally near to a tool between them, at equal ways from its point.
+
+    Args:
+        path: The moves.
+        move: Where the place is.
+        u: Where the place is.
+        error: Of the tool, with what it may change by in a sample [mm].
+    """
+    if move == 0:
+        return 0.0
+    beyond = u * speed_at(path, move, u)
+    _, _, _, ax, ay, az, _, _, _ = derivatives(path, move - 1, 1.0)
+    _, _, _, bx, by, bz, _, _, _ = derivatives(path, move, 0.0)
+    lengths = math.sqrt((ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz))
+    if lengths == 0.0:
+        return 0.0
+    if (ax * bx + ay * by + az * bz) / lengths > _BLUNT:
+        return 0.0
+    x, y, z, _, _, _, _, _, _ = derivatives(path, move, u)
+    other_move, other_u = walk(path, move - 1, 1.0, -beyond)
+    apart = distance_at(path, other_move, other_u, x, y, z)
+    return 2.0 * beyond if apart < _GAP * error else 0.0

@@ -5,29 +5,15 @@ from collections.abc import Callable, Container, Iterable, Mapping
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.bytecode.bytecode import MOST_ROWS, MOST_STORES, Bytecode
+from twin.nc.bytecode.expressions import code_of
 from twin.nc.bytecode.registers import MOST_WORDS
 from twin.nc.bytecode.variables import NO_SLOT, Variables
 from twin.nc.canonical import NO_BLOCK_NUMBER
-from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Block, Word
-from twin.nc.text.expressions import (
-    Computed,
-    Exists,
-    Expression,
-    Negative,
-    Number,
-    NumberedVariable,
-    OrZero,
-    Prefixed,
-    Scaled,
-    Tree,
-    Variable,
-)
+from twin.nc.text.expressions import Expression, Tree
 
 MOST_NUMBERED = 1000
 """Variables with a computed number are known to the compiled tier below this number."""
-
-Functions = Mapping[Callable[..., float], int]
 
 
 class BytecodeAssembler(Assembler):
@@ -42,7 +28,6 @@ class BytecodeAssembler(Assembler):
         bytecode: Bytecode,
         variables: Variables,
         token_kinds: Mapping[str, int],
-        functions: tuple[Functions, Functions, Functions],
         number_kind: int,
         live: Container[str],
     ) -> None:
@@ -52,14 +37,12 @@ class BytecodeAssembler(Assembler):
             bytecode: The table.
             variables: The program's.
             token_kinds: What the letters of plain words are.
-            functions: Numbers of the functions of one, two and three values.
             number_kind: Kind of the token N.
             live: Variables that only the interpreter tier can read.
         """
         self._bytecode = bytecode
         self._variables = variables
         self._token_kinds = token_kinds
-        self._functions = functions
         self._number_kind = number_kind
         self._live = live
         self._stores = 0
@@ -162,40 +145,21 @@ class BytecodeAssembler(Assembler):
             UnsupportedError: The compiled tier does not know how to compute it.
         """
         del column
-        tree = expression.evaluate if isinstance(expression, Expression) else expression
-        match tree:
-            case Number(value):
-                self.constant(value)
-            case Variable(name):
-                self._add(opcodes.LOAD, self._slot(name))
-            case NumberedVariable(name, index):
-                self._number_variables(name)
-                self.value(index)
+        tree = expression.tree if isinstance(expression, Expression) else expression
+        for each in code_of(tree):
+            if each.opcode == opcodes.LOAD:
+                self._add(opcodes.LOAD, self._slot(each.name))
+            elif each.opcode == opcodes.LOAD_NUMBERED:
+                self._number_variables(each.name)
                 self._add(opcodes.LOAD_NUMBERED)
-            case OrZero(operand):  # a variable without a value stops the block before
-                self.value(operand)
-            case Scaled(operand, factor):
-                self.value(Computed("*", arithmetic.multiply, (operand, Number(factor))))
-            case Negative(operand):
-                self.value(operand)
-                self._add(opcodes.NEGATE)
-            case Prefixed(compute, operand):
-                self.value(operand)
-                self._compute(compute, 1)
-            case Exists(Variable(name)):
-                self._add(opcodes.DEFINED, self._slot(name))
-            case Exists():
+            elif each.opcode == opcodes.DEFINED:
+                if [inner.opcode for inner in each.inner] != [opcodes.LOAD]:
+                    raise UnsupportedError
+                self._add(opcodes.DEFINED, self._slot(each.inner[0].name))
+            elif each.has_compiled_form:
+                self._add(each.opcode, each.operand, each.immediate)
+            else:
                 raise UnsupportedError
-            case Computed(_, compute, operands):
-                for operand in operands:
-                    self.value(operand)
-                self._compute(compute, len(operands))
-
-    def _compute(self, compute: Callable[..., float], values: int) -> None:
-        number = self._functions[values - 1].get(compute)
-        if number is None:
-            raise UnsupportedError
-        self._add((opcodes.UNARY, opcodes.BINARY, opcodes.TERNARY)[values - 1], number)
 
     def _slot(self, name: str) -> int:
         if name in self._live:

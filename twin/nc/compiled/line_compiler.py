@@ -9,7 +9,6 @@ from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
 from twin.nc.bytecode.token_kinds import CODE, FUNCTION, NUMBER
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.entries import Kernels, page_columns
-from twin.nc.compiled.kernels.expression import BINARY_FUNCTIONS, TERNARY_FUNCTIONS, UNARY_FUNCTIONS
 from twin.nc.compiled.line_templates import LineTemplates
 from twin.nc.control.block_compiler import BlockCompiler
 from twin.nc.control.executor import Executor
@@ -44,7 +43,6 @@ class LineCompiler:
             self.bytecode,
             control.variables,
             tables.token_kinds,
-            (UNARY_FUNCTIONS, BINARY_FUNCTIONS, TERNARY_FUNCTIONS),
             NUMBER,
             control.dialect.live_variables,
         )

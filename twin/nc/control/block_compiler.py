@@ -9,7 +9,7 @@ from typing import NamedTuple
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import UnsupportedError
 from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
-from twin.nc.control.block_order import conflict_of, in_order, last_of_each_group, run_in_order
+from twin.nc.control.block_order import codes_that_count, conflict_of, in_order, run_in_order
 from twin.nc.control.codes import GCode, MCode, StatementEffect, Vocabulary, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.functions import SPINDLE_STARTS
@@ -73,8 +73,7 @@ class BlockCompiler:
                 raise UnsupportedError
             else:
                 others[word.address] = word
-        if self.vocabulary.last_of_group_counts:
-            codes = last_of_each_group(codes)
+        codes = codes_that_count(codes, last_of_group=self.vocabulary.last_of_group_counts)
         if conflict_of(codes, functions) is not None:
             raise UnsupportedError
         codes = in_order(codes, self.vocabulary.groups)

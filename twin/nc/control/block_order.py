@@ -76,10 +76,22 @@ def in_order(codes: Codes, groups: Sequence[str]) -> list[tuple[Word, GCode]]:
     return sorted(codes, key=lambda pair: order.get(pair[1].group, len(order)))
 
 
-def last_of_each_group(codes: Codes) -> list[tuple[Word, GCode]]:
-    """G codes without those that a later one of their modal group overrules."""
+def codes_that_count(codes: Codes, *, last_of_group: bool) -> list[tuple[Word, GCode]]:
+    """G codes without those that another one of their modal group overrules.
+
+    Args:
+        codes: As they are written.
+        last_of_group: The last one overrules all others; else each overrules those that yield.
+    """
+    strong = {code.group for _, code in codes if not code.yields}
     last = {code.group: word for word, code in codes}
-    return [(word, code) for word, code in codes if not code.group or last[code.group] is word]
+
+    def counts(word: Word, code: GCode) -> bool:
+        if code.yields and code.group in strong:
+            return False
+        return last[code.group] is word or not (code.yields or last_of_group)
+
+    return [(word, code) for word, code in codes if not code.group or counts(word, code)]
 
 
 class Conflict(NamedTuple):

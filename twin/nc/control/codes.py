@@ -69,9 +69,11 @@ class Interpolation(MotionMode):
 
     Attributes:
         perform: Takes the block's words and moves.
+        without_words: Done where its code stands in a block without words of a motion; None: nothing.
     """
 
     perform: Action
+    without_words: Action | None = None
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,6 +90,7 @@ class GCode:
         after: Done when the block has moved.
         once: What it sets holds for its block only.
         alone: No other word may stand in its block.
+        yields: Another code of its group in the block takes its place.
         refused: Why the twin refuses a code that the control knows; empty: it does not.
         compiler: Says as instructions what an ``action`` does that is no ``Effect``; None: it has no
             compiled form.
@@ -103,6 +106,7 @@ class GCode:
     after: Action | None = None
     once: bool = False
     alone: bool = False
+    yields: bool = False
     refused: str = ""
     compiler: CodeWriter | None = None
     ground: Ground = "decision"

@@ -33,12 +33,12 @@ class Control(ControlWords):
 
     def target(self) -> list[float]:
         """Take the axis words; the programmed position that they ask for, shape (k,)."""
-        target, modal = list(self.programmed), self.modal
+        target, modal, linear = list(self.programmed), self.modal, self.linear
+        unit, relative = modal.unit, modal.incremental
         for index, word in self.take_axis_words():
-            incremental = modal.incremental or word.incremental
-            value = axis_target(
-                number_of(word), modal.unit, self.linear[index], incremental, target[index]
-            )
+            incremental = relative or word.incremental
+            here = target[index]
+            value = axis_target(number_of(word), unit, linear[index], incremental, here)
             if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value
@@ -100,21 +100,21 @@ class Control(ControlWords):
             feed = _limited(feed, self.axis_limits, share)
             acceleration = _limited(acceleration, self.axis_accelerations, share)
             deceleration = _limited(deceleration, self.axis_decelerations, share)
-        self._last = Segment(
-            motion=Motion.RAPID if rapid else Motion.FEED,
-            line=self.block.line,
-            block=self.block.number,
-            start=self.part,
-            end=end,
-            display=target,
-            feed=feed,
-            corner=Corner.EXACT_STOP if rapid else modal.corner,
-            corner_tolerance=modal.corner_tolerance,
-            acceleration=acceleration,
-            deceleration=deceleration,
-            center=center,
-            normal=normal,
-            sweep=sweep,
+        self._last = Segment(  # by place: names would cost a block twice what it takes to make one
+            Motion.RAPID if rapid else Motion.FEED,
+            self.block.line,
+            self.block.number,
+            self.part,
+            end,
+            target,
+            feed,
+            Corner.EXACT_STOP if rapid else modal.corner,
+            modal.corner_tolerance,
+            acceleration,
+            deceleration,
+            center,
+            normal,
+            sweep,
         )
         if spline is None:
             self.path.add(self._last)

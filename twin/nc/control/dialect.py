@@ -62,6 +62,7 @@ class Dialect:
         series: Addresses that may stand several times in a block with a switch point, in order.
         words: Addresses with a modal meaning, and what they do.
         feed_letter: Address that sets the feed and does no more; empty: there is none.
+        spindle_letter: Address that sets the spindle's speed; empty: there is none, the drive is set.
         statements: Keywords of statements, and what they do.
         other_statement: What the others do, which begin with a name.
         word_meanings: What the addresses mean, for people.
@@ -118,6 +119,7 @@ class Dialect:
     series: str = ""
     words: Mapping[str, WordAction]
     feed_letter: str = "F"
+    spindle_letter: str = "S"
     statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
     other_statement: StatementAction | None = None
     word_meanings: Mapping[str, str]

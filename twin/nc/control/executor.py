@@ -8,11 +8,12 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.expressions import evaluate
 from twin.nc.control.block_order import (
     Conflict,
+    codes_that_count,
     conflict_of,
     in_order,
-    last_of_each_group,
     run_in_order,
 )
 from twin.nc.control.codes import GCode, Interpolation, MCode
@@ -39,6 +40,7 @@ class Executor(Control):
         super().__init__(dialect, settings, source)
         self.dialect = dialect
         self._pointless = dialect.pointless(settings)
+        self._special = frozenset(("G", "M", *dialect.signed, *dialect.series))
         self._codes: list[tuple[Word, GCode]] = []
         self.modal.apply(dialect.start_state)
         for number in dialect.start:
@@ -96,8 +98,8 @@ class Executor(Control):
             span, target, index = (each.column, each.width), each.target, None
             try:
                 if isinstance(target, NumberedVariable):
-                    index = float(target.index(self))
-                value = float(each.value.evaluate(self))
+                    index = evaluate(target.index, self)
+                value = evaluate(each.value, self)
             except ExpressionError as error:
                 self.report.fail(error.code, str(error), *span, error.hint)
             given.append((each, target.name, index, value))
@@ -165,8 +167,12 @@ class Executor(Control):
         self.words = words = {}
         self.series = []
         functions: list[tuple[Word, MCode]] = []
+        special = self._special
         for word in block.words:
             address, value = word.address, word.value
+            if address not in special and address not in words and type(value) is float:
+                words[address] = word
+                continue
             if isinstance(value, Expression) and address not in dialect.references:
                 value = self.evaluate(value, word)
                 word = word._replace(value=value)
@@ -188,8 +194,7 @@ class Executor(Control):
             else:
                 words[address] = word
         if len(codes) > 1 or len(functions) > 1:
-            if dialect.last_of_group_counts:
-                codes = last_of_each_group(codes)
+            codes = codes_that_count(codes, last_of_group=dialect.last_of_group_counts)
             self._refuse_conflict(conflict_of(codes, functions))
             self.codes = self._codes = in_order(codes, dialect.groups)
         return functions
@@ -297,6 +302,7 @@ class Executor(Control):
         words = self.words
         motion_words = self.dialect.motion_words
         if motion_words.isdisjoint(words) and not any(code.begins_cycle for _, code in self._codes):
+            self._stand_alone()
             return
         interpolation = self.modal.cycle or self.modal.interpolation
         if interpolation is None:
@@ -316,6 +322,13 @@ class Executor(Control):
         interpolation.perform(self)
         if self.dialect.after_motion is not None:
             self.dialect.after_motion(self)
+
+    def _stand_alone(self) -> None:
+        """A motion code without the words of a motion, where its dialect has a rule for that."""
+        for _, code in self._codes:
+            mode = code.sets.get("interpolation")
+            if isinstance(mode, Interpolation) and mode.without_words is not None:
+                mode.without_words(self)
 
     def _refuse_unused(self) -> NoReturn:
         word = next(iter(self.words.values()), None) or self.series[0]

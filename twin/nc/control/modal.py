@@ -18,6 +18,9 @@ class FeedMode(enum.Enum):
     PER_REVOLUTION = "per revolution of the spindle"
     BLOCKS_PER_MINUTE = "blocks per minute, the inverse of a block's time"
 
+    __hash__ = object.__hash__
+    """One object each: an enum's own hash is computed in Python, at every block."""
+
 
 FEED_FACTORS = {FeedMode.PER_MINUTE: 1.0, FeedMode.PER_SECOND: 60.0}
 """By what F is multiplied to count per minute; other modes need more than F."""

@@ -123,8 +123,6 @@ class Performer(Assembler):
 
     def value(self, expression: Expression | Tree, column: int = 0) -> None:
         """Put a value on the stack; it stands in this column."""
-        if not isinstance(expression, Expression):
-            expression = Expression("", expression)
         self._push(self._control.compute(expression, column))
 
     def word_value(self, word: Word | None, default: float = 0.0) -> None:

@@ -57,6 +57,7 @@ class ProgramCounter:
             report: Where diagnostics go.
         """
         self._lines = source.lines
+        self._line_count = len(source.lines)
         self._lexer = lexer
         self._report = report
         self._step_limit = step_limit
@@ -111,7 +112,9 @@ class ProgramCounter:
         if now[CALLS]:
             end_parts(self.progress, self.calls)
         line, part = now[LINE], now[PART]
-        while line < len(self._lines):
+        if line == self._here_line and part >= len(self._here):
+            line, part = line + 1, 0
+        while line < self._line_count:
             blocks = self._blocks(line)
             if part < len(blocks):
                 now[LINE], now[PART] = line, part + 1

@@ -71,6 +71,11 @@ class HasGroup(Protocol):
         """Its modal group; empty: it is not modal."""
         ...
 
+    @property
+    def yields(self) -> bool:
+        """Another code of its group in the block takes its place."""
+        ...
+
 
 class ControlState:
     """The state of one control while it runs one program.

@@ -3,9 +3,10 @@
 import abc
 from typing import NoReturn
 
+from twin.nc.bytecode.expressions import evaluate
 from twin.nc.control.state import ControlState, number_of
 from twin.nc.text.blocks import Word
-from twin.nc.text.expressions import Expression, ExpressionError
+from twin.nc.text.expressions import Expression, ExpressionError, Tree
 
 
 class ControlWords(ControlState, abc.ABC):
@@ -66,7 +67,7 @@ class ControlWords(ControlState, abc.ABC):
     def evaluate(self, expression: Expression, word: Word) -> float:
         """Compute an expression; errors point at the word."""
         try:
-            return float(expression.evaluate(self))
+            return evaluate(expression, self)
         except ExpressionError as error:
             self.fail(error.code, str(error), word, hint=error.hint)
 
@@ -91,12 +92,13 @@ class ControlWords(ControlState, abc.ABC):
             self.report.fail("expression", message, column + end, 1, hint)
         return found
 
-    def compute(self, expression: Expression, column: int) -> float:
+    def compute(self, expression: Expression | Tree, column: int) -> float:
         """Compute an expression of a statement; errors point at its column."""
         try:
-            return float(expression.evaluate(self))
+            return evaluate(expression, self)
         except ExpressionError as error:
-            self.report.fail(error.code, str(error), column, len(expression.text), error.hint)
+            width = len(expression.text) if isinstance(expression, Expression) else 0
+            self.report.fail(error.code, str(error), column, width, error.hint)
 
     @abc.abstractmethod
     def read_variable(self, name: str, index: float | None) -> float:

@@ -55,7 +55,7 @@ def cycle_code(
             take_words(control, rule)
 
     def perform(control: Control) -> None:
-        count = _repeats(control, repeats)
+        count = repeats_of(control, repeats)
         given = dict(control.words)
         if count == 0:
             take_words(control, rule)
@@ -77,8 +77,8 @@ def cycle_code(
     )
 
 
-def _repeats(control: Control, address: str) -> int:
-    """How often the block drills; takes the word that says it.
+def repeats_of(control: Control, address: str, least: int = 0) -> int:
+    """How often the block drills, ``least`` times or more; takes the word that says it.
 
     Raises:
         ProgramError: It is no count, or too large a one.
@@ -87,8 +87,8 @@ def _repeats(control: Control, address: str) -> int:
     if word is None:
         return 1
     given, most = control.number(word), control.settings.step_limit
-    if given < 0.0 or given != int(given) or given > most:
-        message = f"{word.address} must count holes, {most} at most"
+    if given < least or given != int(given) or given > most:
+        message = f"{word.address} must count holes, {least} to {most}"
         control.fail("repeat-count", message, word)
     return int(given)
 
@@ -136,11 +136,16 @@ def _hole(control: Control, rule: CycleRule) -> Hole:
     axis, to_reference = control.modal.plane.axes[2], control.modal.return_to_reference
     hole = hole_of(rule.cycle, control.cycle_state, axis, to_reference)
     if hole.fault != Fault.NONE:
-        _refuse(control, rule, hole)
+        refuse_hole(control, rule, hole)
     return hole
 
 
-def _refuse(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
+def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
+    """Say what is wrong with the words of a cycle.
+
+    Raises:
+        ProgramError: Always.
+    """
     name = rule.name
     addresses = {value: address for address, value in rule.words.items()}
     addresses[rule.cycle.across] = _across(control)
@@ -169,13 +174,14 @@ def _refuse(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
     control.fail("cycle-depth", message)
 
 
-def drill(control: Control, hole: Hole, target: list[float]) -> None:
+def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
     """Go over the hole, drill it, return.
 
     Args:
         control: The control.
         hole: What is done there.
-        target: Programmed position of the hole, shape (k,); its height is not used.
+        target: Programmed position of the hole, shape (k,); its height is not used. None: the tool
+            stands over it at the reference plane.
     """
     axis = control.modal.plane.axes[2]
     room = most_acts(hole.stops)
@@ -184,7 +190,8 @@ def drill(control: Control, hole: Hole, target: list[float]) -> None:
     for number in range(write_acts(hole, control.programmed[axis], acts, amounts)):
         act, amount = Act(int(acts[number])), amounts[number]
         if act in (Act.RAPID, Act.FEED, Act.ACROSS):
-            there = list(target if act is Act.ACROSS else control.programmed)
+            over = target if act is Act.ACROSS else None
+            there = list(control.programmed if over is None else over)
             there[axis] = amount
             control.line_to(there, rapid=act is not Act.FEED)
         elif act is Act.DWELL:

@@ -1,7 +1,6 @@
 """What operators and functions of expressions compute, for every dialect. Truth is 1, falsehood 0.
 
-The compiled tier (``compiled/kernels/expression``) compiles these functions as they stand here, so that it
-computes the same bits. Where a value is undefined Python raises ``ArithmeticError`` or
+The compiled tier compiles these functions as they stand here, so that it computes the same bits. Where a value is undefined Python raises ``ArithmeticError`` or
 ``ValueError``; the compiled ones give infinity or NaN there.
 """
 

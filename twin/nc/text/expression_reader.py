@@ -4,6 +4,7 @@ import re
 from typing import NoReturn
 
 from twin.nc.text.expressions import (
+    LARGEST_NUMBER,
     NUMBER,
     Computed,
     Exists,
@@ -14,10 +15,8 @@ from twin.nc.text.expressions import (
     Number,
     NumberedVariable,
     OrZero,
-    Prefixed,
     Tree,
     Variable,
-    checked,
 )
 
 _DEEPEST = 40
@@ -168,7 +167,11 @@ class _Reading:
             return inner
         if (match := self._reader.number_at(self._text, self.at)) is not None:
             self.at = match.end()
-            return Number(self._number(match[0]))
+            value = float(match[0])
+            if value > LARGEST_NUMBER:
+                error = ExpressionError.too_large()
+                self._fail(error.code, str(error))
+            return Number(value)
         return self._named(depth)
 
     def _named(self, depth: int) -> Tree:
@@ -196,7 +199,7 @@ class _Reading:
         if name in self._syntax.prefixes:
             self._count()
             self.at = after
-            return Prefixed(self._syntax.prefixes[name], self.operand(depth + 1))
+            return Computed(name, self._syntax.prefixes[name], (self.operand(depth + 1),))
         if name in self._syntax.constants:
             self.at = after
             return Number(self._syntax.constants[name])
@@ -240,12 +243,6 @@ class _Reading:
             self._fail("expression", f"{name} takes {count} values, not {len(arguments)}")
         self._expect(closing)
         return arguments
-
-    def _number(self, text: str) -> float:
-        try:
-            return checked(float(text))
-        except ExpressionError as error:
-            self._fail(error.code, str(error))
 
     def _expect(self, character: str) -> None:
         self._skip_blanks()

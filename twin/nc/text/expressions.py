@@ -7,7 +7,7 @@ are the same for all.
 import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
 from twin.nc.text import arithmetic
 
@@ -41,6 +41,11 @@ class ExpressionError(Exception):
         given = " and ".join(f"{value:g}" for value in values)
         return cls("undefined-value", f"{what} is undefined for {given}")
 
+    @classmethod
+    def too_large(cls) -> "ExpressionError":
+        """A value is not finite, or no coordinate, count or feed could be so large."""
+        return cls("number-range", f"the value is not within ±{LARGEST_NUMBER:g}")
+
 
 class Scope(Protocol):
     """Where an expression finds its variables."""
@@ -61,11 +66,13 @@ class Expression:
 
     Attributes:
         text: As the program writes it.
-        evaluate: Computes it.
+        tree: What it is made of.
+        code: Its instructions, from when it is first computed on.
     """
 
     text: str
-    evaluate: "Tree"
+    tree: "Tree"
+    code: list[Any] = dataclasses.field(default_factory=list, compare=False, repr=False)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -137,17 +144,6 @@ class ExpressionSyntax:
     exclusive: tuple[str, ...] = ()
 
 
-def checked(value: float) -> float:
-    """Refuse a number that no coordinate, count or feed could be.
-
-    Raises:
-        ExpressionError: It is not finite or too large.
-    """
-    if not abs(value) <= LARGEST_NUMBER:
-        raise ExpressionError("number-range", f"the value is not within ±{LARGEST_NUMBER:g}")
-    return value
-
-
 ARITHMETIC: Mapping[str, Operator] = {
     "+": Operator(5, arithmetic.add),
     "-": Operator(5, arithmetic.subtract),
@@ -172,20 +168,12 @@ class Number:
 
     value: float
 
-    def __call__(self, _scope: Scope) -> float:
-        """Its value."""
-        return self.value
-
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Variable:
     """A variable by its name."""
 
     name: str
-
-    def __call__(self, scope: Scope) -> float:
-        """Its value; raises ``ExpressionError`` where it has none."""
-        return scope.read_variable(self.name, None)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -195,10 +183,6 @@ class NumberedVariable:
     name: str
     index: "Tree"
 
-    def __call__(self, scope: Scope) -> float:
-        """Its value; raises ``ExpressionError`` where it has none."""
-        return scope.read_variable(self.name, self.index(scope))
-
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class OrZero:
@@ -206,46 +190,12 @@ class OrZero:
 
     operand: "Variable | NumberedVariable"
 
-    def __call__(self, scope: Scope) -> float:
-        """Its value."""
-        value = self.operand(scope)
-        return 0.0 if math.isnan(value) else value
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Scaled:
-    """A value times a factor; one that is not there stays so."""
-
-    operand: "Tree"
-    factor: float
-
-    def __call__(self, scope: Scope) -> float:
-        """Its value."""
-        value = self.operand(scope)
-        return value if math.isnan(value) else checked(value * self.factor)
-
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Negative:
     """A value with a minus before it."""
 
     operand: "Tree"
-
-    def __call__(self, scope: Scope) -> float:
-        """Its value."""
-        return -self.operand(scope)
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Prefixed:
-    """A value with a word before it, such as NOT."""
-
-    compute: Callable[[float], float]
-    operand: "Tree"
-
-    def __call__(self, scope: Scope) -> float:
-        """Its value."""
-        return self.compute(self.operand(scope))
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -256,31 +206,12 @@ class Computed:
     compute: Callable[..., float]
     operands: tuple["Tree", ...]
 
-    def __call__(self, scope: Scope) -> float:
-        """Its value; raises ``ExpressionError`` where it is undefined or too large."""
-        values = [each(scope) for each in self.operands]
-        try:
-            result = self.compute(*values)
-        except (ArithmeticError, ValueError) as error:
-            raise ExpressionError.undefined(self.what, values) from error
-        return checked(result)
-
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Exists:
-    """Whether a value is defined."""
+    """Whether a value is defined: 1 or 0."""
 
     operand: "Tree"
 
-    def __call__(self, scope: Scope) -> float:
-        """1 or 0."""
-        try:
-            self.operand(scope)
-        except ExpressionError:
-            return 0.0
-        return 1.0
 
-
-Tree = (
-    Number | Variable | NumberedVariable | OrZero | Scaled | Negative | Prefixed | Computed | Exists
-)
+Tree = Number | Variable | NumberedVariable | OrZero | Negative | Computed | Exists

@@ -1,6 +1,7 @@
 """A dialect's syntax as compiled patterns."""
 
 import re
+from collections.abc import Callable
 
 from twin.nc.text.expression_reader import ExpressionReader, operator_pattern
 from twin.nc.text.expressions import NUMBER, ExpressionSyntax
@@ -35,11 +36,24 @@ class Grammar:
         self.word = _compiled(
             rf"[ \t]*({syntax.address})[ \t]*([+-]?{NUMBER})(?!{continues}){suffix}"
         )
+        kinds = [
+            re.escape(each.opening) + ".*?" + (re.escape(each.closing) or "$")
+            for each in syntax.comments
+        ]
+        self._comment = re.compile(f"({'|'.join(kinds)})")
         self.address = _compiled(rf"[ \t]*({syntax.address})[ \t]*")
         self.suffix = _compiled(suffix)
         self.statement = (
             _compiled(rf"[ \t]*({syntax.statement})") if syntax.statement is not None else None
         )
+
+    def outside_comments(
+        self, pattern: re.Pattern[str], new: Callable[[re.Match[str]], str], line: str
+    ) -> str:
+        """A line with what matches a pattern outside its comments replaced."""
+        pieces = self._comment.split(line)
+        pieces[::2] = [pattern.sub(new, piece) for piece in pieces[::2]]
+        return "".join(pieces)
 
     def name(self, address: str) -> str:
         """An address in upper case, without the = of ``X1=``, as the dialect calls it."""

@@ -1,5 +1,6 @@
 """From a line of text to blocks of words, by a dialect's syntax."""
 
+import re
 from collections.abc import Callable
 
 from twin.nc.text.blocks import Block
@@ -12,6 +13,10 @@ from twin.nc.text.syntax import Language
 
 LONGEST_LINE = 65_536
 """Characters of a line: far beyond any control's block, so that one line cannot eat the memory."""
+
+
+_SPLIT = re.compile(r"[0-9.][ \t]+[0-9.]")
+_NUMBER_WITH_BLANKS = re.compile(r"[0-9.](?:[ \t]*[0-9.])+")
 
 
 class Lexer:
@@ -47,6 +52,8 @@ class Lexer:
         end = self._grammar.syntax.block_end
         if end:
             line = line.rstrip(f"{end} \t")
+        if self._grammar.syntax.blanks_in_numbers and _SPLIT.search(line):
+            line = self._grammar.outside_comments(_NUMBER_WITH_BLANKS, _closed_up, line)
         try:
             return LineReader(self._grammar, self._report, line, number).blocks()
         except ProgramError:
@@ -66,3 +73,8 @@ class Lexer:
                     message = f"the line holds the control character {ord(character)}"
                     hint = None if ord(character) else "if the file is UTF-16, save it as UTF-8"
                     self._report.fail("control-character", message, column, hint=hint)
+
+
+def _closed_up(number: re.Match[str]) -> str:
+    """A number without its blanks, which follow it, so that the next word stays where it stands."""
+    return re.sub(r"[ \t]", "", number[0]).ljust(len(number[0]))

@@ -262,7 +262,7 @@ class LineReader:
             value, end = read(self._line, sign.end())
         except ExpressionError as error:
             self._refuse_value(begin, error)
-        tree = target.evaluate
+        tree = target.tree
         assert isinstance(tree, (Variable, NumberedVariable))
         self._assignments.append(Assignment(tree, value, begin, end - begin))
         self._at = end

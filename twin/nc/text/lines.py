@@ -46,12 +46,13 @@ class Page:
         self.data = np.frombuffer(text, np.uint8)
         self.starts = _line_starts(self.data)
         self.lines = range(first, first + len(self.starts) - 1)
+        self._divided: list[bytes] | None = None
 
     def line(self, number: int) -> str:
         """One of its lines without its end."""
-        at = number - self.lines.start
-        line = self.text[self.starts[at] : self.starts[at + 1]]
-        return line.removesuffix(b"\n").removesuffix(b"\r").decode(_UTF_8, _SURROGATES)
+        if self._divided is None:
+            self._divided = self.text.splitlines()
+        return self._divided[number - self.lines.start].decode(_UTF_8, _SURROGATES)
 
 
 class Lines(Sequence[str]):

@@ -46,6 +46,7 @@ class Syntax:
         assigned: Character that begins an assignment among the words, such as ``#1=5``; empty: there
             is none.
         open_assignments: What is assigned needs no brackets around its operators.
+        blanks_in_numbers: Blanks between the characters of a number do not count.
         excused: Why a line that cannot be read may be left out, given it and the line before:
             code of the warning, or None.
     """
@@ -64,6 +65,7 @@ class Syntax:
     aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
     assigned: str = ""
     open_assignments: bool = False
+    blanks_in_numbers: bool = False
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
 
 

@@ -3,8 +3,6 @@
 from collections.abc import Callable, Iterable
 from typing import Any
 
-import numpy as np
-
 from twin.errors import UsageError
 from twin.nc.functions import SpindleState
 from twin.nc.text.source import source_from_text
@@ -34,9 +32,9 @@ def carry_out(room: Room, command: c.Command) -> None:
     Raises:
         TwinError: The machine refuses; the message says why. Nothing has changed then.
     """
+    _ACTIONS[type(command)](room, command)
     if not isinstance(command, _NO_TOUCH):
         room.judge.note_touch(room)
-    _ACTIONS[type(command)](room, command)
 
 
 def _mode(room: Room, command: c.SelectMode) -> None:
@@ -78,7 +76,8 @@ def _start_program(room: Room) -> None:
     whole = dry is None and (room.searched == 0 or room.scene.file.part is not None)
     options = RunOptions(dry_feed=dry, search=room.searched)
     room.start_run(room.program, "program", options)
-    room.judge.note_start(whole=whole)
+    if room.run is not None:
+        room.judge.note_start(whole=whole)
     room.searched = 0
 
 
@@ -90,31 +89,33 @@ def _search(room: Room, command: c.Search) -> None:
 
 
 def _switch(room: Room, command: c.Switch) -> None:
-    if command.name == "dry_run":
-        _require_no_run(room, "the dry run cannot change while something runs: reset first")
+    # A program is read ahead of the axes: what changes how it is read cannot change any more.
+    if command.name != "optional_stop":
+        _require_no_run(room, "that switch cannot change while something runs: reset first")
     setattr(room.switches, command.name, command.on)
-    if command.name == "block_skip" and room.run is not None:
-        room.run.skip_blocks(on=command.on)
 
 
 def _feed_hold(room: Room, _command: c.FeedHold) -> None:
     if room.run is None:
         raise UsageError("nothing runs")
+    if room.running == "jog":
+        room.stop_driving_by_hand()
+        return
     room.run.hold()
     room.judge.note_hold(room)
 
 
 def _reset(room: Room, _command: c.Reset) -> None:
+    if room.run is None and room.alarm is not None:
+        room.clear()
     room.legs.clear()
     room.suspended = None
     room.searched = 0
     room.inherited = None
-    if room.run is not None and not room.waiting:
-        room.run.drop()
-    elif room.run is not None:
+    if room.waiting:
         room.drop_run()
-    if room.alarm is not None:
-        room.clear()
+    elif room.run is not None:
+        room.run.drop()
     room.running_down = room.spindle.turns and room.moving
     room.spindle = room.spindle.stopped()
 
@@ -139,10 +140,9 @@ def _jog(room: Room, command: c.Jog) -> None:
     _require_jog(room, command.axis)
     if room.run is not None:
         raise UsageError("an axis is being jogged already")
-    column = _column(room, command.axis)
-    place = float(room.standing_setpoint[column])
+    place = _stands(room, command.axis)
     way = command.direction * (command.step if command.step is not None else ENDLESS)
-    target = _within_travel(room, command.axis, place, place + way)
+    target = room.within_travel(command.axis, place + way)
     if abs(target - place) < SHORTEST_WAY:
         raise UsageError(f"{command.axis} stands at the end of its travel")
     room.drive_by_hand([Leg(command.axis, target, _feed(room, command.axis, command.feed))])
@@ -150,20 +150,14 @@ def _jog(room: Room, command: c.Jog) -> None:
 
 def _handwheel(room: Room, command: c.Handwheel) -> None:
     _require_jog(room, command.axis)
-    axis, way = command.axis, command.clicks * command.step
-    place = float(room.standing_setpoint[_column(room, axis)])
-    waits = room.legs[-1].target if room.legs and room.legs[-1].axis == axis else None
-    if room.run is not None and waits is None:
-        going = room.run.target(0)
-        if room.running != "jog" or going is None:
-            raise UsageError("an axis is being jogged already")
-        column = _column(room, axis)
-        waits = float(going[0][column] + room.tables.program_zero[column])
-    target = _within_travel(room, axis, place, (place if waits is None else waits) + way)
-    leg = Leg(axis, target, _feed(room, axis, HAND_FEED))
-    if room.run is not None:
-        room.legs.clear()
-        room.legs.append(leg)
+    axis, follows = command.axis, bool(room.legs) and room.legs[-1].wheel
+    if room.run is not None and not (follows and room.legs[-1].axis == axis):
+        raise UsageError("an axis is being jogged already")
+    begin = room.legs[-1].target if follows else _stands(room, axis)
+    target = room.within_travel(axis, begin + command.clicks * command.step)
+    leg = Leg(axis, target, _feed(room, axis, HAND_FEED), wheel=True)
+    if follows:
+        room.follow_wheel(leg)
     else:
         room.drive_by_hand([leg])
 
@@ -173,7 +167,7 @@ def _reference(room: Room, _command: c.Reference) -> None:
     names = room.machine.machine.axes.names
     order = sorted(names, key=lambda name: name != "Z")
     room.drive_by_hand(
-        Leg(name, _within_travel(room, name, REFERENCE, REFERENCE), _feed(room, name, HAND_FEED))
+        Leg(name, room.within_travel(name, REFERENCE), _feed(room, name, HAND_FEED))
         for name in order
     )
 
@@ -183,19 +177,17 @@ def _return_to_path(room: Room, _command: c.ReturnToPath) -> None:
         raise UsageError("no program is held")
     _require_still(room)
     names = room.machine.machine.axes.names
-    goal, stands = room.suspended.place, room.standing_setpoint
+    goal = room.suspended.place
     # Up first, down last: the tool goes over what it may meet.
-    up = goal[names.index("Z")] > stands[names.index("Z")]
+    up = goal[names.index("Z")] > _stands(room, "Z")
     order = sorted(names, key=lambda name: (name == "Z") != up)
     room.drive_by_hand(
         Leg(name, float(goal[names.index(name)]), _feed(room, name, HAND_FEED)) for name in order
     )
 
 
-def _within_travel(room: Room, axis: str, place: float, target: float) -> float:
-    """How far an axis goes by hand: to the end of its travel; never further out."""
-    low, high = room.machine.machine.axis(axis).travel or (-np.inf, np.inf)
-    return float(min(max(target, min(low, place)), max(high, place)))
+def _stands(room: Room, axis: str) -> float:
+    return float(room.standing_setpoint[_column(room, axis)])
 
 
 def _feed(room: Room, axis: str, feed: float) -> float:
@@ -203,9 +195,7 @@ def _feed(room: Room, axis: str, feed: float) -> float:
 
 
 def _jog_stop(room: Room, _command: c.JogStop) -> None:
-    room.legs.clear()
-    if room.running == "jog" and room.run is not None:
-        room.run.drop()
+    room.stop_driving_by_hand()
 
 
 def _enter(room: Room, command: c.Enter) -> None:
@@ -262,6 +252,7 @@ def _coolant(room: Room, command: c.Coolant) -> None:
 
 
 def _change_tool(room: Room, command: c.ChangeTool) -> None:
+    _require_no_run(room, "the tool cannot change while something runs: reset first")
     _require_still(room)
     if room.spindle.turns:
         raise UsageError("the spindle turns: stop it before the tool is changed")
@@ -269,6 +260,7 @@ def _change_tool(room: Room, command: c.ChangeTool) -> None:
 
 
 def _new_blank(room: Room, _command: c.NewBlank) -> None:
+    _require_no_run(room, "the blank cannot change while something runs: reset first")
     _require_still(room)
     if room.spindle.turns:
         raise UsageError("the spindle turns: stop it before the blank is changed")
@@ -288,7 +280,9 @@ def _set_offset(room: Room, command: c.SetOffset) -> None:
     _require_no_run(room)
     column = _column(room, command.axis)
     if command.name is not None:
-        room.tables.set_offset(command.name, command.axis, command.value)
+        moved = room.tables.set_offset(command.name, command.axis, command.value)
+        if room.inherited is not None:
+            room.inherited = room.inherited.after_offset(command.name, column, moved)
         return
     room.tables.zero[column] = command.value
     forget_offset(room, command.axis)
@@ -340,10 +334,10 @@ def _require_jog(room: Room, axis: str) -> None:
     if room.mode != "jog":
         raise UsageError("jogging needs the mode manual jog")
     _column(room, axis)
-    if room.alarm is not None and room.alarm.code == "hard-limit" and not room.pressed:
-        room.release(axis)
-    else:
+    if room.alarm is None or room.alarm.code != "hard-limit" or room.pressed:
         _require_no_alarm(room)
+    elif room.on_switch not in ("", axis):
+        raise UsageError(f"{room.on_switch} stands on its limit switch: jog it back first")
 
 
 def _require_still(room: Room) -> None:

@@ -35,12 +35,6 @@ class LiveCut:
         self._operation = OperatorOperation(job.tools[0])
         self._frame, self._zero = part_frame, zero
 
-    @property
-    def broken(self) -> bool:
-        """Whether the tool in the spindle has lost its edge."""
-        broken = () if self.process is None else self.process.breaks
-        return any(found.tool == self._operation.tool.number for found in broken)
-
     def clamp(self, stock: StockTable) -> None:
         """Lay a new blank on the table; its cell must be given."""
         assert stock.cell is not None

@@ -1,20 +1,21 @@
 """What the judge and the faults see of a room, so that they depend on no room."""
 
 import dataclasses
-import re
-from collections.abc import Sequence
 from typing import Protocol
 
 from twin.machine.simulation.live import LiveMachine
-from twin.nc.text.diagnostics import Diagnostic
+from twin.nc.canonical import NO_BLOCK_NUMBER
+from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.lexer import Lexer
+from twin.nc.text.reporter import Reporter
+from twin.nc.text.source import Source
+from twin.nc.text.syntax import Language
 from twin.recording.reader import Samples
 from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.program_run import ProgramRun
 from twin.training.session.tables import Tables
 from twin.training.session.workpiece import Workpiece
-
-_NUMBER = re.compile(r"\s*/?\s*[Nn]\s*(\d+)")
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -41,15 +42,25 @@ class Notice:
     block: str = ""
 
 
-def block_number(lines: Sequence[str], line: int) -> str:
+def block_number(language: Language, program: Source, line: int) -> str:
     """The number that a line of a program gives its block, such as ``N20``; empty: none.
 
     Args:
-        lines: Of the program.
+        language: How the program is written.
+        program: The program.
         line: Counted from 1; 0: none.
     """
-    found = _NUMBER.match(lines[line - 1]) if 0 < line <= len(lines) else None
-    return "" if found is None else f"N{found[1]}"
+    lexer = Lexer(language, Reporter(program, strict=False))
+    text = program.lines[line - 1] if 0 < line <= len(program.lines) else ""
+    while text:
+        try:
+            numbers = [block.number for block in lexer.blocks(text, line)]
+        except ProgramError as error:
+            # What stands before a mistake can be read.
+            text = text[: min(error.diagnostic.column, len(text)) - 1]
+        else:
+            return next((f"N{one}" for one in numbers if one != NO_BLOCK_NUMBER), "")
+    return ""
 
 
 class Observed(Protocol):

@@ -37,6 +37,7 @@ from twin.nc.functions import (
     SPINDLE_STOPS,
     TOOL_CHANGE,
 )
+from twin.nc.geometry.frame import SHIFTS
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
@@ -60,6 +61,9 @@ MADE_AGAIN_AT_ONCE = 100
 LARGEST_OVERRIDE = 1.2
 """Factor at the end of the feed override dial."""
 
+NO_COMPENSATION = 40
+"""G code that ends radius compensation, in every dialect that has any."""
+
 PASSED = 0.5
 """A stop at the end of a block is given as the end of its move or as the beginning of the next."""
 
@@ -80,6 +84,20 @@ class Inherited(NamedTuple):
     shifts: list[list[float]]
     feed: float | None
     spindle: float | None
+
+    def after_offset(self, name: str, column: int, moved: float) -> "Inherited":
+        """The same after a work offset has changed: the one in force shifts the part's zero.
+
+        Args:
+            name: Of the offset, such as ``G55``.
+            column: Of the axis.
+            moved: By how much it has changed [mm or deg].
+        """
+        if name != f"G{self.modal.active.get('offset', 0.0):g}":
+            return self
+        shifts = [list(shift) for shift in self.shifts]
+        shifts[SHIFTS.index("offset")][column] += moved
+        return self._replace(shifts=shifts)
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -289,12 +307,6 @@ class ProgramRun:
             self._walk.go_freely()
         self._motion.start()
 
-    def skip_blocks(self, *, on: bool) -> None:
-        """Leave out blocks that begin with a slash, as far as they have not been read yet."""
-        self._journal.append(("skip_blocks", on))
-        control = self._control
-        control.settings = dataclasses.replace(control.settings, block_skip=on)
-
     def drop(self) -> None:
         """Come to rest on the path, and forget the rest."""
         self._journal.append(("drop",))
@@ -475,7 +487,7 @@ class ProgramRun:
         self.ending_line, self.optional = block.line, False
         control.path.take()
         needed = control.tools.spindle
-        if {41, 42} & set(control.active.values()):
+        if control.active.get("compensation", NO_COMPENSATION) != NO_COMPENSATION:
             self.ending = "program"
             self.message = "a search cannot begin within a compensated contour"
         elif needed != self.tool:
@@ -541,8 +553,6 @@ class ProgramRunCopy:
             elif what == "begin":
                 start, zero, paused = given
                 run.begin(start, zero, paused=paused)
-            elif what == "skip_blocks":
-                run.skip_blocks(on=given[0])
             else:
                 getattr(run, what)(*given)
         return run

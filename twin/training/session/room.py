@@ -56,8 +56,8 @@ WORK_OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59")
 """Rows of the table of work offsets, where the control knows them."""
 MOMENTS_KEPT = 12
 """Alarms that the score sheet has pictures of."""
-SHORTEST_WAY = 1e-3
-"""Way that counts as none when an axis is driven by hand [mm or deg]."""
+SHORTEST_WAY = 1e-4
+"""Way that counts as none when an axis is driven by hand [mm or deg]: below the handwheel's least step."""
 ON_PATH = 1e-3
 """How near to where it was held a program may go on [mm or deg]."""
 
@@ -67,13 +67,15 @@ class Leg(NamedTuple):
 
     Attributes:
         axis: Its name.
-        target: Machine coordinates [mm or deg].
+        target: Machine coordinates, within the travel [mm or deg].
         feed: [mm/min or deg/min].
+        wheel: The handwheel asked for it.
     """
 
     axis: str
     target: float
     feed: float
+    wheel: bool = False
 
 
 class Suspended(NamedTuple):
@@ -82,10 +84,12 @@ class Suspended(NamedTuple):
     Attributes:
         run: The program.
         place: Where it was held, machine coordinates, shape (k,) [mm or deg].
+        line: Source line of the block that was held.
     """
 
     run: ProgramRun
     place: FloatArray
+    line: int
 
 
 @dataclasses.dataclass(slots=True)
@@ -136,7 +140,7 @@ class Room:
         running: What is being run: ``program``, ``mdi``, ``jog``, or nothing.
         waiting: A program waits at a program stop.
         suspended: A program that was held, while the axes are jogged.
-        legs: Ways by hand that are still to go.
+        legs: Ways by hand: the first is under way, the others follow.
         modal: What was in force last, where nothing runs.
         inherited: What the last MDI block left in force for the next one.
         faults: What is broken.
@@ -234,18 +238,11 @@ class Room:
     @property
     def line(self) -> int:
         """Source line of the program that runs, or behind which it waits; 0: none."""
+        if self.suspended is not None:
+            return self.suspended.line
         if self.running != "program" or self.run is None:
             return 0
         return self.run.line(int(self.machine.setpoint.line[0]))
-
-    @property
-    def needs_speed(self) -> bool:
-        """Whether the control has a word for the spindle's speed: without it no start turns it.
-
-        LinuxCNC, "M3, M4, M5": started with S0 the spindle stands until S says more. CODESYS knows
-        no such word; there the drive turns as it is set.
-        """
-        return self.scene.preparation.dialect.name != "codesys"
 
     @property
     def slice_s(self) -> float:
@@ -279,8 +276,6 @@ class Room:
         self._relabel()
         self._latch(self.machine.alarm)
         self._end_of_part()
-        if self.legs and not self.moving:
-            self._next_leg()
         self.judge.look(self)
 
     def _setpoints(self, count: int) -> Setpoints:
@@ -339,7 +334,9 @@ class Room:
         self.spindle = self.spindle.after(function)
         if function.word in SPINDLE_STARTS:
             self.counter_clockwise = function.word == SPINDLE_COUNTER_CLOCKWISE
-            if self.spindle.speed is None and self.needs_speed:
+            # Started without S the spindle stands until S says more (LinuxCNC, "M3, M4, M5"). A
+            # control that has no word for the speed turns it as the drive is set.
+            if self.spindle.speed is None and self.scene.preparation.dialect.spindle_letter:
                 self.spindle = SpindleState(started=True, speed=0.0)
         if function.word in PROGRAM_ENDS:
             self.spindle = self.spindle.stopped()
@@ -349,7 +346,8 @@ class Room:
             self.coolant = False
 
     def _latch(self, alarm: Alarm | None) -> None:
-        if alarm is not None and self.alarm is None:
+        # An axis that is jogged off its switch may meet the next alarm while the first one stands.
+        if alarm is not None and (self.alarm is None or self.run is not None):
             self.raise_alarm(alarm.code, alarm.message, axis=alarm.axis, line=alarm.line)
 
     def raise_alarm(
@@ -364,7 +362,8 @@ class Room:
         """The control stops everything and says why; the first alarm counts."""
         if self.alarm is None:
             here = self.running == "program" or (self.running == "" and line > 0)
-            block = block_number(self.lines, line) if here else ""
+            dialect = self.scene.preparation.dialect
+            block = block_number(dialect, self.program, line) if here else ""
             self.alarm = Notice(code, message, axis, line, self.time_s, finding, block)
             self.alarms.append(self.alarm)
             self._keep_moment(self.alarm)
@@ -394,7 +393,10 @@ class Room:
             return
         ending = run.ending
         self.judge.note_singly(run.singly)
-        if run.dropped or self.running == "jog" or ending in (None, "end"):
+        if run.dropped or ending in (None, "end"):
+            if self.running == "jog":
+                self._end_of_leg()
+                return
             if self.running == "program" and not run.dropped:
                 self.judge.note_end(self)
             elif self.running == "mdi" and not run.dropped:
@@ -470,7 +472,8 @@ class Room:
             "start": dict(zip(names, map(float, start), strict=True)),
             "tools": tools,
             "machine_zero": dict(zip(names, map(float, -zero), strict=True)),
-            "offsets": self.tables.offsets,
+            # A copy: a run that is made again begins with the table as it was.
+            "offsets": {name: dict(values) for name, values in self.tables.offsets.items()},
             "block_skip": self.scene.preparation.settings.block_skip or self.switches.block_skip,
         }
 
@@ -495,7 +498,8 @@ class Room:
     def suspend(self) -> None:
         """Let the axes be jogged while the program is held."""
         assert self.run is not None
-        run, self.suspended = self.run, Suspended(self.run, self.standing_setpoint)
+        run = self.run
+        self.suspended = Suspended(run, self.standing_setpoint, self.line)
         self.modal = run.modal(int(self.machine.setpoint.move[0]))
         self.run, self.running = None, ""
 
@@ -512,23 +516,64 @@ class Room:
         self.suspended = None
 
     def drive_by_hand(self, legs: Iterable[Leg]) -> None:
-        """Drive axes one after the other, kept within their travel."""
-        self.legs = deque(legs)
-        self._next_leg()
+        """Drive axes one after the other.
 
-    def _next_leg(self) -> None:
-        """Begin the next way by hand that is not done yet."""
-        machine = self.machine.machine
-        while self.legs and self.run is None and self.machine.alarm is None:
-            axis, target, feed = self.legs.popleft()
-            low, high = machine.axis(axis).travel or (-np.inf, np.inf)
-            stands = float(self.standing_setpoint[machine.axes.index(axis)])
-            # An axis that stands beyond its travel may only come back.
-            way = min(max(target, min(low, stands)), max(high, stands)) - stands
-            if abs(way) >= SHORTEST_WAY:
-                block = jog_block(self.scene.preparation.dialect, axis, way, feed)
+        Where an axis stands on its limit switch, the drives are switched on for it: the alarm
+        stands until it has left the switch (Fagor 8070: with the limit overridden only jogging away
+        is allowed; LinuxCNC: "Override Limits").
+
+        Raises:
+            UsageError: An axis moves.
+        """
+        if self.moving:
+            raise UsageError("the axes still move")
+        if self.machine.alarm is not None:
+            self.machine.clear()
+        self.legs = deque(legs)
+        self._begin_leg()
+
+    def follow_wheel(self, leg: Leg) -> None:
+        """Let the axis that follows the handwheel go on to another place, or back at once."""
+        assert self.run is not None
+        under_way = self.legs[0]
+        stands = float(self.standing_setpoint[self.machine.machine.axes.index(leg.axis)])
+        self.legs = deque((under_way, leg))
+        if (leg.target - under_way.target) * (under_way.target - stands) < 0.0:
+            self.run.drop()
+
+    def stop_driving_by_hand(self) -> None:
+        """Come to rest on a way by hand, and forget the others."""
+        self.legs.clear()
+        if self.running == "jog" and self.run is not None:
+            self.run.drop()
+
+    def _begin_leg(self) -> None:
+        """Begin the first way by hand that is not done yet."""
+        while self.legs and self.run is None:
+            axis, target, feed, _ = self.legs[0]
+            stands = float(self.standing_setpoint[self.machine.machine.axes.index(axis)])
+            if abs(target - stands) < SHORTEST_WAY:
+                self.legs.popleft()
+            else:
+                block = jog_block(self.scene.preparation.dialect, axis, target - stands, feed)
                 # A jog is kept within the travel by itself, and leads back into it.
                 self.start_run(source_from_text(block, "jog"), "jog", RunOptions(soft_limits=False))
+
+    def _end_of_leg(self) -> None:
+        """A way by hand has been gone: it ends, and the next one begins, when the axes stand."""
+        if self.moving:
+            return
+        if self.legs:
+            self.legs.popleft()
+        self.drop_run()
+        self._begin_leg()
+
+    def within_travel(self, axis: str, target: float) -> float:
+        """How far an axis goes by hand: to the end of its travel; from beyond it only back."""
+        machine = self.machine.machine
+        low, high = machine.axis(axis).travel or (-np.inf, np.inf)
+        stands = float(self.standing_setpoint[machine.axes.index(axis)])
+        return min(max(target, min(low, stands)), max(high, stands))
 
     def new_blank(self) -> None:
         """Clamp a new blank."""
@@ -595,21 +640,6 @@ class Room:
             if not low < place < high:
                 return name
         return ""
-
-    def release(self, axis: str) -> None:
-        """Switch the drives on, so that an axis can be jogged off its limit switch.
-
-        As at a real machine the alarm stands until it has left the switch (Fagor 8070: with the
-        limit overridden only jogging away is allowed; LinuxCNC: "Override Limits").
-
-        Raises:
-            UsageError: Another axis stands there.
-            AlarmStandsError: An axis moves.
-        """
-        if self.on_switch not in ("", axis):
-            raise UsageError(f"{self.on_switch} stands on its limit switch: jog it back first")
-        if self.machine.alarm is not None:
-            self.machine.clear()
 
     def fail(self, message: str) -> None:
         """Something went wrong within the program that simulates: the axes brake, nothing ends."""

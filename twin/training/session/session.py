@@ -46,6 +46,7 @@ class Session:
         frozen: Time stands still.
         replay: What is being shown again; None: the machine itself is seen.
         refusal: Why the last command was refused, empty when it was not.
+        refusals: How many commands have been refused.
         signature: Who is at the panel, as far as somebody has said.
     """
 
@@ -61,6 +62,7 @@ class Session:
         self.frozen = False
         self.replay: Replay | None = None
         self.refusal = ""
+        self.refusals = 0
         self.signature = ""
         self._done: list[Entry] = []
         self._checkpoints = Checkpoints(self.room)
@@ -93,6 +95,7 @@ class Session:
             self.refusal = ""
         except TwinError as error:
             self.refusal = str(error)
+            self.refusals += 1
         if plain:
             entry = Entry(tick, who, plain, self.refusal)
             self.log.append(entry)
@@ -150,5 +153,6 @@ class Session:
             frozen=self.frozen,
             replaying=replay is not None,
             refusal=self.refusal,
+            refusals=self.refusals,
             signature=self.signature,
         )

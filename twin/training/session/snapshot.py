@@ -96,6 +96,8 @@ class Snapshot:
     replaying: bool = False
     refusal: str = ""
     """Why the last command was refused."""
+    refusals: int = 0
+    """How many have been refused: what a page has sent in vain it takes back."""
     signature: str = ""
     """Who is at the panel."""
     speed: float = 1.0

@@ -74,8 +74,11 @@ class Tables:
         if radius is not None:
             self.radii[number] = radius
 
-    def set_offset(self, name: str, axis: str, value: float) -> None:
+    def set_offset(self, name: str, axis: str, value: float) -> float:
         """Write a work offset of an axis [mm or deg].
+
+        Returns:
+            By how much it has changed.
 
         Raises:
             UsageError: The control has no such offset.
@@ -83,7 +86,9 @@ class Tables:
         if name not in self.offsets:
             known = ", ".join(self.offsets) or "none"
             raise UsageError(f"no work offset {name}: the table has {known}")
+        before = self.offsets[name].get(axis, 0.0)
         self.offsets[name][axis] = value
+        return value - before
 
     def _along_z(self, value: float) -> FloatArray:
         shift = np.zeros(len(self.zero))

@@ -94,6 +94,10 @@ def execute_block(
     in_plane = block.seen & ((1 << (AXIS + plane[0])) | (1 << (AXIS + plane[1]))) != 0
     if polar and in_plane:
         return UNSUPPORTED
+    if not moves and block.seen & (1 << CODE):
+        kind = tables.kind[int(modal[INTERPOLATION])]
+        if kind == ARC or (kind != RAPID_LINE and np.isnan(block.feed)):
+            return UNSUPPORTED
     early = function != UNSUPPORTED and tables.function[function] == EARLY
     if early:
         _report_function(function, machine, row, line)
@@ -167,6 +171,8 @@ def _decode(
                 break
             groups |= group
             modal[tables.field[code]] = tables.value[code]
+            if tables.field[code] == INTERPOLATION:
+                seen |= 1 << CODE
             if tables.cycle[code] == 0:
                 modal[CYCLE] = 0.0
             elif tables.cycle[code] > 0:

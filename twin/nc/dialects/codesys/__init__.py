@@ -64,6 +64,7 @@ CODESYS = Dialect(
             for sign in ("", "-")
         },
     },
+    spindle_letter="",
     statements={
         "LET": StatementEffect(program.let),
         "SUBPROGRAM": subprograms.define,

@@ -218,7 +218,7 @@ def write_variable(control: Control, assembler: Assembler) -> None:
 def add_to_variable(control: Control, assembler: Assembler) -> None:
     """G37: D is added to variable O, or to the internal one."""
     name, word = _reference(control, control.take("O")), _value_word(control)
-    change = word.value.evaluate if isinstance(word.value, Expression) else Number(word.value)
+    change = word.value.tree if isinstance(word.value, Expression) else Number(word.value)
     total = Computed("+", arithmetic.add, (Variable(name), change))
     assembler.word_value(word._replace(value=Expression(name, total)))
     assembler.assign(name)

@@ -213,9 +213,9 @@ def _new_value(assignment: Assignment) -> Expression:
         return value
     old: Tree = Variable(assignment.name)
     if index is not None:
-        old = NumberedVariable(assignment.name, index.evaluate)
+        old = NumberedVariable(assignment.name, index.tree)
     compute = EXPRESSIONS.operators[operator].compute
-    return Expression(value.text, Computed(operator, compute, (old, value.evaluate)))
+    return Expression(value.text, Computed(operator, compute, (old, value.tree)))
 
 
 def _write_live(control: Control, statement: Statement, assignment: Assignment) -> None:

@@ -36,7 +36,7 @@ def _refuse_counted(compiler: BlockCompiler, words: tuple[Word, ...]) -> None:
     for word in words:
         if word.address in looked_at and (word.address == "P" or word.pointless) and word.value:
             raise UnsupportedError
-        if isinstance(word.value, Expression) and variables.rounds(word.value.evaluate):
+        if isinstance(word.value, Expression) and variables.rounds(word.value.tree):
             raise UnsupportedError
 
 

@@ -12,8 +12,9 @@ from twin.nc.control.modal import FeedMode
 from twin.nc.control.settings import ControlSettings
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.dialects.fanuc.variables import rounding_to, rounds
+from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Block, Word
-from twin.nc.text.expressions import Expression, Scaled
+from twin.nc.text.expressions import Computed, Expression, Number
 
 LENGTHS = frozenset("XYZUVWIJKRQ") | {",R", ",C"}
 ANGLES = frozenset("ABC")
@@ -108,7 +109,7 @@ def _rounded(control: Control, block: Block) -> Block:
     words: list[Word] = []
     for word in block.words:
         value = word.value
-        if isinstance(value, Expression) and rounds(value.evaluate):
+        if isinstance(value, Expression) and rounds(value.tree):
             increment, _ = _increment(control, word.address, set())
             word = word._replace(value=rounding_to(value, increment))
         words.append(word)
@@ -177,4 +178,5 @@ def _scale(word: Word, codes: set[float | Expression]) -> Word:
 
 
 def _times(expression: Expression, factor: float) -> Expression:
-    return Expression(expression.text, Scaled(expression.evaluate, factor))
+    times = Computed("*", arithmetic.multiply, (expression.tree, Number(factor)))
+    return Expression(expression.text, times)

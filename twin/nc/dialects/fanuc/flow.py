@@ -167,7 +167,7 @@ def _assignment(control: Control, statement: Statement, at: int) -> Assignment:
     if text.startswith("#", at):
         target, end = _read(control, statement, at)
     equals = _EQUALS.match(text, end)
-    if equals is None or not isinstance(target.evaluate, Variable | NumberedVariable):
+    if equals is None or not isinstance(target.tree, Variable | NumberedVariable):
         refuse(control, statement, "structure", "one assignment follows THEN", "THEN #2=1")
     try:
         value, end = reader.read(text, equals.end())
@@ -177,13 +177,13 @@ def _assignment(control: Control, statement: Statement, at: int) -> Assignment:
     if text[end:].strip():
         refuse(control, statement, "structure", "one assignment follows THEN, and no more")
     column = statement.text_column + at
-    return Assignment(target.evaluate, value, column, end - at)
+    return Assignment(target.tree, value, column, end - at)
 
 
 def _assign(control: Control, assignment: Assignment) -> None:
     target, index = assignment.target, None
     if isinstance(target, NumberedVariable):
-        index = control.compute(Expression("", target.index), assignment.column)
+        index = control.compute(target.index, assignment.column)
     value = control.compute(assignment.value, assignment.column)
     write_variable(control, target.name, index, value, assignment)
 
@@ -206,7 +206,7 @@ def _target(control: Control, statement: Statement, at: int) -> Expression:
 
 
 def _known(target: Expression) -> float | None:
-    return target.evaluate.value if isinstance(target.evaluate, Number) else None
+    return target.tree.value if isinstance(target.tree, Number) else None
 
 
 def _jump(control: Control, statement: Statement, target: Expression) -> None:

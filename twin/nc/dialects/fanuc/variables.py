@@ -180,7 +180,7 @@ def rounds(tree: Tree) -> bool:
 
 def rounding_to(expression: Expression, increment: float) -> Expression:
     """The value of a word, whose ROUND goes to the least increment (manual)."""
-    return Expression(expression.text, _rounding_to(expression.evaluate, increment))
+    return Expression(expression.text, _rounding_to(expression.tree, increment))
 
 
 def _rounding_to(tree: Tree, increment: float) -> Tree:

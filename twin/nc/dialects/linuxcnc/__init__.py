@@ -37,7 +37,11 @@ def _before_motion(control: Control, rapid: bool) -> None:
 
 
 def _acts_on_plain_blocks(control: Control) -> bool:
-    """Compensation, absolute centres, a spline, a cycle that returns elsewhere: plain blocks heed them."""
+    """What plain blocks heed.
+
+    Compensation, absolute centres, a spline, a cycle that returns elsewhere; a feed that another unit was
+    in force for, until the program writes one.
+    """
     memory, modal = memory_of(control), control.modal
     cycle_elsewhere = False
     if modal.cycle is not None:
@@ -51,6 +55,7 @@ def _acts_on_plain_blocks(control: Control) -> bool:
         or bool(memory.control_points)
         or memory.spline_end is not None
         or cycle_elsewhere
+        or memory.converted_feed is not None
     )
 
 
@@ -77,6 +82,7 @@ LINUXCNC = Dialect(
         expressions=EXPRESSIONS,
         statement=r"O(?=[ \t]*[0-9<#\[])|%",
         assigned="#",
+        blanks_in_numbers=True,
     ),
     groups=GROUPS,
     g=CODES,

@@ -1,5 +1,7 @@
 """Arcs of LinuxCNC: a centre from the start or absolute, a radius, several turns."""
 
+from typing import NoReturn
+
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
@@ -35,6 +37,17 @@ def _turns(control: Control) -> int:
     return int(value)
 
 
+def refuse_alone(control: Control) -> NoReturn:
+    """G2 or G3 without a word of the arc.
+
+    Raises:
+        ProgramError: Always.
+    """
+    letters = plane_center_letters(control)
+    hint = f"write {', '.join(letters)} or R; or G1 for a line"
+    control.fail("arc-without-center", "the arc has neither a centre nor a radius", hint=hint)
+
+
 def _center(control: Control, goal: list[float], *, clockwise: bool) -> Point:
     start, end = start_and_end(control, goal)
     letters = plane_center_letters(control)
@@ -45,8 +58,7 @@ def _center(control: Control, goal: list[float], *, clockwise: bool) -> Point:
         value = control.length(radius)
         return center_of_radius(control, start[:2], end[:2], value, radius, clockwise=clockwise)
     if not centre.words:
-        hint = f"write {', '.join(letters)} or R; or G1 for a line"
-        control.fail("arc-without-center", "the arc has neither a centre nor a radius", hint=hint)
+        refuse_alone(control)
     offset = control.modal.plane.local(centre.vector)
     center = (offset.abscissa, offset.ordinate)
     if control.modal.center_absolute:
@@ -92,7 +104,11 @@ def counter_clockwise_arc(control: Control) -> None:
     _arc(control, clockwise=False)
 
 
-CLOCKWISE = Interpolation(clockwise_arc, rule=ArcRule(clockwise=True, bounds=BOUNDS))
+CLOCKWISE = Interpolation(
+    clockwise_arc, rule=ArcRule(clockwise=True, bounds=BOUNDS), without_words=refuse_alone
+)
 COUNTER_CLOCKWISE = Interpolation(
-    counter_clockwise_arc, rule=ArcRule(clockwise=False, bounds=BOUNDS)
+    counter_clockwise_arc,
+    rule=ArcRule(clockwise=False, bounds=BOUNDS),
+    without_words=refuse_alone,
 )

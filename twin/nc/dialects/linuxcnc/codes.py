@@ -7,7 +7,7 @@ from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.linuxcnc import compensation, curves, motion, offsets
 from twin.nc.dialects.linuxcnc.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.linuxcnc.cycles import CYCLES
-from twin.nc.dialects.linuxcnc.memory import SYSTEMS
+from twin.nc.dialects.linuxcnc.memory import SYSTEMS, memory_of
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
 from twin.nc.iso import base
 from twin.nc.iso.tool_compensation import LEFT, RIGHT
@@ -23,7 +23,9 @@ def _units(unit: float) -> Action:
 
     def action(control: Control) -> None:
         offsets.refuse_in_compensation(control)
-        if control.feed is not None:
+        memory = memory_of(control)
+        if control.feed is not None and control.modal.unit != unit:
+            memory.converted_feed = memory.converted_feed or control.feed
             control.feed *= control.modal.unit / unit
         control.modal.unit = unit
 
@@ -33,7 +35,7 @@ def _units(unit: float) -> Action:
 def forget_feed(control: Control) -> None:
     """G93 to G95: a feed of another block counts no more."""
     if not any(word.address == "F" for word in control.block.words):
-        control.feed = None
+        control.feed = memory_of(control).converted_feed = None
 
 
 def change_plane(control: Control) -> None:
@@ -68,7 +70,7 @@ def _alone_with_axes(action: Action) -> Action:
     """A code that takes the axis words of its block, so that no motion code can stand beside it."""
 
     def perform(control: Control) -> None:
-        if any(code.group == "motion" for _, code in control.codes):
+        if any(code.group == "motion" and not code.yields for _, code in control.codes):
             message = "two codes of the block want its axis words"
             control.fail("conflicting-codes", message, hint="write them in two blocks")
         action(control)
@@ -131,6 +133,7 @@ MOTION = {
         meaning="no motion: axis words need a code",
         group="motion",
         sets={"cycle": None, "interpolation": None},
+        yields=True,
         ground="manual",
     ),
     **CYCLES,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import ControlPoint, memory_of
-from twin.nc.dialects.linuxcnc.motion import check_feed
+from twin.nc.dialects.linuxcnc.motion import check_feed, need_axes, require_axes
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import XY
@@ -67,6 +67,7 @@ def cubic(control: Control) -> None:
     """G5 X Y I J P Q: I J from the start, P Q from the end; without I J on from the spline before."""
     memory, words = memory_of(control), {each: control.take(each) for each in "IJPQ"}
     x, y = control.programmed[:2]
+    require_axes(control)
     goal = _begin(control, "G5")
     if words["P"] is None or words["Q"] is None:
         control.fail("code-words", "G5 needs P and Q, from its end to the second control point")
@@ -80,27 +81,34 @@ def cubic(control: Control) -> None:
     p, q = control.length(words["P"]), control.length(words["Q"])
     _bezier(control, goal, [(x + i, y + j), (goal[0] + p, goal[1] + q)])
     memory.spline_end = (p, q)
+    _end_motion(control)
 
 
 def quadratic(control: Control) -> None:
     """G5.1 X Y I J: I J from the start to the control point."""
     words = {each: control.take(each) for each in "IJ"}
     x, y = control.programmed[:2]
+    require_axes(control)
     goal = _begin(control, "G5.1")
-    if words["I"] is None and words["J"] is None:
-        control.fail("code-words", "G5.1 needs I or J, from its start to the control point")
+    if words["I"] is None or words["J"] is None:
+        control.fail("code-words", "G5.1 needs I and J, from its start to the control point")
     i, j = control.length(words["I"]), control.length(words["J"])
     _bezier(control, goal, [(x + i, y + j)])
+    _end_motion(control)
 
 
 def add_control_point(control: Control) -> None:
     """G5.2 X Y P L: a control point with its weight P; L is the order of the NURBS."""
     memory = memory_of(control)
     weight, order = control.take("P"), control.take("L")
+    if ("X" in control.words) != ("Y" in control.words):
+        message = "a control point needs both X and Y, or neither for where the tool stands"
+        control.fail("code-words", message)
     goal = _begin(control, "G5.2")
-    value = 1.0 if weight is None else control.number(weight)
+    value = 0.0 if weight is None else control.number(weight)
     if value <= 0.0:
-        control.fail("code-words", "the weight P of a control point lies above 0", weight)
+        message = "a control point needs its weight P, above 0"
+        control.fail("code-words", message, weight, "write P1 where all weigh the same")
     if order is not None:
         memory.spline_order = int(control.number(order))
     if not memory.control_points:
@@ -133,6 +141,11 @@ def end_nurbs(control: Control) -> None:
     control.modal.interpolation = None
 
 
+def _end_motion(control: Control) -> None:
+    """Behind G5 and G5.1 axis words need a code again (``rs274``)."""
+    control.modal.interpolation, control.active["motion"] = None, 80
+
+
 def _knots(points: int, order: int) -> list[float]:
     """Even knots, those of both ends as often as the order says."""
     parts = points - order + 1
@@ -157,6 +170,6 @@ def _point_of(points: list[ControlPoint], knots: list[float], order: int, u: flo
     return x / w, y / w
 
 
-CUBIC = Interpolation(cubic)
-QUADRATIC = Interpolation(quadratic)
-NURBS = Interpolation(add_control_point)
+CUBIC = Interpolation(cubic, without_words=need_axes)
+QUADRATIC = Interpolation(quadratic, without_words=need_axes)
+NURBS = Interpolation(add_control_point, without_words=add_control_point)

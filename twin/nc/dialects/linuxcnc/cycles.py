@@ -12,28 +12,27 @@ from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.control.modal import FeedMode
-from twin.nc.control.state import integer_of
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.dialects.linuxcnc.motion import check_feed, target
 from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
+from twin.nc.iso.drilling import drill, refuse_hole, repeats_of
 from twin.nc.path.drilling_cycle import (
     BOTTOM,
     DWELL,
-    MOST_PECKS,
     PECK,
     REFERENCE,
     START,
     Cycle,
+    Fault,
     Pecking,
     Retract,
     Values,
     forget,
+    hole_of,
 )
 
 CLEARANCE = 0.254
 """A rapid return ends this far above the bottom of the last peck [mm]: a hundredth of an inch."""
-MOST_REPEATS = 10_000
-"""L of a cycle: more is a slip of the pen."""
 
 
 class Drilling(NamedTuple):
@@ -65,16 +64,22 @@ class Kind(NamedTuple):
         meaning: For people.
         words: Its own words besides R and the axes.
         needed: Those that it must have when it is called.
-        work: What happens at the hole, from R on.
-        cycle: What the compiled tier drills; None: nothing.
+        work: What happens at the hole, from R on: a rule for both tiers, or what the interpreter tier does.
     """
 
     number: int
     meaning: str
     words: str
     needed: str
-    work: Work
-    cycle: Cycle | None = None
+    work: Cycle | Work
+
+    @property
+    def rule(self) -> CycleRule | None:
+        """Its rule, where both tiers have one."""
+        if not isinstance(self.work, Cycle):
+            return None
+        letters = {letter: place for letter, place in _PLACES.items() if letter in self.words}
+        return CycleRule(f"G{self.number}", self.work, {"R": REFERENCE, **letters})
 
 
 _NAME_PLACES = frozenset("XYZ@^")
@@ -93,39 +98,15 @@ def _dwell(control: Control, hole: Drilling) -> None:
         control.dwell(seconds)
 
 
-def _drill(control: Control, hole: Drilling) -> None:
-    _height(control, hole.bottom, rapid=False)
-    _height(control, hole.clear)
-
-
-def _drill_and_wait(control: Control, hole: Drilling) -> None:
-    _height(control, hole.bottom, rapid=False)
-    _dwell(control, hole)
-    _height(control, hole.clear)
-
-
-def _pecks(control: Control, hole: Drilling, *, full: bool) -> None:
-    peck = hole.values[PECK]
-    if peck <= 0.0:
-        control.fail("cycle-depth", "a cycle with pecks needs Q above 0")
-    if (hole.reference - hole.bottom) / peck > MOST_PECKS:
-        control.fail("cycle-depth", f"the hole would need more than {MOST_PECKS} pecks")
-    depth = hole.reference - peck
-    while depth > hole.bottom:
-        _height(control, depth, rapid=False)
-        if full:
-            _height(control, hole.reference)
-        _height(control, min(depth + CLEARANCE, hole.reference))
-        depth -= peck
-    _drill(control, hole)
-
-
-def _drill_deep(control: Control, hole: Drilling) -> None:
-    _pecks(control, hole, full=True)
-
-
-def _break_chips(control: Control, hole: Drilling) -> None:
-    _pecks(control, hole, full=False)
+def _drill(control: Control, hole: Drilling, rule: CycleRule) -> None:
+    """What the cycle's rule says of the way down and back, for both tiers."""
+    modal = control.modal
+    values = list(hole.values)
+    values[START], values[REFERENCE], values[BOTTOM] = hole.clear, hole.reference, hole.bottom
+    found = hole_of(rule.cycle, values, modal.plane.axes[2], modal.return_to_reference)
+    if found.fault in (Fault.PECKS, Fault.MANY_PECKS):
+        refuse_hole(control, rule, found)
+    drill(control, found, None)
 
 
 def _tap(control: Control, hole: Drilling, *, clockwise: bool) -> None:
@@ -148,12 +129,6 @@ def _tap_right(control: Control, hole: Drilling) -> None:
 
 def _tap_left(control: Control, hole: Drilling) -> None:
     _tap(control, hole, clockwise=False)
-
-
-def _ream(control: Control, hole: Drilling) -> None:
-    _height(control, hole.bottom, rapid=False)
-    _height(control, hole.reference, rapid=False)
-    _height(control, hole.clear)
 
 
 def _ream_and_wait(control: Control, hole: Drilling) -> None:
@@ -260,7 +235,7 @@ def _perform(kind: Kind) -> Callable[[Control], None]:
         if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
             control.fail("code-words", "canned cycles need a feed per minute", hint="write G94 F")
         _refuse_rotary(control)
-        repeats = _repeats(control)
+        repeats = repeats_of(control, "L", least=1)
         _take_words(control, kind)
         _drill_holes(control, kind, repeats)
 
@@ -275,19 +250,8 @@ def _refuse_rotary(control: Control) -> None:
             control.fail("code-words", message, word, "turn them in a block of their own")
 
 
-def _repeats(control: Control) -> int:
-    word = control.take("L")
-    if word is None:
-        return 1
-    count = integer_of(control.number(word))
-    if not 1 <= count <= MOST_REPEATS:
-        message = f"{word.text} must count the holes, 1 to {MOST_REPEATS}"
-        control.fail("code-words", message, word)
-    return count
-
-
 def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
-    state, memory = control.cycle_state, memory_of(control)
+    state, memory, rule = control.cycle_state, memory_of(control), kind.rule
     axis, incremental = control.modal.plane.axes[2], control.modal.incremental
     words = {letter: control.words[letter] for letter in (*"XYZ@^",) if letter in control.words}
     reference = state[REFERENCE] + (state[START] if incremental else 0.0)
@@ -312,7 +276,10 @@ def _drill_holes(control: Control, kind: Kind, repeats: int) -> None:
         over[axis] = current if number == 0 else clear
         control.line_to(over, rapid=True)
         _height(control, reference)
-        kind.work(control, hole)
+        if rule is not None:
+            _drill(control, hole, rule)
+        elif not isinstance(kind.work, Cycle):
+            kind.work(control, hole)
 
 
 _G81 = Cycle(
@@ -326,20 +293,19 @@ _G81 = Cycle(
 _PECKING = _G81._replace(needed=_G81.needed | 1 << PECK, pecking=int(Pecking.TO_BOTTOM))
 
 KINDS = (
-    Kind(73, "drilling with chips broken every Q", "Q", "Q", _break_chips),
-    Kind(74, "tapping, left-hand", "P", "", _tap_left),
-    Kind(81, "drilling", "", "", _drill, _G81),
     Kind(
-        82,
-        "drilling with P seconds at the bottom",
-        "P",
-        "P",
-        _drill_and_wait,
-        _G81._replace(dwells=True),
+        73,
+        "drilling with chips broken every Q",
+        "Q",
+        "Q",
+        _PECKING._replace(lift=CLEARANCE),
     ),
-    Kind(83, "drilling in pecks of Q", "Q", "Q", _drill_deep, _PECKING),
+    Kind(74, "tapping, left-hand", "P", "", _tap_left),
+    Kind(81, "drilling", "", "", _G81),
+    Kind(82, "drilling with P seconds at the bottom", "P", "P", _G81._replace(dwells=True)),
+    Kind(83, "drilling in pecks of Q", "Q", "Q", _PECKING),
     Kind(84, "tapping, right-hand", "P", "", _tap_right),
-    Kind(85, "reaming, out with the feed", "", "", _ream, _G81._replace(retract=int(Retract.FEED))),
+    Kind(85, "reaming, out with the feed", "", "", _G81._replace(retract=int(Retract.FEED))),
     Kind(86, "boring, out with the spindle stopped", "P", "P", _bore),
     Kind(87, "boring from behind: I J beside the hole, K its top", "IJK", "IJK", _bore_back),
     Kind(89, "reaming with P seconds at the bottom", "P", "P", _ream_and_wait),
@@ -347,14 +313,11 @@ KINDS = (
 
 
 def _code(kind: Kind) -> GCode:
-    rule = None
-    if kind.cycle is not None:
-        letters = {letter: place for letter, place in _PLACES.items() if letter in kind.words}
-        rule = CycleRule(f"G{kind.number}", kind.cycle, {"R": REFERENCE, **letters})
+    mode = Interpolation(_perform(kind), rule=kind.rule)
     return GCode(
         meaning=kind.meaning,
         group="motion",
-        sets={"cycle": Interpolation(_perform(kind), rule=rule), "interpolation": None},
+        sets={"cycle": mode, "interpolation": None},
         ground="manual",
     )
 

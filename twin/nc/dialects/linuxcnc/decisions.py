@@ -82,6 +82,19 @@ DECISIONS = (
         example="parameters_in_millimetres",
     ),
     Decision(
+        "What does the twin refuse that rs274 passes over?",
+        "Words behind the condition of an elseif that is false, a structure without its end, a NURBS that "
+        "another motion ends, Z in G5.2, G5 without I and J that follows no G5, M6 before the first T.",
+        "The manual calls each an error or says nothing of it; what was meant is not done.",
+        example="refused_for_clarity",
+    ),
+    Decision(
+        "Does G43.2 take words of axes?",
+        "Yes, as the manual says: they are added to the offset in force.",
+        "rs274 of 2.9 looks for a tool -1 then, and ends.",
+        example="further_offset_by_axes",
+    ),
+    Decision(
         "What does M99 in the main program do?",
         "The program begins anew, until the job's step_limit ends it as endless.",
         "The control repeats it until somebody stops it.",

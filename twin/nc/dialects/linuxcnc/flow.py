@@ -199,7 +199,7 @@ def _repeat(control: Control, statement: Statement, word: OWord, assembler: Asse
     construct = _construct_of(control, statement, word)
     value, column = _condition_of(control, statement, word)
     counter = _counter_of(construct)
-    assembler.value(Computed("ROUND", arithmetic.nearest_whole_away, (value.evaluate,)), column)
+    assembler.value(Computed("ROUND", arithmetic.nearest_whole_away, (value.tree,)), column)
     assembler.assign(counter.name)
     assembler.value(_is_positive(counter))
     assembler.jump_unless(_behind(construct))

@@ -20,6 +20,7 @@ def set_feed(control: Control, word: Word) -> None:
     if feed < 0.0:
         control.fail("feed-range", f"the feed {word.text} is negative", word)
     control.feed = feed or None
+    memory_of(control).converted_feed = None
 
 
 def select_tool(control: Control, word: Word) -> None:
@@ -42,7 +43,6 @@ def change_tool(control: Control) -> None:
     """M6: the prepared tool goes into the spindle, which stands then."""
     if not memory_of(control).prepared:
         control.fail("tool-number", "M6 needs a tool that T has prepared", hint="write T1 M6")
-    memory_of(control).prepared = False
     memory_of(control).functions["spindle"] = 5.0
     control.spindle_turns = False
     control.tools.change()

@@ -68,8 +68,9 @@ class LinuxcncMemory:
         control_points: Of the NURBS that is being given.
         control_line: Line of its last point, from 1.
         spline_order: Its order.
-        prepared: T has prepared a tool since the last change.
+        prepared: T has prepared a tool: it stays so for the next M6.
         probe: Where the last probe ended, shape (k,), and whether it met something.
+        converted_feed: F as it was written, where the unit has changed since; else None.
         percent: The program began with %.
         percent_ended: A second % has ended it.
     """
@@ -99,6 +100,7 @@ class LinuxcncMemory:
     spline_order: int = 3
     prepared: bool = False
     probe: list[float] = dataclasses.field(default_factory=list)
+    converted_feed: float | None = None
     percent: bool = False
     percent_ended: bool = False
 

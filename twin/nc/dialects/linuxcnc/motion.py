@@ -1,6 +1,7 @@
 """Straight motion of LinuxCNC: polar words, machine coordinates, stored positions, threads, probing."""
 
 import math
+from typing import NoReturn
 
 from twin.nc.control.codes import Action, Interpolation
 from twin.nc.control.control import Control
@@ -13,9 +14,6 @@ from twin.nc.geometry.planes import XY
 from twin.nc.iso import base
 from twin.nc.iso.offsets import machine_zero
 from twin.nc.text.blocks import Word
-
-SHORTEST_PROBE = 0.254
-"""A probing move must be longer than this [mm] (``rs274``)."""
 
 
 def check_feed(control: Control, rapid: bool) -> None:
@@ -33,6 +31,30 @@ def check_feed(control: Control, rapid: bool) -> None:
             "no feed is programmed, and the control moves nowhere without one",
             hint="write F in this block or before",
         )
+
+
+def need_axes(control: Control) -> NoReturn:
+    """A motion code that wants words of axes has none.
+
+    Raises:
+        ProgramError: Always.
+    """
+    message = "the code moves where its block says, and no word of an axis stands in it"
+    control.fail("code-words", message, hint="write its axes in its block")
+
+
+def require_axes(control: Control) -> None:
+    """Refuse a block without words of axes.
+
+    Raises:
+        ProgramError: It is one.
+    """
+    if control.words.keys().isdisjoint({*control.axis_letters, "@", "^"}):
+        need_axes(control)
+
+
+def _feed_alone(control: Control) -> None:
+    check_feed(control, False)
 
 
 def target(control: Control) -> list[float]:
@@ -85,7 +107,7 @@ def feed_line(control: Control) -> None:
 
 
 RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
-FEED = Interpolation(feed_line, rule=LineRule())
+FEED = Interpolation(feed_line, rule=LineRule(), without_words=_feed_alone)
 
 
 def in_machine_coordinates(control: Control) -> None:
@@ -167,6 +189,7 @@ def _line_with_feed(control: Control, goal: list[float], feed: float) -> None:
 def thread(control: Control) -> None:
     """G33: a straight move of K with each turn of the spindle."""
     refuse_in_compensation(control)
+    require_axes(control)
     feed = _pitch_feed(control, "G33")
     _line_with_feed(control, target(control), feed)
 
@@ -174,6 +197,7 @@ def thread(control: Control) -> None:
 def tap(control: Control) -> None:
     """G33.1: the same and back again, with the spindle reversed."""
     refuse_in_compensation(control)
+    require_axes(control)
     feed, start = _pitch_feed(control, "G33.1"), list(control.programmed)
     _line_with_feed(control, target(control), feed)
     forward = memory_of(control).functions.get("spindle", 3.0) == 3.0
@@ -183,20 +207,21 @@ def tap(control: Control) -> None:
     control.function("M3" if forward else "M4", speed)
 
 
-THREAD = Interpolation(thread)
-TAP = Interpolation(tap)
+THREAD = Interpolation(thread, without_words=need_axes)
+TAP = Interpolation(tap, without_words=need_axes)
 
 
 def probe(control: Control) -> None:
     """G38.3, G38.5: to the end of the probing path; nothing touches the twin's probe."""
     refuse_in_compensation(control)
+    require_axes(control)
     check_feed(control, False)
+    if control.modal.feed_mode is FeedMode.BLOCKS_PER_MINUTE:
+        control.fail("code-words", "probing needs a feed per minute", hint="write G94 F")
     goal = target(control)
-    if math.dist(goal[:3], control.programmed[:3]) < SHORTEST_PROBE:
-        control.fail("code-words", f"a probing move is longer than {SHORTEST_PROBE:g} mm")
     control.function("G38", {})
     control.line_to(goal, rapid=False)
     memory_of(control).probe = list(control.programmed)
 
 
-PROBE = Interpolation(probe)
+PROBE = Interpolation(probe, without_words=need_axes)

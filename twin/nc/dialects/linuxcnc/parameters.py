@@ -246,6 +246,11 @@ def _motion(control: Control) -> float:
     return round(10.0 * control.active.get("motion", 80.0))
 
 
+def _feed(control: Control) -> float:
+    """F as it was written: a change of the unit leaves it as it is (``rs274``)."""
+    return memory_of(control).converted_feed or control.feed or 0.0
+
+
 def _system_code(control: Control) -> float:
     return round(10.0 * float(SYSTEMS[memory_of(control).system - 1][1:]))
 
@@ -283,7 +288,7 @@ _NAMED: dict[str, Callable[[Control], float]] = {
     "feed_override": lambda _control: 1.0,
     "adaptive_feed": lambda _control: 0.0,
     "feed_hold": lambda _control: 1.0,
-    "feed": lambda control: control.feed or 0.0,
+    "feed": _feed,
     "rpm": lambda control: control.spindle or 0.0,
     **{letter.lower(): _position(letter) for letter in _AXES},
     **{f"abs_{letter.lower()}": _machine_position(letter) for letter in _AXES},

@@ -15,7 +15,7 @@ KEYWORDS = (
     "SUB", "ENDSUB", "CALL", "RETURN", "IF", "ELSEIF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "DO",
     "REPEAT", "ENDREPEAT", "BREAK", "CONTINUE",
 )  # fmt: skip
-_LABEL = r"<[^<>]*>|[0-9]+"
+_LABEL = r"<[^<>]*>|[0-9](?:[0-9 \t]*[0-9])?"
 _LINE = re.compile(
     rf"[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O[ \t]*({_LABEL})[ \t]*([A-Z]*)", re.IGNORECASE
 )

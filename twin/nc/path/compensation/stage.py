@@ -92,6 +92,7 @@ class Compensation:
     def __init__(self, axes: int, drive: Drive, refuse: Refuse, warn: Warn) -> None:
         """Compensation that is off, for a machine with so many axes."""
         self.contour = new_contour(axes)
+        self._counts = self.contour.counts.data
         self._drive = drive
         self._refuse = refuse
         self._warn = warn
@@ -103,7 +104,7 @@ class Compensation:
     @property
     def stage(self) -> int:
         """A ``Stage``."""
-        return int(self.contour.counts[STAGE])
+        return self._counts[STAGE]
 
     @property
     def in_force(self) -> bool:

@@ -1,0 +1,60 @@
+"""Blocks of LinuxCNC whose rules surprise: each was compared with ``rs274``, as it is again where that is installed."""
+
+import pytest
+
+from tests.nc.linuxcnc.oracle import RS274, by_twin, difference
+
+REFUSED = {
+    "F100\nG2\nM2\n": "arc-without-center",
+    "F100\nG3\nG1 X1\nM2\n": "arc-without-center",
+    "F100\nG2 F200\nM2\n": "arc-without-center",
+    "G1\nM2\n": "no-feed",
+    "S100 M3\nG33\nM2\n": "code-words",
+    "S100 M3\nG33 K1\nM2\n": "code-words",
+    "S100 M3\nG33.1\nM2\n": "code-words",
+    "F100\nG38.3\nM2\n": "code-words",
+    "G93\nG38.3 X5 F10\nM2\n": "code-words",
+    "F100\nG5\nM2\n": "code-words",
+    "F100\nG5.1 I5 X10 Y5\nM2\n": "code-words",
+    "F100\nG5.1 X10 Y10 I2 J6\nX20 Y10 I1 J1\nM2\n": "no-motion-code",
+    "F100\nG5.2 X1 Y1\nG5.2 X2 Y0\nG5.3\nM2\n": "code-words",
+    "F100\nG5.2 X10 P1 L3\nX5 Y5 P1\nG5.3\nM2\n": "code-words",
+    "G80 X1\nM2\n": "no-motion-code",
+    "G80 G0 G1 X1\nM2\n": "conflicting-codes",
+    "F100\nG81 X1 Z1 R2 L0\nM2\n": "repeat-count",
+}
+ENDS = {
+    "G80 G0 X3 Y5\nM2\n": [3.0, 5.0, 0.0],
+    "G0 G80 X3\nM2\n": [3.0, 0.0, 0.0],
+    "F100\nG81 X1 Y1 Z-1 R1\nG80 G0 X3\nM2\n": [3.0, 1.0, 1.0],
+    "F100\nG81 X1 Y1 Z1 R2\nG80 G81 X3\nM2\n": [3.0, 1.0, 2.0],
+    "G0 X7\nG80 G92 X0\nG0 X1\nM2\n": [8.0, 0.0, 0.0],
+    "G0 X7\nG80 G28 X5\nM2\n": [0.0, 0.0, 0.0],
+    "G 0 1 F 1 00 X 1 . 5\nM2\n": [1.5, 0.0, 0.0],
+    "#1 = 1 0\nG0 X#1 Y[1 0 + 2] Z- . 5\nM 2\n": [10.0, 12.0, -0.5],
+    "N 1 0 G0 X1 2 (X 1 3) Y3\nM2\n": [12.0, 3.0, 0.0],
+    "o 1 0 0 sub\nG0 Z1\no100 endsub\no1 00 call\nM2\n": [0.0, 0.0, 1.0],
+    "F100\nG38.5 X0.1\nM2\n": [0.1, 0.0, 0.0],
+    "F100 G20\nG0 X[#<_feed>/100]\nG21\nG0 Y[#<_feed>]\nF5\nG0 Z[#<_feed>]\nM2\n": [25.4, 100.0, 5.0],
+    "T1\nT2 M6\nM6\nG43\nG0 Z1\nM2\n": [0.0, 0.0, 21.0],
+    "F100\nG73 X1 Y1 Z-3 R1 Q1\nG91 G83 X1 Z-3 R1 Q1 L3\nM2\n": [4.0, 1.0, 1.0],
+    "F100\nG85 X1 Z-3 R-1\nG0 Z5\nG98 G82 X1 Z-4 R1 P1\nX6\nM2\n": [6.0, 0.0, 5.0],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_refused(text: str) -> None:
+    assert f"error {REFUSED[text]}:" in by_twin(text).error
+
+
+@pytest.mark.parametrize("text", ENDS)
+def test_moved(text: str) -> None:
+    made = by_twin(text)
+    assert not made.error
+    assert made.moves[-1].end[:3] == pytest.approx(ENDS[text])
+
+
+@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+@pytest.mark.parametrize("text", [*REFUSED, *ENDS])
+def test_as_rs274(text: str) -> None:
+    assert not difference(text)
