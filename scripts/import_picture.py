@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 FLOORS: Mapping[str, tuple[str, ...]] = {
     "twin": (
-        "errors units version",
+        "errors processor units version",
         "columns files compilation web",
         "nc job",
         "toolpath logs",

@@ -1,6 +1,5 @@
 """Cutting and filming: moves cut per second, frames drawn per second, and what is not drawing."""
 
-import dataclasses
 import statistics
 import tempfile
 import time
@@ -10,11 +9,11 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
-from benches.row import REPEATS, Row, median_seconds
+from benches.row import REPEATS, Row, median_cpu_seconds, median_seconds
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import blank
-from twin.cutting.kernels.sweep import Removal, sweep
+from twin.cutting.sweeping import sweep_lines
 from twin.cutting.tools import profile
 from twin.files.shipped import resource_root
 from twin.job.job_file import StockTable, ToolTable, VideoTable
@@ -87,17 +86,14 @@ def _spiral() -> FloatArray:
 
 def moves_per_second(cell: float) -> float:
     """Moves of a spiral pocket that are cut per second."""
-    points = _spiral()
-    edge = dataclasses.astuple(profile(TOOL))
-    removal = Removal(*np.zeros((3, len(points) - 1)))
-    nothing, mark = np.zeros((0, 0)), np.zeros(len(points) - 1)
+    points, edge = _spiral(), profile(TOOL)
     part = blank(PLATE, np.zeros(3), cell)
 
     def cut() -> None:
         part.heights[:] = part.top
-        sweep(part.heights, part.grid, points, edge, removal, nothing, mark)
+        sweep_lines(part, points, edge, cores=1)
 
-    return (len(points) - 1) / median_seconds(cut)
+    return (len(points) - 1) / median_cpu_seconds(cut)
 
 
 def _samples(position: FloatArray) -> Samples:

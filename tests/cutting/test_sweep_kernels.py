@@ -6,8 +6,11 @@ import hypothesis.strategies as st
 import numpy as np
 import pytest
 
-from twin.cutting.kernels.sweep import Grid, Removal, sweep
+from twin.cutting.height_map import HeightMap
+from twin.cutting.kernels.sweep import Marks, Removal
 from twin.cutting.kernels.thin import thin
+from twin.cutting.outline import Outline
+from twin.cutting.sweeping import Rectangle, sweep_lines
 from twin.cutting.tools import Profile
 from twin.nc.canonical import FloatArray
 
@@ -34,22 +37,23 @@ def swept_by_small_steps(points: FloatArray, cutter: Profile, shape: tuple[int, 
     return heights
 
 
+def board(shape: tuple[int, int]) -> HeightMap:
+    """A map whose first cell is over X0 Y0, with its top at Z0."""
+    heights, edge = np.zeros(shape), Outline((0.0, 0.0), (1e3, 1e3), round=False)
+    return HeightMap((0.0, 0.0), CELL, BOTTOM, heights, 0.0, edge, np.zeros(shape))
+
+
 def swept(
     points: FloatArray, cutter: Profile, shape: tuple[int, int]
-) -> tuple[FloatArray, FloatArray, FloatArray, tuple[int, int, int, int]]:
-    heights = np.zeros(shape)
-    removal = Removal(*np.zeros((3, len(points) - 1)))
-    profile = dataclasses.astuple(cutter)
+) -> tuple[FloatArray, Removal, Rectangle]:
+    part, marked = board(shape), board(shape)
+    removal, changed = sweep_lines(part, points, cutter, cores=1)
     marks = np.zeros(shape)
     mark = np.arange(1, len(points), dtype=np.float64)
-    grid = Grid((0.0, 0.0), CELL, BOTTOM)
-    changed = sweep(heights, grid, points, profile, removal, marks, mark)
-    np.testing.assert_array_equal(marks > 0, heights < 0)
-    unmarked = np.zeros(shape)
-    none = np.zeros((0, 0))
-    sweep(unmarked, grid, points, profile, removal, none, mark)
-    np.testing.assert_array_equal(unmarked, heights)
-    return heights, removal.volume, removal.depth, changed
+    sweep_lines(marked, points, cutter, Marks(marks, mark))
+    np.testing.assert_array_equal(marks > 0, marked.heights < 0)
+    np.testing.assert_array_equal(marked.heights, part.heights)
+    return part.heights, removal, changed
 
 
 coordinate = st.floats(-4.0, 12.0)
@@ -63,7 +67,7 @@ def test_sweep_agrees_with_many_small_steps(
 ) -> None:
     path = np.array(corners)
     shape = (19, 23)
-    heights, removed, depth, changed = swept(path, cutter, shape)
+    heights, (removed, depth, _), changed = swept(path, cutter, shape)
     step = np.abs(np.diff(path, axis=0)).max() / 400
     stamped = swept_by_small_steps(path, cutter, shape)
     grown = dataclasses.replace(cutter, radius=cutter.radius + step, flat=cutter.flat + step)
@@ -95,21 +99,34 @@ def test_what_is_passed_over_was_cut_before(
     """A path swept whole, where places that lie under the tool are passed over, and line by line."""
     path = np.cumsum(np.array([(4.0, 4.0, -1.0), *ways]), axis=0)
     shape = (25, 27)
-    whole, removed, depth, _ = swept(path, cutter, shape)
-    heights = np.zeros(shape)
-    none, nothing = np.zeros((0, 0)), np.zeros(1)
+    whole, (removed, depth, _), _ = swept(path, cutter, shape)
+    part, known = board(shape), board(shape)
     for i, line in enumerate(itertools.pairwise(path)):
-        one = Removal(*np.zeros((3, 1)))
-        grid = Grid((0.0, 0.0), CELL, BOTTOM)
-        sweep(heights, grid, np.array(line), dataclasses.astuple(cutter), one, none, nothing)
+        one, _ = sweep_lines(part, np.array(line), cutter)
+        sweep_lines(known, np.array(line), cutter, stood=i > 0)
         assert removed[i] == pytest.approx(one.volume[0], abs=1e-9)
         assert depth[i] == pytest.approx(one.depth[0], abs=1e-9)
-    np.testing.assert_allclose(whole, heights, atol=1e-12)
+    np.testing.assert_allclose(whole, part.heights, atol=1e-12)
+    np.testing.assert_array_equal(whole, known.heights)
+
+
+@pytest.mark.parametrize("cutter", PROFILES)
+def test_two_cores_change_no_bit(cutter: Profile) -> None:
+    random = np.random.default_rng(7)
+    path = np.cumsum(random.normal(scale=0.2, size=(3000, 3)), axis=0) * [1.0, 1.0, 0.05]
+    path += [9.0, 9.0, -1.0] - path.mean(axis=0)
+    alone, together = board((50, 47)), board((50, 47))
+    one, changed = sweep_lines(alone, path, cutter, cores=1)
+    two, changed_by_two = sweep_lines(together, path, cutter, cores=2)
+    np.testing.assert_array_equal(together.heights, alone.heights)
+    np.testing.assert_array_equal(two, one)
+    assert changed == changed_by_two
+    assert (one.volume > 0.0).any()
 
 
 def test_level_sweep_is_the_stadium() -> None:
     path = np.array([[2.0, 3.0, -1.0], [6.0, 4.0, -1.0]])
-    heights, removed, depth, _ = swept(path, PROFILES[0], (25, 25))
+    heights, (removed, depth, _), _ = swept(path, PROFILES[0], (25, 25))
     y, x = CELL * np.indices(heights.shape)
     way = path[1, :2] - path[0, :2]
     t = np.clip(((x - 2.0) * way[0] + (y - 3.0) * way[1]) / (way @ way), 0.0, 1.0)

@@ -9,13 +9,16 @@ import pytest
 from PIL import Image
 
 from tests.render.conftest import SOURCE, STOCK, SUMMARY, Record
+from twin.cutting.forces.tool_strength import tool_strength
 from twin.cutting.program_summary import Steps
 from twin.errors import RenderError
+from twin.job.job_file import ToolTable
 from twin.machine.description.config import Machine
-from twin.recording.form import STEPS
+from twin.recording.form import STEPS, ToolLoad
 from twin.recording.reader import open_recording
 from twin.render.frames import deal
-from twin.render.gauge import Gauge
+from twin.render.gauge import Gauge, load_bars
+from twin.render.hud import LoadBar
 from twin.render.scene.scene import Scene
 from twin.render.still import Shot, moment, stills
 
@@ -126,3 +129,44 @@ def test_a_block_that_spoils_the_part_is_warned_of(scene: Scene, tmp_path: Path)
     )
     assert red(take(spoiled, tmp_path / "warned.png", 601)) > 1000
     assert red(take(spoiled, tmp_path / "air.png", 101)) == 0
+
+
+def test_load_bars_are_shares_of_what_tool_and_spindle_bear() -> None:
+    tool, nothing = ToolTable(number=1, force_limit=800.0, chip_limit=0.1), np.zeros(1)
+    bend = 0.5 * tool_strength(tool).compliance * 800.0
+    load = ToolLoad(
+        force=np.zeros((1, 3)),
+        peak_force=np.array([600.0]),
+        power=nothing,
+        chip=np.array([0.11]),
+        deflection=np.array([[bend, 0.0, 0.0]]),
+        spindle_speed=nothing,
+        spindle_load=np.array([0.43]),
+        broken=nothing > 0.0,
+    )
+    force, spindle, bending, chip = load_bars(load, tool)
+    assert (force.text, force.share) == ("600 N", pytest.approx(0.75))
+    assert (spindle.text, spindle.share) == ("43 %", pytest.approx(0.43))
+    assert (chip.text, chip.share) == ("0.110 mm", pytest.approx(1.1))
+    assert bending.share == pytest.approx(0.5)
+    assert bending.text.endswith(" µm")
+
+
+def test_load_bars_move_and_are_shown_only_where_force_was_simulated(scene: Scene) -> None:
+    gauge = gauge_at(scene, 601)
+    display, reading = gauge.display((1280, 720), None), gauge.reading(no_warning)
+    assert reading.loads == ()
+    black = np.zeros((720, 1280, 3), np.uint8)
+    bare = display.draw(black, reading)
+    pictures = [
+        display.draw(black, dataclasses.replace(reading, loads=(LoadBar("force", "1 N", share),)))
+        for share in (0.0, 0.4, 0.8, 5.0)
+    ]
+    changed = np.argwhere((pictures[0] != bare).any(axis=2))
+    assert changed[:, 1].min() > 900, "at the right, above the axes"
+    inks = [(38, 132, 88), (214, 137, 16), (196, 40, 27)]
+    filled = [[int((picture == ink).all(axis=2).sum()) for ink in inks] for picture in pictures]
+    assert filled[0] == [0, 0, 0]
+    green, amber, red_ = filled[1][0], filled[2][1], filled[3][2]
+    assert 0 < green < amber < red_
+    assert [sum(row) for row in filled[1:]] == [green, amber, red_]

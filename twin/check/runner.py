@@ -1,7 +1,6 @@
 """Many programs over the cores; one that breaks does not stop the others."""
 
 import concurrent.futures
-import os
 import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
@@ -12,6 +11,7 @@ from typing import TypeVar
 
 from twin.check.outcome import CheckOutcome, died
 from twin.check.task import CheckSettings, Variant
+from twin.processor import available_cores
 
 TaskT = TypeVar("TaskT")
 """A program or a variant of one."""
@@ -101,13 +101,6 @@ def _tell_of_compilation(is_first: Callable[[], bool] = lambda: True) -> None:
     from twin.compilation.announcement import announce_compilation
 
     announce_compilation(is_first)
-
-
-def available_cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _check_alone(

@@ -34,6 +34,14 @@ def array_kernel(function: Kernel) -> Kernel:
     return _compiled(function)
 
 
+def threaded_kernel(function: Kernel) -> Kernel:
+    """Compile a function that may make arrays, and that several threads may run at a time.
+
+    It holds no lock of Python's. A division by zero gives infinity or NaN.
+    """
+    return _compiled(function, error_model="numpy", nogil=True)
+
+
 def array_arithmetic_kernel(function: Kernel) -> Kernel:
     """Compile a function that may make arrays, where a division by zero gives infinity or NaN."""
     return _compiled(function, error_model="numpy")

@@ -8,7 +8,7 @@ import numpy as np
 from twin.compilation.kernel import array_kernel, kernel
 from twin.coupling.spindle_kernels import SpindleDrive, lasting_torque, next_speed
 from twin.cutting.forces.tool_strength import ToolStrength
-from twin.cutting.kernels.sweep import Removal, sweep
+from twin.cutting.kernels.sweep import ALL_ROWS, Marks, sweep
 from twin.cutting.kernels.tooth_forces import (
     CutterForm,
     ForceLaw,
@@ -35,10 +35,11 @@ _STILL = 1e-9
 WHOLE, BY_FORCE, BY_CHIP, BY_SPEED = 0, 1, 2, 3
 """Why a tool has lost its edge."""
 
-ANGLE, SPEED, CONTACT, STATE, VALUE, MET, FRESH = range(7)
+ANGLE, SPEED, CONTACT, STATE, VALUE, MET, FRESH, STOOD = range(8)
 """Numbers in ``Memory.numbers``: direction of the first tooth [turns], speed of the spindle [turns/s], way
 since the cutter met material [mm], why its edge is gone, the value at which it went, whether it meets
-material, whether nothing is known of where it was."""
+material, whether nothing is known of where it was, whether it has cut all that it meets where it was swept
+up to."""
 
 
 class Place(NamedTuple):
@@ -62,7 +63,6 @@ class Cut(NamedTuple):
 
     Attributes:
         material: The height map, which is cut.
-        top: Height above which there is none [mm].
         cutter: The tool's edges.
         law: What the material does to them.
         strength: What the tool gives way to.
@@ -71,7 +71,6 @@ class Cut(NamedTuple):
     """
 
     material: Material
-    top: float
     cutter: CutterForm
     law: ForceLaw
     strength: ToolStrength
@@ -93,9 +92,8 @@ class Memory(NamedTuple):
         bench: The teeth's forces.
         force: On the tool in this period, part's frame, shape (3,) [N].
         feed: Feed per tooth in this period, shape (3,) [mm].
-        removal: What ``sweep`` sets, shape (1,) each.
-        mark: What it marks with, shape (1,).
-        marks: Where to, of no size.
+        tally: What ``sweep`` adds to, shape (1, 2, 4).
+        marks: Nothing is marked.
     """
 
     numbers: FloatArray
@@ -108,9 +106,8 @@ class Memory(NamedTuple):
     bench: ToothBench
     force: FloatArray
     feed: FloatArray
-    removal: Removal
-    mark: FloatArray
-    marks: FloatArray
+    tally: FloatArray
+    marks: Marks
 
 
 class Felt(NamedTuple):
@@ -195,6 +192,7 @@ def _go_to(physics: Physics, state: FloatArray, cut: Cut, memory: Memory) -> tup
     share = _share_of_tooth(cut, memory, drives.period)
     for k in range(3):
         if numbers[FRESH] > 0.0:
+            numbers[STOOD] = 0.0
             memory.speed[k] = 0.0
             memory.swept[0, k] = memory.swept[1, k] = tip[k]
         else:
@@ -277,14 +275,15 @@ def _look(period: float, cut: Cut, memory: Memory) -> None:
         swept[0, k] = swept[1, k]
         swept[1, k] = memory.rigid[k] + memory.bend[k]
         looked[k] = feed[k]
-    if min(swept[0, 2], swept[1, 2]) >= cut.top:
+    if min(swept[0, 2], swept[1, 2]) >= cut.material.grid.top:
         numbers[MET] = 0.0
         return
     material = cut.material
     sweep(
         material.heights, material.grid, swept, cut.cutter.profile,
-        memory.removal, memory.marks, memory.mark,
+        memory.tally, memory.marks, numbers[STOOD] > 0.0, ALL_ROWS,
     )  # fmt: skip
+    numbers[STOOD] = 1.0
     sense = 1.0 if numbers[SPEED] >= 0.0 else -1.0
     met = tooth_forces(material, swept[1], feed, cut.cutter, cut.law, sense, memory.bench)
     numbers[MET] = 1.0 if met else 0.0

@@ -26,7 +26,7 @@ from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
 from twin.cutting.height_map import HeightMap
-from twin.cutting.kernels.sweep import Removal
+from twin.cutting.kernels.sweep import Marks
 from twin.cutting.kernels.tooth_forces import Material, tooth_bench
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import SpindleTable
@@ -187,7 +187,6 @@ class CuttingProcess:
         rotary = -1 if frame.rotary is None else frame.rotary
         return Cut(
             Material(self.material.heights, self.material.grid),
-            self.material.top,
             cutter_form(tool),
             force_law(tool, self._resists),
             tool_strength(tool),
@@ -254,13 +253,13 @@ def spindle_drive(table: SpindleTable) -> SpindleDrive:
 
 
 def _memory(axes: int) -> Memory:
-    numbers = np.zeros(7)
+    numbers = np.zeros(8)
     numbers[FRESH] = 1.0
     three = np.zeros((6, 3))
     return Memory(
         numbers, three[0].copy(), np.zeros((2, 3)), three[1].copy(), three[2].copy(),
         three[3].copy(), np.zeros(axes), tooth_bench(), three[4].copy(), three[5].copy(),
-        Removal(*np.zeros((3, 1))), np.zeros(1), np.zeros((0, 0)),
+        np.zeros((1, 2, 4)), Marks(np.zeros((0, 0)), np.zeros(1)),
     )  # fmt: skip
 
 

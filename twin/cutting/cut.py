@@ -12,9 +12,10 @@ from twin.cutting.forces.direction import tool_force
 from twin.cutting.forces.materials import kienzle
 from twin.cutting.forces.mean_force import cutting_load, cutting_width
 from twin.cutting.height_map import BoolArray, blank
-from twin.cutting.kernels.sweep import Removal, sweep
+from twin.cutting.kernels.sweep import Marks, Removal
 from twin.cutting.kernels.thin import thin
 from twin.cutting.stock_contact import EDGE, Head, Points, StockContact
+from twin.cutting.sweeping import sweep_lines, union
 from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray, IntArray
@@ -294,16 +295,16 @@ class Cutter:
         """Take off what lies in the way of some of the stretches."""
         if part.start >= part.stop:
             return
-        changed = sweep(
-            self.map.heights,
-            self.map.grid,
+        found = sweep_lines(
+            self.map,
             tip[part.start : part.stop + 1],
-            dataclasses.astuple(edge),
-            Removal(*(column[part] for column in removal)),
-            self.marks,
-            mark[part],
+            edge,
+            Marks(self.marks, mark[part]),
+            stood=part.start > 0,
         )
-        self.changed = union(self.changed, changed)
+        for column, swept in zip(removal, found.removal, strict=True):
+            column[part] = swept
+        self.changed = union(self.changed, found.changed)
 
     def _note_contacts(
         self, stretches: Stretches, met: Mapping[str, FloatArray]
@@ -374,16 +375,3 @@ def _with_edge(samples: Samples, run: slice) -> slice:
 
 def _lengths(points: FloatArray) -> FloatArray:
     return np.linalg.norm(np.diff(points, axis=0), axis=1)
-
-
-Rectangle = tuple[int, int, int, int]
-"""Row, row end, column, column end of cells."""
-
-
-def union(a: Rectangle, b: Rectangle) -> Rectangle:
-    """The smallest rectangle around two; one that ends before it begins is empty."""
-    if a[0] >= a[1]:
-        return b
-    if b[0] >= b[1]:
-        return a
-    return (min(a[0], b[0]), max(a[1], b[1]), min(a[2], b[2]), max(a[3], b[3]))

@@ -47,7 +47,7 @@ class HeightMap:
     @property
     def grid(self) -> Grid:
         """Where the cells lie."""
-        return Grid(self.origin, self.cell, self.bottom)
+        return Grid(self.origin, self.cell, self.bottom, self.top)
 
     @property
     def volume(self) -> float:

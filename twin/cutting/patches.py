@@ -5,8 +5,8 @@ import zlib
 
 import numpy as np
 
-from twin.cutting.cut import Rectangle
 from twin.cutting.height_map import HeightMap
+from twin.cutting.sweeping import Rectangle
 
 PATCH = 2
 """First byte of a patch."""

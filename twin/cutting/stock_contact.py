@@ -133,9 +133,7 @@ class StockContact:
                 found[solid.name] = overlap
         if suspect.any() and lowest < material.top:
             overlap = Overlap(*np.zeros((2, count)))
-            round_overlap(
-                material.heights, material.grid, material.top, points.tip, self._edge, 0.0, overlap
-            )
+            round_overlap(material.heights, material.grid, points.tip, self._edge, 0.0, overlap)
             overlap.reach[~suspect] = 0.0
             found[EDGE] = overlap
         for name, overlap in found.items():
@@ -148,10 +146,10 @@ class StockContact:
         if x or y:
             middle[:, 0] += x * turn[:, 0] - y * turn[:, 1]
             middle[:, 1] += x * turn[:, 1] + y * turn[:, 0]
-        heights, grid, top = material.heights, material.grid, material.top
+        heights, grid = material.heights, material.grid
         if solid.round:
             profile = (solid.half[0], solid.half[0], 0.0, 0.0)
-            round_overlap(heights, grid, top, middle, profile, solid.above, overlap)
+            round_overlap(heights, grid, middle, profile, solid.above, overlap)
         else:
             middle[:, 2] += solid.above
-            box_overlap(heights, grid, top, middle, turn, solid.half, overlap)
+            box_overlap(heights, grid, middle, turn, solid.half, overlap)

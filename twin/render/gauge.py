@@ -5,8 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
+from twin.cutting.forces.tool_strength import tool_strength
+from twin.job.job_file import ToolTable
+from twin.recording.form import ToolLoad
 from twin.recording.reader import Samples
-from twin.render.hud import Display, Reading
+from twin.render.hud import Display, LoadBar, Reading
 from twin.render.scene.scene import Scene
 from twin.units import SECONDS_PER_MINUTE, UM_PER_MM
 
@@ -55,6 +58,7 @@ class Gauge:
         turning = float(np.linalg.norm(velocity[rotary]))
         only_turns = feed < 1.0 < turning
         line, move, time = int(setpoint.line[0]), int(setpoint.move[0]), float(setpoint.time[0])
+        tool = self._scene.summary.tools.at(move)
         raised = [text for since, text in self._alarms if since <= time]
         position = last.joint_position[0] - header.part_zero
         if self._scene.summary.shown is not None:
@@ -65,9 +69,10 @@ class Gauge:
             feed=turning if only_turns else feed,
             feed_unit="°/min" if only_turns else "mm/min",
             spindle=self._scene.summary.spindle.at(move),
-            tool=self._scene.summary.tools.at(move).number,
+            tool=tool.number,
             error_um=self._error(),
             time_s=time,
+            loads=() if last.tool is None else load_bars(last.tool, tool),
             alarm=raised[-1] if raised else warning(line),
         )
 
@@ -80,3 +85,21 @@ class Gauge:
         position = self._scene.recording.header.part_frame.position
         away = position(self._last.joint_position)[0] - position(self._last.setpoint.position)[0]
         return UM_PER_MM * float(np.linalg.norm(away))
+
+
+def load_bars(load: ToolLoad, tool: ToolTable) -> tuple[LoadBar, ...]:
+    """What the cut asks for at a sample, as shares of what breaks the tool or overloads the spindle.
+
+    Args:
+        load: Of one sample.
+        tool: In the spindle.
+    """
+    bears = tool_strength(tool)
+    force, chip = float(load.peak_force[0]), float(load.chip[0])
+    torque, bend = float(load.spindle_load[0]), float(np.linalg.norm(load.deflection[0]))
+    return (
+        LoadBar("force", f"{force:.0f} N", force / bears.force),
+        LoadBar("spindle", f"{100.0 * torque:.0f} %", torque),
+        LoadBar("bending", f"{UM_PER_MM * bend:.0f} µm", bend / (bears.compliance * bears.force)),
+        LoadBar("chip", f"{chip:.3f} mm", chip / bears.chip),
+    )

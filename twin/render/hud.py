@@ -2,9 +2,11 @@
 
 import dataclasses
 import functools
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -20,6 +22,11 @@ ACCENT = (0, 96, 143, 255)
 ALERT = (196, 40, 27, 255)
 PAPER = (250, 252, 253, 225)
 WHITE = (255, 255, 255, 255)
+TROUGH = (214, 221, 227, 255)
+LOAD_INKS = ((0.7, (38, 132, 88, 255)), (1.0, (214, 137, 16, 255)), (math.inf, ALERT))
+"""Colours of a load's bar below these shares of what is borne."""
+PANEL_WIDTH = 262
+"""Of the panels at the right [px]."""
 
 BASE_HEIGHT = 720
 """Height of a picture for which the sizes below are written [px]."""
@@ -28,6 +35,20 @@ LINES_SHOWN = 5
 COLUMNS_SHOWN = 34
 
 Font = ImageFont.FreeTypeFont
+
+
+class LoadBar(NamedTuple):
+    """How much of what it bears a tool or the spindle is given.
+
+    Attributes:
+        name: What is measured.
+        text: Its value, with its unit.
+        share: Of what breaks or stalls it; above 1 the bar is full.
+    """
+
+    name: str
+    text: str
+    share: float
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,6 +69,8 @@ class Reading:
     error_um: float
     """What ``error_name`` says [µm]."""
     time_s: float
+    loads: tuple[LoadBar, ...] = ()
+    """What the cut asks for; none where its force was not simulated."""
     alarm: str = ""
     """What is wrong; empty for nothing."""
 
@@ -119,6 +142,10 @@ class Display:
             lay_over(result, alarm, (width - alarm.width) // 2, margin)
         axes = self._axes_panel(reading)
         lay_over(result, axes, width - margin - axes.width, height - margin - axes.height)
+        if reading.loads:
+            loads = self._load_panel(reading.loads)
+            top = height - margin - axes.height - self._px(10) - loads.height
+            lay_over(result, loads, width - margin - loads.width, top)
         if self._source:
             program = self._program_panel(reading.line)
             lay_over(result, program, margin, height - margin - program.height)
@@ -175,7 +202,7 @@ class Display:
             (self._error_name, f"{reading.error_um:.1f} µm"),
             ("time", _clock(reading.time_s)),
         ]
-        width = self._px(262)
+        width = self._px(PANEL_WIDTH)
         legend = self._error_scale is not None
         rows = len(self._axes.names) * row + self._px(10) + (len(small) + legend) * small_row
         panel, draw = self._panel(width, rows + 2 * padding, PAPER)
@@ -207,6 +234,24 @@ class Display:
             width = right - round(self._small.getlength(scale)) - self._px(8) - left
             bar = np.tile(error_palette(max(1, width))[None], (self._px(10), 1, 1))
             panel.paste(Image.fromarray(bar), (left, middle - self._px(5)))
+        return panel
+
+    def _load_panel(self, loads: Sequence[LoadBar]) -> Image.Image:
+        """A bar for each load, with its value; its end is where tool or spindle give up."""
+        padding, row = self._px(14), self._px(25)
+        width = self._px(PANEL_WIDTH)
+        panel, draw = self._panel(width, len(loads) * row + 2 * padding, PAPER)
+        left, right = padding + self._px(64), width - padding - self._px(94)
+        for number, load in enumerate(loads):
+            middle = padding + number * row + row // 2
+            draw.text((padding, middle), load.name, font=self._small, fill=MUTED, anchor="lm")
+            draw.text((width - padding, middle), load.text, font=self._mono, fill=INK, anchor="rm")
+            box = (left, middle - self._px(5), right, middle + self._px(5))
+            draw.rectangle(box, fill=TROUGH)
+            filled = left + round(min(max(load.share, 0.0), 1.0) * (right - left))
+            if filled > left:
+                ink = next(ink for limit, ink in LOAD_INKS if load.share < limit)
+                draw.rectangle((left, box[1], filled, box[3]), fill=ink)
         return panel
 
     def _panel(

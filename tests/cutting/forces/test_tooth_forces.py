@@ -1,6 +1,5 @@
 """The forces of teeth against hand integration of the mechanistic model, on ideal engagements."""
 
-import dataclasses
 import math
 
 import numpy as np
@@ -9,7 +8,6 @@ import pytest
 from twin.cutting.forces.cutter_form import cutter_form, force_law
 from twin.cutting.forces.materials import materials
 from twin.cutting.height_map import HeightMap, blank
-from twin.cutting.kernels.sweep import Removal, sweep
 from twin.cutting.kernels.tooth_forces import (
     BINS,
     Material,
@@ -18,6 +16,7 @@ from twin.cutting.kernels.tooth_forces import (
     tooth_bench,
     tooth_forces,
 )
+from twin.cutting.sweeping import sweep_lines
 from twin.cutting.tools import profile
 from twin.job.job_file import StockTable, ToolTable
 from twin.nc.canonical import FloatArray
@@ -35,11 +34,7 @@ def plate() -> HeightMap:
 
 
 def cut(part: HeightMap, tool: ToolTable, points: FloatArray) -> None:
-    count = len(points) - 1
-    nothing = np.zeros((0, 0))
-    edge = dataclasses.astuple(profile(tool))
-    removal = Removal(*np.zeros((3, count)))
-    sweep(part.heights, part.grid, points, edge, removal, nothing, np.zeros(count))
+    sweep_lines(part, points, profile(tool))
 
 
 def forces(part: HeightMap, tool: ToolTable, points: FloatArray, sense: float = 1.0) -> ToothBench:

@@ -26,7 +26,6 @@ class Overlap(NamedTuple):
 def round_overlap(
     heights: FloatArray,
     grid: Grid,
-    top: float,
     points: FloatArray,
     profile: tuple[float, float, float, float],
     above: float,
@@ -37,7 +36,6 @@ def round_overlap(
     Args:
         heights: The height map, shape (ny, nx) [mm].
         grid: Where its cells lie.
-        top: Z above which there is no material [mm].
         points: Tool tip positions, shape (n + 1, 3) [mm].
         profile: Radius, flat, corner, slope of its lower end (``twin.cutting.tools.Profile``).
         above: Height of its lower end above the tip [mm].
@@ -49,7 +47,7 @@ def round_overlap(
         overlap.depth[i] = 0.0
         ax, ay = points[i, 0], points[i, 1]
         bx, by = points[i + 1, 0], points[i + 1, 1]
-        if min(points[i, 2], points[i + 1, 2]) + above >= top:
+        if min(points[i, 2], points[i + 1, 2]) + above >= grid.top:
             continue
         low = max(0, math.ceil((min(ay, by) - radius - grid.origin[1]) / cell))
         high = min(heights.shape[0] - 1, math.floor((max(ay, by) + radius - grid.origin[1]) / cell))
@@ -76,7 +74,6 @@ def round_overlap(
 def box_overlap(
     heights: FloatArray,
     grid: Grid,
-    top: float,
     points: FloatArray,
     turn: FloatArray,
     half: tuple[float, float],
@@ -87,7 +84,6 @@ def box_overlap(
     Args:
         heights: The height map, shape (ny, nx) [mm].
         grid: Where its cells lie.
-        top: Z above which there is no material [mm].
         points: Middle of its lower face, shape (n + 1, 3) [mm].
         turn: Direction of its first side, shape (n + 1, 2).
         half: Half of its two level sides [mm].
@@ -98,7 +94,7 @@ def box_overlap(
     for i in range(len(points) - 1):
         overlap.reach[i] = 0.0
         overlap.depth[i] = 0.0
-        if min(points[i, 2], points[i + 1, 2]) >= top:
+        if min(points[i, 2], points[i + 1, 2]) >= grid.top:
             continue
         way = math.hypot(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
         way += around * math.hypot(turn[i + 1, 0] - turn[i, 0], turn[i + 1, 1] - turn[i, 1])

@@ -3,12 +3,24 @@
 import math
 from typing import NamedTuple
 
-from twin.compilation.kernel import array_kernel
-from twin.cutting.kernels.tool_height import below_capsule, lowest_height
-from twin.nc.canonical import FloatArray
+import numpy as np
 
-_FAR = 1e9
-"""Farther than any stock reaches [mm]."""
+from twin.compilation.compilable import inlined
+from twin.compilation.kernel import arithmetic_kernel, threaded_kernel
+from twin.cutting.kernels.run_heights import lowest_in_run
+from twin.nc.canonical import FloatArray, IntArray
+
+RUN = 128
+"""Cells that are looked at together."""
+
+ALL_ROWS = (0, 1)
+EVEN_ROWS = (0, 2)
+ODD_ROWS = (1, 2)
+"""For ``sweep``: all, or what two threads take that cut together."""
+
+_WHOLE = 1.5 * 2.0**52
+"""Added to a number that is much smaller, it leaves no room for what is behind the point."""
+_LOST, _COLUMNS, _ROWS, _DEEPEST = range(4)
 
 
 class Grid(NamedTuple):
@@ -18,11 +30,13 @@ class Grid(NamedTuple):
         origin: X and Y of the middle of cell ``[0, 0]`` [mm].
         cell: Side of a cell [mm].
         bottom: Z below which there is nothing to cut [mm].
+        top: Z above which there is none.
     """
 
     origin: tuple[float, float]
     cell: float
     bottom: float
+    top: float
 
 
 class Removal(NamedTuple):
@@ -40,15 +54,56 @@ class Removal(NamedTuple):
     aside: FloatArray
 
 
-@array_kernel
+class Marks(NamedTuple):
+    """What each of n lines leaves where it cuts.
+
+    Attributes:
+        cells: Set to the line's mark, shape (ny, nx); of no size, if nobody asks.
+        mark: Of each line, shape (n,).
+    """
+
+    cells: FloatArray
+    mark: FloatArray
+
+
+class _Bench(NamedTuple):
+    """What is at hand while lines are swept.
+
+    Attributes:
+        heights: The height map, shape (ny, nx) [mm].
+        grid: Where its cells lie.
+        profile: Of the tool.
+        marks: As ``sweep`` has them.
+        rows: Of the map, which are cut: the first, and how far it is to the next.
+        low: Row at which the disc that the tool covers begins, at either end of a line, shape (2,).
+        spans: First column of that disc in each of its rows and the one after its last, shape (2, 2, m).
+        lowest: Heights of the tool over a run of cells, shape (RUN,) [mm].
+        tally: As ``sweep`` has it.
+        changed: Row, row end, column, column end of the cells that changed, shape (4,).
+    """
+
+    heights: FloatArray
+    grid: Grid
+    profile: tuple[float, float, float, float]
+    marks: Marks
+    rows: tuple[int, int]
+    low: IntArray
+    spans: FloatArray
+    lowest: FloatArray
+    tally: FloatArray
+    changed: IntArray
+
+
+@threaded_kernel
 def sweep(
     heights: FloatArray,
     grid: Grid,
     points: FloatArray,
     profile: tuple[float, float, float, float],
-    removal: Removal,
-    marks: FloatArray,
-    mark: FloatArray,
+    tally: FloatArray,
+    marks: Marks,
+    stood: bool,
+    rows: tuple[int, int],
 ) -> tuple[int, int, int, int]:
     """Cut the material that the tool meets on its way from point to point.
 
@@ -60,69 +115,317 @@ def sweep(
         grid: Where its cells lie.
         points: Tool tip positions, shape (n, 3) [mm].
         profile: Radius, flat, corner, slope of ``twin.cutting.tools.Profile``.
-        removal: Set to what each line took off, n - 1 of them.
-        marks: Set to the line's ``mark`` where it cut, shape (ny, nx); of no size, if nobody asks.
-        mark: What each line leaves in ``marks``, shape (n - 1,).
+        tally: What each line took off of rows of even and of odd number is added to it, shape
+            (n - 1, 2, 4): height [mm], that times the number of the column and of the row, and the
+            greatest height. ``tally_removal`` reads it.
+        marks: What each leaves where it cut.
+        stood: Whether the tool has been at the first point, and has cut what it meets there.
+        rows: Of the map, which are cut: the first, and how far it is to the next.
 
     Returns:
         First and last-but-one row, first and last-but-one column of the cells that changed.
     """
-    row_first, row_end, column_first, column_end = heights.shape[0], 0, heights.shape[1], 0
-    radius, cell = profile[0], grid.cell
-    for i in range(len(points) - 1):
-        volume, deepest, across, along = 0.0, 0.0, 0.0, 0.0
-        ax, ay = points[i, 0], points[i, 1]
-        bx, by = points[i + 1, 0], points[i + 1, 1]
-        low = max(0, math.ceil((min(ay, by) - radius - grid.origin[1]) / cell))
-        high = min(heights.shape[0] - 1, math.floor((max(ay, by) + radius - grid.origin[1]) / cell))
-        # What the tool stands in already, no stretch that does not sink can take off again.
-        stands = i > 0 and points[i + 1, 2] >= points[i, 2]
-        for row in range(low, high + 1):
-            y = grid.origin[1] + row * cell
-            left, right = chord(ax, ay, bx, by, radius, y)
-            first = max(0, math.ceil((left - grid.origin[0]) / cell))
-            end = min(heights.shape[1] - 1, math.floor((right - grid.origin[0]) / cell)) + 1
-            done, done_end = end, end
-            if stands:
-                left, right = _done(ax, ay, bx, by, radius, profile[1], y)
-                if left <= right:
-                    done = math.ceil((max(left, -_FAR) - grid.origin[0]) / cell)
-                    done = _within(done, first, end)
-                    done_end = math.floor((min(right, _FAR) - grid.origin[0]) / cell) + 1
-                    done_end = _within(done_end, done, end)
-            for begin, stop in ((first, done), (done_end, end)):
-                if begin >= stop:
-                    continue
-                line = heights[row, begin:stop]
-                x = grid.origin[0] + begin * cell
-                before = line.copy() if marks.size else line
-                cut, most, moment = _cut_row(line, x, y, grid, points[i], points[i + 1], profile)
-                if cut > 0.0:
-                    volume += cut
-                    across += cut * (x - ax) + moment * cell
-                    along += cut * (y - ay)
-                    deepest = max(deepest, most)
-                    row_first, row_end = min(row_first, row), max(row_end, row + 1)
-                    column_first, column_end = min(column_first, begin), max(column_end, stop)
-                    if marks.size:
-                        _mark_lowered(marks[row, begin:stop], line, before, mark[i])
-        length = math.hypot(bx - ax, by - ay)
+    count = int(2.0 * profile[0] / grid.cell) + 2
+    bench = _Bench(
+        heights, grid, profile, marks, rows, np.zeros(2, np.int64),
+        np.zeros((2, 2, count)), np.zeros(RUN), tally, np.zeros(4, np.int64),
+    )  # fmt: skip
+    bench.changed[0], bench.changed[2] = heights.shape
+    _sweep_lines(bench, points, stood)
+    return bench.changed[0], bench.changed[1], bench.changed[2], bench.changed[3]
+
+
+@arithmetic_kernel
+def tally_removal(tally: FloatArray, points: FloatArray, grid: Grid, removal: Removal) -> None:
+    """Say what each line took off.
+
+    Args:
+        tally: Of ``sweep``, shape (n - 1, 2, 4).
+        points: Tool tip positions, shape (n, 3) [mm].
+        grid: Where the cells lie.
+        removal: Set to it.
+    """
+    for i in range(len(tally)):
+        even, odd = tally[i, 0], tally[i, 1]
+        lost = even[_LOST] + odd[_LOST]
+        removal.volume[i] = lost * grid.cell * grid.cell
+        removal.depth[i] = max(even[_DEEPEST], odd[_DEEPEST])
         removal.aside[i] = 0.0
-        if volume > 0.0 and length > 0.0:
-            removal.aside[i] = (along * (bx - ax) - across * (by - ay)) / (volume * length)
-        removal.volume[i] = volume * cell * cell
-        removal.depth[i] = deepest
-    return row_first, row_end, column_first, column_end
+        dx, dy = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
+        length = math.hypot(dx, dy)
+        if lost > 0.0 and length > 0.0:
+            column = (even[_COLUMNS] + odd[_COLUMNS]) / lost
+            row = (even[_ROWS] + odd[_ROWS]) / lost
+            x = grid.origin[0] + column * grid.cell - points[i, 0]
+            y = grid.origin[1] + row * grid.cell - points[i, 1]
+            removal.aside[i] = (y * dx - x * dy) / length
 
 
-@array_kernel
-def _mark_lowered(marks: FloatArray, heights: FloatArray, before: FloatArray, mark: float) -> None:
-    for k in range(len(heights)):
-        if heights[k] < before[k]:
-            marks[k] = mark
+@arithmetic_kernel
+def _sweep_lines(bench: _Bench, points: FloatArray, stood: bool) -> None:
+    known, flat = False, bench.profile[1] >= bench.profile[0]
+    for i in range(len(points) - 1):
+        a, b = points[i], points[i + 1]
+        if min(a[2], b[2]) >= bench.grid.top:
+            known = False
+            continue
+        if not known:
+            _lay_disc(bench, a, i % 2)
+        _lay_disc(bench, b, (i + 1) % 2)
+        known = True
+        # What the tool stands in already, no line that does not sink can take off again.
+        done = (stood or i > 0) and b[2] >= a[2]
+        if done and flat and a[2] == b[2] and not bench.marks.cells.size:
+            _sweep_level(bench, a, b, i)
+        else:
+            _sweep_line(bench, a, b, i, done)
 
 
-@array_kernel
+@arithmetic_kernel
+def _lay_disc(bench: _Bench, center: FloatArray, which: int) -> None:
+    """Note the columns of the disc that a tool covers; a row outside of it begins behind its end.
+
+    Columns are counted as floating-point numbers, several at a time, and rounded by a sum whose last
+    bit is one.
+    """
+    grid, columns = bench.grid, float(bench.heights.shape[1])
+    radius, cell, first, end = (
+        bench.profile[0], grid.cell, bench.spans[which, 0], bench.spans[which, 1],
+    )  # fmt: skip
+    low = math.ceil((center[1] - radius - grid.origin[1]) / cell)
+    bench.low[which] = low
+    offset = grid.origin[1] - center[1]
+    for k in range(len(first)):
+        y = offset + (low + k) * cell
+        squared = radius * radius - y * y
+        half = math.sqrt(max(squared, 0.0))
+        left = min(max((center[0] - half - grid.origin[0]) / cell, 0.0), columns)
+        right = min(max((center[0] + half - grid.origin[0]) / cell, -1.0), columns - 1.0)
+        begin, last = (left + _WHOLE) - _WHOLE, (right + _WHOLE) - _WHOLE
+        begin = begin + 1.0 if begin < left else begin
+        last = last if last > right else last + 1.0
+        first[k] = begin if squared >= 0.0 else columns
+        end[k] = last if squared >= 0.0 else 0.0
+
+
+class _Side(NamedTuple):
+    """A side of the outline of a disc swept from a to b, as far as it is no part of the discs.
+
+    Attributes:
+        x: Where it begins [mm].
+        y: And its Y.
+        rise: By how much X grows with Y.
+        low: First row that it crosses; so on.
+        high: Last one.
+    """
+
+    x: float
+    y: float
+    rise: float
+    low: int
+    high: int
+
+
+class _Outline(NamedTuple):
+    """The outline of the place that a tool covers along a line.
+
+    Attributes:
+        before: Which of the bench's discs is that at the beginning.
+        after: Which is that at the end.
+        right: The side to the right of the way.
+        left: The side to its left.
+        low: First row, of those that are cut.
+        high: The one after the last.
+    """
+
+    before: int
+    after: int
+    right: _Side
+    left: _Side
+    low: int
+    high: int
+
+
+@arithmetic_kernel
+def _outline(bench: _Bench, a: FloatArray, b: FloatArray, line: int) -> _Outline:
+    before, after = line % 2, (line + 1) % 2
+    low_a, low_b, (begin, step) = bench.low[before], bench.low[after], bench.rows
+    low = max(0, min(low_a, low_b))
+    high = min(bench.heights.shape[0], max(low_a, low_b) + bench.spans.shape[2])
+    right, left = _side(bench, a, b, bench.profile[0]), _side(bench, a, b, -bench.profile[0])
+    return _Outline(before, after, right, left, low + (begin - low) % step, high)
+
+
+@arithmetic_kernel
+def _side(bench: _Bench, a: FloatArray, b: FloatArray, right: float) -> _Side:
+    """The side of an outline that lies so far right of the way."""
+    grid = bench.grid
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    if dy == 0.0:
+        # It lies along the rows, which meet the discs at its ends.
+        return _Side(0.0, 0.0, 0.0, 0, -1)
+    length = math.hypot(dx, dy)
+    x, y, end = a[0] + right * dy / length, a[1] - right * dx / length, b[1] - right * dx / length
+    low = math.ceil((min(y, end) - grid.origin[1]) / grid.cell)
+    high = math.floor((max(y, end) - grid.origin[1]) / grid.cell)
+    return _Side(x, y, dx / dy, low, high)
+
+
+@inlined
+def _columns(bench: _Bench, outline: _Outline, row: int) -> tuple[int, int]:
+    """Columns that the tool covers in a row: the first, and the one after the last."""
+    grid, columns = bench.grid, bench.heights.shape[1]
+    first_a, end_a = _span(bench, outline.before, row)
+    first_b, end_b = _span(bench, outline.after, row)
+    first, end = min(first_a, first_b), max(end_a, end_b)
+    for side in (outline.right, outline.left):
+        if side.low <= row <= side.high:
+            x = side.x + (grid.origin[1] + row * grid.cell - side.y) * side.rise
+            column = (x - grid.origin[0]) / grid.cell
+            first = min(first, max(0, math.ceil(column)))
+            end = max(end, min(columns, math.floor(column) + 1))
+    return first, end
+
+
+@inlined
+def _span(bench: _Bench, disc: int, row: int) -> tuple[int, int]:
+    """Columns of a disc in a row; where it has none, the first is beyond all that there are."""
+    k = row - bench.low[disc]
+    if k < 0 or k >= bench.spans.shape[2]:
+        return bench.heights.shape[1], 0
+    return int(bench.spans[disc, 0, k]), int(bench.spans[disc, 1, k])
+
+
+@arithmetic_kernel
+def _sweep_level(bench: _Bench, a: FloatArray, b: FloatArray, line: int) -> None:
+    """Cut along a level line with a flat tool that has cut all it stands in at its beginning.
+
+    Only the crescents before and beside it are left: in most rows a cell or two. They are taken in
+    pairs, because the processor cannot guess of how many cells a row's crescent will be.
+    """
+    heights, z = bench.heights, max(a[2], bench.grid.bottom)
+    outline = _outline(bench, a, b, line)
+    for row in range(outline.low, outline.high, bench.rows[1]):
+        first, end = _columns(bench, outline, row)
+        done, done_end = _span(bench, outline.before, row)
+        if done >= done_end:
+            done = done_end = end
+        left = max(done - first, 0)
+        count, skipped = left + max(end - done_end, 0), done_end - left
+        lost, moment, deepest = 0.0, 0.0, 0.0
+        for pair in range(0, count, 2):
+            for k in range(pair, pair + 2):
+                column = k + (first if k < left else skipped)
+                column = column if k < count else 0
+                height = heights[row, column]
+                lower = min(height, z) if k < count else height
+                heights[row, column] = lower
+                cut = height - lower
+                lost += cut
+                moment += cut * column
+                deepest = max(deepest, cut)
+        if lost > 0.0:
+            _add(bench, line, row, (first, end), (lost, moment, deepest))
+
+
+@arithmetic_kernel
+def _sweep_line(bench: _Bench, a: FloatArray, b: FloatArray, line: int, done: bool) -> None:
+    """Cut along one line.
+
+    Args:
+        bench: With the discs at both ends.
+        a: Tool tip at its beginning, shape (3,) [mm].
+        b: At its end.
+        line: Its number.
+        done: Whether nothing is left of what the tool at the beginning meets, or behind it.
+    """
+    flat, outline = bench.profile[1] >= bench.profile[0], _outline(bench, a, b, line)
+    begins_lower = a[2] <= b[2]
+    lower = a if begins_lower else b
+    for row in range(outline.low, outline.high, bench.rows[1]):
+        first, end = _columns(bench, outline, row)
+        if first >= end:
+            continue
+        inner, inner_end = end, end
+        if flat:
+            # All that the tool covers where it is lowest comes down to there.
+            inner, inner_end = _span(bench, outline.before if begins_lower else outline.after, row)
+            if inner >= inner_end:
+                inner, inner_end = end, end
+            elif not (done and begins_lower):
+                _lower_run(bench, lower, lower, row, (inner, inner_end), line)
+        elif done:
+            inner, inner_end = _behind(bench, a, b, row, (first, end))
+        for begin, stop in ((first, inner), (inner_end, end)):
+            if begin < stop:
+                _lower_run(bench, a, b, row, (begin, stop), line)
+
+
+@arithmetic_kernel
+def _behind(
+    bench: _Bench, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int]
+) -> tuple[int, int]:
+    """Columns of a run over which a tool that comes from a, and does not sink, is lowest at a."""
+    grid = bench.grid
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    y = grid.origin[1] + row * grid.cell - a[1]
+    if dx == 0.0:
+        return run if y * dy <= 0.0 else (run[1], run[1])
+    column = min(max((a[0] - y * dy / dx - grid.origin[0]) / grid.cell, run[0] - 1.0), run[1] + 0.0)
+    if dx > 0.0:
+        return run[0], math.floor(column) + 1 if column < run[1] else run[1]
+    return math.ceil(column) if column > run[0] else run[0], run[1]
+
+
+@arithmetic_kernel
+def _lower_run(
+    bench: _Bench, a: FloatArray, b: FloatArray, row: int, run: tuple[int, int], line: int
+) -> None:
+    """Lower a run of cells to the height of the tool over each."""
+    grid = bench.grid
+    tip = max(min(a[2], b[2]), grid.bottom)
+    for begin in range(run[0], run[1], RUN):
+        cells = bench.heights[row, begin : min(begin + RUN, run[1])]
+        first, count = 0, len(cells)
+        while first < count and cells[first] <= tip:
+            first += 1
+        while count > first and cells[count - 1] <= tip:
+            count -= 1
+        if first == count:
+            continue
+        cells, lowest = cells[first:count], bench.lowest[: count - first]
+        x = grid.origin[0] + (begin + first) * grid.cell
+        y = grid.origin[1] + row * grid.cell
+        lowest_in_run(lowest, (x, y), grid.cell, a, b, bench.profile)
+        lost, moment, deepest = 0.0, 0.0, 0.0
+        for k in range(len(cells)):
+            lower = min(cells[k], max(lowest[k], grid.bottom))
+            cut = cells[k] - lower
+            cells[k] = lower
+            lost += cut
+            moment += cut * (begin + first + k)
+            deepest = max(deepest, cut)
+            if bench.marks.cells.size and cut > 0.0:
+                bench.marks.cells[row, begin + first + k] = bench.marks.mark[line]
+        if lost > 0.0:
+            _add(bench, line, row, (begin + first, begin + count), (lost, moment, deepest))
+
+
+@inlined
+def _add(
+    bench: _Bench, line: int, row: int, run: tuple[int, int], cut: tuple[float, float, float]
+) -> None:
+    """Add what a run of cells lost: in all, that times the columns' numbers, and at most [mm]."""
+    tally, changed = bench.tally[line, row % 2], bench.changed
+    tally[_LOST] += cut[0]
+    tally[_COLUMNS] += cut[1]
+    tally[_ROWS] += cut[0] * row
+    tally[_DEEPEST] = max(tally[_DEEPEST], cut[2])
+    changed[0], changed[1] = min(changed[0], row), max(changed[1], row + 1)
+    changed[2], changed[3] = min(changed[2], run[0]), max(changed[3], run[1])
+
+
+@arithmetic_kernel
 def chord(
     ax: float, ay: float, bx: float, by: float, radius: float, y: float
 ) -> tuple[float, float]:
@@ -142,76 +445,3 @@ def chord(
                 x = ax - side * dy / length + share * dx
                 left, right = min(left, x), max(right, x)
     return left, right
-
-
-@array_kernel
-def _done(
-    ax: float, ay: float, bx: float, by: float, radius: float, flat: float, y: float
-) -> tuple[float, float]:
-    """Where the row at ``y`` lies under a tool at a that will only rise or stay level [mm].
-
-    A flat tool has taken off all that it stands over; of any other the tool at a reaches lowest
-    behind it, seen in the direction of travel. Left above right: nowhere.
-    """
-    if flat >= radius:
-        squared = radius * radius - (y - ay) * (y - ay)
-        if squared < 0.0:
-            return 1.0, 0.0
-        half = math.sqrt(squared)
-        return ax - half, ax + half
-    dx, dy = bx - ax, by - ay
-    if dx > 0.0:
-        return -math.inf, ax - (y - ay) * dy / dx
-    if dx < 0.0:
-        return ax - (y - ay) * dy / dx, math.inf
-    if (y - ay) * dy <= 0.0:
-        return -math.inf, math.inf
-    return 1.0, 0.0
-
-
-@array_kernel
-def _within(value: int, low: int, high: int) -> int:
-    return min(max(value, low), high)
-
-
-@array_kernel
-def _cut_row(
-    line: FloatArray,
-    x: float,
-    y: float,
-    grid: Grid,
-    a: FloatArray,
-    b: FloatArray,
-    profile: tuple[float, float, float, float],
-) -> tuple[float, float, float]:
-    """Lower one run of cells.
-
-    Returns:
-        The sum and the greatest of what was taken off [mm], and the sum weighted with the number
-        of the cell.
-    """
-    volume, deepest, moment = 0.0, 0.0, 0.0
-    if profile[1] >= profile[0] and a[2] == b[2]:
-        z = max(a[2], grid.bottom)
-        for i in range(len(line)):
-            cut = max(line[i] - z, 0.0)
-            line[i] = min(line[i], z)
-            volume += cut
-            moment += cut * i
-            deepest = max(deepest, cut)
-        return volume, deepest, moment
-    lowest = max(min(a[2], b[2]), grid.bottom)
-    ball = profile[1] == 0.0 and profile[2] == profile[0]
-    for i in range(len(line)):
-        if line[i] <= lowest:
-            continue
-        if ball and below_capsule(x + i * grid.cell, y, line[i], a, b, profile[0]):
-            continue
-        z = max(lowest_height(x + i * grid.cell, y, a, b, profile), grid.bottom)
-        cut = line[i] - z
-        if cut > 0.0:
-            line[i] = z
-            volume += cut
-            moment += cut * i
-            deepest = max(deepest, cut)
-    return volume, deepest, moment

@@ -9,7 +9,8 @@ import mujoco
 import numpy as np
 
 from twin.cutting.colours import Colours
-from twin.cutting.cut import Cutter, Rectangle, union
+from twin.cutting.cut import Cutter
+from twin.cutting.sweeping import Rectangle, union
 from twin.nc.canonical import FloatArray
 from twin.recording.reader import Samples
 from twin.render.drawing.canvas import Canvas, Focus, Pixels, Quality

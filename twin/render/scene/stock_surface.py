@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.cutting.colours import RAW_RGB
-from twin.cutting.cut import Rectangle
 from twin.cutting.height_map import HeightMap
 from twin.cutting.net import Net, net, open_edges
+from twin.cutting.sweeping import Rectangle
 from twin.nc.canonical import FloatArray, IntArray
 from twin.render.drawing.canvas import Canvas
 from twin.render.scene.live_mesh import LiveMesh, add_live_mesh

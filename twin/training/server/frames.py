@@ -7,9 +7,9 @@ import threading
 from collections import deque
 from typing import Any
 
-from twin.cutting.cut import Rectangle, union
 from twin.cutting.height_map import HeightMap
 from twin.cutting.patches import patch_message
+from twin.cutting.sweeping import Rectangle, union
 from twin.training.server.driver import Look
 from twin.training.session.room import Room
 from twin.training.session.snapshot import Snapshot

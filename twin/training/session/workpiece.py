@@ -5,9 +5,10 @@ import math
 import numpy as np
 
 from twin.columns import join
-from twin.cutting.cut import Cutter, Rectangle, union
+from twin.cutting.cut import Cutter
 from twin.cutting.height_map import BoolArray, HeightMap
 from twin.cutting.stock_contact import Head
+from twin.cutting.sweeping import Rectangle, union
 from twin.job.job_file import StockTable, ToolTable
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
