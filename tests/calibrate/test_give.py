@@ -89,7 +89,7 @@ def test_a_gap_that_may_be_none_is_named_as_undetermined() -> None:
 
 
 def test_a_base_without_a_screw_has_neither_and_says_so(log: MachineLog) -> None:
-    fit = calibrate(mill(lead=None), [without(log, "force")]).axes["X"].fit
+    fit = calibrate(mill().changed("X", lead=None), [without(log, "force")]).axes["X"].fit
     for name in ("backlash", "stiffness"):
         assert "has no 'lead'" in fit.undetermined[name]
         assert name not in fit.fitted | fit.conditional
