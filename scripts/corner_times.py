@@ -14,7 +14,7 @@ import numpy as np
 
 from twin.machine.description.motion_limits import motion_limits
 from twin.motion.limits import MotionLimits
-from twin.motion.profile.phases import plan_phases
+from twin.motion.phase_planner import plan_phases
 from twin.nc.canonical import Chunk, Corner, FloatArray
 from twin.run.preparation import prepare
 

@@ -18,8 +18,8 @@ from benches.row import Row, median_cpu_seconds
 from twin.columns import join
 from twin.machine.description.motion_limits import motion_limits
 from twin.motion.limits import MotionLimits
+from twin.motion.phase_planner import plan_phases
 from twin.motion.planner import plan
-from twin.motion.profile.phases import plan_phases
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray
 from twin.run.preparation import Preparation, prepare
@@ -38,6 +38,9 @@ SHAPES = {
 """Programs that LinuxCNC reads too, but for their first line."""
 
 TOLERANCE_MM = 0.05
+
+ORACLE_PLACES = 240
+"""Along an arc, of the time-optimal plan: with twice as many it takes half a percent longer."""
 
 CAMOTICS_LINES, CAMOTICS_ARCS = 78e3, 2.5e3
 """What its planner was once measured at, on short lines and on arcs [blocks/s]: it is not run here."""
@@ -69,6 +72,7 @@ def rows() -> Iterator[Row]:
         yield from _rates(folder)
         yield from _single_moves(folder)
         yield from _chains()
+        yield from _arcs()
         yield from _beside_linuxcnc(folder)
 
 
@@ -173,6 +177,32 @@ def _chains() -> Iterator[Row]:
             bound = oracle.bound(program, machine, 1e7 / 60.0)
             taken = cycle_s(program.chunks(), machine)
             yield Row("motion", f"{task}, {kind}", taken, "s", name, bound)
+
+
+def _arcs() -> Iterator[Row]:
+    """Arcs from rest to rest beside the tests' time-optimal plan."""
+    sys.path.insert(0, str(ROOT / "tests" / "motion"))
+    try:
+        oracle = importlib.import_module("jerk_oracle")
+        programs = importlib.import_module("motion_programs")
+    except ImportError:
+        return
+    machine = programs.mill(
+        acceleration=np.full(4, 4000.0), jerk=np.full(4, 5e4),
+        path_acceleration=4000.0, path_jerk=5e4,
+    )  # fmt: skip
+    for radius, turns, advance, turned in (
+        (0.5, 1, 0.0, 0.0), (0.5, 3, 0.0, 0.0), (5.0, 1, 0.0, 0.0), (5.0, 3, 0.0, 0.0),
+        (50.0, 1, 0.0, 0.0), (5.0, 2, 4.0, 0.0), (20.0, 1, 5.0, 90.0), (5.0, 1, 0.0, 60.0),
+    ):  # fmt: skip
+        center, normal = (radius, 0.0, 0.0), (0.0, 0.0, 1.0)
+        program = programs.Program().arc(
+            center, normal, 360.0 * turns, advance=advance, turn=turned, feed=1e6
+        )
+        path = oracle.helix(radius, turns, advance, turned, ORACLE_PLACES)
+        shortest = oracle.shortest_time(path, 4000.0, 5e4)
+        task = f"R{radius:g}, turns {turns}, Z {advance:g} mm, C {turned:g} deg"
+        yield Row("motion", task, cycle_s(program.chunks(), machine), "s", "time-optimal", shortest)
 
 
 def _beside_linuxcnc(folder: Path) -> Iterator[Row]:

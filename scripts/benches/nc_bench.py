@@ -21,7 +21,7 @@ from benches.row import REPEATS, Row, median_cpu_seconds
 
 from twin.nc.canonical import Axes
 from twin.nc.control.settings import ControlSettings, ToolData
-from twin.nc.dialects import DIALECTS, dialect_named
+from twin.nc.dialects import dialect_named
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import read_source
 
@@ -37,21 +37,20 @@ _SETTINGS = ControlSettings(
     tools={1: ToolData(radius=2.0, length=60.0)},
     decimal_point="calculator",
 )
-_SAME_LANGUAGE = tuple(each for each in ("fanuc", "linuxcnc") if each in DIALECTS)
+_SAME_LANGUAGE = ("gost", "fanuc", "linuxcnc")
 """Dialects that read these programs as they stand."""
 
 
 def rows() -> Iterator[Row]:
-    """Lines and arcs with helices beside each peer; programs that compute beside ``rs274``."""
+    """Lines and arcs with helices in three dialects beside each peer; programs that compute beside ``rs274``."""
     with tempfile.TemporaryDirectory() as folder:
         for task, path in _programs(Path(folder)):
-            rate = BLOCKS / median_cpu_seconds(lambda p=path: _interpret(p, "gost"))
-            for measure in (_nc_gcode_interpreter, _rs274):
-                yield _row(task, rate, BLOCKS, *measure(path))
-            yield _cold_row(task, path, BLOCKS)
+            peers = [measure(path) for measure in (_nc_gcode_interpreter, _rs274)]
             for dialect in _SAME_LANGUAGE:
                 rate = BLOCKS / median_cpu_seconds(lambda p=path, d=dialect: _interpret(p, d))
-                yield Row("nc", f"{task}, {dialect}", rate, "blocks/s")
+                for peer in peers:
+                    yield _row(f"{task}, {dialect}", rate, BLOCKS, *peer)
+            yield _cold_row(task, path, BLOCKS)
         contour = Path(folder, "contour.nc")
         contour.write_text("\n".join([*_HEAD, "G41 D1", *_contour(), "M2", ""]))
         yield _cold_row(f"{CONTOUR:,} lines of a compensated contour", contour, CONTOUR)

@@ -48,11 +48,41 @@ def circle(radius: float, turns: float, places: int = 160) -> Path:
     return Path(x, np.stack([first, second, -first / radius**2]))
 
 
+def helix(radius: float, turns: float, advance: float, turned: float, places: int) -> Path:
+    """A helix about Z whose feed counts the way along it, with C going on evenly.
+
+    Args:
+        radius: [mm]
+        turns: How often it goes round.
+        advance: Of Z in all [mm].
+        turned: Of C in all [deg].
+        places: Along it.
+    """
+    around = 2.0 * np.pi * radius * turns
+    way = float(np.hypot(around, advance))
+    share = np.linspace(0.0, 1.0, places)
+    x = way * share**2 * (3.0 - 2.0 * share)
+    rate = around / way / radius
+    c, s, nothing = np.cos(rate * x), np.sin(rate * x), np.zeros(places)
+    even = np.ones(places)
+    first = np.stack(
+        [-radius * rate * s, radius * rate * c, advance / way * even, turned / way * even]
+    )
+    second = -radius * rate**2 * np.stack([c, s, nothing, nothing])
+    third = radius * rate**3 * np.stack([s, -c, nothing, nothing])
+    return Path(x, np.stack([first.T, second.T, third.T]))
+
+
 def shortest_time(path: Path, acceleration: float, jerk: float) -> float:
-    """From rest to rest, with the same limits for each axis and along the path [s]."""
+    """From rest to rest [s].
+
+    The limits are those of each axis, of the path along itself, and of its acceleration towards the
+    centre of curvature.
+    """
     slope, curvature = _differences(path.x)
     inner = np.eye(len(path.x))[1:-1]
-    accelerations, jerks = [0.5 * slope], [0.5 * curvature]
+    bend = np.linalg.norm(path.derivatives[1, 1:-1, :3], axis=1)
+    accelerations, jerks = [0.5 * slope, bend[:, None] * inner], [0.5 * curvature]
     for axis in range(path.derivatives.shape[2]):
         q1, q2, q3 = path.derivatives[:, 1:-1, axis, None]
         accelerations.append(q2 * inner + 0.5 * q1 * slope)

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from twin.columns import join
 from twin.motion.limits import MotionLimits
+from twin.motion.phase_planner import plan_phases
 from twin.motion.planner import plan
-from twin.motion.profile.phases import plan_phases
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import (
     NO_BLOCK_NUMBER,
@@ -63,6 +63,15 @@ def run(
 
 def duration(program: "Program", machine: MotionLimits) -> float:
     return list(plan_phases(program.chunks(), machine, start=program.start))[-1].end_time
+
+
+def circles(radius: float, turns: float, blocks: int = 1, feed: float = 1e6) -> "Program":
+    """A circle in X and Y that is run as fast as the machine can, or at a feed [mm/min]."""
+    program = Program()
+    program.corner = Corner.EXACT_PATH
+    for _ in range(blocks):
+        program.arc((radius, 0.0, 0.0), (0.0, 0.0, 1.0), 360.0 * turns / blocks, feed=feed)
+    return program
 
 
 def column(value: float) -> FloatArray:

@@ -102,7 +102,7 @@ def test_indexing_repeats_after_a_turn():
 def test_the_shares_add_up_to_what_the_tool_is_off():
     frame = read_machine(machine_file("mill4/as_built")).part_frame.at(ZERO)
     joints = np.array([-120.0, 80.0, -420.0, 123.0])
-    shares = frame.shares(joints)
+    shares = frame.shares(joints, {})
     assert {"squareness XY", "positioning EXX", "straightness EYX", "indexing ECC"} <= set(shares)
     assert {"run-out EXC", "centre of the table", "tilt of the table"} <= set(shares)
     off = frame.position(frame.real(joints[None]))[0] - frame.position(joints[None])[0]

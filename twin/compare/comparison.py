@@ -26,6 +26,7 @@ slowest position loop in use, 1 (m/min)/mm, lags by 0.06 s."""
 WORST_PLACES = 10
 DRIVES = "drives"
 """What of a contour error is none of the geometry's."""
+GROWTH = "thermal growth"
 _ROWS = 16384
 """Samples that are worked on at once: bounds how many arcs are open at a time."""
 
@@ -129,9 +130,9 @@ class Comparison:
             distance, place, fraction = self._follow(samples, point)
         error = distance * UM_PER_MM
         worst = self._contour.add(error)
-        if worst is not None and place is not None and self._frame.geometry:
+        if worst is not None and place is not None and self._has_shares(samples):
             self._shares = self._shares_of(
-                samples.joint_position[worst], point[worst], int(place[worst]), fraction[worst]
+                samples[worst : worst + 1], point[worst], int(place[worst]), fraction[worst]
             )
         line = setpoint.line if place is None else self._moves.line[place]
         rows = self._blocks.add(self._moves, place, line, error, setpoint.time)
@@ -146,17 +147,22 @@ class Comparison:
             self._drop_passed()
         return error
 
+    def _has_shares(self, samples: Samples) -> bool:
+        """Whether anything but the drives has a share of the errors."""
+        return bool(self._frame.geometry) or samples.growth is not None
+
     def _shares_of(
-        self, joints: FloatArray, point: FloatArray, place: int, fraction: float
+        self, sample: Samples, point: FloatArray, place: int, fraction: float
     ) -> dict[str, float]:
-        """What each error of the geometry has of a contour error, along the error itself [µm]."""
+        """What each error of the machine has of a contour error, along the error itself [µm]."""
         away = point - np.array(derivatives(self._path, place, float(fraction))[:3])
         size = float(np.linalg.norm(away))
         if size == 0.0:
             return {}
+        grown = {} if sample.growth is None else {GROWTH: sample.growth[0]}
         found = {
             name: float(shift @ away) / size * UM_PER_MM + 0.0
-            for name, shift in self._frame.shares(joints).items()
+            for name, shift in self._frame.shares(sample.joint_position[0], grown).items()
         }
         return {DRIVES: size * UM_PER_MM - sum(found.values()), **found}
 

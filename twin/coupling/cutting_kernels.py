@@ -228,7 +228,8 @@ def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> 
     numbers[SPEED] = next_speed(cut.spindle, numbers[SPEED], told, torque, period)
     memory.force[:] = 0.0
     if math.isnan(commanded) or numbers[STATE] != WHOLE:
-        numbers[MET] = 0.0
+        # What cuts nothing goes where it will: the next cut begins where the tool is then.
+        numbers[MET], numbers[FRESH] = 0.0, 1.0
         return
     turned = numbers[SPEED] * period
     if abs(numbers[SPEED]) > cut.strength.speed / _SECONDS:

@@ -139,6 +139,12 @@ class CuttingProcess:
         self._memory = _memory(len(position))
         self._memory.numbers[SPEED] = speed
 
+    def renew(self, number: int) -> None:
+        """Put a new tool into the place of one, which may have lost its edge."""
+        self.breaks = [found for found in self.breaks if found.tool != number]
+        if self._tool is not None and self._tool.number == number:
+            self._tool = None
+
     def lift(self) -> None:
         """Take the tool off what it cut: what comes next is no way of it."""
         memory = self._memory

@@ -31,6 +31,11 @@ class ProgramOperation:
         """A program that never speaks of the spindle finds it turning."""
         return (self._tools.tools[0].speed or 0.0) if self._silent else 0.0
 
+    def speed(self, setpoints: Setpoints) -> FloatArray:
+        """How fast the spindle shall turn, shape (n,) [1/min]; not a number where nobody says."""
+        parts = [turning.speed for turning in self.turnings(setpoints)]
+        return np.concatenate(parts) if parts else np.zeros(0)
+
     def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
         """Split setpoints where the tool changes; see ``Operation``."""
         # At the end of a move's path the spindle has heard what comes before the next one.

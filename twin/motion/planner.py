@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from twin.motion.limits import MotionLimits
-from twin.motion.profile.phases import plan_phases
+from twin.motion.phase_planner import plan_phases
 from twin.motion.setpoints.sampling import at_end, sample, standing
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, FloatArray

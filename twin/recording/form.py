@@ -47,6 +47,8 @@ class Samples(Columns):
         joint_velocity: Shape (n, k) [mm/s or deg/s].
         drive_force: Shape (n, k) [N or N m].
         tool: What the tool felt; None where the force of the cut was not simulated.
+        growth: How far the warm machine has shifted the tool along X, Y, Z, shape (n, 3) [mm]; None: it
+            does not grow.
     """
 
     setpoint: Setpoints
@@ -54,6 +56,7 @@ class Samples(Columns):
     joint_velocity: FloatArray
     drive_force: FloatArray
     tool: ToolLoad | None = None
+    growth: FloatArray | None = None
 
     def real(self, frame: PartFrame) -> FloatArray:
         """Machine coordinates at which an ideal machine with a rigid tool would have the tool.
@@ -65,11 +68,14 @@ class Samples(Columns):
             Shape (n, k) [mm or deg].
         """
         joints = frame.real(self.joint_position)
-        if self.tool is None:
+        shifts = [] if self.tool is None else [self.tool.deflection]
+        shifts += [] if self.growth is None else [self.growth]
+        if not shifts:
             return joints
-        bent = joints.copy()
-        bent[:, :3] += self.tool.deflection
-        return bent
+        shifted = joints.copy()
+        for shift in shifts:
+            shifted[:, :3] += shift
+        return shifted
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,6 +129,8 @@ TOOL_COLUMNS: Mapping[str, tuple[str, str, int]] = {
 }
 """Datasets, the fields of ``ToolLoad`` that they keep, their units and their widths (0: one value a
 sample); missing where the force of the cut was not simulated."""
+GROWTH = "thermal/growth"
+"""Dataset of ``Samples.growth``, shape (n, 3) [mm]; missing where the machine does not grow."""
 CONTOUR = "contour"
 """Dataset of the contour error, shape (n,) [µm]; missing where nobody compared."""
 
@@ -150,6 +158,7 @@ STEPS: Mapping[str, float] = {
     "tool/power": 2.0**-10,
     "tool/chip": 2.0**-24,
     "tool/deflection": 2.0**-24,
+    GROWTH: 2.0**-24,
     "tool/spindle_speed": 2.0**-10,
     "tool/spindle_load": 2.0**-20,
     CONTOUR: 2.0**-14,

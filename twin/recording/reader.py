@@ -21,6 +21,7 @@ from twin.nc.canonical import Axes, FloatArray
 from twin.recording.form import (
     COLUMNS,
     CONTOUR,
+    GROWTH,
     JOINT_COLUMNS,
     LATER_ATTRIBUTES,
     LONGEST_TEXT,
@@ -79,7 +80,8 @@ class Recording:
     @property
     def _names(self) -> tuple[str, ...]:
         """Of all datasets that are read."""
-        return (*COLUMNS, *JOINT_COLUMNS, *(TOOL_COLUMNS if self._has_tool else ()))
+        grown = (GROWTH,) if GROWTH in self._file else ()
+        return (*COLUMNS, *JOINT_COLUMNS, *(TOOL_COLUMNS if self._has_tool else ()), *grown)
 
     def refresh(self) -> int:
         """See what has been appended since; how many samples there are now."""
@@ -147,6 +149,7 @@ class Recording:
                     name: self._read(path, first, last) for path, (name, _) in JOINT_COLUMNS.items()
                 },
                 tool=self._tool(first, last),
+                growth=self._read(GROWTH, first, last) if GROWTH in self._file else None,
             )
 
     def _tool(self, first: int, last: int) -> ToolLoad | None:

@@ -15,6 +15,7 @@ from twin.recording.disk_space import DiskRoom
 from twin.recording.form import (
     COLUMNS,
     CONTOUR,
+    GROWTH,
     JOINT_COLUMNS,
     LATER_ATTRIBUTES,
     STEPS,
@@ -98,6 +99,11 @@ class RecordingWriter:
             self._create_tool_columns()
             for path, (name, _, _) in TOOL_COLUMNS.items():
                 columns[path] = getattr(samples.tool, name)
+        if samples.growth is not None:
+            if GROWTH not in self._file:
+                self._create(GROWTH, (0, 3), np.float64, "mm")
+                self._row_bytes += 3 * np.dtype(np.float64).itemsize
+            columns[GROWTH] = samples.growth
         for path, (name, _) in COLUMNS.items():
             columns[path] = getattr(samples.setpoint, name)
         for path, (name, _) in JOINT_COLUMNS.items():

@@ -12,7 +12,7 @@ from twin.compare.comparison import Comparison
 from twin.compare.trace import Trace
 from twin.compare.verdict import Check, judge
 from twin.coupling.cutting_process import CuttingProcess
-from twin.coupling.operations import program_process, speeds_are_known
+from twin.coupling.operations import ProgramOperation, program_process, speeds_are_known
 from twin.cutting.forces.axis_load import AxisLoad
 from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.nominal import NominalGouge
@@ -21,6 +21,7 @@ from twin.errors import ConfigError
 from twin.job.job_file import ToleranceTable
 from twin.machine.description.motion_limits import motion_limits
 from twin.machine.model.model import build_spec, spindle_over_table_mm
+from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import Simulation, simulate
 from twin.machine.watching.alarms import Alarm, NearMiss
 from twin.motion.planner import plan
@@ -130,9 +131,10 @@ class Run:
                     self._expect_all(comparison, machining)
                 if self._process is None or not speeds_are_known(dry_run.summary):
                     _refuse_unjudged_loads(self.preparation.job.file.tolerance)
+                growth = Growth(self.machine, ProgramOperation(dry_run.summary).speed)
                 for simulated in self.clock.watch("simulate", motion):
                     with self.clock.stage("cut"):
-                        samples, alarm = machining.add(simulated)
+                        samples, alarm = machining.add(growth.warm(simulated))
                     reached.add(samples)
                     machining.loads.add(samples)
                     with self.clock.stage("compare"):

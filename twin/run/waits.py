@@ -1,7 +1,7 @@
 """The time that tool changes and the spindle take, as dwells of the program."""
 
 import dataclasses
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from twin.job.job_file import JobFile
 from twin.machine.description.config import SpindleTable
@@ -31,20 +31,37 @@ def with_waits(chunks: Iterable[Chunk], spindle: SpindleTable, job: JobFile) -> 
     if not spindle.tool_change_s and not spindle.acceleration:
         yield from chunks
         return
-    waits = _Waits(spindle, job)
+    waits = Waits(spindle, {tool.number: tool.speed for tool in job.tools}, job.tools[0].number)
     for chunk in chunks:
         yield dataclasses.replace(chunk, events=tuple(waits.among(chunk.events)))
 
 
-class _Waits:
+class Waits:
     """Follows the tool in the spindle and its speed."""
 
-    def __init__(self, spindle: SpindleTable, job: JobFile) -> None:
+    def __init__(
+        self,
+        spindle: SpindleTable,
+        speeds: Mapping[int, float | None],
+        tool: int,
+        state: SpindleState | None = None,
+        sense: float = 1.0,
+    ) -> None:
+        """Begin with what is in the spindle.
+
+        Args:
+            spindle: How long the machine takes.
+            speeds: Of the tools, for programs that say none [1/min].
+            tool: Number of the tool in the spindle.
+            state: What the spindle has been told; None: nothing.
+            sense: Which way it turns, -1 counter-clockwise.
+        """
         self._spindle = spindle
-        self._speeds = {tool.number: tool.speed for tool in job.tools}
-        self._tool = self._selected = job.tools[0].number
-        self._state = SpindleState()
-        self._sign, self._turns = 1.0, 0.0
+        self._speeds = speeds
+        self._tool = self._selected = tool
+        self._state = state or SpindleState()
+        self._sign = sense
+        self._turns = sense * (self._state.speed or 0.0) if self._state.turns else 0.0
 
     def among(self, events: Iterable[Event]) -> Iterator[Event]:
         """The events with their dwells."""

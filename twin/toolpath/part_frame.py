@@ -5,6 +5,7 @@ part*, seen from +Z; the table itself turns clockwise.
 """
 
 import dataclasses
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -46,11 +47,12 @@ class PartFrame:
             return joints
         return self.geometry.real(joints, self.rotary, self.center)
 
-    def shares(self, joints: FloatArray) -> dict[str, FloatArray]:
+    def shares(self, joints: FloatArray, shifts: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
         """What every error of the geometry adds to the tool point, seen from the part.
 
         Args:
             joints: Where the axes stand, shape (k,) [mm or deg].
+            shifts: What else adds to it by name, along X, Y, Z of the machine, shape (3,) [mm].
 
         Returns:
             By name, shape (3,) [mm].
@@ -58,7 +60,12 @@ class PartFrame:
         row = joints[None]
         here = self.position(row)[0]
         added = self.geometry.contributions(row, self.rotary, self.center)
-        return {name: self.position(row + shift)[0] - here for name, shift in added}
+        found = {name: self.position(row + shift)[0] - here for name, shift in added}
+        for name, shift in shifts.items():
+            moved = row.copy()
+            moved[:, :3] += shift
+            found[name] = self.position(moved)[0] - here
+        return found
 
     def position(self, joints: FloatArray) -> FloatArray:
         """Where the tool point is, seen from the part.

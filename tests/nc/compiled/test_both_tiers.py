@@ -214,7 +214,8 @@ def test_both_ways_agree_on_random_programs(dialect: str) -> None:
     random_ = random.Random(8)  # noqa: S311 (programs need no cryptography)
     moves = errors = 0
     for _ in range(250):
-        result = assert_same(source_from_text(program(random_, dialect)), dialect, CALCULATOR)
+        settings = random_.choice([WITH_TABLES, CALCULATOR])
+        result = assert_same(source_from_text(program(random_, dialect)), dialect, settings)
         moves += len(result.moves)
         errors += result.error is not None
     assert moves > 1000

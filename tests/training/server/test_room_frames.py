@@ -14,6 +14,7 @@ from twin.training.server.driver import Driver
 from twin.training.server.frames import Changes, StockFeed, as_texts, panel_words, state_message
 from twin.training.server.launch import CELLS_ACROSS
 from twin.training.server.seats import MESSAGES, MOST_PAGES, Seats
+from twin.training.session.live_cut import Loads
 from twin.training.session.session import Session
 
 
@@ -66,7 +67,7 @@ def test_words_are_sent_when_they_change():
     driver.ask({"do": "mode", "mode": "jog"}, "operator", 1)
     driver._step(0.01)
     assert changes.since_last(as_texts(panel_words(driver.look))) == '{"mode":"jog"}'
-    assert len(state_message(driver.look, cutting=False)) == 8 + 8 * (7 + 5 * 4)
+    assert len(state_message(driver.look, cutting=False)) == 8 + 8 * (7 + 5 * 4 + len(Loads()))
 
 
 def test_a_typing_error_in_mdi_is_told_in_every_language():

@@ -27,7 +27,7 @@ pytestmark = [
 
 SIZES = [(1024, 768, 1), (1280, 720, 1), (1366, 768, 1), (1920, 1080, 1), (1280, 720, 2), (820, 1180, 2), (1180, 820, 2)]  # fmt: skip
 INSIDE = """() => [...document.querySelectorAll(
-  "#desk button, #desk input, #desk output, #views button, #tabs button, #axes td, .chip, #clock, #control, #language, #speeds span"
+  "#desk button, #desk input, #desk output, #views button, #tabs button, #axes td, .chip, #clock, #control, #language, #speeds span, #loads [role=meter], #loads .bar, #loads b, #loads .caption"
 )].filter((one) => one.checkVisibility()).map((one) => {
   const box = one.getBoundingClientRect(), out = [];
   if (box.width < 1 || box.height < 1) out.push("no size");

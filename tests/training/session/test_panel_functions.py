@@ -92,7 +92,7 @@ def test_a_hold_within_a_single_block_goes_on_to_its_end(session):
     do(session, "mode", mode="single")
     for _ in range(2):
         do(session, "cycle_start")
-    session.advance(50)
+    session.advance(100)
     do(session, "feed_hold")
     rest(session)
     assert session.room.line == 2
@@ -189,7 +189,8 @@ def test_a_search_does_not_begin_within_a_compensated_contour(session, code, end
     begin = dict(zip(machine.axes.names, (0.0,) * len(machine.axes), strict=True))
     settings = dataclasses.replace(given, start=begin, tools={1: ToolData(radius=1.0, length=60.0)})
     run = ProgramRun(source_from_text(text, "test"), LINUXCNC, settings, machine, options)
-    run.begin(room.standing_setpoint, room.tables.program_zero)
+    where = room.standing_setpoint, room.tables.program_zero
+    run.begin(*where, room.spindle, 1.0)
     assert (run.ending, "compensated" in run.message) == (end or "stop", bool(end))
 
 

@@ -35,14 +35,14 @@ def test_what_went_wrong_is_told_with_its_block(wrecked, language):
     words = Words(language, "fagor8070")
     sheet = score_sheet(wrecked, words, "2026-01-02 03:04")
     assert (sheet["name"], sheet["date"]) == ("Jan Novák", "2026-01-02 03:04")
-    (wrong,) = sheet["wrong"]
+    wrong, broken = sheet["wrong"]
+    assert broken["code"] == "tool-broken"
     assert (wrong["code"], wrong["block"], wrong["text"]) == (
         "rapid-into-stock", "N20", "N20 G0 X0 Y0 Z-5",
     )  # fmt: skip
     told = words.alarm("rapid-into-stock")
     assert (wrong["why"], wrong["right"]) == (told.why, told.advice)
-    moment = wrecked.room.moments[0]
-    page = score_page(sheet, words, [moment.picture()])
+    page = score_page(sheet, words, [one.picture() for one in wrecked.room.moments])
     assert told.why in html.unescape(page)
     assert "data:image/png;base64," in page
 
@@ -77,7 +77,7 @@ def test_a_course_lists_the_sheets_of_a_folder(tmp_path, wrecked):
     (tmp_path / "other" / "score.json").write_text("{", encoding="utf-8")
     rows, unread = course_of(tmp_path)
     assert [(row.name, row.scene, row.points, row.alarms) for row in rows] == [
-        ("Jan Novák", "fagor_first_steps", 0, ("rapid-into-stock",))
+        ("Jan Novák", "fagor_first_steps", 0, ("rapid-into-stock", "tool-broken"))
     ]
     assert unread == ["other/score.json"]
     assert "Jan Novák" in course_page(rows)

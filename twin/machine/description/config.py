@@ -195,6 +195,22 @@ class SpindleTable(Table):
         return self
 
 
+class GrowthTable(Table):
+    """One way in which a warm machine grows: a state of first order, cold where a run begins.
+
+    It tends to ``um`` times what drives it over ``at``.
+    """
+
+    source: str
+    """What warms it: ``spindle``, by its speed, or an axis, by the power of its drive."""
+    at: Positive
+    """Speed [1/min] or power [W] that leads to ``um``."""
+    um: tuple[Coordinate, Coordinate, Coordinate]
+    """Where the tool goes in the end, along X, Y and Z [µm]."""
+    time_constant_s: Positive
+    """After which 63 % of it are there [s]."""
+
+
 class CollisionTable(Table):
     """What the control watches between the tool's side and the part's."""
 
@@ -238,6 +254,8 @@ class MachineFile(Table):
     fixtures: tuple[FixtureTable, ...] = ()
     collision: CollisionTable = CollisionTable()
     geometry: GeometryTable = GeometryTable()
+    thermal: dict[str, GrowthTable] = Field(default_factory=dict)
+    """How the machine grows as it warms, by names that a verdict uses; none: it does not."""
     control: ControlTable = ControlTable()
 
     @pydantic.model_validator(mode="after")
@@ -259,6 +277,10 @@ class MachineFile(Table):
         if self.table is not None and self.axes[self.table.axis].kind != "rotary":
             raise ValueError(f"table.axis '{self.table.axis}' is not rotary")
         self.geometry.of(self.ordered_axes(), None if self.table is None else self.table.axis)
+        for name, growth in self.thermal.items():
+            if growth.source not in ("spindle", *self.axes):
+                known = ", ".join(("spindle", *self.axes))
+                raise ValueError(f"thermal.{name}.source '{growth.source}' is none of {known}")
         joints = [axis.joint for axis in self.axes.values()]
         fixtures = [fixture.name for fixture in self.fixtures]
         for what, names in (("joint", joints), ("fixture", fixtures)):

@@ -1,4 +1,4 @@
-"""A lag of first order along a signal that is known with its rates; compiled."""
+"""Lags of first order; compiled."""
 
 from twin.compilation.kernel import array_kernel
 
@@ -29,3 +29,23 @@ def trail_behind(start, keeps, weights, velocity, acceleration):
                 + weights[a, 3] * acceleration[i, a]
             )
     return trail
+
+
+@array_kernel
+def relax(start, keep, goal):
+    """States that tend to goals which stand still over each step.
+
+    Args:
+        start: Before the first row, shape (m,).
+        keep: Share of the way that is left after a step, shape (m,).
+        goal: Where they tend to on the way to each row, shape (n, m).
+
+    Returns:
+        Shape (n, m).
+    """
+    states = goal.copy()
+    for i in range(len(goal)):
+        for j in range(len(start)):
+            before = start[j] if i == 0 else states[i - 1, j]
+            states[i, j] = goal[i, j] + keep[j] * (before - goal[i, j])
+    return states

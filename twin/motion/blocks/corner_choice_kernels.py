@@ -74,6 +74,12 @@ class Corners(NamedTuple):
     further_tolerance: float
 
 
+LEAST_TURN = 1.5 * math.pi
+"""What a run of arcs turns by at least to get a time law of its own (``twin.motion.retiming``) [rad]."""
+
+RUN_SHARE = 0.8
+"""Share of the time under an arc's bounds that such a run takes from stop to stop."""
+
 FREE, PASSED, STOPPED = -1, 0, 1
 """How a border is passed: to be chosen, without a stop, at rest."""
 
@@ -241,6 +247,9 @@ def _time_of_block(
         width, next_width, rounded = width * length / rounded, next_width * length / rounded, length
     time = slower * (width / u if width > 0.0 else 0.0)
     time += slower * (next_width / v if next_width > 0.0 else 0.0)
+    turns = abs(blocks.curves.angle[i]) >= LEAST_TURN and limits.velocity < blocks.velocity[i]
+    if turns and before == STOPPED and after == STOPPED:
+        return RUN_SHARE * travel_time(length, 0.0, 0.0, limits)
     room = length - rounded
     ramps = travel_time(room, u, v, limits)
     if ramps == math.inf:

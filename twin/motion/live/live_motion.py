@@ -83,7 +83,8 @@ class LiveMotion:
         self._part_zero = part_zero
         self._program = WatchedEnd(chunks, start, part_zero)
         self._plan = OverriddenPlan(
-            pieces_of_chunks(self._program, limits, start - part_zero, largest_override)
+            pieces_of_chunks(self._program, limits, start - part_zero, largest_override),
+            limits.arrays(),
         )
         self._wanted = self._granted = Overrides()
         self._dropped = False

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from twin.motion.blocks.blocks import BoolArray
+from twin.motion.limits import MachineLimits
+from twin.motion.live.open_runs import OpenRuns
 from twin.motion.live.transition_kernels import find_transition
 from twin.motion.pieces.pieces import Pieces
 from twin.motion.profile.backward_pass_kernels import ROUNDING, SLOWEST, backward_pass, find_brake
@@ -15,8 +17,12 @@ from twin.motion.profile.phase_kernels import PhaseRows, write_brake
 from twin.motion.profile.phases import Phases, brakes_from, no_phases, phases_of
 from twin.motion.profile.state import Course, State
 from twin.motion.profile.windows import Window, windows
+from twin.motion.retiming.retiming import PhaseTable, pieces_for_runs
 from twin.motion.setpoints.sampling_kernels import OVERLAPPING, state_at
 from twin.nc.canonical import FloatArray
+
+FURTHER = 0.25
+"""How far it is planned at a time to find a run's end [s]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +71,7 @@ class OverriddenPlan:
 
     Args:
         parts: The program's pieces, in order.
+        machine: Limits of the axes and the path.
 
     Attributes:
         phases: What is planned and not yet forgotten, in order.
@@ -73,8 +80,9 @@ class OverriddenPlan:
         at_block_end: Whether that is the end of a single block.
     """
 
-    def __init__(self, parts: Iterable[Pieces]) -> None:
+    def __init__(self, parts: Iterable[Pieces], machine: MachineLimits) -> None:
         self._windows = windows(parts)
+        self._machine = machine
         self._state = STATE_AT_REST.copy()
         self._wishes = Overrides()
         self.phases: list[Phases] = []
@@ -83,6 +91,7 @@ class OverriddenPlan:
         self._window: Window
         self._drive: _Drive
         self._segments = 0
+        self._runs = OpenRuns()
         self._empty = not self._open()
 
     @property
@@ -99,7 +108,7 @@ class OverriddenPlan:
 
     def plan_until(self, time: float) -> None:
         """Plan on to a time [s], or to the program's end."""
-        while self._state[4] < time and not self.ended:
+        while self._planned_to() < time and not self.ended:
             segment = int(self._state[0])
             window, drive = self._window, self._drive
             stop = drive.stop_from(segment)
@@ -111,11 +120,32 @@ class OverriddenPlan:
             elif self._wishes.held or segment == stop:
                 self._stand_until(time)
             else:
+                until = time + self._runs.gained
+                if self._runs.waits:
+                    until = max(until, float(self._state[4]) + FURTHER)
                 rows, segments = forward_pass(
                     drive.limits, drive.entry, drive.brakes, Stands(window.overlap, window.pause),
-                    min(stop, window.due), time, self._state,
+                    min(stop, window.due), until, self._state,
                 )  # fmt: skip
-                self._append(phases_of(window, rows, segments))
+                phases = phases_of(window, rows, segments)
+                self._take_runs(phases, int(self._state[0]) >= min(stop, window.due))
+
+    @property
+    def _now(self) -> float:
+        """When the plan is in its last state [s]."""
+        return float(self._state[4]) - self._runs.gained
+
+    def _planned_to(self) -> float:
+        """Up to when the phases are known [s]."""
+        return self._runs.begin if self._runs.waits else self._now
+
+    def _take_runs(self, phases: Phases, at_end: bool) -> None:
+        """Append phases; of a run that goes on beyond them only with its end."""
+        table = self._runs.take(
+            PhaseTable(phases.rows, phases.rows_pieces), self._run_pieces, self._machine,
+            self._wishes.feed_override, at_end,
+        )  # fmt: skip
+        self._append(Phases(phases.parts, table.rows, table.rows_pieces))
 
     def override(self, overrides: Overrides, time: float) -> bool:
         """Change the overrides; what is planned for later is dropped.
@@ -127,7 +157,7 @@ class OverriddenPlan:
         Returns:
             Whether this is possible at once; if not, the plan stays as it is, to be tried again.
         """
-        if self.ended and self._state[4] <= time:
+        if self.ended and self._now <= time:
             return True
         place = self._state_at(time)
         if place is None:
@@ -140,6 +170,7 @@ class OverriddenPlan:
         if a < 0.0 or find_brake(course, here, ROUNDING) < 0:
             brake, x_end = find_transition(window.limits, course, here)
             if brake.border < 0:
+                self._rejoin(time)
                 return False
         self._wishes, self._window, self._drive = overrides, window, drive
         self.standing_since = math.inf
@@ -147,12 +178,24 @@ class OverriddenPlan:
         self._state[:5] = segment, x, v, a, time
         self._state[5:] = STATE_AT_REST[5:]
         self.phases = [no_phases(window.pieces)]
+        self._runs = OpenRuns()
         if brake is not None:
             rows = PhaseRows(np.zeros((3, 6)), np.zeros((3, 2), np.int64))
             count, end_time, _, _ = write_brake(rows, 0, window.limits[0], time, here, brake)
             self._append(phases_of(window, rows.phases[:count], rows.segments[:count]))
             self._state[:5] = brake.border - 1, x_end, brake.velocity, 0.0, end_time
         return True
+
+    def _rejoin(self, time: float) -> None:
+        """Leave a retimed run for its reference, from which there is always a brake."""
+        phases = self.phases[-1]
+        if self._run_pieces is None:
+            return
+        table = self._runs.rejoined(
+            PhaseTable(phases.rows, phases.rows_pieces), self._run_pieces, self._machine,
+            self._wishes.feed_override, time,
+        )  # fmt: skip
+        self.phases[-1] = Phases(phases.parts, table.rows, table.rows_pieces)
 
     def _state_at(self, time: float) -> tuple[int, float, float, float, float] | None:
         """Segment, x, v, a at a time, and how long the segment still pauses [s].
@@ -194,6 +237,8 @@ class OverriddenPlan:
                 self._state[:2] = window.segment_at(piece - int(last.begins[last.due]), x)
                 self._state[5:] = STATE_AT_REST[5:]
         self._segments = len(window.pause)
+        self._runs.close()
+        self._run_pieces = pieces_for_runs(window.pieces[: int(window.begins[window.due])])
         self._window, self._drive = _drive(
             window, self._wishes, int(self._state[0]), self._state[1], known
         )
@@ -202,7 +247,7 @@ class OverriddenPlan:
 
     def _stand_until(self, time: float) -> None:
         """Add a phase at rest; between two blocks it belongs to the one that has ended."""
-        segment, x, now = int(self._state[0]), float(self._state[1]), float(self._state[4])
+        segment, x, now = int(self._state[0]), float(self._state[1]), self._now
         self.standing_since = min(self.standing_since, now)
         lengths = self._window.pieces.length
         piece, x = self._window.piece_at(segment, x)
@@ -211,7 +256,7 @@ class OverriddenPlan:
             x = float(lengths[piece])
         row = np.array([[now, time - now, x, 0.0, 0.0, 0.0]])
         self._append(Phases(self._window.parts, row, np.array([[piece, piece]])))
-        self._state[4] = time
+        self._state[4] = time + self._runs.gained
 
     def _append(self, more: Phases) -> None:
         last = self.phases[-1]

@@ -59,6 +59,8 @@ class Pieces(Columns):
         pause: How long a dwell waits, shape (n,) [s].
         rounding: What is added to each axis, coefficients by powers of x from the piece's begin,
             shape (n, k, 6) [mm or deg].
+        path_acceleration: Highest abs(a) but for the curve, shape (n,) [mm/s² or deg/s²].
+        path_jerk: Highest abs(j) but for the curve, shape (n,) [mm/s³ or deg/s³].
         geometry: Of each piece's whole move, n rows of a table of moves.
     """
 
@@ -77,6 +79,8 @@ class Pieces(Columns):
     overlap: FloatArray
     pause: FloatArray
     rounding: FloatArray
+    path_acceleration: FloatArray
+    path_jerk: FloatArray
     geometry: Picked[Geometry]
 
 
@@ -123,6 +127,10 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
     first, last = np.searchsorted(owner, [surroundings.first, surroundings.last])
     due = slice(first, last)
     owner = owner[due]
+    path_acceleration = blocks.parameter_scale * np.minimum(
+        np.minimum(blocks.acceleration, blocks.deceleration), limits.path_acceleration
+    )
+    path_jerk = blocks.parameter_scale * limits.path_jerk
     return Pieces(
         move=blocks.move.take(owner),
         line=blocks.line.take(owner),
@@ -139,6 +147,8 @@ def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: flo
         overlap=overlap[due],
         pause=blocks.pause.take(owner),
         rounding=rounding[due],
+        path_acceleration=path_acceleration.take(owner),
+        path_jerk=path_jerk.take(owner),
         geometry=Picked(owner, shapes),
     )
 

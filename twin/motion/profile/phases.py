@@ -1,18 +1,15 @@
 """The velocity along a program, as phases of constant jerk."""
 
 import dataclasses
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
 from twin.columns import join
-from twin.motion.limits import MotionLimits
-from twin.motion.pieces.pieces import Pieces, pieces_of_chunks
-from twin.motion.profile.backward_pass_kernels import backward_pass
-from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forward_pass
+from twin.motion.pieces.pieces import Pieces
 from twin.motion.profile.segment_kernels import place_phases
-from twin.motion.profile.windows import Window, windows
-from twin.nc.canonical import Chunk, FloatArray, IntArray
+from twin.motion.profile.windows import Window
+from twin.nc.canonical import FloatArray, IntArray
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -58,36 +55,6 @@ class Phases:
     def end_time(self) -> float:
         """When the last phase ends [s]."""
         return float(self.rows[-1, 0] + self.rows[-1, 1])
-
-
-def plan_phases(
-    chunks: Iterable[Chunk], limits: MotionLimits, *, start: FloatArray
-) -> Iterator[Phases]:
-    """Plan the velocity along a program.
-
-    Args:
-        chunks: The program.
-        limits: Of the axes and the path.
-        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
-    """
-    state = STATE_AT_REST.copy()
-    known = np.zeros((4, 0))
-    for window in windows(pieces_of_chunks(chunks, limits, start)):
-        brakes = backward_pass(window.limits, window.entry, known)
-        rows, segments = forward_pass(
-            window.limits,
-            window.entry,
-            brakes,
-            Stands(window.overlap, window.pause),
-            window.due,
-            np.inf,
-            state,
-        )
-        if len(rows) > 0:
-            yield phases_of(window, rows, segments)
-        known = brakes_from(brakes, window.due)
-        state[[0, 5]] -= window.due
-        state[7:] = 0.0
 
 
 def phases_of(window: Window, rows: FloatArray, segments: IntArray) -> Phases:

@@ -145,8 +145,3 @@ class Bytecode:
 def number_of_location(location: Location) -> int:
     """A location as one number, in the order of the program."""
     return location.line << PART_BITS | location.part
-
-
-def location_of_number(number: int) -> Location:
-    """The inverse of ``number_of_location``."""
-    return Location(number >> PART_BITS, number & LARGEST_PART)

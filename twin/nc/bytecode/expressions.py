@@ -35,86 +35,41 @@ UNDEFINED, TOO_LARGE = -4, -5
 """Instead of the number of values: an operator or a function has no value there; one that is no
 coordinate, count or feed."""
 
-_UNARY = [
-    arithmetic.inverted_bits,
-    arithmetic.sine_of_degrees,
-    arithmetic.cosine_of_degrees,
-    arithmetic.tangent_of_degrees,
-    arithmetic.arc_sine_in_degrees,
-    arithmetic.arc_cosine_in_degrees,
-    arithmetic.arc_tangent_in_degrees,
-    arithmetic.square,
-    arithmetic.power_of_ten,
-    arithmetic.whole_part,
-    arithmetic.fraction,
-    arithmetic.nearest_whole,
-    arithmetic.next_whole,
-    arithmetic.nearest_whole_away,
-    arithmetic.whole_below,
-    arithmetic.arc_sine_from_zero,
-    arithmetic.whole_away,
-    arithmetic.opposite,
-    arithmetic.from_binary_decimal,
-    arithmetic.to_binary_decimal,
-    math.sin,
-    math.cos,
-    math.tan,
-    math.asin,
-    math.acos,
-    math.atan,
-    math.fabs,
-    math.sqrt,
-    math.exp,
-    math.log,
-    math.log10,
-]
-_BINARY = [
-    arithmetic.add,
-    arithmetic.subtract,
-    arithmetic.multiply,
-    arithmetic.divide,
-    arithmetic.less,
-    arithmetic.greater,
-    arithmetic.at_most,
-    arithmetic.at_least,
-    arithmetic.equal,
-    arithmetic.unequal,
-    arithmetic.both,
-    arithmetic.either,
-    arithmetic.one_alone,
-    arithmetic.bits_of_both,
-    arithmetic.bits_of_either,
-    arithmetic.bits_of_one_alone,
-    arithmetic.direction_in_degrees,
-    arithmetic.direction_of_quotient,
-    arithmetic.nearly_equal,
-    arithmetic.not_nearly_equal,
-    arithmetic.positive_remainder,
-    arithmetic.direction_from_zero,
-    arithmetic.equal_or_vacant,
-    arithmetic.unequal_or_vacant,
-    arithmetic.remainder_of_wholes,
-    arithmetic.smaller,
-    arithmetic.larger,
-    math.fmod,
-    math.pow,
-]
-_TERNARY = [
-    arithmetic.limited,
-    arithmetic.chosen,
-]
+_OF_MATH: tuple[tuple[Function, ...], ...] = (
+    (
+        math.sin,
+        math.cos,
+        math.tan,
+        math.asin,
+        math.acos,
+        math.atan,
+        math.fabs,
+        math.sqrt,
+        math.exp,
+        math.log,
+        math.log10,
+    ),
+    (math.fmod, math.pow),
+    (),
+)
+"""Functions of one, two and three values besides those of ``arithmetic``."""
 
 
-FUNCTIONS = (_UNARY, _BINARY, _TERNARY)
+def _functions(values: int) -> list[Function]:
+    """All that take so many values."""
+    named = (each for name, each in vars(arithmetic).items() if not name.startswith("_"))
+    own = [each for each in named if getattr(each, "__module__", "") == arithmetic.__name__]
+    return [*(each for each in own if each.__code__.co_argcount == values), *_OF_MATH[values - 1]]
+
+
+FUNCTIONS = (_functions(1), _functions(2), _functions(3))
 """Functions of one, two and three values; those of other packages' dialects join them behind."""
 _NUMBERS: list[dict[Function, int]] = [
     {function: number for number, function in enumerate(each)} for each in FUNCTIONS
 ]
 _COMPILED = tuple(map(len, FUNCTIONS))
 
-unary = compilable_choice(_UNARY)
-binary = compilable_choice(_BINARY)
-ternary = compilable_choice(_TERNARY)
+unary, binary, ternary = map(compilable_choice, FUNCTIONS)
 """The functions with these numbers; the number is the first argument."""
 
 

@@ -4,6 +4,9 @@ from twin.nc.control.control import Control
 from twin.nc.control.state import integer_of
 from twin.nc.text.blocks import Word
 
+NEEDS_TOOL = "give the job a tool with its radius and length: [[tools]]"
+"""Hint where a code needs a tool that the job does not have."""
+
 
 def tool_numbered(control: Control, word: Word) -> int:
     """The tool that a word names.

@@ -41,6 +41,8 @@ class Executor(Control):
         self.dialect = dialect
         self._pointless = dialect.pointless(settings)
         self._special = frozenset(("G", "M", *dialect.signed, *dialect.series))
+        expressions = dialect.syntax.expressions
+        self._vacant = expressions is not None and expressions.vacant
         self._codes: list[tuple[Word, GCode]] = []
         self.modal.apply(dialect.start_state)
         for number in dialect.start:
@@ -177,6 +179,9 @@ class Executor(Control):
                 value = self.evaluate(value, word)
                 word = word._replace(value=value)
                 if value != value:
+                    if not self._vacant:
+                        message = f"the value of '{address}' is no number"
+                        self.fail("number-range", message, word)
                     continue  # computed of a vacant variable: the word is not there
             if address in dialect.signed and number_of(word) < 0.0:
                 address = f"{address}-"

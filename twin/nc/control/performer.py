@@ -21,7 +21,7 @@ from twin.nc.bytecode.frames import (
     go_to,
 )
 from twin.nc.bytecode.variables import store
-from twin.nc.control.compensation import compensate, tool_numbered
+from twin.nc.control.compensation import NEEDS_TOOL, compensate, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import Expression, Tree
@@ -39,7 +39,7 @@ _FINDINGS: Mapping[int, tuple[str, str, str | None, bool]] = {
     effects.NO_TOOL: (
         "no-such-tool",
         "compensation needs a tool, and the job has none",
-        "give the job a tool with its radius and length: [[tools]]",
+        NEEDS_TOOL,
         False,
     ),
     effects.NEGATIVE_DWELL: ("dwell", "a dwell cannot be negative", None, True),
@@ -71,6 +71,27 @@ _FINDINGS: Mapping[int, tuple[str, str, str | None, bool]] = {
     ),
 }
 """Code, message and hint of what is wrong with an effect, and whether the word is to blame."""
+
+
+def refuse(
+    control: Control, finding: int, word: Word | None = None, span: tuple[int, int] | None = None
+) -> NoReturn:
+    """Say what is wrong with an effect, or with an action that follows the same rule.
+
+    Args:
+        control: Whose block it is.
+        finding: One of ``effects``.
+        word: What the instruction was given.
+        span: Column and width of what is blamed where no word is; None: what a control blames.
+
+    Raises:
+        ProgramError: Always.
+    """
+    code, message, hint, is_of_word = _FINDINGS[finding]
+    message = message.format(word="" if word is None else word.text)
+    if span is None or (is_of_word and word is not None):
+        control.fail(code, message, word if is_of_word else None, hint)
+    control.report.fail(code, message, *span, hint)
 
 
 class _Gone(Exception):  # noqa: N818 (nothing is wrong)
@@ -201,11 +222,7 @@ class Performer(Assembler):
         place = BlockPlace(control.block.line, 0, control.path.compensating)
         top = run_effect(instruction, self._stack, self._top, place, on)
         if top < 0:
-            code, message, hint, is_of_word = _FINDINGS[top]
-            word = self._word if is_of_word else None
-            span = self._span if word is None else (word.column, word.width)
-            shown = "" if word is None else word.text
-            control.report.fail(code, message.format(word=shown), *span, hint)
+            refuse(control, top, self._word, self._span)
         self._top = top
         control.end_effect()
 

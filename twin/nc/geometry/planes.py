@@ -110,8 +110,6 @@ ZX = Plane("ZX (G18)", _Z, _X, _Y)
 YZ = Plane("YZ (G19)", _Y, _Z, _X)
 PLANE_ORDER = (XY, ZX, YZ)
 """Those along the axes, as the compiled tier numbers them."""
-PLANE_NAMES = tuple(plane.name for plane in PLANE_ORDER)
-"""Their names, which they keep where a mirror or a rotation turns them."""
 
 
 def plane_with_normal(normal: Vector) -> Plane:

@@ -1,6 +1,8 @@
 """The ISO 6983-1 base that several dialects share: codes, words and what they do."""
 
+import dataclasses
 import re
+from collections.abc import Mapping
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
@@ -104,12 +106,12 @@ def _plane(meaning: str, plane: Plane) -> GCode:
     )
 
 
-PLANES = {
+PLANES: dict[float, GCode] = {
     17: _plane("plane X Y", XY),
     18: _plane("plane Z X", ZX),
     19: _plane("plane Y Z", YZ),
 }
-DISTANCE = {
+DISTANCE: dict[float, GCode] = {
     90: GCode(meaning="absolute coordinates", group="distance", sets={"incremental": False}),
     91: GCode(meaning="incremental coordinates", group="distance", sets={"incremental": True}),
 }
@@ -244,6 +246,11 @@ def require_feed_of_block(control: Control) -> None:
     ):
         message = "with G93 every block that cuts needs its F"
         control.fail("no-feed", message, hint="write F, or G94")
+
+
+def by_manual(codes: Mapping[float, GCode]) -> dict[float, GCode]:
+    """Codes of the base whose meaning the manual of a control gives as well."""
+    return {number: dataclasses.replace(code, ground="manual") for number, code in codes.items()}
 
 
 def jog_block(dialect: Dialect, axis: str, distance: float, feed: float) -> str:

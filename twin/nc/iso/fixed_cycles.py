@@ -7,47 +7,80 @@ block without a hole drills where the tool stands; the tool returns to the heigh
 was called, or with G99 to the reference plane; the plane cannot change before the cycle has ended.
 """
 
-from twin.nc.control.codes import GCode
+from collections.abc import Callable
+from typing import NamedTuple
+
+from twin.nc.control.codes import GCode, Ground
+from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.iso.drilling import cycle_code
 from twin.nc.path.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, Cycle, Pecking, Retract
 
 
-def _cycle(
-    name: str,
-    meaning: str,
-    *,
-    dwell: bool = False,
-    peck: bool = False,
-    retract: Retract = Retract.RAPID,
+class Drill(NamedTuple):
+    """What a cycle does at its hole; its words besides Z, R, and the place follow from that.
+
+    Attributes:
+        meaning: For people.
+        dwell: It waits at the bottom, P.
+        peck: It goes down by pecks, Q.
+        lift: How far it withdraws between them [mm]; 0: to the reference plane.
+        retract: How it leaves the hole.
+    """
+
+    meaning: str
+    dwell: bool = False
+    peck: bool = False
+    lift: float = 0.0
+    retract: Retract = Retract.RAPID
+
+
+DRILLS = {
+    81: Drill("drilling"),
+    82: Drill("drilling with dwell", dwell=True),
+    83: Drill("deep drilling in pecks", peck=True),
+    84: Drill("tapping", dwell=True, retract=Retract.REVERSED),
+    85: Drill("reaming, back with the feed", retract=Retract.FEED),
+    86: Drill("boring, back with the spindle stopped", retract=Retract.STOPPED),
+    89: Drill("reaming with dwell", dwell=True, retract=Retract.FEED),
+}
+
+
+def drilling_code(
+    number: int,
+    drill: Drill,
+    target: Callable[[Control], list[float]] = Control.target,
+    ground: Ground = "decision",
+    repeats: str = "",
 ) -> GCode:
-    words = {"R": REFERENCE, **({"P": DWELL} if dwell else {}), **({"Q": PECK} if peck else {})}
+    """The code of a cycle; arguments as for ``cycle_code``."""
+    words = {"R": REFERENCE}
+    if drill.dwell:
+        words["P"] = DWELL
+    if drill.peck:
+        words["Q"] = PECK
     cycle = Cycle(
         lasting=True,
         across=BOTTOM,
-        needed=1 << REFERENCE | 1 << BOTTOM | peck << PECK,
-        pecking=Pecking.TO_BOTTOM if peck else Pecking.NONE,
-        dwells=dwell,
-        retract=retract,
+        needed=1 << REFERENCE | 1 << BOTTOM | drill.peck << PECK,
+        pecking=Pecking.TO_BOTTOM if drill.peck else Pecking.NONE,
+        dwells=drill.dwell,
+        retract=drill.retract,
+        lift=drill.lift,
     )
-    return cycle_code(CycleRule(name, cycle, words), f"{meaning}: X Y Z {' '.join(words)}")
+    meaning = " ".join([f"{drill.meaning}: X Y Z", *words, *repeats])
+    return cycle_code(CycleRule(f"G{number}", cycle, words), meaning, target, ground, repeats)
 
 
-_BY_HAND = "the operator moves the axes by hand in it"
+BY_HAND = "the operator moves the axes by hand in it"
 
 CYCLES = {
     80: GCode(meaning="drilling cycles off", group="cycle", sets={"cycle": None}),
-    81: _cycle("G81", "drilling"),
-    82: _cycle("G82", "drilling with dwell", dwell=True),
-    83: _cycle("G83", "deep drilling in pecks", peck=True),
-    84: _cycle("G84", "tapping", dwell=True, retract=Retract.REVERSED),
-    85: _cycle("G85", "reaming, back with the feed", retract=Retract.FEED),
-    86: _cycle("G86", "boring, back with the spindle stopped", retract=Retract.STOPPED),
-    87: GCode(meaning="boring by hand", group="cycle", refused=_BY_HAND),
-    88: GCode(meaning="boring by hand with dwell", group="cycle", refused=_BY_HAND),
-    89: _cycle("G89", "reaming with dwell", dwell=True, retract=Retract.FEED),
+    **{number: drilling_code(number, drill) for number, drill in DRILLS.items()},
+    87: GCode(meaning="boring by hand", group="cycle", refused=BY_HAND),
+    88: GCode(meaning="boring by hand with dwell", group="cycle", refused=BY_HAND),
 }
-RETURN = {
+RETURN: dict[float, GCode] = {
     98: GCode(
         meaning="cycles return to the height of their call",
         group="return plane",

@@ -3,15 +3,11 @@
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.codes import Effect, GCode
-from twin.nc.control.compensation import compensate, tool_numbered
+from twin.nc.control.compensation import NEEDS_TOOL, tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.iso.offsets import compile_shift
 
-__all__ = ["LEFT", "NO_TOOL", "RIGHT", "compensate", "tool_numbered"]
-
 LEFT, RIGHT = 1, -1
-
-NO_TOOL = "give the job a tool with its radius and length: [[tools]]"
 
 
 def _compensation_by_table(side: int) -> Effect:
@@ -75,7 +71,7 @@ def _length_in_spindle(control: Control, sign: float) -> None:
     tool = control.tools.data(control.tools.spindle)
     if tool is None:
         message = "tool length needs a tool, and the job has none"
-        control.fail("no-such-tool", message, None, NO_TOOL)
+        control.fail("no-such-tool", message, None, NEEDS_TOOL)
     set_length(control, sign * control.tools.longer(tool))
 
 
@@ -89,17 +85,6 @@ def write_length(control: Control, longer: float, assembler: Assembler) -> None:
     axes = len(control.settings.axes)
     compile_shift("length", [longer if axis == 2 else 0.0 for axis in range(axes)], assembler)
     assembler.emit(opcodes.REFRAME)
-
-
-def refuse_plane_change(control: Control) -> None:
-    """A new plane while compensation is in force.
-
-    Raises:
-        ProgramError: It is.
-    """
-    if control.path.compensating:
-        message = "the plane cannot change while compensation is in force"
-        control.fail("compensation-plane", message, hint="end it by G40 first")
 
 
 COMPENSATION = {

@@ -64,6 +64,25 @@ class Segment:
     normal: Vector = (NAN, NAN, NAN)
     sweep: float = 0.0
 
+    @property
+    def codes(self) -> tuple[int, ...]:
+        """Motion, shape, line, block and corner."""
+        shape = Shape.LINE if self.center is None else Shape.ARC
+        return (self.motion, shape, self.line, self.block, self.corner)
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Centre, normal, sweep, feed, corner tolerance, acceleration and deceleration."""
+        return (
+            *((NAN, NAN, NAN) if self.center is None else self.center),
+            *self.normal,
+            self.sweep,
+            self.feed,
+            self.corner_tolerance,
+            self.acceleration,
+            self.deceleration,
+        )
+
 
 class MoveColumns:
     """The moves and events since the last ``take``."""
@@ -92,23 +111,8 @@ class MoveColumns:
 
     def add(self, move: Segment) -> None:
         """Append a move."""
-        center = move.center
-        self._codes += (
-            move.motion,
-            Shape.LINE if center is None else Shape.ARC,
-            move.line,
-            move.block,
-            move.corner,
-        )
-        self._values += (
-            *((NAN, NAN, NAN) if center is None else center),
-            *move.normal,
-            move.sweep,
-            move.feed,
-            move.corner_tolerance,
-            move.acceleration,
-            move.deceleration,
-        )
+        self._codes += move.codes
+        self._values += move.values
         self._positions += move.start
         self._positions += move.end
         self._positions += move.display

@@ -6,7 +6,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from twin.compilation.compilable import compilable_as
-from twin.nc.canonical import Corner, FloatArray, IntArray, Motion, Shape
+from twin.nc.canonical import Corner, FloatArray, IntArray, Motion
 from twin.nc.path.move_columns import Segment
 
 Column = TypeVar("Column", FloatArray, IntArray)
@@ -28,18 +28,7 @@ class Row(NamedTuple):
 
     def put(self, move: Segment) -> None:
         """Become a move."""
-        center = move.center
-        shape = Shape.LINE if center is None else Shape.ARC
-        self.codes[:] = (move.motion, shape, move.line, move.block, move.corner)
-        self.values[:] = (
-            *((math.nan, math.nan, math.nan) if center is None else center),
-            *move.normal,
-            move.sweep,
-            move.feed,
-            move.corner_tolerance,
-            move.acceleration,
-            move.deceleration,
-        )
+        self.codes[:], self.values[:] = move.codes, move.values
         self.positions[:] = (move.start, move.end, move.display)
 
     @property
@@ -48,23 +37,10 @@ class Row(NamedTuple):
         motion, _, line, block, corner = self.codes.tolist()
         a, b, c, i, j, k, *others = self.values.tolist()
         sweep, feed, tolerance, acceleration, deceleration = others
+        center = None if math.isnan(a) else (a, b, c)
         start, end, display = self.positions.tolist()
-        return Segment(
-            motion=Motion(motion),
-            line=line,
-            block=block,
-            start=start,
-            end=end,
-            display=display,
-            feed=feed,
-            corner=Corner(corner),
-            corner_tolerance=tolerance,
-            acceleration=acceleration,
-            deceleration=deceleration,
-            center=None if math.isnan(a) else (a, b, c),
-            normal=(i, j, k),
-            sweep=sweep,
-        )
+        begun = (Motion(motion), line, block, start, end, display, feed, Corner(corner))
+        return Segment(*begun, tolerance, acceleration, deceleration, center, (i, j, k), sweep)
 
 
 class Rows(NamedTuple):

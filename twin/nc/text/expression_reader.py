@@ -30,19 +30,27 @@ _MOST_KEPT = 4096
 
 
 class ExpressionReader:
-    """Reads the expressions of one dialect."""
+    """Reads the expressions of one dialect.
+
+    Attributes:
+        operator: An operator; as the others, where it begins.
+        number: A number.
+        variable: A variable.
+        name: The name of a function, a constant or a variable with an index.
+        quotient: A slash before a bracket.
+    """
 
     def __init__(self, syntax: ExpressionSyntax) -> None:
         self._syntax = syntax
         self._kept: dict[tuple[str, int], tuple[Expression, int]] = {}
         symbols = sorted(syntax.operators, key=len, reverse=True)
-        self._operator = re.compile(
+        self.operator = re.compile(
             rf"[ \t]*({'|'.join(map(operator_pattern, symbols))})", re.IGNORECASE
         )
-        self._number = re.compile(NUMBER)
-        self._variable = re.compile(syntax.variable, re.IGNORECASE)
-        self._name = re.compile(r"[A-Z_][A-Z_0-9]*", re.IGNORECASE)
-        self._quotient = re.compile(rf"[ \t]*/[ \t]*(?={re.escape(syntax.brackets[0])})")
+        self.number = re.compile(NUMBER)
+        self.variable = re.compile(syntax.variable, re.IGNORECASE)
+        self.name = re.compile(r"[A-Z_][A-Z_0-9]*", re.IGNORECASE)
+        self.quotient = re.compile(rf"[ \t]*/[ \t]*(?={re.escape(syntax.brackets[0])})")
 
     def read(self, text: str, start: int) -> tuple[Expression, int]:
         """Read the longest expression that begins at ``start``; return it with its end.
@@ -80,26 +88,6 @@ class ExpressionReader:
                 return expressions, end
             start = len(text) - len(rest) + 1
 
-    def operator_at(self, text: str, at: int) -> re.Match[str] | None:
-        """The operator that comes next, or None."""
-        return self._operator.match(text, at)
-
-    def number_at(self, text: str, at: int) -> re.Match[str] | None:
-        """The number that comes next, or None."""
-        return self._number.match(text, at)
-
-    def variable_at(self, text: str, at: int) -> re.Match[str] | None:
-        """The variable that comes next, or None."""
-        return self._variable.match(text, at)
-
-    def quotient_at(self, text: str, at: int) -> re.Match[str] | None:
-        """A slash before a bracket that comes next, or None."""
-        return self._quotient.match(text, at)
-
-    def name_at(self, text: str, at: int) -> re.Match[str] | None:
-        """The name that comes next, or None."""
-        return self._name.match(text, at)
-
 
 def operator_pattern(symbol: str) -> str:
     """Regular expression of an operator; two slashes begin a comment."""
@@ -125,7 +113,7 @@ class _Reading:
         if depth > _DEEPEST:
             self._fail("expression-depth", f"more than {_DEEPEST} brackets within brackets")
         left, exclusive = self.operand(depth), False
-        while (match := self._reader.operator_at(self._text, self.at)) is not None:
+        while (match := self._reader.operator.match(self._text, self.at)) is not None:
             operator = self._syntax.operators[match[1].upper()]
             if operator.precedence < lowest:
                 break
@@ -165,7 +153,7 @@ class _Reading:
             inner = self.operation(0, depth + 1)
             self._expect(closing)
             return inner
-        if (match := self._reader.number_at(self._text, self.at)) is not None:
+        if (match := self._reader.number.match(self._text, self.at)) is not None:
             self.at = match.end()
             value = float(match[0])
             if value > LARGEST_NUMBER:
@@ -176,7 +164,7 @@ class _Reading:
 
     def _named(self, depth: int) -> Tree:
         opening = self._syntax.brackets[0]
-        if (match := self._reader.variable_at(self._text, self.at)) is not None:
+        if (match := self._reader.variable.match(self._text, self.at)) is not None:
             self.at = match.end()
             return Variable(self._syntax.spelled(match[0]))
         indirect = self._syntax.indirect
@@ -184,7 +172,7 @@ class _Reading:
             self._count()
             self.at += 1
             return NumberedVariable(indirect, self._or_zero(self.operand(depth + 1)))
-        match = self._reader.name_at(self._text, self.at)
+        match = self._reader.name.match(self._text, self.at)
         if match is None:
             foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
             hint = f"brackets are {opening} {self._syntax.brackets[1]}" if foreign else None
@@ -216,7 +204,7 @@ class _Reading:
         """``ATAN[1]/[2]``; where the dialect has them ``ATAN[1,2]`` and ``ATAN[1]``."""
         function = self._syntax.functions.get(name)
         arguments = self._arguments(name, at, 1 if function is None else None, depth)
-        slash = self._reader.quotient_at(self._text, self.at)
+        slash = self._reader.quotient.match(self._text, self.at)
         if slash is not None:
             arguments += self._arguments(name, slash.end(), 1, depth)
         elif function is None:

@@ -1,5 +1,6 @@
 // The control's screen: head, axes, speeds, the program with its running block, MDI and line editor.
 
+import { Loads } from "./loads.js";
 import { act_on, make, write } from "./parts.js";
 
 const LAG_SHOWN = 1.0;
@@ -12,6 +13,7 @@ export class Screen {
   constructor(scene, line) {
     Object.assign(this, { scene, line, chosen: 0, shown: "", on_choice: () => {}, rows: [], lines: [], entry: "" });
     this.at = (id) => document.getElementById(id);
+    this.loads = new Loads(this.at("loads"));
     this.at("program").addEventListener("click", (event) => this.choose([...this.at("program").children].indexOf(event.target.closest("li")) + 1));
     this.at("program").addEventListener("keydown", (event) => {
       const way = { ArrowDown: 1, ArrowUp: -1 }[event.key];
@@ -51,13 +53,14 @@ export class Screen {
     write(this.at("state-chip"), words.label(name));
     this.at("state-chip").className = `chip ${colour}`;
     const message = this.at("message");
-    const key = JSON.stringify([now.alarm, now.refusal, now.trouble, words.language]);
+    const key = JSON.stringify([now.alarm, now.refusal, now.broken, now.trouble, words.language]);
     if (key !== this.message) {
       this.message = key;
       message.className = "";
-      if (now.alarm) {
-        const alarm = words.alarm(now.alarm.code), where = words.place(now.alarm);
-        message.replaceChildren(make("b", {}, `${alarm.name}${where}: `), words.text(now.alarm.message), " ", make("span", { class: "advice" }, alarm.advice));
+      const told = now.alarm ?? (now.refusal ? null : now.broken);
+      if (told) {
+        const alarm = words.alarm(told.code), where = words.place(told);
+        message.replaceChildren(make("b", {}, `${alarm.name}${where}: `), words.text(told.message), " ", make("span", { class: "advice" }, alarm.advice));
       } else if (now.refusal) {
         message.className = "refusal";
         message.replaceChildren(`${words.label("refused")}: ${words.text(now.refusal)}`);
@@ -102,11 +105,13 @@ export class Screen {
     const unit = words.label(per_second ? "per_second" : "per_minute"), shown = per_second ? (state.feed / SECONDS_PER_MINUTE).toFixed(1) : state.feed.toFixed(0);
     const turns = now.counter_clockwise ? "↺" : "↻";
     const spindle = now.spindle.started ? (now.spindle.speed === null ? "-" : (0.01 * now.spindle_override * now.spindle.speed).toFixed(0)) : "0";
-    const speeds = [["", `F ${shown}`], ["quiet", `(${feed}) ${unit}`], [state.turns ? "on" : "quiet", `S ${spindle}${state.turns ? ` ${turns}` : ""}`], ["", `T ${now.tool}`]];
+    const real = Number.isNaN(state.spindleSpeed) || Math.abs(state.spindleSpeed - Number(spindle)) < 0.01 * Number(spindle) + 1 ? "" : `${state.spindleSpeed.toFixed(0)} → `;
+    const speeds = [["", `F ${shown}`], ["quiet", `(${feed}) ${unit}`], [state.turns ? "on" : "quiet", `S ${real}${spindle}${state.turns ? ` ${turns}` : ""}`], [now.broken ? "broken" : "", `T ${now.tool}${now.broken ? " ✕" : ""}`]];
     if (now.searched) speeds.push(["contact", `▶ ${now.searched}`]);
     for (const [name, mark] of [["optional_stop", "M01"], ["block_skip", "/"], ["dry_run", words.label("dry_run")]]) if (now[name]) speeds.push(["coolant", mark]);
     if (state.coolant) speeds.push(["coolant", words.label("coolant")]);
     if (state.touches) speeds.push(["contact", words.label("contact")]);
+    this.loads.show(state, words);
     const key = JSON.stringify(speeds);
     if (key !== this.speeds) {
       this.speeds = key;

@@ -42,7 +42,7 @@ export class Sheets {
     for (const tab of tabs.children) tab.setAttribute("aria-selected", tab.id === `tab-${this.sheet}`);
     sheet.setAttribute("aria-labelledby", `tab-${this.sheet}`);
     const acts = now.role === "trainer" || now.has_panel;
-    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets], tools: [now.tools, now.tool], history: [now.alarms], display: [this.shown], trainer: [now.faults, now.frozen, now.replaying] };
+    const what = { tasks: [now.verdicts, now.answers, now.hints, now.score, now.over, now.signature], manual: [now.spindle, now.counter_clockwise, now.spindle_override, now.suspended, this.desk.hand], run: [now.optional_stop, now.block_skip, now.dry_run, now.searched, now.changed, this.screen.chosen], offsets: [now.zero, now.offsets], tools: [now.tools, now.tool, now.broken], history: [now.alarms], display: [this.shown], trainer: [now.faults, now.frozen, now.replaying] };
     const drawn = JSON.stringify([this.sheet, words.language, acts, what[this.sheet]]);
     if (drawn === this.drawn) return;
     const typed = this.drawn && JSON.parse(this.drawn)[0] === this.sheet ? new Map([...sheet.querySelectorAll("input:not([type=checkbox]), select")].map((field) => [field.id, field.value])) : new Map();
@@ -128,7 +128,7 @@ export class Sheets {
         make("h3", {}, `T${tool.number}${here ? " ◂" : ""}  ${words.label(`tool_${tool.kind}`)}`),
         make("div", { class: "row" }, `${words.label("diameter")} ${tool.diameter}`),
         make("div", { class: "row" }, field("length", tool.length), field("radius", tool.radius)),
-        here ? null : make("div", { class: "row" }, this.button(`change tool ${tool.number}`, words.label("change_tool"), () => this.line.say({ do: "change_tool", number: tool.number }))),
+        here && !now.broken ? null : make("div", { class: "row" }, this.button(`change tool ${tool.number}`, words.label(here ? "new_tool" : "change_tool"), () => this.line.say({ do: "change_tool", number: tool.number }))),
         here ? make("div", { class: "row" }, this.button("touch off", words.label("touch_off"), () => this.measure())) : null,
       ].filter(Boolean);
     });

@@ -240,7 +240,7 @@ class RoomApp:
     @staticmethod
     def _translated(words: dict[str, Any]) -> dict[str, Any]:
         """The machine's sentences in every language, so that each page can choose its own."""
-        for alarm in filter(None, (words["alarm"], *words["alarms"])):
+        for alarm in filter(None, (words["alarm"], words["broken"], *words["alarms"])):
             found = alarm.pop("finding")
             alarm["message"] = (
                 {language: finding_in(Diagnostic(**found), language) for language in LANGUAGES}

@@ -27,7 +27,7 @@ _STATE_ALONE = (
     "following_error",
     "load",
 )
-_IN_STATE = frozenset({*_STATE_ALONE, "feed", "speed", "trail", "moving"})
+_IN_STATE = frozenset({*_STATE_ALONE, "feed", "speed", "trail", "moving", "loads"})
 
 
 def state_message(look: Look, cutting: bool) -> bytes:
@@ -35,8 +35,8 @@ def state_message(look: Look, cutting: bool) -> bytes:
 
     Numbers: time [s], machine time per time on the wall, feed, spindle speed, the tip's X, Y, Z in
     the part's frame [mm]; then k each of: position as the screen shows it, machine position,
-    distance to go, following error [mm or deg], load [share]. Flags: 1 moving, 2 the feeler lamp,
-    4 the spindle turns, 8 coolant, 16 material is being cut.
+    distance to go, following error [mm or deg], load [share]; then ``Loads``. Flags: 1 moving, 2 the
+    feeler lamp, 4 the spindle turns, 8 coolant, 16 material is being cut.
     """
     now = look.now
     flags = now.moving | now.touches << 1 | now.spindle.turns << 2 | now.coolant << 3 | cutting << 4
@@ -44,6 +44,7 @@ def state_message(look: Look, cutting: bool) -> bytes:
     numbers = [now.time_s, now.speed, now.feed, now.spindle.speed or 0.0, *now.trail]
     for row in rows:
         numbers += row
+    numbers += now.loads
     return struct.pack(f"<BBHI{len(numbers)}d", STATE, flags, len(now.axes), 0, *numbers)
 
 

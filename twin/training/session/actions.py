@@ -257,6 +257,7 @@ def _change_tool(room: Room, command: c.ChangeTool) -> None:
     if room.spindle.turns:
         raise UsageError("the spindle turns: stop it before the tool is changed")
     room.mount(command.number)
+    room.renew_tool(command.number)
 
 
 def _new_blank(room: Room, _command: c.NewBlank) -> None:

@@ -184,7 +184,7 @@ class SetZero(Table):
 
 
 class ChangeTool(Table):
-    """Put a tool into the spindle by hand."""
+    """Put a tool into the spindle by hand, a new one for one that has lost its edge."""
 
     do: Literal["change_tool"] = "change_tool"
     number: Annotated[int, Field(ge=0)]

@@ -1,14 +1,40 @@
 """The force of the cut in a room: what the operator has in the spindle pushes the axes back."""
 
+from typing import NamedTuple
+
 import numpy as np
 
-from twin.coupling.cutting_process import CuttingProcess
+from twin.coupling.cutting_process import CuttingProcess, ToolBreak
 from twin.coupling.operations import OperatorOperation, cutting_process
+from twin.cutting.forces.tool_strength import tool_strength
 from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.machine.simulation.live import LiveMachine
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
+from twin.recording.form import ToolLoad
 from twin.toolpath.part_frame import PartFrame
+
+
+class Loads(NamedTuple):
+    """What tool and spindle bear, the greatest of a slice; NaN where it is not simulated.
+
+    Attributes:
+        spindle_speed: As the drive turns, without its sense [1/min].
+        spindle: Torque as a share of what the spindle gives for long.
+        force: Level, on the tool [N].
+        force_share: Of what breaks it.
+        bend: How far its tip gives way [mm].
+        chip: Thickest chip [mm].
+        chip_share: Of what breaks an edge.
+    """
+
+    spindle_speed: float = np.nan
+    spindle: float = np.nan
+    force: float = np.nan
+    force_share: float = np.nan
+    bend: float = np.nan
+    chip: float = np.nan
+    chip_share: float = np.nan
 
 
 class LiveCut:
@@ -34,11 +60,13 @@ class LiveCut:
         self._simulated = job.cutting_force == "teeth"
         self._operation = OperatorOperation(job.tools[0])
         self._frame, self._zero = part_frame, zero
+        self._told: set[int] = set()
 
     def clamp(self, stock: StockTable) -> None:
         """Lay a new blank on the table; its cell must be given."""
         assert stock.cell is not None
         if self._simulated:
+            before = self.process
             self.process = cutting_process(
                 stock,
                 stock.cell,
@@ -47,17 +75,51 @@ class LiveCut:
                 self._frame,
                 self._zero,
             )
+            if before is not None and self.process is not None:
+                self.process.breaks = before.breaks
         self._machine.step_with(self.process)
 
     def mount(self, tool: ToolTable, longer: float) -> None:
         """Put a tool into the spindle that is so much longer than the first [mm]."""
         self._operation.tool, self._operation.longer = tool, longer
 
+    def renew(self, number: int) -> None:
+        """Put a new tool into the place of one that may have lost its edge."""
+        self._told.discard(number)
+        if self.process is not None:
+            self.process.renew(number)
+
+    def new_breaks(self) -> list[ToolBreak]:
+        """Tools that have lost their edge since the last call."""
+        breaks = [] if self.process is None else self.process.breaks
+        found = [one for one in breaks if one.tool not in self._told]
+        self._told |= {one.tool for one in found}
+        return found
+
     def turn(self, spindle: SpindleState, override: float, *, counter_clockwise: bool) -> None:
-        """Tell the drive of the spindle what is asked of it; ``override`` is a factor."""
-        speed = spindle.speed if spindle.turns else 0.0
+        """Tell the drive of the spindle what is asked of it; ``override`` is a factor.
+
+        An edge that stands may touch the part, as a feeler: what it must not do is the part's to see.
+        """
+        speed = spindle.speed if spindle.turns else None
         sense = -1.0 if counter_clockwise else 1.0
         self._operation.speed = None if speed is None else sense * override * speed
+
+    def loads(self, felt: ToolLoad | None) -> Loads:
+        """What there is to show of what the tool felt."""
+        if felt is None or not len(felt):
+            return Loads()
+        strength = tool_strength(self._operation.tool)
+        force, chip = float(felt.peak_force.max()), float(felt.chip.max())
+        return Loads(
+            spindle_speed=abs(float(felt.spindle_speed[-1])),
+            spindle=float(felt.spindle_load.max()),
+            force=force,
+            force_share=force / strength.force,
+            bend=float(np.linalg.norm(felt.deflection, axis=1).max()),
+            chip=chip,
+            chip_share=chip / strength.chip,
+        )
 
     def resume(self, heights: FloatArray) -> None:
         """Go on after an alarm, with the material as the part's own cut has left it, (ny, nx) [mm]."""

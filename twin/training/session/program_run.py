@@ -36,11 +36,13 @@ from twin.nc.functions import (
     SPINDLE_STARTS,
     SPINDLE_STOPS,
     TOOL_CHANGE,
+    SpindleState,
 )
 from twin.nc.geometry.frame import SHIFTS
 from twin.nc.text.blocks import Block
 from twin.nc.text.diagnostics import Diagnostic, ProgramError
 from twin.nc.text.source import Source
+from twin.run.waits import Waits
 from twin.training.session.approach import approach
 from twin.training.session.block_walk import BlockWalk, ModalState
 
@@ -198,16 +200,29 @@ class ProgramRun:
         """Source lines of the present part that were run in single block, from stop to stop."""
         return self._walk.singly
 
-    def begin(self, start: FloatArray, zero: FloatArray, *, paused: bool = False) -> None:
+    def begin(
+        self,
+        start: FloatArray,
+        zero: FloatArray,
+        spindle: SpindleState,
+        sense: float,
+        *,
+        paused: bool = False,
+    ) -> None:
         """Plan the part that comes next.
 
         Args:
             start: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+            spindle: What it has been told: the axes wait until it has come to its speed.
+            sense: Which way it turns, -1 counter-clockwise.
             paused: Whether start is waited for before its first block.
         """
-        self._journal.append(("begin", start, zero, paused))
+        self._journal.append(("begin", start, zero, spindle, sense, paused))
         self._forget()
+        # A tool is changed at once, so that one which is not there is told at once.
+        table = self._machine.file.spindle.model_copy(update={"tool_change_s": 0.0})
+        self._waits = Waits(table, {}, self._control.tools.spindle or 0, spindle, sense)
         self._begin = start, zero
         self._begin_paused = paused
         self.ending = None
@@ -271,6 +286,11 @@ class ProgramRun:
             return
         if not (stopped or motion.finished):
             return
+        if self._last_move == self._stopped_behind and not motion.finished:
+            # Behind the wait for the spindle, or a dwell: the block that was started comes now.
+            motion.start()
+            return
+        self._stopped_behind = self._last_move
         last = self._find(self._last_move)
         if last is not None:
             self._walk.stop_behind(self._last_move, int(last[0].line[last[1]]))
@@ -342,7 +362,7 @@ class ProgramRun:
         self._count = 0
         self._walk = BlockWalk()
         self._driven = self._begin_paused = self._single = self._hold_asked = False
-        self._last_move = -1
+        self._last_move = self._stopped_behind = -1
         self._moves: list[Moves] = []
         self._firsts: list[int] = []
 
@@ -416,6 +436,7 @@ class ProgramRun:
         for event in chunk.events:
             if isinstance(event, Function):
                 self._walk.note_function(self._count + event.before + event.at, event)
+        chunk = Chunk(chunk.moves, tuple(self._waits.among(chunk.events)))
         self._firsts.append(self._count)
         self._moves.append(chunk.moves)
         self._count += len(chunk.moves)
@@ -444,7 +465,8 @@ class ProgramRun:
             return []
         place = math.inf if self.finished else -1.0
         if len(setpoints) and not self.finished:
-            place = int(setpoints.move[-1]) + float(setpoints.fraction[-1])
+            # What comes before the first move begins with the wait for it.
+            place = max(int(setpoints.move[-1]) + float(setpoints.fraction[-1]), 0.0)
         return self._walk.due(place)
 
     def modal(self, move: int) -> ModalState | None:
@@ -551,8 +573,8 @@ class ProgramRunCopy:
                     if setpoints is not None:
                         run.passed(setpoints)
             elif what == "begin":
-                start, zero, paused = given
-                run.begin(start, zero, paused=paused)
+                *where, paused = given
+                run.begin(*where, paused=paused)
             else:
                 getattr(run, what)(*given)
         return run

@@ -128,6 +128,7 @@ class Room:
         alarm: The alarm that stands.
         alarms: Those that came, the newest last.
         moments: How the tool stood in the part at each of them.
+        broken: Tools that have lost their edge, by number, with what was said of it.
         pressed: Whether the emergency stop button is pressed.
         spindle: Whether the spindle turns, and how fast.
         running_down: Whether the spindle, stopped by a reset, still turns while the axes brake.
@@ -185,6 +186,7 @@ class Room:
         self.alarm: Notice | None = None
         self.alarms: deque[Notice] = deque(maxlen=ALARMS_KEPT)
         self.moments: deque[Moment] = deque(maxlen=MOMENTS_KEPT)
+        self.broken: dict[int, Notice] = {}
         self.pressed = False
         self.program: Source = preparation.source
         self.lines = tuple(preparation.source.lines)
@@ -275,6 +277,7 @@ class Room:
         self._pass_functions()
         self._relabel()
         self._latch(self.machine.alarm)
+        self._note_breaks()
         self._end_of_part()
         self.judge.look(self)
 
@@ -361,16 +364,32 @@ class Room:
     ) -> None:
         """The control stops everything and says why; the first alarm counts."""
         if self.alarm is None:
-            here = self.running == "program" or (self.running == "" and line > 0)
-            dialect = self.scene.preparation.dialect
-            block = block_number(dialect, self.program, line) if here else ""
-            self.alarm = Notice(code, message, axis, line, self.time_s, finding, block)
-            self.alarms.append(self.alarm)
-            self._keep_moment(self.alarm)
-            self.judge.note_alarm(code)
+            self.alarm = self._noted(code, message, axis=axis, line=line, finding=finding)
         self.give_up()
         self.spindle = self.spindle.stopped()
         self.coolant = False
+
+    def _noted(
+        self, code: str, message: str, *, axis: str, line: int, finding: Diagnostic | None
+    ) -> Notice:
+        """Enter what went wrong into the history, for the sheet and the judge too."""
+        here = self.running == "program" or (self.running == "" and line > 0)
+        dialect = self.scene.preparation.dialect
+        block = block_number(dialect, self.program, line) if here else ""
+        notice = Notice(code, message, axis, line, self.time_s, finding, block)
+        self.alarms.append(notice)
+        self._keep_moment(notice)
+        self.judge.note_alarm(code)
+        return notice
+
+    def _note_breaks(self) -> None:
+        """Tools that have lost their edge: the machine does not feel it, and goes on without."""
+        for found in self.cut.new_breaks():
+            alarm = found.alarm
+            line = alarm.line if self.running == "program" else 0
+            self.broken[found.tool] = self._noted(
+                alarm.code, alarm.message, axis="", line=line, finding=None
+            )
 
     def _keep_moment(self, alarm: Notice) -> None:
         """Keep for the score sheet how the tool stood in the part."""
@@ -444,7 +463,7 @@ class Room:
                 self.machine.machine,
                 options or RunOptions(),
             )
-            run.begin(self.standing_setpoint, self.tables.program_zero)
+            self._begin_part(run)
             self.run, self.running, self.waiting = run, what, False
             if what == "program":
                 self.inherited = None
@@ -481,7 +500,12 @@ class Room:
         """Drive the part of the program that comes next; ``paused``: start is waited for."""
         assert self.run is not None
         self.waiting = False
-        self.run.begin(self.standing_setpoint, self.tables.program_zero, paused=paused)
+        self._begin_part(self.run, paused=paused)
+
+    def _begin_part(self, run: ProgramRun, *, paused: bool = False) -> None:
+        sense = -1.0 if self.counter_clockwise else 1.0
+        where = self.standing_setpoint, self.tables.program_zero
+        run.begin(*where, self.spindle, sense, paused=paused)
 
     def drop_run(self) -> None:
         """Forget what runs; the axes slow down where they are."""
@@ -580,6 +604,11 @@ class Room:
         self.work = self._clamped_blank()
         if self.work is not None:
             self.work.mount(self.tables.tool)
+
+    def renew_tool(self, number: int) -> None:
+        """Put a new tool into the place of one that has lost its edge."""
+        self.broken.pop(number, None)
+        self.cut.renew(number)
 
     def _clamped_blank(self) -> Workpiece | None:
         job = self.scene.preparation.job.file

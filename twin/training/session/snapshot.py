@@ -10,6 +10,7 @@ from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode
 from twin.training.session.block_walk import ModalState
 from twin.training.session.judge import Verdict
+from twin.training.session.live_cut import Loads
 from twin.training.session.observed import Notice
 from twin.training.session.room import Room
 from twin.units import SECONDS_PER_MINUTE
@@ -44,6 +45,9 @@ class Snapshot:
     held: bool
     moving: bool
     alarm: Notice | None
+    broken: Notice | None
+    """What was said of the tool in the spindle when it lost its edge."""
+    loads: Loads
     pressed: bool
     position: Row
     """As the control's screen shows it."""
@@ -123,6 +127,8 @@ def take_snapshot(room: Room) -> Snapshot:
         held=room.held,
         moving=room.moving,
         alarm=room.alarm,
+        broken=room.broken.get(room.tables.spindle),
+        loads=room.cut.loads(room.samples.tool),
         pressed=room.pressed,
         position=_row(position - zero + room.label),
         machine_position=_row(position),

@@ -4,6 +4,7 @@ export const STATE = 1;
 export const PATCH = 2;
 
 const NAMES = ["position", "machine", "toGo", "lag", "load"];
+const LOADS = ["spindleSpeed", "spindle", "force", "forceShare", "bend", "chip", "chipShare"];
 
 /** The state as numbers; rows have one per axis. */
 export function readState(buffer) {
@@ -17,6 +18,8 @@ export function readState(buffer) {
     moving: !!(flags & 1), touches: !!(flags & 2), turns: !!(flags & 4), coolant: !!(flags & 8), cutting: !!(flags & 16),
   };
   NAMES.forEach((name, row) => { state[name] = Array.from(numbers.subarray(7 + row * axes, 7 + (row + 1) * axes)); });
+  // A machine whose cut is not simulated has NaN here; another page's machine may have none at all.
+  LOADS.forEach((name, place) => { state[name] = numbers[7 + NAMES.length * axes + place] ?? NaN; });
   return state;
 }
 

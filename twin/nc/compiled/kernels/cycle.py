@@ -1,11 +1,8 @@
 """Drilling cycles, compiled: what ``drilling`` does for a block of plain words, with the same ``holes``."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from twin.compilation.compilable import compilable
-from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.bytecode.effects import report
 from twin.nc.bytecode.registers import (
     CORNER,
@@ -23,7 +20,16 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.bytecode.token_kinds import AXIS, RADIUS, UNSUPPORTED
-from twin.nc.canonical import Corner, FloatArray, Motion, Shape
+from twin.nc.canonical import FloatArray
+from twin.nc.compiled.kernels.move_row import (
+    FEED,
+    LINE,
+    RAPID,
+    STOP,
+    Travel,
+    put_move,
+    put_positions,
+)
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
@@ -37,23 +43,6 @@ _WORDS = len(Cycle._fields)
 _REPEATS_ONLY = Cycle._fields.index("repeats_only")
 _UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
 _ACROSS = int(Act.ACROSS)
-_RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
-_LINE = int(Shape.LINE)
-_STOP = int(Corner.EXACT_STOP)
-
-
-class _Travel(NamedTuple):
-    """How a straight move goes.
-
-    Attributes:
-        motion: Rapid or feed.
-        pace: [mm/min]; NaN: the machine's.
-        corner: How its end is passed.
-    """
-
-    motion: int
-    pace: float
-    corner: int
 
 
 @compilable
@@ -170,8 +159,8 @@ def _emit_hole(
     if np.isnan(feed) and not constants.feed_may_lack:
         return UNSUPPORTED
     pace = constants.default_feed if np.isnan(feed) else feed * modal[UNIT] * modal[FEED_FACTOR]
-    rapidly = _Travel(_RAPID, constants.rapid_feed, _STOP)
-    feeding = _Travel(_FEED, pace, int(modal[CORNER]))
+    rapidly = Travel(RAPID, constants.rapid_feed, STOP)
+    feeding = Travel(FEED, pace, int(modal[CORNER]))
     axis = int(constants.planes[int(modal[PLANE])][2])
     here, part, goal = constants.room[0], constants.room[1], constants.room[2]
     copy(state.programmed, here)
@@ -185,7 +174,7 @@ def _emit_hole(
                 copy(constants.over, goal)
             goal[axis] = amounts[step]
             travel = feeding if act == _DOWN else rapidly
-            after = _go(goal, travel, constants, state, rows, after)
+            after = _go(goal, travel, block, constants, state, rows, after)
             if after == UNSUPPORTED:
                 return UNSUPPORTED
         else:
@@ -195,9 +184,6 @@ def _emit_hole(
             elif act == _M5:
                 kind, amount = FUNCTION_ALONE, np.nan
             report(rows, state, after, block.line, kind, act, amount)
-    for each in range(row, after):
-        rows.codes[each, 2], rows.codes[each, 3] = block.line, block.number
-        copy(constants.last_values, rows.values[each, 8:])
     copy(here, constants.over)
     copy(part, state.target)
     return after
@@ -205,23 +191,23 @@ def _emit_hole(
 
 @compilable
 def _go(
-    goal: FloatArray, travel: _Travel, constants: Constants, state: State, rows: Rows, row: int
+    goal: FloatArray,
+    travel: Travel,
+    block: PlainBlock,
+    constants: Constants,
+    state: State,
+    rows: Rows,
+    row: int,
 ) -> int:
     """Write a straight move; the first two rows of ``constants.room`` become its end."""
     position, here, part = rows.positions[row], constants.room[0], constants.room[1]
     for axis in range(len(goal)):
         if not abs(goal[axis]) <= LARGEST_COORDINATE:
             return UNSUPPORTED
-        end = goal[axis] + state.total[axis]
-        position[0, axis], position[1, axis], position[2, axis] = part[axis], end, goal[axis]
-    turn_place(goal, state, position[1])
-    way = line_length(position[0], position[1])
+    put_positions(goal, part, state, position)
     copy(goal, here)
-    if way == 0.0:
+    if line_length(position[0], position[1]) == 0.0:
         return row
     copy(position[1], part)
-    value, code = rows.values[row], rows.codes[row]
-    value[:6] = np.nan
-    value[6], value[7] = 0.0, travel.pace
-    code[0], code[1], code[4] = travel.motion, _LINE, travel.corner
+    put_move(block, travel, LINE, constants, rows, row)
     return row + 1

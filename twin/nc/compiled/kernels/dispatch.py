@@ -50,11 +50,7 @@ DONE = -1
 
 @inlined
 def dispatch_loop(
-    row: int,
-    table: BytecodeTable,
-    machine: Machine,
-    execution: ExecutionState,
-    scratch: Scratch,
+    row: int, table: BytecodeTable, machine: Machine, execution: ExecutionState, scratch: Scratch
 ) -> int:
     """Run the block that begins at a row; ``DONE``, or why it was left as if not begun.
 
@@ -97,8 +93,7 @@ def dispatch_loop(
             if not begin_compensation(side, stack[top], machine.constants, state, contour):
                 break
         elif opcode == opcodes.END_COMPENSATION:
-            if contour.counts[STAGE] != OFF:
-                hold_events(contour, machine.rows, first_event, state.event_count[0])
+            hold_events(contour, machine.rows, first_event, state.event_count[0])
             first_event = state.event_count[0]
             after = leads.end(made, state.event_count[0], contour, machine.rows)
             if after < 0:
@@ -106,8 +101,8 @@ def dispatch_loop(
             made = progress[MADE] = after  # not undone: to end it twice is to end it once
         elif opcode == opcodes.ACTIVATE:
             state.active_codes[machine.tables.group[instruction.operand]] = instruction.operand
-        elif opcode == opcodes.NO_PECKS:
-            if machine.tables.cycles[int(state.modal[CYCLE]), _PECKING] != 0.0:
+        elif opcode == opcodes.TRAP or opcode == opcodes.NO_PECKS:
+            if opcode == opcodes.TRAP or _pecks(machine):
                 break
         elif opcode >= opcodes.FUNCTION:
             place = BlockPlace(line, made, contour.counts[STAGE] != OFF)
@@ -124,20 +119,35 @@ def dispatch_loop(
             known, to = transfer(instruction, stack[top - 1], to, execution.calls, memory.local)
             if not known or not _keep_codes(opcode, to, state, execution):
                 break
-        elif opcode == opcodes.TRAP:
-            break
         if opcode == opcodes.NEXT:
             progress[INSTRUCTION_BUDGET], progress[MADE] = budget, made
             arrive(to, here, progress)
-            if contour.counts[STAGE] != OFF:
-                hold_events(contour, machine.rows, first_event, state.event_count[0])
+            hold_events(contour, machine.rows, first_event, state.event_count[0])
             return DONE
+    _undo(has_snapshot, compensates, state, execution, scratch)
+    return why
+
+
+@inlined
+def _undo(
+    has_snapshot: bool,
+    compensates: bool,
+    state: State,
+    execution: ExecutionState,
+    scratch: Scratch,
+) -> None:
+    """Take back what a block has done, which found compensation in force or not."""
     if has_snapshot:
         copy_state(scratch.snapshot, state)
     if not compensates:
-        contour.counts[STAGE] = OFF
-    undo_stores(progress[DEPTH], memory, scratch)
-    return why
+        execution.contour.counts[STAGE] = OFF
+    undo_stores(execution.progress[DEPTH], execution.memory, scratch)
+
+
+@inlined
+def _pecks(machine: Machine) -> bool:
+    """Whether a drilling cycle with pecks is in force."""
+    return machine.tables.cycles[int(machine.state.modal[CYCLE]), _PECKING] != 0.0
 
 
 @inlined

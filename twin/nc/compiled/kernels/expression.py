@@ -9,7 +9,7 @@ from twin.nc.bytecode.expressions import compute_value
 from twin.nc.bytecode.frames import WORDS, Scratch, VariableStore
 from twin.nc.bytecode.registers import BAILOUT
 from twin.nc.bytecode.variables import NO_SLOT, assign, load, slot_of_number
-from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.canonical import IntArray
 
 
 @inlined
@@ -34,54 +34,26 @@ def compute(
     Returns:
         How many values there are then, or below 0 where one is undefined.
     """
-    opcode, words = instruction.opcode, scratch.counts[WORDS]
+    opcode, stack, words = instruction.opcode, scratch.stack, scratch.counts[WORDS]
+    if opcode == opcodes.LOAD or opcode == opcodes.LOAD_NUMBERED:
+        slot = instruction.operand
+        if opcode == opcodes.LOAD_NUMBERED:
+            top -= 1
+            slot = slot_of_number(numbered, stack[top])
+        value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
+        stack[top] = value
+        return BAILOUT if np.isnan(value) else top + 1
+    if opcode == opcodes.DEFINED:
+        stack[top] = 0.0 if np.isnan(load(memory, depth, instruction.operand)) else 1.0
+        return top + 1
     if opcode <= opcodes.DROP:
-        return _evaluate(instruction, scratch.stack, top, depth, numbered, memory)
+        return compute_value(instruction, stack, top)
     if opcode <= opcodes.STORE_NUMBERED:
         return top - 1 if assign(instruction, top, depth, numbered, memory, scratch) else BAILOUT
     value = instruction.immediate
     if opcode == opcodes.WORD:
         top -= 1
-        value = scratch.stack[top]
+        value = stack[top]
     scratch.token_kinds[words], scratch.values[words] = instruction.operand, value
     scratch.counts[WORDS] = words + 1
     return top
-
-
-@inlined
-def _evaluate(
-    instruction: Instruction,
-    stack: FloatArray,
-    top: int,
-    depth: int,
-    numbered: IntArray,
-    memory: VariableStore,
-) -> int:
-    """Run an instruction that does nothing but compute.
-
-    Args:
-        instruction: One from ``CONSTANT`` to ``DROP``.
-        stack: Values.
-        top: How many there are.
-        depth: Row of the local variables.
-        numbered: Slots of the variables that have a number.
-        memory: The variables.
-
-    Returns:
-        How many values there are then, or below 0 where one is undefined.
-    """
-    opcode = instruction.opcode
-    if opcode == opcodes.DEFINED:
-        stack[top] = 0.0 if np.isnan(load(memory, depth, instruction.operand)) else 1.0
-        return top + 1
-    if opcode != opcodes.LOAD and opcode != opcodes.LOAD_NUMBERED:
-        return compute_value(instruction, stack, top)
-    slot = instruction.operand
-    if opcode == opcodes.LOAD_NUMBERED:
-        top -= 1
-        slot = slot_of_number(numbered, stack[top])
-    value = np.nan if slot == NO_SLOT else load(memory, depth, slot)
-    if np.isnan(value):
-        return BAILOUT
-    stack[top] = value
-    return top + 1

@@ -8,7 +8,6 @@ left untouched; the control runs it and makes its diagnostics.
 import numpy as np
 
 from twin.compilation.compilable import inlined
-from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.bytecode.effects import is_whole, report
 from twin.nc.bytecode.registers import (
     ARC,
@@ -39,9 +38,11 @@ from twin.nc.bytecode.token_kinds import (
     RADIUS,
     UNSUPPORTED,
 )
-from twin.nc.canonical import NO_BLOCK_NUMBER, Corner, FloatArray, IntArray, Motion, Shape
+from twin.nc.canonical import NO_BLOCK_NUMBER, FloatArray, IntArray
+from twin.nc.compiled.kernels import move_row
 from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
+from twin.nc.compiled.kernels.move_row import Travel, put_move, put_positions
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.functions import turns_behind
 from twin.nc.path.event_columns import FUNCTION_ALONE
@@ -49,9 +50,6 @@ from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length,
 from twin.nc.path.rows import copy
 from twin.nc.text.line_reader import LARGEST_LABEL
 
-_RAPID, _FEED = int(Motion.RAPID), int(Motion.FEED)
-_LINE, _ARC = int(Shape.LINE), int(Shape.ARC)
-_STOP = int(Corner.EXACT_STOP)
 _MOTION_WORDS = -1 << RADIUS
 _ARC_WORDS = (1 << AXIS) - (1 << RADIUS)
 """Token kinds as bits: of words that make a block move, and of those that only arcs have."""
@@ -228,18 +226,13 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
         target = target_of_axis(axis, block, seen, constants, state)
         if not abs(target) <= LARGEST_COORDINATE:
             return UNSUPPORTED
-        position[0, axis] = state.part[axis]
-        position[1, axis] = target + state.total[axis]
         position[2, axis] = target
-    turn_place(position[2], state, position[1])
+    put_positions(position[2], state.part, state, position)
     if is_arc:
         if not emit_arc(block, tables, constants, state, rows, row):
             return UNSUPPORTED
-    else:
-        if line_length(position[0], position[1]) == 0.0:
-            return row
-        rows.values[row, :6] = np.nan
-        rows.values[row, 6] = 0.0
+    elif line_length(position[0], position[1]) == 0.0:
+        return row
     pace = constants.rapid_feed
     own = constants.own_rapid_feed
     if kind == RAPID_LINE and not np.isnan(own):
@@ -248,11 +241,9 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
         turning = not is_arc and only_turns(position[0], position[1], constants.linear)
         otherwise = (constants.default_feed, constants.default_rotary_feed)
         pace = feed_per_minute(block.feed, turning, modal[UNIT], modal[FEED_FACTOR], otherwise)
-    rows.values[row, 7] = pace
-    copy(constants.last_values, rows.values[row, 8:])
-    code = rows.codes[row]
-    code[0] = _RAPID if kind == RAPID_LINE else _FEED
-    code[1] = _ARC if is_arc else _LINE
-    code[2], code[3] = block.line, block.number
-    code[4] = _STOP if kind == RAPID_LINE else int(modal[CORNER])
+    motion, corner = move_row.FEED, int(modal[CORNER])
+    if kind == RAPID_LINE:
+        motion, corner = move_row.RAPID, move_row.STOP
+    shape = move_row.ARC if is_arc else move_row.LINE
+    put_move(block, Travel(motion, pace, corner), shape, constants, rows, row)
     return row + 1

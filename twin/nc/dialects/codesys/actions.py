@@ -4,14 +4,15 @@ import math
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.effects import PLANE_COMPENSATED
 from twin.nc.control.codes import Action
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import LineRule
+from twin.nc.control.performer import refuse
 from twin.nc.dialects.codesys.program import variables
 from twin.nc.geometry.planes import XY, plane_with_normal
 from twin.nc.iso import offsets
 from twin.nc.iso.offsets import compile_shift, programmed_shift
-from twin.nc.iso.tool_compensation import refuse_plane_change
 from twin.nc.path.blends import Blend, BlendKind
 from twin.nc.text.blocks import Word
 
@@ -42,7 +43,7 @@ def plane_changed(control: Control) -> None:
         ProgramError: It has moved in another one.
     """
     if control.path.compensation_has_moved:
-        refuse_plane_change(control)
+        refuse(control, PLANE_COMPENSATED)
     if control.path.compensating:
         control.path.compensate_in(control.part_plane())
 

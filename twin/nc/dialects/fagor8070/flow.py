@@ -171,7 +171,7 @@ def _end_for(control: Control, statement: Statement, assembler: Assembler) -> No
 
 def _for_values(control: Control, statement: Statement, assembler: Assembler) -> str:
     """Put first, last and step on the stack; the parameter."""
-    variable = control.program_counter.lexer.expressions.variable_at(statement.text.lstrip(), 0)
+    variable = control.program_counter.lexer.expressions.variable.match(statement.text.lstrip(), 0)
     name, equals, values = statement.text.partition("=")
     if variable is None or not equals:
         refuse(control, statement, "structure", "$FOR needs its parameter", "$FOR P1=0,10,1")

@@ -158,7 +158,7 @@ def assignments(control: Control, statement: Statement) -> tuple[list[Assignment
         at = separator.end()
         if at == len(text):
             return found, None
-        following = control.program_counter.lexer.expressions.variable_at(text, at)
+        following = control.program_counter.lexer.expressions.variable.match(text, at)
         if following is not None:
             name, at = following[0], following.end()
         elif text[at : at + 1].upper() == "P":

@@ -9,6 +9,7 @@ from twin.nc.dialects.fanuc import (
     block_compiler,
     codes,
     corners,
+    cycles,
     decimal_point,
     flow,
     haas,
@@ -32,6 +33,7 @@ def prepare(control: Control) -> None:
     programs.begin(control)
     memory.writes_offsets = holds_any(lines, offsets.WRITES_OFFSETS)
     memory.transforms = holds_any(lines, offsets.TRANSFORMS)
+    memory.overrules_cycles = holds_any(lines, cycles.OVERRULED_CYCLE)
     memory.bare_compensation = holds_any(lines, tool_offsets.BARE_COMPENSATION)
     offsets.put_into_force(control)
     corners.prepare(control)
@@ -41,10 +43,13 @@ def before_motion(control: Control, rapid: bool) -> None:
     """A block is about to move.
 
     Raises:
-        ProgramError: G93 without F, or a cycle under radius compensation.
+        ProgramError: G93 without F, F of another feed mode, or a cycle under radius compensation.
     """
     if not rapid:
         base.require_feed_of_block(control)
+        if memory_of(control).feed_lost and control.feed is None:
+            message = "F was written for another feed mode, and its number would mean another unit"
+            control.fail("no-feed", message, hint="write F behind G93, G94 or G95")
     if control.modal.cycle is not None and control.path.compensating:
         message = "a cycle cannot drill while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
@@ -148,7 +153,7 @@ FANUC = Dialect(
     compile_block=block_compiler.compile_block,
     disturbed=acts_on_plain_blocks,
     pointless=decimal_point.pointless,
-    count=decimal_point.count,
+    count=cycles.as_read,
 )
 
 HAAS = dataclasses.replace(

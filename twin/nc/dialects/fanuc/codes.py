@@ -19,8 +19,7 @@ from twin.nc.dialects.fanuc import (
     transformations,
 )
 from twin.nc.dialects.fanuc.cycles import cycles
-from twin.nc.dialects.fanuc.memory import Variant
-from twin.nc.geometry.planes import XY, YZ, ZX, Plane
+from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.iso import base, fixed_cycles
 from twin.nc.iso.tool_compensation import (
     END_OF_COMPENSATION,
@@ -38,19 +37,25 @@ def _motion(meaning: str, interpolation: Interpolation) -> GCode:
     return GCode(meaning=meaning, group="motion", sets=sets, ground="manual")
 
 
-def _plane(meaning: str, plane: Plane) -> GCode:
-    return GCode(
-        meaning=meaning,
-        group="plane",
-        sets={"plane": plane},
-        action=base.plane_effect(plane),
-        ground="manual",
-    )
-
-
 def _do(meaning: str, action: Action) -> GCode:
     """A code that stands in the place of a move and is not modal."""
     return GCode(meaning=meaning, perform=action, ground="manual")
+
+
+def _lose_feed(control: Control) -> None:
+    """G93 to G95: F of another mode counts no more."""
+    memory, mode = memory_of(control), control.modal.feed_mode
+    if mode is not memory.feed_mode:
+        memory.feed_mode = mode
+        if not any(word.address == "F" for word in control.block.words):
+            memory.feed_lost = control.feed is not None or memory.feed_lost
+            control.feed = None
+
+
+def _feed(meaning: str, mode: FeedMode) -> GCode:
+    return GCode(
+        meaning=meaning, group="feed", sets={"feed_mode": mode}, action=_lose_feed, ground="manual"
+    )
 
 
 def _modal(meaning: str, group: str, action: Action, compiler: CodeWriter | None = None) -> GCode:
@@ -82,7 +87,7 @@ def refused(meaning: str, reason: str, *numbers: float) -> Mapping[float, GCode]
     return dict.fromkeys(numbers, code)
 
 
-_NO_PROBE = "the twin has no probe to touch with"
+NO_PROBE = "the twin has no probe to touch with"
 _NO_TILT = "the machine's tool does not tilt"
 _NO_ANGLE = "the twin's spindle has no angle"
 _UNKNOWN = "its effect on the path is not documented well enough to be followed"
@@ -121,9 +126,7 @@ _PLACE: Mapping[float, GCode] = {
     11: passed_over("setting of data off", ""),
     15: _modal("polar coordinates off", "polar", motion.end_polar),
     16: _modal("polar coordinates: radius and angle", "polar", motion.begin_polar),
-    17: _plane("plane X Y", XY),
-    18: _plane("plane Z X", ZX),
-    19: _plane("plane Y Z", YZ),
+    **base.by_manual(base.PLANES),
     20: _g("inches", "units", unit=25.4),
     21: _g("millimetres", "units", unit=1.0),
     27: _do("check of the reference point", reference_points.check_reference),
@@ -142,8 +145,7 @@ _PLACE: Mapping[float, GCode] = {
         for number in range(54, 60)
     },
     54.1: _modal("work offset P1 to P300 of the job", "offset", offsets.extended_offset),
-    90: _g("absolute coordinates", "distance", incremental=False),
-    91: _g("incremental coordinates", "distance", incremental=True),
+    **base.by_manual(base.DISTANCE),
     92: _do("preset the position, in every work offset", offsets.preset),
     92.1: _do("presets end for the axes named", offsets.end_preset),
 }
@@ -176,9 +178,9 @@ _TRANSFORMATIONS: Mapping[float, GCode] = {
     69: _modal("rotation off", "rotation", transformations.end_rotation),
 }
 _FEEDS: Mapping[float, GCode] = {
-    93: _g("feed as blocks per minute", "feed", feed_mode=FeedMode.BLOCKS_PER_MINUTE),
-    94: _g("feed per minute", "feed", feed_mode=FeedMode.PER_MINUTE),
-    95: _g("feed per revolution", "feed", feed_mode=FeedMode.PER_REVOLUTION),
+    93: _feed("feed as blocks per minute", FeedMode.BLOCKS_PER_MINUTE),
+    94: _feed("feed per minute", FeedMode.PER_MINUTE),
+    95: _feed("feed per revolution", FeedMode.PER_REVOLUTION),
     97: _g("constant spindle speed", "spindle"),
     65: _do("macro call: P L and arguments", macro_calls.refuse_late_call),
     66: _modal("modal macro call behind every move", "modal call", macro_calls.refuse_late_call),
@@ -190,9 +192,9 @@ _REFUSED: Mapping[float, GCode] = {
     **refused("polar coordinate interpolation", "a lathe's, of a rotating part", 12.1, 13.1),
     **refused("stored stroke check", _LIMITS, 22, 23),
     **refused("modal macro call in every block", _UNKNOWN, 66.1),
-    **refused("skip until a signal", _NO_PROBE, 31, 31.8),
+    **refused("skip until a signal", NO_PROBE, 31, 31.8),
     **refused("threading", _NO_ANGLE, 33),
-    **refused("tool length measurement", _NO_PROBE, 37),
+    **refused("tool length measurement", NO_PROBE, 37),
     **refused("corner compensation", "write the arc, or ,R", 39),
     **refused(
         "tool position offset", "write the coordinates, or compensate by G41", 45, 46, 47, 48
@@ -216,7 +218,7 @@ def codes(variant: Variant) -> dict[float, GCode]:
         **_TRANSFORMATIONS,
         **cycles(variant),
         **_FEEDS,
-        **fixed_cycles.RETURN,
+        **base.by_manual(fixed_cycles.RETURN),
         **_REFUSED,
     }
 

@@ -8,64 +8,30 @@ towards +X of the plane (parameter 5148).
 """
 
 import dataclasses
-from collections.abc import Callable
 
 from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import CycleRule
+from twin.nc.dialects.fanuc import decimal_point
 from twin.nc.dialects.fanuc.boring import boring_code
-from twin.nc.dialects.fanuc.memory import Variant
+from twin.nc.dialects.fanuc.memory import Variant, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.motion import target
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
-from twin.nc.iso.drilling import cycle_code
-from twin.nc.path.drilling_cycle import (
-    BOTTOM,
-    CHIP_CLEARANCE,
-    DWELL,
-    PECK,
-    REFERENCE,
-    Cycle,
-    Pecking,
-    Retract,
-)
+from twin.nc.iso import base
+from twin.nc.iso.fixed_cycles import BY_HAND, CYCLES, DRILLS, Drill, drilling_code
+from twin.nc.path.drilling_cycle import CHIP_CLEARANCE, Retract
+from twin.nc.text.blocks import Block
 
-
-def _cycle(
-    number: int,
-    meaning: str,
-    *,
-    dwell: bool = True,
-    peck: bool = False,
-    lift: float = 0.0,
-    retract: Retract = Retract.RAPID,
-) -> Callable[[Variant], GCode]:
-    words = {"R": REFERENCE, **({"P": DWELL} if dwell else {}), **({"Q": PECK} if peck else {})}
-    cycle = Cycle(
-        lasting=True,
-        across=BOTTOM,
-        needed=1 << REFERENCE | 1 << BOTTOM | peck << PECK,
-        pecking=Pecking.TO_BOTTOM if peck else Pecking.NONE,
-        dwells=dwell,
-        retract=retract,
-        lift=lift,
-        clearance=CHIP_CLEARANCE,
-    )
-
-    def code(variant: Variant) -> GCode:
-        made = cycle_code(
-            CycleRule(f"G{number}", cycle, words),
-            f"{meaning}: X Y Z {' '.join(words)} {variant.counting}",
-            target,
-            "manual",
-            variant.counting,
-        )
-        return _unscaled(number, made) if peck else made
-
-    return code
+_DRILLS = {
+    **DRILLS,
+    73: Drill("deep drilling with chip breaking", dwell=True, peck=True, lift=CHIP_CLEARANCE),
+    74: Drill("left-hand tapping", dwell=True, retract=Retract.REVERSED_LEFT),
+    83: DRILLS[83]._replace(dwell=True),
+    86: DRILLS[86]._replace(dwell=True),
+}
 
 
 def _unscaled(number: int, code: GCode) -> GCode:
-    """A cycle that is refused under a scale."""
+    """The same cycle, refused under a scale."""
     action = code.action
     assert action is not None
 
@@ -76,26 +42,56 @@ def _unscaled(number: int, code: GCode) -> GCode:
     return dataclasses.replace(code, action=call)
 
 
-_BY_HAND = "the operator moves the axes by hand in it"
-_CYCLES: dict[int, Callable[[Variant], GCode]] = {
-    73: _cycle(73, "deep drilling with chip breaking", peck=True, lift=CHIP_CLEARANCE),
-    74: _cycle(74, "left-hand tapping", retract=Retract.REVERSED_LEFT),
-    81: _cycle(81, "drilling", dwell=False),
-    82: _cycle(82, "drilling with dwell"),
-    83: _cycle(83, "deep drilling in pecks", peck=True),
-    84: _cycle(84, "tapping", retract=Retract.REVERSED),
-    85: _cycle(85, "reaming, back with the feed", dwell=False, retract=Retract.FEED),
-    86: _cycle(86, "boring, back with the spindle stopped", retract=Retract.STOPPED),
-    89: _cycle(89, "reaming with dwell", retract=Retract.FEED),
-}
-
-
 def cycles(variant: Variant) -> dict[float, GCode]:
     """The cycles of a control of the family."""
+    made = {
+        number: drilling_code(number, drill, target, "manual", variant.counting)
+        for number, drill in _DRILLS.items()
+    }
     return {
-        **{number: make(variant) for number, make in _CYCLES.items()},
-        80: GCode(meaning="cycles off", group="cycle", sets={"cycle": None}, ground="manual"),
+        **{n: _unscaled(n, code) if _DRILLS[n].peck else code for n, code in made.items()},
+        **base.by_manual({80: CYCLES[80]}),
         76: boring_code(76, "fine boring, out with the tool shifted", variant),
         87: boring_code(87, "back boring, from below", variant),
-        88: GCode(meaning="boring by hand", group="cycle", refused=_BY_HAND, ground="manual"),
+        88: GCode(meaning="boring by hand", group="cycle", refused=BY_HAND, ground="manual"),
     }
+
+
+# --- a motion code behind that of a cycle
+
+OVERRULED_CYCLE = letter_patterns(
+    "G", rb"0*(?:7[346]|8[1-9])(?![0-9.])[^\r\n]*[Gg][ \t]*0*[0-3](?![0-9.])"
+)
+"""A motion code behind that of a cycle."""
+_STRAIGHT, _ARCS = (0.0, 1.0), (2.0, 3.0)
+_WORDS_OF_CYCLES = "RPQKL"
+
+
+def as_read(control: Control, block: Block) -> Block:
+    """A block with what its words count."""
+    return decimal_point.count(control, _without_overruled_cycle(control, block))
+
+
+def _without_overruled_cycle(control: Control, block: Block) -> Block:
+    """Of a cycle and a straight motion in a block the last counts; a motion leaves R P Q K L out (manual).
+
+    Raises:
+        ProgramError: An arc stands behind a cycle, whose R would be ambiguous; or a motion on a control of
+            which it is not known what counts.
+    """
+    codes = [word for word in block.words if word.address == "G"]
+    cycle = next((word for word in codes if word.value in decimal_point.CYCLES), None)
+    behind = [] if cycle is None else codes[codes.index(cycle) + 1 :]
+    motion = next((word for word in behind if word.value in (*_STRAIGHT, *_ARCS)), None)
+    if cycle is None or motion is None:
+        return block
+    control.report.line = block.line
+    if motion.value in _ARCS or not memory_of(control).variant.last_code_counts:
+        message = f"{cycle.text} and {motion.text} exclude each other in this order"
+        control.fail("conflicting-codes", message, motion, "write them in two blocks")
+    message = f"{motion.text} behind {cycle.text} moves, and nothing is drilled"
+    control.report.warn("cycle-overruled", message, motion.column, motion.width)
+    words = tuple(
+        word for word in block.words if word is not cycle and word.address not in _WORDS_OF_CYCLES
+    )
+    return block._replace(words=words)

@@ -20,7 +20,7 @@ LENGTHS = frozenset("XYZUVWIJKRQ") | {",R", ",C"}
 ANGLES = frozenset("ABC")
 _MILLI = 0.001
 _INCH_INCREMENT = 0.0001
-_COUNTS = frozenset({73.0, 74.0, 76.0, 77.0, *map(float, range(81, 90))})
+CYCLES = frozenset({73.0, 74.0, 76.0, 77.0, *map(float, range(81, 90))})
 """Codes of cycles: their P counts milliseconds, their K holes."""
 _END_CYCLES = frozenset({0.0, 1.0, 2.0, 3.0, 80.0})
 _OWN_P = frozenset({8.0, 10.0, 30.0, 51.0, 54.0, 54.1, 65.0, 66.0, 154.0})
@@ -70,7 +70,7 @@ def _counted(
     control: Control, word: Word, codes: set[float | Expression], *, calls: bool = False
 ) -> Word:
     goes_on = control.modal.cycle is not None and codes.isdisjoint(_END_CYCLES)
-    cycles = goes_on or not codes.isdisjoint(_COUNTS)
+    cycles = goes_on or not codes.isdisjoint(CYCLES)
     if word.address == "P":
         waits = 4.0 in codes or (cycles and not calls and codes.isdisjoint(_OWN_P))
         return _time(control, word) if waits else _scale(word, codes)

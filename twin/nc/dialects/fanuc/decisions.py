@@ -30,6 +30,19 @@ DECISIONS: tuple[Decision, ...] = (
         example="last_of_group",
     ),
     Decision(
+        "What do the code of a cycle and G0 or G1 mean in one block?",
+        "The last one counts: behind the cycle's code the motion moves, and R P Q K L are left out, with "
+        "a warning. An arc behind it is refused.",
+        "The manual says so of straight motions; an arc has words of its own by these letters.",
+        example="motion_behind_a_cycle",
+    ),
+    Decision(
+        "Does F hold when G93, G94 or G95 changes?",
+        "No: the first cutting move behind it is refused until F is written anew.",
+        "F200 in mm/min would become 200 mm with each turn.",
+        example="feed_of_another_mode",
+    ),
+    Decision(
         "How does rapid positioning go?",
         "Straight to its end.",
         "Parameter 1401 #1 chooses; a straight way is the one that can be checked for collisions.",

@@ -7,7 +7,7 @@ from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision
 from twin.nc.dialects.fanuc import offsets, programs, transformations
-from twin.nc.dialects.fanuc.codes import M_CODES, codes, passed_over, refused
+from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over, refused
 from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
 from twin.nc.dialects.fanuc.memory import HAAS
 from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
@@ -101,7 +101,6 @@ def _offset(number: int) -> GCode:
     )
 
 
-_NO_PROBE = "the twin has no probe to touch with"
 _POSITIONS = "write the positions one by one"
 
 _OWN: Mapping[float, GCode] = {
@@ -123,7 +122,7 @@ _OWN: Mapping[float, GCode] = {
     **refused("engraving", "the shapes of its letters are the control's own", 47),
     **refused("general pocket", "it clears any outline by a way that is the control's own", 150),
     **refused("bolt holes on a circle, on an arc, on a line", _POSITIONS, 70, 71, 72),
-    **refused("probing", _NO_PROBE, 35, 36, 136),
+    **refused("probing", NO_PROBE, 35, 36, 136),
     **refused("compensation in space", "the machine's tool does not tilt", 141, 143),
     **refused("tool centre point control", "the machine's tool does not tilt", 234),
     **refused("dynamic work offset, tilted plane", "turning in space is not simulated", 254, 268),
@@ -182,6 +181,7 @@ HAAS_M_CODES: Mapping[int, MCode] = {
 """M codes of the control."""
 
 _SHARED_EXAMPLES = {
+    "feed_of_another_mode",
     "rapids_go_straight",
     "exact_path",
     "arc_centre_moved_to_fit",

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from twin.nc.control.control import Control
+from twin.nc.control.modal import FeedMode
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.planes import Vector
 from twin.nc.text.blocks import Word
@@ -33,6 +34,7 @@ class Variant(NamedTuple):
         counting: Address that says how often a cycle's block drills.
         tool_variables: First and last system variable of each column of the offset memory.
         machine_by_motion: G53 moves by the motion code in force, not always rapidly.
+        last_code_counts: A motion code overrules the code of a cycle before it in its block.
         transformed_keeps_origin: Neither work offsets nor presets nor moves to reference points stand under
             a scale, a mirror or a rotation.
     """
@@ -43,6 +45,7 @@ class Variant(NamedTuple):
     deepest_call: int = 10
     counting: str = "K"
     machine_by_motion: bool = False
+    last_code_counts: bool = True
     transformed_keeps_origin: bool = True
     tool_variables: tuple[tuple[int, int, str], ...] = (
         (2001, 2200, "length_wear"),
@@ -62,6 +65,7 @@ HAAS = Variant(
     deepest_call=9,
     counting="L",
     machine_by_motion=True,
+    last_code_counts=False,
     transformed_keeps_origin=False,
     tool_variables=(
         (2001, 2200, "length"),
@@ -141,6 +145,9 @@ class FanucMemory:
         length_number: H in force; None: none yet.
         radius_number: D in force; None: none yet.
         intermediate: Where the last G28 or G30 passed, part coordinates by column, for G29.
+        overrules_cycles: Some line holds a motion code behind that of a cycle.
+        feed_mode: What F counted when it was written.
+        feed_lost: F was written for another feed mode and counts no more.
         polar: G16 is in force: plane coordinates are radius and angle.
         polar_center: Its origin, programmed coordinates of the plane [mm].
         polar_radius: Its last radius, or None [mm].
@@ -169,6 +176,9 @@ class FanucMemory:
     length_number: int | None = None
     radius_number: int | None = None
     intermediate: dict[int, float] = dataclasses.field(default_factory=dict)
+    overrules_cycles: bool = False
+    feed_mode: FeedMode = FeedMode.PER_MINUTE
+    feed_lost: bool = False
     polar: bool = False
     polar_center: Point = (0.0, 0.0)
     polar_radius: float | None = None
@@ -190,8 +200,10 @@ def memory_of(control: Control) -> FanucMemory:
 
 
 def acts_on_plain_blocks(control: Control) -> bool:
-    """Polar coordinates, a scale, a modal call or a cylinder in force: plain blocks heed them."""
+    """Polar coordinates, a scale, a modal call or a cylinder in force, F lost: plain blocks heed them."""
     memory = memory_of(control)
+    if memory.overrules_cycles or (memory.feed_lost and control.feed is None):
+        return True
     remembered = (memory.scale, memory.modal_call, memory.cylinder)
     return memory.polar or any(each is not None for each in remembered)
 

@@ -7,13 +7,15 @@ their numbers; lengths count against the job's first tool. D holds radii (parame
 import dataclasses
 from typing import NoReturn
 
-from twin.nc.bytecode import opcodes
+from twin.nc.bytecode import effects, opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.codes import Action, CodeWriter
+from twin.nc.control.compensation import compensate, tool_numbered
 from twin.nc.control.control import Control
+from twin.nc.control.performer import refuse
 from twin.nc.dialects.fanuc.memory import ToolOffset, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import whole
-from twin.nc.iso.tool_compensation import NO_TOOL, compensate, set_length, tool_numbered
+from twin.nc.iso.tool_compensation import set_length
 from twin.nc.text.blocks import Word
 from twin.nc.text.expressions import Expression
 
@@ -133,8 +135,7 @@ def _radius(control: Control, number: int) -> float:
     radius, row = radius_of(control, number), memory_of(control).tool_offsets.get(number)
     if radius is None:
         if not control.tools.table:
-            message = "compensation needs a tool, and the job has none"
-            control.fail("no-such-tool", message, None, NO_TOOL)
+            refuse(control, effects.NO_TOOL)
         _refuse_row(control, number, "D")
     if row is None or row.radius is None:
         _warn_of_default_tool(control, number, "D")

@@ -4,7 +4,9 @@ A block's coordinates are mirrored, then scaled, then rotated (manual). Centres 
 block's place, and what comes before acts on them as well.
 """
 
+from twin.nc.bytecode.effects import SCALE_RANGE, TRANSFORM_COMPENSATED
 from twin.nc.control.control import Control
+from twin.nc.control.performer import refuse
 from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.matrices import (
@@ -60,7 +62,7 @@ def scale(control: Control) -> None:
     factors = [1.0 if word is None else control.number(word) for word in words]
     for word, factor in zip(words, factors, strict=True):
         if not SMALLEST_SCALE <= abs(factor) <= LARGEST_SCALE:
-            control.fail("scale", "a scale lies between 0.001 and 1000", word)
+            refuse(control, SCALE_RANGE, word)
     if control.modal.cycle is not None:
         control.fail("scale", "a scale cannot begin while a cycle is in force", None, "G80 first")
     memory_of(control).scale = (
@@ -147,8 +149,7 @@ def _before_rotation(control: Control) -> tuple[Matrix, Vector]:
 
 def _update(control: Control) -> None:
     if control.path.compensating:
-        message = "mirror, scale and rotation cannot change while compensation is in force"
-        control.fail("compensation-change", message, hint="end it by G40 first")
+        refuse(control, TRANSFORM_COMPENSATED)
     rotation: tuple[float, Point] | None = memory_of(control).rotation
     matrix, shift = _before_rotation(control)
     if rotation is not None:

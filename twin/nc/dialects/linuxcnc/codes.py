@@ -220,18 +220,7 @@ MODAL = {
         action=corner_tolerance,
         ground="manual",
     ),
-    90: GCode(
-        meaning="absolute coordinates",
-        group="distance",
-        sets={"incremental": False},
-        ground="manual",
-    ),
-    91: GCode(
-        meaning="incremental coordinates",
-        group="distance",
-        sets={"incremental": True},
-        ground="manual",
-    ),
+    **base.by_manual(base.DISTANCE),
     90.1: GCode(
         meaning="I J K absolute", group="centre", sets={"center_absolute": True}, ground="manual"
     ),

@@ -11,11 +11,11 @@ from collections.abc import Callable
 from typing import NoReturn
 
 from twin.nc.control.codes import Action
+from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.geometry.arcs import Point, distance, sweep_between
 from twin.nc.geometry.planes import YZ
-from twin.nc.iso.tool_compensation import tool_numbered
 from twin.nc.path.move_columns import MoveColumns
 from twin.nc.text.blocks import Block
 

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 
 from twin.nc.control.codes import Action, MCode
+from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc import compensation, saved_state
 from twin.nc.dialects.linuxcnc.flow import call_program, return_from_program
 from twin.nc.dialects.linuxcnc.memory import memory_of
-from twin.nc.iso.tool_compensation import tool_numbered
 from twin.nc.text.blocks import Word
 
 TIMES_OUT = (0.0, 1.0, 2.0, 3.0, 4.0)

@@ -5,6 +5,7 @@ system's zero; a tool offset shifts it further.
 """
 
 from twin.nc.control.codes import Action
+from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.control.settings import ToolData
 from twin.nc.control.state import integer_of
@@ -12,7 +13,6 @@ from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_o
 from twin.nc.geometry.matrices import IDENTITY, Matrix, applied, rotated, transposed
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.offsets import machine_zero
-from twin.nc.iso.tool_compensation import tool_numbered
 from twin.nc.text.blocks import Word
 
 FIXTURE = 9

@@ -1,0 +1,259 @@
+"""Programs as post-processors and people write them, with ends that were worked out by hand."""
+
+import dataclasses
+
+import pytest
+
+from tests.nc.running import SETTINGS, Outcome, run
+from twin.nc.canonical import Motion, Shape
+from twin.nc.control.settings import ToolData
+
+JOB = dataclasses.replace(
+    SETTINGS,
+    tools={1: ToolData(5.0, 50.0), 2: ToolData(2.0, 60.0), 3: ToolData(3.0, 40.0)},
+    offsets={"G54": {}, "G55": {"X": 100.0}, "G54.1 P1": {"Y": 7.0}, "G154 P1": {"Y": 7.0}},
+    machine_zero={"X": 0.0, "Y": 0.0, "Z": 200.0, "C": 0.0},
+)
+
+
+@dataclasses.dataclass(frozen=True)
+class Probe:
+    """A program and what it must come to.
+
+    Attributes:
+        dialect: Its control.
+        text: The program.
+        end: Where it ends, part coordinates [mm or deg].
+        feeds: How many moves have a feed.
+        lowest: Least Z that any of them reaches [mm].
+        refused: Code of its error, instead of all that.
+    """
+
+    dialect: str
+    text: str
+    end: dict[str, float] = dataclasses.field(default_factory=dict)
+    feeds: int = 0
+    lowest: float = 0.0
+    refused: str = ""
+
+
+POCKET = """%
+O01001 (POCKET)
+(T1 D=10. CR=0. - ZMIN=-5. - FLAT END MILL)
+N10 G90 G94 G17 G49 G40 G80
+N15 G21
+N20 G28 G91 Z0.
+N25 G90
+N30 T1 M06
+N35 S5000 M03
+N40 G54
+N45 M08
+N50 G00 X12.5 Y-3.
+N55 G43 Z15. H01
+N60 G00 Z5.
+N65 G01 Z1. F300.
+N70 G02 X12.5 Y3. Z-2. I0. J3. F500.
+N75 X12.5 Y-3. Z-5. J-3.
+N80 G03 X15.5 Y0. I0. J3.
+N85 G01 X20.
+N90 G00 Z15.
+N95 M09
+N100 M05
+N105 G28 G91 Z0.
+N110 G90
+N115 G53 G0 X0. Y0.
+N120 M30
+%
+"""
+DRILLING = """%
+O1002
+G90 G94 G17 G21
+T2 M6
+S2000 M3
+G54 G0 X10. Y10.
+G43 H2 Z25. M8
+G98 G81 X10. Y10. Z-12. R5. F150.
+X30.
+Y30.
+X10.
+G80
+M30
+%
+"""
+HAAS_PECKS = """%
+O02001
+G00 G17 G40 G49 G80 G90 G54
+T1 M06
+S3000 M03
+G00 G90 G54 X5. Y5.
+G43 H01 Z10. M08
+G83 G98 X5. Y5. Z-20. R2. Q5. F100.
+X25.
+G80 M09
+G53 G49 Z0.
+M30
+%
+"""
+FREECAD = """(Exported by FreeCAD)
+G17 G90
+G21
+G54
+M6 T1
+G43 H1
+M3 S1000
+G0 Z15.000
+G0 X-5.000 Y-5.000
+G1 X-5.000 Y-5.000 Z-1.000 F200.000
+G1 X25.000 Y-5.000 Z-1.000
+G2 X30.000 Y0.000 Z-1.000 I-0.000 J5.000{}
+G0 Z15
+M5
+G17 G54 G90 G80 G40
+M2
+"""
+INCHES = """%
+(AXIS,stop)
+G17 G20 G90 G94 G54 G40 G80 G49
+G64 P0.001
+T1 M6
+G43 H1
+S1000 M3
+G0 Z0.25
+X1 Y1
+G1 Z-0.1 F10
+G2 X1 Y1 I0.5 J0 F20
+G0 Z0.25
+M5
+M30
+%
+"""
+HOLES = """F100
+o<hole> sub
+G0 X#1 Y#2
+G1 Z-[#3]
+G0 Z2
+o<hole> endsub
+o<hole> call [10] [20] [3]
+o<hole> call [15] [20] [4]
+M2
+"""
+
+PROBES = {
+    "fanuc pocket": Probe("fanuc", POCKET, {"X": 0, "Y": 0, "Z": 200}, 5, -5.0),
+    "fanuc drilling": Probe("fanuc", DRILLING, {"X": 10, "Y": 30, "Z": 35}, 4, -2.0),
+    "fanuc pecks along a row": Probe(
+        "fanuc",
+        "G21 G90\nG0 Z10.\nG99 G83 X5. Y0. Z-10. R2. Q4. F100.\nG91 X10. K3\nG80\nM30",
+        {"X": 35, "Z": 2},
+        12,
+        -10.0,
+    ),
+    "fanuc rigid tapping": Probe(
+        "fanuc",
+        "S500 M3\nG0 Z10.\nM29 S500\nG84 X5. Z-8. R3. F500.\nX10.\nG80\nM5\nM30",
+        {"X": 10, "Z": 10},
+        4,
+        -8.0,
+    ),
+    "fanuc counted subprogram": Probe(
+        "fanuc", "M98 P30200\nM30\nO200\nG91 G1 X5. F100.\nM99", {"X": 15}, 3
+    ),
+    "fanuc macro": Probe(
+        "fanuc",
+        "G65 P9010 X10. Y5. A2. L2\nM30\nO9010\nG91 G1 X#24 Y[#25+#1] F100.\nM99",
+        {"X": 20, "Y": 14},
+        2,
+    ),
+    "fanuc loop by GOTO": Probe(
+        "fanuc",
+        "#1=5.\nN10IF[#1LE0]GOTO20\nG91G1X2.F100.\n#1=#1-1.\nGOTO10\nN20M30",
+        {"X": 10},
+        5,
+    ),
+    "fanuc holes by polar coordinates": Probe(
+        "fanuc",
+        "G16 G81 X20. Y30. Z-5. R2. F100.\nY90.\nY150.\nG15 G80\nM30",
+        {"X": -17.320508, "Y": 10},
+        3,
+        -5.0,
+    ),
+    "fanuc rotation": Probe("fanuc", "G68 X0 Y0 R90.\nG1 X10. F100.\nG69\nM30", {"Y": 10}, 1),
+    "fanuc mirror": Probe("fanuc", "G51.1 X0\nG1 X10. Y5. F100.\nG50.1 X0\nM30", {"X": -10}, 1),
+    "fanuc scale": Probe("fanuc", "G51 X0 Y0 Z0 P2000\nG1 X10. F100.\nG50\nM30", {"X": 20}, 1),
+    "fanuc further work offset": Probe("fanuc", "G54.1 P1\nG0 X1. Y1.\nM30", {"X": 1, "Y": 8}),
+    "fanuc compensation": Probe(
+        "fanuc", "G41 D1 G1 X10. Y0 F100.\nX50.\nG40 Y-20.\nM30", {"X": 50, "Y": -20}, 3
+    ),
+    "fanuc least increments": Probe("fanuc", "G0 X10\nM30", {"X": 0.01}),
+    "fanuc indexed holes": Probe(
+        "fanuc",
+        "G0 C90.\nG81 X20. Y0. Z-3. R2. F100.\nC180.\nC270.\nG80\nM30",
+        {"C": 270, "X": 20},
+        3,
+        -3.0,
+    ),
+    "fanuc skip until a signal": Probe("fanuc", "G31 Z-5. F50.\nM30", refused="unsupported-g"),
+    "fanuc inverse time": Probe("fanuc", "G93 G1 X10. F2.\nX20.\nM30", refused="no-feed"),
+    "haas pecks": Probe("haas", HAAS_PECKS, {"X": 25, "Z": 200}, 10, -20.0),
+    "haas local subprogram": Probe(
+        "haas", "G0 Z5.\nM97 P100 L3\nM30\nN100\nG91 G1 X2. F50.\nM99", {"X": 6}, 3, 5.0
+    ),
+    "haas pocket": Probe("haas", "G0 Z1.\nG12 I20. D1 Z-2. F200.\nM30", {"Z": -2}, 4, -2.0),
+    "haas work offset": Probe("haas", "G154 P1 G0 X1. Y1.\nM30", {"X": 1, "Y": 8}),
+    "haas mirror": Probe("haas", "G101 X0\nG1 X10. F100.\nG100 X0\nM30", {"X": -10}, 1),
+    "linuxcnc in inches": Probe("linuxcnc", INCHES, {"X": 25.4, "Z": 6.35}, 2, -2.54),
+    "linuxcnc from FreeCAD": Probe(
+        "linuxcnc", FREECAD.format(""), {"X": 30, "Y": 0, "Z": 15}, 3, -1.0
+    ),
+    "linuxcnc refuses K in G17": Probe(
+        "linuxcnc", FREECAD.format(" K0.000"), refused="unused-word"
+    ),
+    "linuxcnc subroutine": Probe("linuxcnc", HOLES, {"X": 15, "Y": 20, "Z": 2}, 2, -4.0),
+    "linuxcnc three turns": Probe("linuxcnc", "F100\nG3 X10 Z4 I5 P3\nM2", {"Z": 4}, 1, 4.0),
+    "linuxcnc turned system": Probe(
+        "linuxcnc", "G10 L2 P1 X10 R90\nG0 X5 Y0\nM2", {"X": 10, "Y": 5}
+    ),
+    "linuxcnc system set here": Probe(
+        "linuxcnc", "G0 X10\nG10 L20 P1 X0\nG0 X5\nM2", {"X": 15}
+    ),
+    "linuxcnc polar": Probe("linuxcnc", "G0 @10 ^90\nM2", {"X": 0, "Y": 10}),
+    "fagor8070 drilling": Probe(
+        "fagor8070",
+        "G0 X0 Y0 Z20\nG81 G98 X10 Y10 Z2 I-10 F100\nX30\nG80\nM30",
+        {"X": 30, "Y": 10, "Z": 20},
+        2,
+        -10.0,
+    ),
+    "fagor8070 retract": Probe("fagor8070", "G0 X10 Z20\n#MCS G0 Z0\nM30", {"X": 10, "Z": 200}),
+    "fagor8070 repeats": Probe("fagor8070", "G91 G1 X5 F100 NR3\nM30", {"X": 15}, 3),
+    "fagor8070 rotation": Probe("fagor8070", "G73 Q90\nG1 X10 F100\nG73\nM30", {"Y": 10}, 1),
+    "fagor8070 other program": Probe(
+        "fagor8070", '#EXEC ["OTHER.NC"]\nM30', refused="unsupported-statement"
+    ),
+}  # fmt: skip
+
+
+def _lowest(outcome: Outcome) -> float:
+    cuts = outcome.moves.motion == Motion.FEED
+    return min((float(end[2]) for end in outcome.moves.end[cuts]), default=0.0)
+
+
+@pytest.mark.parametrize("name", PROBES)
+def test_probe(name: str) -> None:
+    probe = PROBES[name]
+    outcome = run(probe.text, probe.dialect, JOB)
+    if probe.refused:
+        assert outcome.error is not None
+        assert outcome.error.code == probe.refused
+        return
+    assert outcome.error is None
+    ends = {axis: outcome.position[axis] for axis in probe.end}
+    assert ends == pytest.approx(probe.end, abs=1e-6)
+    assert (outcome.moves.motion == Motion.FEED).sum() == probe.feeds
+    assert _lowest(outcome) == pytest.approx(probe.lowest, abs=1e-6)
+
+
+def test_a_helix_has_one_arc_for_each_block() -> None:
+    moves = run(POCKET, "fanuc", JOB).moves
+    arcs = moves.end[moves.shape == Shape.ARC]
+    assert arcs[:, 2].tolist() == [-2.0, -5.0, -5.0]

@@ -1,0 +1,108 @@
+"""Phases of a run under its new time law, and whether they keep the limits."""
+
+import math
+
+import numpy as np
+
+from twin.compilation.kernel import arithmetic_kernel, array_arithmetic_kernel
+from twin.motion.limits import MachineLimits
+from twin.motion.retiming.run_kernels import RunPieces
+from twin.motion.retiming.spline_kernels import spline_at
+from twin.motion.retiming.table_kernels import RunNodes, derivatives_at
+from twin.nc.canonical import FloatArray, IntArray
+
+
+@array_arithmetic_kernel
+def retimed_phases(
+    nodes: RunNodes, pieces: RunPieces, coefficients: FloatArray, begin: float
+) -> tuple[FloatArray, IntArray]:
+    """Two phases for each interval of a run, which meet its nodes with x, v and a.
+
+    Args:
+        nodes: Of the run.
+        pieces: Of the plan.
+        coefficients: Of the squared rate, shape (n + 2,).
+        begin: Of the run [s].
+
+    Returns:
+        Phases, and the first and last piece of each.
+    """
+    count = len(nodes.step)
+    phases, phase_pieces = np.zeros((2 * count, 6)), np.zeros((2 * count, 2), np.int64)
+    now = begin
+    used = 0
+    v0, a0 = _state(nodes, coefficients, 0, 0)
+    for i in range(count):
+        v1, a1 = _state(nodes, coefficients, i, 1)
+        way, gain = nodes.distance[i], a1 - a0
+        # With both halves as long, way = (v0 + v1) t / 2 - (a1 - a0) t² / 12.
+        mean = 0.5 * (v0 + v1)
+        t = 2.0 * way / (mean + math.sqrt(max(0.0, mean * mean - gain * way / 3.0)))
+        both = 2.0 * gain / t
+        first = 4.0 * (v1 - v0 - a0 * t) / (t * t) - 0.5 * both
+        half = 0.5 * t
+        x, piece = nodes.path[i, 0], nodes.piece[i]
+        v, a = v0, a0
+        for part in range(2):
+            j = first if part == 0 else both - first
+            row = phases[used]
+            row[0], row[1], row[2], row[3], row[4], row[5] = now, half, x, v, a, j
+            phase_pieces[used, 0] = piece
+            x += ((j / 6.0 * half + 0.5 * a) * half + v) * half
+            v += (0.5 * j * half + a) * half
+            a += j * half
+            while piece < nodes.piece[i + 1] and x >= pieces.length[piece]:
+                x -= pieces.length[piece]
+                piece += 1
+            phase_pieces[used, 1] = piece if part == 0 else nodes.piece[i + 1]
+            now += half
+            used += 1
+        v0, a0 = v1, a1
+    return phases, phase_pieces
+
+
+@arithmetic_kernel
+def _state(nodes: RunNodes, coefficients: FloatArray, i: int, end: int) -> tuple[float, float]:
+    """V and a of the path at one end of an interval."""
+    value, slope, _ = spline_at(nodes.step, coefficients, i, end)
+    v, a = nodes.path[i + end, 1], nodes.path[i + end, 2]
+    return math.sqrt(value) * v, value * a + 0.5 * slope * v
+
+
+@arithmetic_kernel
+def excess(
+    phases: FloatArray, phase_pieces: IntArray, pieces: RunPieces, machine: MachineLimits, override: float
+) -> float:  # fmt: skip
+    """By which factor phases would have to be slower for every limit to be kept; 1 or less: all are.
+
+    Args:
+        phases: From ``retimed_phases``.
+        phase_pieces: From ``retimed_phases``.
+        pieces: Of the plan.
+        machine: Limits of the axes and the path.
+        override: Factor of the programmed feed.
+    """
+    most = 0.0
+    for row in range(len(phases)):
+        _, duration, begin, v0, a0, j = phases[row]
+        for part in range(3):
+            t = 0.5 * part * duration
+            piece = phase_pieces[row, 0]
+            x = begin + ((j / 6.0 * t + 0.5 * a0) * t + v0) * t
+            v, a = v0 + (0.5 * j * t + a0) * t, a0 + j * t
+            if v < -1e-9:
+                return math.inf
+            most = max(most, v / (pieces.feed[piece] * override))
+            most = max(most, math.sqrt(abs(a) / pieces.path_acceleration[piece]))
+            most = max(most, np.cbrt(abs(j) / pieces.path_jerk[piece]))
+            squares = 0.0
+            for axis in range(len(machine.jerk)):
+                q1, q2, q3 = derivatives_at(pieces, piece, x, axis)
+                squares += q2 * q2 if axis < 3 else 0.0
+                acceleration = abs(q2 * v * v + q1 * a)
+                jerk = abs((q3 * v * v + 3.0 * q2 * a) * v + q1 * j)
+                most = max(most, abs(q1 * v) / machine.velocity[axis])
+                most = max(most, math.sqrt(acceleration / machine.acceleration[axis]))
+                most = max(most, np.cbrt(jerk / machine.jerk[axis]))
+            most = max(most, v * math.sqrt(math.sqrt(squares) / machine.path[0]))
+    return most

@@ -1,0 +1,163 @@
+"""Runs of a plan, driven faster between the same states.
+
+The bounds of a segment hold with any mixture of v, a and j. Along a curve that leaves much unused:
+where the path points along one axis it follows the curve with the other. Here the plan of a run of
+arcs is replaced by one that is found from the axes' own limits at each place.
+"""
+
+import dataclasses
+
+import numpy as np
+
+from twin.motion.limits import MachineLimits
+from twin.motion.pieces.pieces import Pieces
+from twin.motion.retiming.retimed_kernels import excess, retimed_phases
+from twin.motion.retiming.run_kernels import RunEnds, RunPieces, find_runs, run_ends
+from twin.motion.retiming.solver_kernels import fastest_rate
+from twin.motion.retiming.table_kernels import cut_run, first_rate, run_table, tightened
+from twin.nc.canonical import FloatArray, IntArray
+
+JERK_SHARE = 0.975
+"""Of the jerk limits that a run uses, so that there is always a way out of it."""
+
+WHOLE_SHARE = 0.999
+"""Of the jerk limits that a way out of a run uses: between nodes a little more is used."""
+
+ATTEMPTS = 4
+"""At a time law that keeps all limits between the nodes too."""
+
+SPARE = 1.0005
+"""By how much slower the next attempt is to be than it seems to need."""
+
+LEAST_GAIN = 1e-3
+"""Of a run's time, relative; for less it stays as it is."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class PhaseTable:
+    """Phases over pieces.
+
+    Attributes:
+        rows: As in ``Phases``.
+        rows_pieces: As in ``Phases``.
+    """
+
+    rows: FloatArray
+    rows_pieces: IntArray
+
+    @property
+    def end(self) -> float:
+        """When the last phase ends [s]."""
+        return float(self.rows[-1, 0] + self.rows[-1, 1])
+
+    def __getitem__(self, rows: slice) -> "PhaseTable":
+        return PhaseTable(self.rows[rows], self.rows_pieces[rows])
+
+    def shifted(self, by: float) -> "PhaseTable":
+        """The same phases, later."""
+        rows = self.rows.copy()
+        rows[:, 0] += by
+        return PhaseTable(rows, self.rows_pieces)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Retimed:
+    """A run under a new time law.
+
+    Attributes:
+        begin: When it begins [s].
+        phases: How it is driven.
+        reference: How it would have been; it begins at the same time.
+    """
+
+    begin: float
+    phases: PhaseTable
+    reference: PhaseTable
+
+
+def joined(tables: list[PhaseTable]) -> PhaseTable:
+    """Consecutive phases as one table."""
+    return PhaseTable(
+        np.concatenate([table.rows for table in tables]),
+        np.concatenate([table.rows_pieces for table in tables]),
+    )
+
+
+def pieces_for_runs(pieces: Pieces) -> RunPieces | None:
+    """What runs need of pieces; None where there is no arc."""
+    if not np.any(pieces.geometry.table.angle):
+        return None
+    return RunPieces(
+        pieces.geometry.row, pieces.begin, pieces.fraction_per_length, pieces.length, pieces.feed,
+        pieces.entry, pieces.rounding, pieces.path_acceleration, pieces.path_jerk,
+        pieces.geometry.table.curves(),
+    )  # fmt: skip
+
+
+def retime(
+    phases: PhaseTable, pieces: RunPieces | None, machine: MachineLimits, override: float, gained: float
+) -> tuple[PhaseTable, list[Retimed], float]:  # fmt: skip
+    """Drive the runs among phases faster; what comes after them begins earlier.
+
+    Args:
+        phases: Of the plan.
+        pieces: Under them, None where none is an arc; phases that go beyond these stay as they are.
+        machine: Limits of the axes and the path.
+        override: Factor of the programmed feed.
+        gained: Time that the plan is ahead of the phases already [s].
+
+    Returns:
+        The phases, the runs that have changed, and the time gained after them [s].
+    """
+    parts, found = list[PhaseTable](), list[Retimed]()
+    done = 0
+    if pieces is None:
+        return phases.shifted(-gained), found, gained
+    runs = find_runs(phases.rows, phases.rows_pieces, pieces, override)
+    for first, last, _ in runs[runs[:, 2] == 1]:
+        reference = phases[first:last].shifted(-gained)
+        ends = run_ends(reference.rows, reference.rows_pieces)
+        begin = float(reference.rows[0, 0])
+        faster = drive_run(ends, pieces, machine, override, begin)
+        if faster is None or faster.end > reference.end - LEAST_GAIN * (reference.end - begin):
+            continue
+        parts += [phases[done:first].shifted(-gained), faster]
+        found.append(Retimed(begin, faster, reference))
+        gained += reference.end - faster.end
+        done = last
+    if not found and gained == 0.0:
+        return phases, found, gained
+    return joined([*parts, phases[done:].shifted(-gained)]), found, gained
+
+
+def drive_run(
+    ends: RunEnds, pieces: RunPieces, machine: MachineLimits, override: float, begin: float,
+    share: float = JERK_SHARE,
+) -> PhaseTable | None:  # fmt: skip
+    """The fastest phases of a run that are found; None if none keep the limits.
+
+    Args:
+        ends: Of the run.
+        pieces: Of the plan.
+        machine: Limits of the axes and the path.
+        override: Factor of the programmed feed.
+        begin: Of the run [s].
+        share: Of the jerk limits to use.
+    """
+    nodes = cut_run(ends, pieces)
+    table = run_table(nodes, pieces, machine, override)
+    start = first_rate(table, ends, nodes)
+    at_rest = ends.begin[0] == 0.0, ends.end[0] == 0.0
+    slower = 1.0
+    for _ in range(ATTEMPTS):
+        rate, kept = fastest_rate(tightened(table, slower), share, start, at_rest)
+        if not kept:
+            return None
+        rows, rows_pieces = retimed_phases(nodes, pieces, rate, begin)
+        found = excess(rows, rows_pieces, pieces, machine, override)
+        if found <= 1.0:
+            return PhaseTable(rows, rows_pieces)
+        if not found < 1.2:
+            return None
+        slower *= SPARE * found
+    return None

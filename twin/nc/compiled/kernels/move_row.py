@@ -1,0 +1,62 @@
+"""A plain block's move as a row: what lines, arcs and the moves of drilling cycles have alike."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.compilation.compilable import inlined
+from twin.nc.bytecode.coordinates import turn_place
+from twin.nc.bytecode.registers import Constants, State
+from twin.nc.canonical import Corner, FloatArray, Motion, Shape
+from twin.nc.compiled.kernels.target import PlainBlock
+from twin.nc.path.rows import Rows, copy
+
+RAPID, FEED = int(Motion.RAPID), int(Motion.FEED)
+LINE, ARC = int(Shape.LINE), int(Shape.ARC)
+STOP = int(Corner.EXACT_STOP)
+
+
+class Travel(NamedTuple):
+    """How a move goes.
+
+    Attributes:
+        motion: Rapid or feed.
+        pace: [mm/min or deg/min]; NaN: the machine's.
+        corner: How its end is passed.
+    """
+
+    motion: int
+    pace: float
+    corner: int
+
+
+@inlined
+def put_positions(goal: FloatArray, part: FloatArray, state: State, position: FloatArray) -> None:
+    """Start, end and display of a move from a place of the part to a programmed one.
+
+    Args:
+        goal: The programmed place, shape (k,).
+        part: Where the move begins, shape (k,).
+        state: Its shifts and its matrix lead from the one to the other.
+        position: Filled in, shape (3, k).
+    """
+    for axis in range(len(goal)):
+        position[0, axis] = part[axis]
+        position[1, axis] = goal[axis] + state.total[axis]
+        position[2, axis] = goal[axis]
+    turn_place(goal, state, position[1])
+
+
+@inlined
+def put_move(
+    block: PlainBlock, travel: Travel, shape: int, constants: Constants, rows: Rows, row: int
+) -> None:
+    """Fill in what is no position of a move; an arc has its centre, normal and sweep already."""
+    value, code = rows.values[row], rows.codes[row]
+    if shape == LINE:
+        value[:6] = np.nan
+        value[6] = 0.0
+    value[7] = travel.pace
+    copy(constants.last_values, value[8:])
+    code[0], code[1], code[2], code[3] = travel.motion, shape, block.line, block.number
+    code[4] = travel.corner
