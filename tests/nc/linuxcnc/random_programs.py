@@ -3,6 +3,9 @@
 import math
 import random
 
+LONGEST = 240
+"""Characters of a line: rs274 refuses those of 256."""
+
 
 class Author:
     """Writes one program."""
@@ -41,8 +44,28 @@ class Author:
             return f"[{self.expression(depth + 1)} / [1 + ABS[{self.expression(depth + 1)}]]]"
         if choose < 0.85:
             return f"ATAN[{self.expression(depth + 1)}]/[1 + ABS[{self.expression(depth + 1)}]]"
-        function = self.random.choice(["ABS", "COS", "SIN", "FIX", "FUP", "ROUND", "ABS"])
-        return f"{function}[{self.expression(depth + 1)}]"
+        if choose < 0.95:
+            function = self.random.choice(
+                ["ABS", "COS", "SIN", "FIX", "FUP", "ROUND", "FIX[-1*", "FUP[-1*"]
+            )
+            inner = f"{function}[" if "[" not in function else f"{function}"
+            return f"{inner}{self.expression(depth + 1)}]"
+        positive = f"[1 + ABS[{self.expression(depth + 1)}]]"
+        return self.random.choice(
+            [
+                f"SQRT[{positive}]",
+                f"LN[{positive}]",
+                f"EXP[1 / {positive}]",
+                f"ACOS[1 / {positive}]",
+                f"ASIN[-1 / {positive}]",
+                f"TAN[30 / {positive}]",
+                f"[{positive} ** 1.5]",
+                f"[2 ** [-2] * {positive}]",
+                "EXISTS[#<x>]",
+                "[1 + 2 * 3 ** 2 - 7 MOD 4 / 2]",
+                "[1 LT 2 AND 3 GE 3 XOR 0]",
+            ]
+        )
 
     def point(self, letters: str = "XYZ", chance: float = 0.6) -> str:
         """Some axis words."""
@@ -119,6 +142,71 @@ class Author:
             self.lines.append(f"{self.point('XY', 0.7)}{more}")
         self.lines.append(self.random.choice(["G80", "G0 X0"]))
         self.lines.append("G90")
+
+    def cycle_elsewhere(self) -> None:
+        """A drilling cycle in a plane, perhaps in inches, with pecks, dwells and repeats."""
+        plane, first, second, across = self.random.choice(
+            [("G17", "X", "Y", "Z"), ("G18", "Z", "X", "Y"), ("G19", "Y", "Z", "X")]
+        )
+        code = self.random.choice([73, 81, 82, 83, 85, 89])
+        words = f"R{self.random.uniform(1, 5):.2f} {across}{self.random.uniform(-9, 0):.2f}"
+        words += f" Q{self.random.uniform(0.6, 4):.2f}" if code in (73, 83) else ""
+        words += " P0.5" if code in (82, 89) else ""
+        self.lines += [
+            f"G94 F100 {plane} G80",
+            f"G0 {across}{self.number(-5, 9)}",
+            f"{self.random.choice(['G98', 'G99'])} G{code} {self.point(first + second)} {words}",
+            f"{self.point(first + second)} {self.random.choice(['', 'G98', 'G99', 'L2'])}",
+            f"{self.random.choice(['G80', 'G80 G0', 'G0'])}",
+            "G17",
+        ]
+
+    def exact_arc(self) -> None:
+        """An arc about an absolute centre, or one whose end lies beside it."""
+        radius, begin, sweep = (self.random.uniform(*each) for each in ((4, 15), (-3, 3), (0.3, 6)))
+        x, y = (self.random.uniform(-9, 9) for _ in range(2))
+        beside = self.random.choice([0.0, 0.0, 0.0, 0.3, 2.0])
+        start = f"X{x + radius * math.cos(begin):.8f} Y{y + radius * math.sin(begin):.8f}"
+        end = begin + sweep
+        self.lines += [
+            "G90.1 G21",
+            f"G0 {start}",
+            (
+                f"G3 X{x + (radius + beside) * math.cos(end):.8f} Y{y + (radius + beside) * math.sin(end):.8f} I{x:.8f}"
+                f" J{y:.8f}{self.random.choice(['', ' Z1', ' P2', ' C5'])}"
+            ),
+            "G91.1",
+        ]
+
+    def mixed(self) -> None:
+        """Several codes in one block, blanks in numbers, codes alone."""
+        self.lines.append(
+            self.random.choice(
+                [
+                    f"G90 G1 G94 G17 F1 00 {self.point('XYZ')} M8",
+                    f"g 0 x 1 . 5 y- 2 . {self.random.randrange(10)}",
+                    f"G0 G54 G40 G49 G80 {self.point('XY')}",
+                    f"F200 S100 M3 G0 {self.point('XYZC')}",
+                    f"G80 G0 {self.point('XY')}",
+                    f"G91 G1 {self.point('XYZ')} F50\nG90",
+                    f"G53 G0 {self.point('Z')} M9",
+                    f"G93 G1 {self.point('XYZC')} F{self.number(1, 5)}\nG94 F100",
+                    "G1",
+                    "G2",
+                    "G80",
+                    "G33 K1",
+                    f"G33 {self.point('Z')} K1.5",
+                    f"G33.1 {self.point('Z')} K0.5",
+                    f"G64 P0.0{self.random.randrange(1, 9)} Q0.01",
+                    f"#<p>={self.number()} #7={self.number()}\nG0 X#<p> Y#7",
+                    f"#<_g{self.random.randrange(3)}>={self.number()}",
+                    f"#[30 + {self.random.randrange(5)}]={self.number()} G1 Y[#30 + #31 + #32]",
+                    f"G0 Z[{self.expression()} * 0 + {self.number()}] (after)",
+                    f"G92 {self.point('XYZC')}\nG92.{self.random.randrange(1, 4)}",
+                    f"M70\nG20 G91 F10\nG1 {self.point('XY')}\nM72",
+                ]
+            )
+        )
 
     def offset(self) -> None:
         """Coordinate systems, presets, tool lengths."""
@@ -240,7 +328,7 @@ class Author:
             self.lines.append(f"{label} while [#{40 + depth} LT {self.random.randrange(4)}]")
             self.some(depth + 1)
             self.lines.append(f"#{40 + depth}=[#{40 + depth}+1]")
-            if self.random.random() < 0.4:
+            if self.random.random() < 0.4 and depth == 0:  # rs274 leaves a do loop around it too
                 self.labels += 1
                 leave = self.random.choice(["break", "continue"])
                 self.lines += [
@@ -272,11 +360,8 @@ class Author:
 
     def block(self, depth: int = 0) -> None:
         """One thing or another."""
-        weights = [8, 4, 2, 3, 1, 2, 2, 1, 2 if depth < 2 else 0]
-        (kind,) = self.random.choices(range(9), weights)
-        if kind == 8:
-            self.flow(depth)
-            return
+        weights = [8, 4, 2, 3, 1, 2, 2, 1, 2 if depth < 2 else 0, 1, 1, 3]
+        (kind,) = self.random.choices(range(len(weights)), weights)
         (
             self.line,
             self.arc,
@@ -286,12 +371,18 @@ class Author:
             self.mode,
             self.assignment,
             self.read,
+            lambda: self.flow(depth),
+            self.cycle_elsewhere,
+            self.exact_arc,
+            self.mixed,
         )[kind]()
 
     def slip(self) -> None:
         """Damage a line, as a person would."""
         at = self.random.randrange(len(self.lines))
         line = self.lines[at]
+        if "elseif" in line:  # rs274 does not read on behind one that is false
+            return
         self.lines[at] = self.random.choice(
             [
                 line + " X1",
@@ -315,7 +406,8 @@ def program(seed: int) -> str:
         author.block()
     if author.random.random() < 0.3:
         author.slip()
-    return "\n".join([*author.lines, "M2", ""])
+    lines = "\n".join(author.lines).split("\n")
+    return "\n".join([*(line[:LONGEST] for line in lines), "M2", ""])
 
 
 def contour(seed: int) -> str:
@@ -344,6 +436,8 @@ def contour(seed: int) -> str:
             lines.append(f"{'G3' if sense > 0.0 else 'G2'} X{x:.9f} Y{y:.9f} I{i:.9f} J{j:.9f}")
             heading += sense * sweep
         else:
-            lines.append(f"G1 Z{chance.uniform(-3, 3):.2f}")
+            lines.append(
+                chance.choice([f"G1 Z{chance.uniform(-3, 3):.2f}", "M8", "F200", "S100 M3"])
+            )
     lines += ["G40", "G1 X-40 Y-40", "M2", ""]
     return "\n".join(lines)

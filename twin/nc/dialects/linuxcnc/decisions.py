@@ -89,6 +89,12 @@ DECISIONS = (
         example="refused_for_clarity",
     ),
     Decision(
+        "What does break leave within a do loop?",
+        "The loop of its label alone.",
+        "In rs274 of 2.9 a break of an inner loop also ends the do loop around it, against the manual.",
+        example="break_within_do",
+    ),
+    Decision(
         "Does G43.2 take words of axes?",
         "Yes, as the manual says: they are added to the offset in force.",
         "rs274 of 2.9 looks for a tool -1 then, and ends.",
