@@ -82,6 +82,19 @@ def test_without_a_second_encoder_they_are_named_as_undetermined(log: MachineLog
         assert name not in fit.fitted
 
 
+def test_a_gap_that_may_be_none_is_named_as_undetermined() -> None:
+    fit = calibrate(mill(), [without(two_masses(gap=0.0), "force")]).axes["X"].fit
+    assert "backlash" not in fit.fitted
+    assert "anything up to" in fit.undetermined["backlash"]
+
+
+def test_a_base_without_a_screw_has_neither_and_says_so(log: MachineLog) -> None:
+    fit = calibrate(mill().changed("X", lead=None), [without(log, "force")]).axes["X"].fit
+    for name in ("backlash", "stiffness"):
+        assert "has no 'lead'" in fit.undetermined[name]
+        assert name not in fit.fitted | fit.conditional
+
+
 def test_the_machine_file_with_both_loads_and_runs(
     twin: Twin, tmp_path: Path, log: MachineLog
 ) -> None:

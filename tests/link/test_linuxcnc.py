@@ -66,6 +66,7 @@ G1 C10 F3600
 G0 Z5
 M2
 """
+SPINDLE = "G21 G90 G61\nG0 X1\nS1000 M3\nG1 X2 F600\nM2\n"
 RAPID = "G21 G90\nG0 Z5\nG0 X200\nM2\n"
 LONG = "G21 G90 G64\nG1 Z5 F600\n" + "G1 X20 F600\nG1 X0\n" * 30 + "M2\n"
 
@@ -121,6 +122,22 @@ def test_a_sound_machine_runs_a_program_and_can_be_played_back(folder: Path, twi
     assert corner[:2] == pytest.approx([15.0, 0.0], abs=0.1)
     with open_scene(folder / "out" / "recording.h5") as (scene, _):
         assert len(scene.recording) == told["samples"]
+
+
+@pytest.mark.parametrize(("waits", "least_s", "most_s"), [("true", 0.5, 0.8), ("false", 0.0, 0.3)])
+def test_a_feed_waits_for_the_spindle_where_the_machine_does(
+    folder: Path, twin: Twin, waits: str, least_s: float, most_s: float
+):
+    machine = folder / "slow_spindle.toml"
+    machine.write_text(
+        f'base = "mill4"\nname = "slow"\n[spindle]\nacceleration = 2000.0\nwaits = {waits}\n'
+    )
+    linked(twin, folder, SPINDLE, "--machine", machine)
+    with open_recording(folder / "out" / "recording.h5") as recording:
+        setpoint = join(list(recording.chunks())).setpoint
+    x = setpoint.position[:, 0] - setpoint.position[0, 0]
+    stood = np.count_nonzero((x > 0.999) & (x < 1.001)) * 0.001
+    assert least_s <= stood <= most_s
 
 
 def test_linuxcncs_own_limit_trips_where_the_lag_reaches_it(folder: Path, twin: Twin):

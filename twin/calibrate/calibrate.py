@@ -5,12 +5,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from twin.calibrate.fit.ball_bar import STIFFNESS, BallBarFit, fit_ball_bar
 from twin.calibrate.fit.give import NO_SECOND_ENCODER, fit_give
 from twin.calibrate.fit.parameters import Parameters, coordinates, of_base
 from twin.calibrate.fit.ramps import axes_with_ramps, find_cycle, find_ramps, predict_ramp
 from twin.calibrate.fit.slow import SlowLog, fit_slow, slow_force
-from twin.calibrate.fit.solve import on_one_thread
-from twin.calibrate.fit.stages import AxisFit, fit_axis
+from twin.calibrate.fit.solve import Interval, on_one_thread
+from twin.calibrate.fit.stages import OF_THE_LOG, AxisFit, fit_axis
 from twin.calibrate.fit.stretch import Stretch, predict, stretches_of
 from twin.calibrate.health import (
     SLOW_S,
@@ -25,6 +26,7 @@ from twin.calibrate.limits import Limits, planner_limits
 from twin.calibrate.refusal import refuse_wrong_force, refuse_wrong_log
 from twin.calibrate.result import FIT, HOLD_OUT, AxisResult, Calibration, Course, LogFigures
 from twin.errors import UsageError
+from twin.logs.ball_bar import BallBarLog
 from twin.logs.machine_log import AxisLog, MachineLog
 from twin.machine.description.config import AxisTable, Machine
 from twin.machine.model.drives import reflected_inertia
@@ -37,6 +39,7 @@ _FASTEST_S = 1e-3
 _SEEN_MOVING = 0.02
 """Share of the greatest speed from which an axis counts as moving."""
 _NOTHING = np.zeros(0)
+_NO_LOG = "no log of the axis's positions was given"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -53,6 +56,7 @@ def calibrate(
     logs: Sequence[MachineLog],
     hold_out: Sequence[MachineLog] = (),
     axes: Sequence[str] = (),
+    ball_bars: Sequence[BallBarLog] = (),
 ) -> Calibration:
     """Fit a machine's drives to logs.
 
@@ -61,13 +65,15 @@ def calibrate(
         logs: What is fitted.
         hold_out: What the fit is judged by.
         axes: Which to fit; all that the logs have by default.
+        ball_bars: Circles that tell what an axis loses where it turns round.
 
     Raises:
         UsageError: A log is not what it is said to be, or has nothing to fit.
     """
     fitted = [_prepared(log, FIT) for log in logs]
     held = [_prepared(log, HOLD_OUT) for log in hold_out]
-    names = _axes(machine, fitted, axes)
+    circles = tuple(fit_ball_bar(log) for log in ball_bars)
+    names = _axes(machine, fitted, axes, circles)
     masses = _masses(machine)
     findings = {
         item.log.name: item.health.findings + _axis_findings(machine, item, names)
@@ -81,6 +87,7 @@ def calibrate(
         own = [item for item in fitted if name in item.log.axes]
         fit = _fit(kind, name, own, base, machine.axis(name).velocity)
         fit = _with_give(machine, name, fit, own, masses[name])
+        fit = _as_built(machine.axis(name), _with_ball_bars(machine.axis(name), name, fit, circles))
         results[name] = AxisResult(
             kind, fit, _units(kind), _limits(name, own, machine.axis(name)), machine.axis(name),
             masses[name], machine.file.servo_period_s,
@@ -93,7 +100,7 @@ def calibrate(
         ]
     order = {item.log.name: number for number, item in enumerate(fitted + held)}
     figures.sort(key=lambda one: (one.role != FIT, order[one.log]))
-    return Calibration(machine.file.name, results, tuple(figures), findings)
+    return Calibration(machine.file.name, results, tuple(figures), findings, circles)
 
 
 def _prepared(log: MachineLog, role: str) -> _Log:
@@ -129,8 +136,11 @@ def _averaged(log: MachineLog, health: Health, times: int) -> MachineLog:
     return MachineLog(log.name, time, axes, np.zeros(len(time), np.int64))
 
 
-def _axes(machine: Machine, logs: Sequence[_Log], wanted: Sequence[str]) -> list[str]:
+def _axes(
+    machine: Machine, logs: Sequence[_Log], wanted: Sequence[str], circles: Sequence[BallBarFit]
+) -> list[str]:
     logged = {name for item in logs for name in item.log.axes}
+    logged |= {name for circle in circles for name in circle.plane}
     unknown = sorted((set(wanted) | logged) - set(machine.axes.names))
     if unknown:
         raise UsageError(
@@ -178,6 +188,9 @@ def _fit(
     kind: AxisKind, name: str, logs: Sequence[_Log], base: Parameters, fastest: float
 ) -> AxisFit:
     fast = [item for item in logs if item.health.period_s <= SLOW_S]
+    if not logs:
+        every = [field.name for field in dataclasses.fields(base) if field.name not in OF_THE_LOG]
+        return AxisFit(base, {}, {}, dict.fromkeys(every, _NO_LOG), (), np.zeros((0, 0)))
     if not fast:
         return fit_slow(kind, [_slow(item, name) for item in logs], base, fastest)
     pieces = [piece for item in fast for piece in _stretches(item, name)]
@@ -204,6 +217,8 @@ def _slow(item: _Log, name: str) -> SlowLog:
 
 
 def _limits(name: str, logs: Sequence[_Log], base: AxisTable) -> Limits:
+    if not logs:
+        return Limits({}, {})
     slow = all(item.health.period_s > SLOW_S for item in logs)
     pieces = [
         (_rows(item.log.axes[name], begin, end), item.health.period_s)
@@ -242,6 +257,8 @@ def _with_give(
     undetermined = dict(fit.undetermined)
     if give.backlash is None:
         undetermined["backlash"] = give.why
+    elif give.backlash.low <= 0.0:
+        undetermined["backlash"] = _up_to(give.backlash.high, axis)
     else:
         fitted["backlash"] = give.backlash
     if give.stiffness is None:
@@ -255,6 +272,51 @@ def _with_give(
         undetermined["stiffness"] = "only its ratio to the mass is told"
     return dataclasses.replace(
         fit, fitted=fitted, conditional=conditional, undetermined=undetermined
+    )
+
+
+def _with_ball_bars(
+    axis: AxisTable, name: str, fit: AxisFit, circles: Sequence[BallBarFit]
+) -> AxisFit:
+    """A fit with the backlash that ball-bars tell, where no second encoder does."""
+    lost = [circle.lost[name] for circle in circles if name in circle.lost]
+    if not lost or "backlash" in fit.fitted:
+        return fit
+    strained = 2.0 * fit.parameters.dry_friction / axis.stiffness if axis.stiffness else 0.0
+    middle = lost[0].spanning(*lost[1:])
+    low, value, high = (end - strained for end in (middle.low, middle.value, middle.high))
+    undetermined, fitted = dict(fit.undetermined), dict(fit.fitted)
+    undetermined["stiffness"] = STIFFNESS
+    if low > 0.0:
+        fitted["backlash"] = Interval(value, low, high)
+        undetermined.pop("backlash", None)
+    else:
+        undetermined["backlash"] = _up_to(high, axis)
+    return dataclasses.replace(fit, fitted=fitted, undetermined=undetermined)
+
+
+def _up_to(high: float, axis: AxisTable) -> str:
+    """Why a backlash that may be none is not taken."""
+    return f"anything up to {max(high, 0.0):.3g} {_units(axis.kind)['backlash']} would fit as well"
+
+
+def _as_built(axis: AxisTable, fit: AxisFit) -> AxisFit:
+    """A fit without what an axis cannot have that has no screw; it is named."""
+    if axis.lead:
+        return fit
+    told = {name: interval for name, (interval, _) in fit.conditional.items()} | fit.fitted
+    undetermined = dict(fit.undetermined)
+    for name in {"backlash", "stiffness"} & set(told):
+        undetermined[name] = (
+            f"the log has {told[name].value:.4g} {_units(axis.kind)[name]}, but the base's axis has no "
+            "'lead', and nothing gives in an axis without a screw"
+        )
+    gone = ("backlash", "stiffness")
+    return dataclasses.replace(
+        fit,
+        fitted={name: interval for name, interval in fit.fitted.items() if name not in gone},
+        conditional={name: pair for name, pair in fit.conditional.items() if name not in gone},
+        undetermined=undetermined,
     )
 
 

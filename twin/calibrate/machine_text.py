@@ -23,7 +23,8 @@ def machine_text(result: Calibration, *, base: str, name: str) -> str:
         base: What the file's ``base`` shall be: a shipped machine's name or a path.
         name: Of the new machine.
     """
-    logs = list(dict.fromkeys(figures.log for figures in result.logs if figures.role == "fit"))
+    fitted = [figures.log for figures in result.logs if figures.role == "fit"]
+    logs = list(dict.fromkeys([*fitted, *(circle.log for circle in result.ball_bars)]))
     lines = [
         f"# Fitted by twin calibrate {__version__} to {_plain(', '.join(logs))}.",
         "# Each value with its 95 % interval; what is not here is as in the base.",
@@ -32,6 +33,17 @@ def machine_text(result: Calibration, *, base: str, name: str) -> str:
     ]
     for axis, found in result.axes.items():
         lines += ["", f"[axes.{axis}]", *_axis_lines(found)]
+    square = {
+        circle.plane: circle.squareness
+        for circle in result.ball_bars
+        if circle.squareness is not None
+    }
+    if square:
+        lines += ["", "[geometry.squareness]"]
+        lines += [
+            f"{plane} = {_number(interval.value)}    # {_span(interval, 'µm/m')}"
+            for plane, interval in square.items()
+        ]
     return "\n".join(lines) + "\n"
 
 
@@ -77,9 +89,7 @@ def _axis_lines(axis: AxisResult) -> Iterator[str]:
 def _give_lines(axis: AxisResult) -> Iterator[str]:
     """Backlash and stiffness, as far as they are there and can be simulated."""
     told = axis.fit.fitted | {name: pair[0] for name, pair in axis.fit.conditional.items()}
-    if not axis.base.lead:
-        return
-    if "backlash" in told and told["backlash"].low > 0.0:
+    if "backlash" in told:
         interval = told["backlash"]
         span = _span(interval, axis.units["backlash"])
         yield f"backlash = {_number(interval.value)}    # {span}"

@@ -4,6 +4,7 @@ import dataclasses
 import math
 from collections.abc import Mapping
 
+from twin.calibrate.fit.ball_bar import ONE_DIRECTION, BallBarFit
 from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import NOT_ASKED, AxisFit
 from twin.calibrate.health import Finding
@@ -120,12 +121,14 @@ class Calibration:
         axes: By name.
         logs: In the order of the command line.
         findings: About the logs, by file.
+        ball_bars: What circles came to.
     """
 
     base: str
     axes: Mapping[str, AxisResult]
     logs: tuple[LogFigures, ...]
     findings: Mapping[str, tuple[Finding, ...]]
+    ball_bars: tuple[BallBarFit, ...] = ()
 
     def as_contract(self) -> dict[str, object]:
         """As ``--json`` writes it."""
@@ -134,6 +137,7 @@ class Calibration:
             "base": self.base,
             "axes": {name: _axis_contract(axis) for name, axis in self.axes.items()},
             "logs": [figures.as_contract() for figures in self.logs],
+            "ball_bars": [_ball_bar_contract(circle) for circle in self.ball_bars],
             "findings": [
                 {"log": log, "code": finding.code, "message": finding.message}
                 for log, findings in self.findings.items()
@@ -163,6 +167,24 @@ def _axis_contract(axis: AxisResult) -> dict[str, object]:
     }
 
 
+def _ball_bar_contract(circle: BallBarFit) -> dict[str, object]:
+    told: dict[str, object] = {
+        "log": circle.log,
+        "plane": circle.plane,
+        "lost_motion": {
+            name: _interval_contract(interval, "mm") for name, interval in circle.lost.items()
+        },
+        "logged_rms_um": circle.logged_rms * 1e3,
+        "left_rms_um": circle.left_rms * 1e3,
+    }
+    if circle.squareness is None or circle.lag is None:
+        return told | {"undetermined": dict.fromkeys(("squareness", "lag_mismatch"), ONE_DIRECTION)}
+    return told | {
+        "squareness": _interval_contract(circle.squareness, "um/m"),
+        "lag_mismatch": _interval_contract(circle.lag, "s"),
+    }
+
+
 def _interval_contract(interval: Interval, unit: str) -> dict[str, object]:
     return {
         "value": interval.value,
@@ -182,6 +204,9 @@ def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) 
     unseen = [figures for figures in own if figures.role == HOLD_OUT]
     judged = unseen or own
     what = "lag of velocity in ramps" if judged and judged[0].velocity_share is not None else "lag"
+    if not judged:
+        told = ", ".join(axis.fit.fitted) or "nothing"
+        return f"{name}: of a ball-bar alone, which tells {told}."
     shares = max((figures.share for figures in judged), default=math.inf)
     seen = "of a log that it has not seen" if unseen else "of the log that it was fitted to"
     sentence = f"{name}: predicts the {what} {seen} to {100 * shares:.2g} %"

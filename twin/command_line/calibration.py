@@ -27,6 +27,10 @@ def calibrate(
         float | None,
         typer.Option("--require", help="Exit 1 if more of a held-out lag than this share is left."),
     ] = None,
+    ball_bars: Annotated[
+        list[Path] | None,
+        typer.Option("--ball-bar", help="Log of a ball-bar, named by [ball_bar] of --columns."),
+    ] = None,
     programs: Annotated[
         Path | None,
         typer.Option("--programs", help="Write test programs for the real machine there."),
@@ -38,5 +42,6 @@ def calibrate(
     request = Request(
         logs=logs or [], base=base, columns=columns, hold_out=hold_out or [], axes=axes, out=out,
         json_file=json_file, report=report, require=require, programs=programs,
+        ball_bars=ball_bars or [],
     )  # fmt: skip
     raise typer.Exit(calibrate_and_print(request))

@@ -15,11 +15,13 @@ from twin.calibrate.programs import write_programs
 from twin.errors import ExitCode, UsageError
 from twin.files.atomic import write_text
 from twin.files.shipped import machine_file
+from twin.logs.ball_bar import read_ball_bar
 from twin.logs.column_map import read_column_map
 from twin.logs.machine_log import MachineLog, read_machine_log
 from twin.machine.description.config import read_machine
 
 if TYPE_CHECKING:
+    from twin.calibrate.fit.ball_bar import BallBarFit
     from twin.calibrate.result import Calibration
 
 
@@ -38,6 +40,7 @@ class Request:
         report: Where the page goes.
         require: Largest share of the following error that may be left on held-out logs.
         programs: Folder for test programs to run on the real machine.
+        ball_bars: Logs of a ball-bar.
     """
 
     logs: Sequence[Path] = ()
@@ -50,6 +53,12 @@ class Request:
     report: Path | None = None
     require: float | None = None
     programs: Path | None = None
+    ball_bars: Sequence[Path] = ()
+
+    @property
+    def fits(self) -> bool:
+        """Whether there is anything to fit."""
+        return bool(self.logs or self.ball_bars)
 
 
 def calibrate_and_print(request: Request) -> ExitCode:
@@ -63,12 +72,12 @@ def calibrate_and_print(request: Request) -> ExitCode:
         ConfigError: The base is wrong.
     """
     machine = read_machine(machine_file(request.base))
-    if not request.logs and request.programs is None:
+    if not request.fits and request.programs is None:
         raise UsageError("nothing to do: give logs to fit, or --programs DIR")
-    if not request.logs and any(
-        (request.hold_out, request.out, request.json_file, request.report, request.require)
-    ):
-        raise UsageError("--hold-out, --out, --json, --report and --require need logs to fit")
+    if not request.fits and any((request.out, request.json_file, request.report)):
+        raise UsageError("--out, --json and --report need logs to fit")
+    if not request.logs and (request.hold_out or request.require):
+        raise UsageError("--hold-out and --require need logs to fit")
     if request.require is not None and not request.hold_out:
         raise UsageError("--require judges held-out logs: give --hold-out LOG")
     if request.require is not None and not 0 < request.require < float("inf"):
@@ -77,19 +86,21 @@ def calibrate_and_print(request: Request) -> ExitCode:
         named = _base_for(request.base, request.programs / "job.toml")
         for path in write_programs(machine, request.programs, named):
             typer.echo(f"wrote {path}")
-    if not request.logs:
+    if not request.fits:
         return ExitCode.OK
     _need_scipy()
     from twin.calibrate.calibrate import calibrate
     from twin.calibrate.machine_text import machine_text
 
-    meant = None if request.columns is None else read_column_map(request.columns)
+    positions = request.columns is not None and bool(request.logs)
+    meant = read_column_map(request.columns) if positions and request.columns else None
 
     def read(paths: Sequence[Path]) -> list[MachineLog]:
         return [read_machine_log(path, meant, units_needed=True) for path in paths]
 
     wanted = [name.strip().upper() for name in request.axes.split(",")] if request.axes else []
-    result = calibrate(machine, read(request.logs), read(request.hold_out), wanted)
+    circles = [read_ball_bar(path, request.columns) for path in request.ball_bars]
+    result = calibrate(machine, read(request.logs), read(request.hold_out), wanted, circles)
     if request.out is not None:
         write_text(
             request.out,
@@ -153,7 +164,10 @@ def _print(result: "Calibration") -> None:
         for parameter, why in axis.fit.undetermined.items():
             typer.echo(f"  {parameter} undetermined: {why}")
         typer.echo()
-    _print_logs(console, result)
+    if result.logs:
+        _print_logs(console, result)
+    for circle in result.ball_bars:
+        typer.echo(_circle_line(circle))
     for name, axis in result.axes.items():
         typer.echo(verdict_sentence(name, axis, result.logs))
 
@@ -173,6 +187,20 @@ def _print_logs(console: Console, result: "Calibration") -> None:
             "" if figures.current_correlation is None else f"{figures.current_correlation:.3f}",
         )  # fmt: skip
     console.print(table)
+
+
+def _circle_line(circle: "BallBarFit") -> str:
+    from twin.calibrate.fit.ball_bar import ONE_DIRECTION
+
+    lost = ", ".join(f"{name} {1e3 * one.value:.2f} µm" for name, one in circle.lost.items())
+    told = f"{circle.log}: circle {circle.plane}: lost where the axes turn round: {lost}; "
+    if circle.squareness is None or circle.lag is None:
+        told += ONE_DIRECTION
+    else:
+        first, second = circle.plane
+        told += f"squareness {circle.squareness.value:.2f} µm/m; "
+        told += f"{first} lags {1e3 * circle.lag.value:.4g} ms more than {second}"
+    return f"{told}; {1e3 * circle.left_rms:.2f} of {1e3 * circle.logged_rms:.2f} µm are left"
 
 
 def _share(value: float | None) -> str:

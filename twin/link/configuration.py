@@ -54,6 +54,7 @@ def write_configuration(folder: Path, machine: Machine, settings: Settings) -> P
         ConfigError: LinuxCNC cannot drive this machine.
     """
     _require_axes(machine)
+    spindle = machine.file.spindle
     content: dict[str, Any] = {
         "name": machine.file.name,
         "folder": folder,
@@ -64,6 +65,7 @@ def write_configuration(folder: Path, machine: Machine, settings: Settings) -> P
         "axes": [_axis(machine, name, settings) for name in machine.axes.names],
         "coordinates": "".join(machine.axes.names),
         "path": machine.file.path,
+        "spindle_acceleration": spindle.acceleration if spindle.waits else 0.0,
     }
     write_text(folder / "linuxcnc.var", offsets_text(machine.axes, settings.part_zero))
     write_text(folder / "linuxcnc.tbl", tools_text(settings.job))

@@ -103,9 +103,10 @@ def read_column_map(path: Path) -> ColumnMap:
         ConfigError: It is missing, is not TOML, or has a wrong key or value.
     """
     data = load_toml(path)
-    unknown = sorted(set(data) - {"columns", "period"})
+    known = ("ball_bar", "columns", "period")
+    unknown = sorted(set(data) - set(known))
     if unknown:
-        raise ConfigError(f"{path}: unknown key '{unknown[0]}'; known keys: columns, period")
+        raise ConfigError(f"{path}: unknown key '{unknown[0]}'; known keys: {', '.join(known)}")
     columns = data.get("columns")
     if not isinstance(columns, dict):
         raise ConfigError(f"{path}: 'columns' is missing: a table [columns.X] for every axis")

@@ -145,10 +145,10 @@ def read_machine_log(
 
 def _clock(raw: RawLog, meant: ColumnMap, period_s: float | None) -> FloatArray:
     """The time of every row, (n,) [s]."""
-    first = _channel(raw, meant.where, "command", next(iter(meant.axes.values())).command)
+    first = channel_of(raw, meant.where, "command", next(iter(meant.axes.values())).command)
     if meant.time is not None and meant.time.column is not None:
         column = ColumnTable(column=meant.time.column, unit=meant.time.unit)
-        channel = _channel(raw, meant.where, "time", column)
+        channel = channel_of(raw, meant.where, "time", column)
         return channel.numbers(raw.path) * time_factor(meant.time.unit, meant.where)
     if first.time is not None:
         return first.time
@@ -160,7 +160,18 @@ def _clock(raw: RawLog, meant: ColumnMap, period_s: float | None) -> FloatArray:
     return period_s * np.arange(len(first.cells), dtype=np.float64)
 
 
-def _channel(raw: RawLog, where: str, role: str, column: ColumnTable) -> Channel:
+def channel_of(raw: RawLog, where: str, role: str, column: ColumnTable) -> Channel:
+    """A column of a log, as a map names it.
+
+    Args:
+        raw: The log.
+        where: The map, for a message.
+        role: What the map takes the column for.
+        column: Its name or number.
+
+    Raises:
+        UsageError: The log has no such column.
+    """
     found = raw.find(column.column)
     if found is not None:
         return found
@@ -181,7 +192,7 @@ def _axis(raw: RawLog, where: str, name: str, table: AxisColumns, time: FloatArr
             continue
         place = f"{where}: columns.{name}.{role}"
         scale = factor(quantity, kind, column.unit, place)
-        channel = _channel(raw, where, f"{role} of {name}", column)
+        channel = channel_of(raw, where, f"{role} of {name}", column)
         numbers = (channel.numbers(raw.path) * column.scale + column.offset) * scale
         clock = time if channel.time is None else channel.time
         if len(clock) != len(numbers):

@@ -8,7 +8,7 @@ clustered in time), with Student's t for their number.
 """
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,8 @@ on_one_thread: Any = ThreadpoolController().wrap(limits=1, user_api="blas")
 """Decorator: matrices of ten rows are worked in a thousandth of the time that it takes to wake threads."""
 _NOTHING = 1e-12
 _MOST_EVALUATIONS = 40
+EXACT, ROUGH = 1e-8, 1e-5
+"""Changes of the cost, as a share, below which a search ends: for an answer, and to compare structures."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -99,13 +101,16 @@ class Problem:
     coordinates: dict[str, Coordinate]
 
 
-def solve(problem: Problem, start: Parameters, free: Sequence[str]) -> Solution:
+def solve(
+    problem: Problem, start: Parameters, free: Sequence[str], *, until: float = EXACT
+) -> Solution:
     """Fit some parameters and keep the others.
 
     Args:
         problem: What is minimised.
         start: Where the search begins; the others stay so.
         free: Names of those that are fitted.
+        until: ``EXACT`` or ``ROUGH``.
     """
     ways = [problem.coordinates[name] for name in free]
     low, high = np.array([way.bounds for way in ways]).reshape(-1, 2).T
@@ -139,7 +144,7 @@ def solve(problem: Problem, start: Parameters, free: Sequence[str]) -> Solution:
     search: Any = least_squares  # its declared type of ``jac`` lacks functions
     found = search(
         residuals, inner, jac=jacobian, bounds=(low, high), x_scale=scale,
-        max_nfev=_MOST_EVALUATIONS, xtol=1e-8, ftol=1e-8,
+        max_nfev=_MOST_EVALUATIONS, xtol=until, ftol=until,
     )  # fmt: skip
     point = np.asarray(found.x, np.float64)
     rest = np.asarray(found.fun, np.float64)
@@ -154,26 +159,30 @@ def solve(problem: Problem, start: Parameters, free: Sequence[str]) -> Solution:
     )
 
 
-def promised_costs(problem: Problem, best: Solution, names: Sequence[str]) -> dict[str, float]:
+def promised_costs(
+    problem: Problem, best: Solution, starts: Mapping[str, Parameters]
+) -> dict[str, float]:
     """What the cost would come to with one parameter more, by the tangents at an optimum.
 
     Args:
         problem: What is minimised.
         best: The optimum.
-        names: Parameters, each of which is tried by itself.
+        starts: Parameters, each of which is tried by itself: its name, and the optimum with some of
+            it, where its own tangent is taken.
     """
     here = problem.residuals(best.parameters)
 
-    def tangent(moved: str) -> FloatArray:
-        slope = _tangent(problem, best.parameters, moved, here)
+    def tangent(moved: str, at: Parameters, rest: FloatArray) -> FloatArray:
+        slope = _tangent(problem, at, moved, rest)
         return slope / max(float(np.sqrt(slope @ slope)), _NOTHING)
 
-    known = [tangent(moved) for moved in best.free]
+    known = [tangent(moved, best.parameters, here) for moved in best.free]
     promised = {}
-    for name in names:
-        tangents = np.column_stack([*known, tangent(name)])
-        step_to, *_ = np.linalg.lstsq(tangents, -here, rcond=1e-10)
-        promised[name] = float(np.sqrt(np.mean((here + tangents @ step_to) ** 2)))
+    for name, start in starts.items():
+        rest = here if start == best.parameters else problem.residuals(start)
+        tangents = np.column_stack([*known, tangent(name, start, rest)])
+        step_to, *_ = np.linalg.lstsq(tangents, -rest, rcond=1e-10)
+        promised[name] = float(np.sqrt(np.mean((rest + tangents @ step_to) ** 2)))
     return promised
 
 

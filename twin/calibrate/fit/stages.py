@@ -9,6 +9,7 @@ from twin.calibrate.fit.parameters import Parameters, coordinates
 from twin.calibrate.fit.simulation import drawn_otherwise
 from twin.calibrate.fit.solve import (
     BATCHES,
+    ROUGH,
     Interval,
     Problem,
     Solution,
@@ -20,10 +21,11 @@ from twin.calibrate.fit.solve import (
 from twin.calibrate.fit.stretch import Stretch, predict
 from twin.calibrate.fit.structure import (
     EXTRAS,
+    INTEGRATOR,
     Choice,
     choose_structure,
-    integrating,
     leaves_less,
+    started,
     with_integrator,
 )
 from twin.nc.canonical import FloatArray, IntArray
@@ -88,11 +90,14 @@ def fit_axis(
         names.append("measuring_filter")
     forced = _has(stretches, "force")
     problem = _weighted(kind, stretches, start)
-    core = _core_fit(problem, start, names, forced=forced)
-    problem = _weighted(kind, stretches, core.parameters)
-    choice = Choice(solve(problem, core.parameters, core.free))
+    cores = _core_fits(problem, start, names, forced=forced)
+    problem = _weighted(kind, stretches, cores[0].parameters)
+    choice = Choice(solve(problem, cores[0].parameters, cores[0].free))
     if _share_left(stretches, choice.best.parameters) > _ENOUGH:
-        choice = choose_structure(problem, choice.best, forced=forced)
+        others = [solve(problem, other.parameters, other.free) for other in cores[1:]]
+        choice = choose_structure(problem, [choice.best, *others], forced=forced)
+        best = solve(problem, choice.best.parameters, choice.best.free)
+        choice = dataclasses.replace(choice, best=best)
     best, undetermined = _without_undetermined(problem, choice.best, base)
     fitted = _allowing_for_others(problem, Choice(best, choice.rivals))
     if best.parameters.reset_time_s != base.reset_time_s and "reset_time_s" not in fitted:
@@ -109,30 +114,35 @@ def fit_axis(
     return _told(stretches, best, fitted, undetermined)
 
 
-def _core_fit(
+def _core_fits(
     problem: Problem, start: Parameters, free: Sequence[str], *, forced: bool
-) -> Solution:
-    """The optimum of gain, damping, friction and mass, with an integrator where the log asks for one.
+) -> list[Solution]:
+    """Optima of gain, damping, friction and mass, with and without an integrator.
 
-    Where it does not tell, the drive integrates or not as the base does.
+    First comes what the log asks for; where it does not tell, the drive integrates or not as the
+    base does.
     """
 
     def best(parameters: Parameters, names: Sequence[str]) -> Solution:
         starts = (dataclasses.replace(parameters, damping_ratio=z) for z in _DAMPINGS)
-        return min((solve(problem, one, names) for one in starts), key=lambda found: found.cost)
+        return min(
+            (solve(problem, one, names, until=ROUGH) for one in starts),
+            key=lambda found: found.cost,
+        )
 
     plain = best(dataclasses.replace(start, reset_time_s=0.0), free)
-    integrates = best(integrating(start), with_integrator(free, forced=forced))
+    integrates = best(started(start, INTEGRATOR), with_integrator(free, forced=forced))
     if not start.reset_time_s:
-        return integrates if leaves_less(integrates, plain) else plain
+        both = [plain, integrates]
+        return both[::-1] if leaves_less(integrates, plain) else both
     kept = solve(
         problem,
         dataclasses.replace(integrates.parameters, reset_time_s=start.reset_time_s),
         with_integrator(free, forced=forced)[:-1],
     )
     if leaves_less(integrates, kept) and leaves_less(integrates, plain):
-        return integrates
-    return plain if plain.cost < kept.cost else kept
+        return [integrates, plain]
+    return [plain, integrates] if plain.cost < kept.cost else [kept, plain, integrates]
 
 
 def _allowing_for_others(problem: Problem, choice: Choice) -> dict[str, Interval]:
@@ -140,7 +150,9 @@ def _allowing_for_others(problem: Problem, choice: Choice) -> dict[str, Interval
     best = choice.best
     others = [name for name in EXTRAS if name not in best.free]
     moving = dict.fromkeys([*movers(problem, best, others), *({"delay"} & set(others))])
-    freed = {name: solve(problem, best.parameters, [*best.free, name]) for name in moving}
+    freed = {
+        name: solve(problem, best.parameters, [*best.free, name], until=ROUGH) for name in moving
+    }
     fitted = dict(best.intervals)
     alternatives = [(rival.parameters, rival.intervals) for rival in choice.rivals]
     alternatives += [

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from twin.calibrate.fit.parameters import Parameters
-from twin.calibrate.fit.solve import Problem, Solution, promised_costs, solve
+from twin.calibrate.fit.solve import ROUGH, Problem, Solution, promised_costs, solve
+from twin.nc.canonical import FloatArray
 
 EXTRAS = (
     "delay", "force_delay", "velocity_feedforward", "acceleration_feedforward", "measuring_filter", "reset_time_s",
@@ -26,9 +27,14 @@ _SURE = 4.0
 """its gain over the stretches of time is more than so many of its standard errors."""
 _HOPE = 0.997
 """A parameter is tried where the tangent at the optimum promises less than this share."""
-_RESET_S = 0.03
-"""Where the search for an integrator begins: near none, friction hides what it does [s]."""
+_STARTS = {
+    "reset_time_s": 0.03, "loop_delay_s": 0.001, "velocity_filter_s": 0.001, "command_filter_s": 0.003,
+    "measuring_filter": 0.002,
+}  # fmt: skip
+"""Where the search for what an axis has not begins [s]: off none, where a search within bounds hardly moves."""
 INTEGRATOR = "reset_time_s"
+_WHITE = 0.05
+"""Below this correlation of neighbours, what is left is noise."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -62,55 +68,107 @@ def with_integrator(free: Sequence[str], *, forced: bool) -> list[str]:
     return [*(name for name in free if forced or name != "constant_force"), INTEGRATOR]
 
 
-def integrating(parameters: Parameters) -> Parameters:
-    """These, with an integrator where they have none."""
-    return dataclasses.replace(parameters, reset_time_s=parameters.reset_time_s or _RESET_S)
+def started(parameters: Parameters, name: str) -> Parameters:
+    """These, with some of a parameter where they have none of it."""
+    value = getattr(parameters, name) or _STARTS.get(name, 0.0)
+    return dataclasses.replace(parameters, **{name: value})
 
 
-def choose_structure(problem: Problem, core: Solution, *, forced: bool) -> Choice:
+def choose_structure(problem: Problem, cores: Sequence[Solution], *, forced: bool) -> Choice:
     """Take in what else a log asks for, and give up what it then does not ask for.
 
     Args:
         problem: What is minimised.
-        core: The optimum of what every drive has.
+        cores: Optima of what every drive has, the likeliest first. Another is asked where what comes
+            of the first leaves more than noise, and counts where it leaves less.
         forced: Whether a force is logged.
     """
+    first, *others = cores
+    choice = _grown(problem, first, forced=forced)
+    for core in others:
+        if _is_white(problem.residuals(choice.best.parameters)):
+            break
+        other = _grown(problem, core, forced=forced)
+        choice = other if leaves_less(other.best, choice.best) else choice
+    return choice
+
+
+def _is_white(rest: FloatArray) -> bool:
+    """Whether neighbours in what is left are as good as independent: no structure leaves less then."""
+    return abs(float(rest[1:] @ rest[:-1])) < _WHITE * float(rest @ rest)
+
+
+def _grown(problem: Problem, core: Solution, *, forced: bool) -> Choice:
+    """What becomes of a core."""
     best, rivals = core, list[Solution]()
     while True:
         tried = _tried(problem, best, forced=forced)
         better = min(tried, key=lambda solution: solution.cost, default=best)
         if better is best or not leaves_less(better, best):
-            break
+            tried = _exchanged(problem, best, core, forced=forced)
+            better = min(tried, key=lambda solution: solution.cost, default=best)
+            if better is best or not leaves_less(better, best):
+                break
         rivals = [
             other
             for other in tried
             if other is not better and leaves_less(other, best) and not leaves_less(better, other)
         ]
         best = better
-    return Choice(_without_idle(problem, best, core), tuple(rivals))
+    rivals += [other for other in tried if not leaves_less(best, other)]
+    return Choice(_without_idle(problem, best, core, forced=forced), tuple(rivals))
 
 
 def _tried(problem: Problem, best: Solution, *, forced: bool) -> list[Solution]:
     """Optima with one parameter more."""
-    left = [name for name in EXTRAS if name not in best.free]
-    promised = promised_costs(problem, best, left)
-    tried = [
-        solve(problem, best.parameters, [*best.free, name])
-        for name in left
-        if promised[name] < _HOPE * best.cost and name != INTEGRATOR
+    return [
+        _with(problem, best, name, forced=forced)
+        for name, cost in _promised(problem, best, best).items()
+        if cost < _HOPE * best.cost or name == INTEGRATOR
     ]
-    if INTEGRATOR in left:
-        free = with_integrator(best.free, forced=forced)
-        tried.append(solve(problem, integrating(best.parameters), free))
-    return tried
 
 
-def _without_idle(problem: Problem, best: Solution, core: Solution) -> Solution:
+def _exchanged(problem: Problem, best: Solution, core: Solution, *, forced: bool) -> list[Solution]:
+    """Optima with another parameter in the place of one that was taken in."""
+    found = []
+    for name in [name for name in best.free if name not in core.free]:
+        less = _without(problem, best, name, core, forced=forced)
+        found += [
+            _with(problem, less, other, forced=forced)
+            for other, cost in _promised(problem, less, best).items()
+            if cost < best.cost / _PLAIN
+        ]
+    return found
+
+
+def _promised(problem: Problem, less: Solution, best: Solution) -> dict[str, float]:
+    """What an optimum might come to with each parameter that neither it nor another one has."""
+    left = [name for name in EXTRAS if name not in best.free]
+    return promised_costs(problem, less, {name: started(less.parameters, name) for name in left})
+
+
+def _with(problem: Problem, best: Solution, name: str, *, forced: bool) -> Solution:
+    """The optimum with one parameter more."""
+    free = with_integrator(best.free, forced=forced) if name == INTEGRATOR else [*best.free, name]
+    return solve(problem, started(best.parameters, name), free, until=ROUGH)
+
+
+def _without(
+    problem: Problem, best: Solution, name: str, core: Solution, *, forced: bool
+) -> Solution:
+    """The optimum without a parameter that was taken in; what the integrator hid is told again."""
+    kept = [other for other in best.free if other != name]
+    if name == INTEGRATOR and not forced:
+        kept.append("constant_force")
+    stays = dataclasses.replace(best.parameters, **{name: getattr(core.parameters, name)})
+    return solve(problem, stays, kept, until=ROUGH)
+
+
+def _without_idle(problem: Problem, best: Solution, core: Solution, *, forced: bool) -> Solution:
     """Give up what was taken in first and does nothing beside what came later."""
     for name in [name for name in best.free if name not in core.free]:
-        kept = [other for other in best.free if other != name]
-        stays = dataclasses.replace(best.parameters, **{name: getattr(core.parameters, name)})
-        less = solve(problem, stays, kept)
-        if not leaves_less(best, less):
-            best = less
+        if name in best.free:
+            less = _without(problem, best, name, core, forced=forced)
+            if not leaves_less(best, less):
+                best = less
     return best
