@@ -17,10 +17,11 @@ from twin.cutting.kernels.tooth_forces import (
     add_force_between,
     tooth_forces,
 )
-from twin.machine.simulation.drive_kernels import Drives
+from twin.machine.simulation.drive_kernels import Drives, hold_push
 from twin.machine.simulation.process import Physics
 from twin.machine.simulation.stepping import pass_state, step_machine
 from twin.nc.canonical import FloatArray
+from twin.units import MM, SECONDS_PER_MINUTE
 
 LOOK_CELLS = 0.25
 """The material is cut, and looked at anew, when the tip has gone so far since [cells]."""
@@ -28,8 +29,6 @@ LOOK_FEED = 0.05
 """Or when the feed per tooth has changed by so much of itself."""
 _LONGEST_MEAN_S = 0.05
 """Longest time that the speed of the feed is averaged over, however seldom a tooth comes [s]."""
-_MM = 1e-3
-_SECONDS = 60.0
 _STILL = 1e-9
 
 WHOLE, BY_FORCE, BY_CHIP, BY_SPEED = 0, 1, 2, 3
@@ -149,7 +148,7 @@ def follow_cutting(
     """
     stepper = physics.stepper
     for row in range(len(controls)):
-        _push(physics, memory.load)
+        hold_push(physics.drives, memory.load, physics.pushed)
         physics.control[:] = controls[row]
         for _ in range(physics.substeps):
             step_machine(stepper.step, stepper.model, stepper.data)
@@ -163,17 +162,6 @@ def follow_cutting(
         _load_axes(cut.place, memory, cosine, sine)
         _note(cut, memory, felt, row, (cosine, sine))
     physics.pushed[:] = 0.0
-
-
-@kernel
-def _push(physics: Physics, load: FloatArray) -> None:
-    """``twin.machine.simulation.drive_kernels.hold_pushes`` of one row."""
-    drives = physics.drives
-    for axis in range(len(load)):
-        push = (load[axis] + drives.constant[axis]) * np.sign(drives.scale[axis])
-        physics.pushed[drives.dof[axis]] = push
-        if drives.give_dof[axis] >= 0:
-            physics.pushed[drives.give_dof[axis]] = push
 
 
 @kernel
@@ -223,7 +211,7 @@ def _share_of_tooth(cut: Cut, memory: Memory, period: float) -> float:
 def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> None:
     """Turn the spindle, cut, and find what the teeth feel until the next period."""
     numbers = memory.numbers
-    torque = memory.bench.figures[1] * _MM if numbers[MET] > 0.0 else 0.0
+    torque = memory.bench.figures[1] * MM if numbers[MET] > 0.0 else 0.0
     told = 0.0 if math.isnan(commanded) else commanded
     numbers[SPEED] = next_speed(cut.spindle, numbers[SPEED], told, torque, period)
     memory.force[:] = 0.0
@@ -232,8 +220,8 @@ def _turn_and_cut(period: float, commanded: float, cut: Cut, memory: Memory) -> 
         numbers[MET], numbers[FRESH] = 0.0, 1.0
         return
     turned = numbers[SPEED] * period
-    if abs(numbers[SPEED]) > cut.strength.speed / _SECONDS:
-        _break(memory, BY_SPEED, abs(numbers[SPEED]) * _SECONDS)
+    if abs(numbers[SPEED]) > cut.strength.speed / SECONDS_PER_MINUTE:
+        _break(memory, BY_SPEED, abs(numbers[SPEED]) * SECONDS_PER_MINUTE)
         return
     _look(period, cut, memory)
     if numbers[MET] > 0.0:
@@ -308,7 +296,7 @@ def _load_axes(place: Place, memory: Memory, cosine: float, sine: float) -> None
     load[1] = cosine * force[1] - sine * force[0]
     load[2] = force[2]
     if place.rotary >= 0:
-        load[place.rotary] = _MM * (tip[0] * force[1] - tip[1] * force[0])
+        load[place.rotary] = MM * (tip[0] * force[1] - tip[1] * force[0])
 
 
 @kernel
@@ -317,7 +305,7 @@ def _note(cut: Cut, memory: Memory, felt: Felt, row: int, turn: tuple[float, flo
     numbers, bend = memory.numbers, memory.bend
     met = numbers[MET] > 0.0
     speed = numbers[SPEED]
-    torque = memory.bench.figures[1] * _MM if met else 0.0
+    torque = memory.bench.figures[1] * MM if met else 0.0
     for k in range(3):
         felt.force[row, k] = memory.load[k]
     felt.deflection[row, 0] = turn[0] * bend[0] + turn[1] * bend[1]
@@ -326,6 +314,6 @@ def _note(cut: Cut, memory: Memory, felt: Felt, row: int, turn: tuple[float, flo
     felt.peak_force[row] = memory.bench.figures[0] if met else 0.0
     felt.power[row] = 2.0 * math.pi * abs(speed) * torque
     felt.chip[row] = memory.bench.figures[2] if met else 0.0
-    felt.spindle_speed[row] = speed * _SECONDS
+    felt.spindle_speed[row] = speed * SECONDS_PER_MINUTE
     felt.spindle_load[row] = torque / lasting_torque(cut.spindle, speed)
     felt.broken[row] = numbers[STATE]

@@ -320,6 +320,8 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
     assert room.work is not None
     place, removed = room.machine.position, room.work.removed
     heights = room.work.map.heights.copy()
+    assert room.cut.process is not None
+    felt_from = room.cut.process.material.heights.copy()
     later = []
     for _ in range(2):
         session.advance(80)
@@ -332,15 +334,34 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
         assert back.work is not None
         assert back.work.removed == removed
         assert np.array_equal(back.work.map.heights, heights)
+        assert back.cut.process is not None
+        assert np.array_equal(back.cut.process.material.heights, felt_from)
     assert np.array_equal(later[0], later[1])
     assert len(session.log) == 4
 
 
-def test_of_the_stock_a_copy_keeps_only_thetiles_that_were_cut():
+def test_a_copy_holds_no_map_of_its_own(session):
+    session.advance(500)
+    before = checkpoints.checkpoint(session.room, 0, ())
+    after = checkpoints.checkpoint(session.room, 0, before.heights)
+    assert len(after.heights) == 2
+    for old, new in zip(before.heights, after.heights, strict=True):
+        assert all(a is b for a, b in zip(old.tiles, new.tiles, strict=True))
+    work, process = after.room.work, after.room.cut.process
+    assert work is not None
+    assert process is not None
+    for kept, stock in zip(after.heights, (work.map, process.material), strict=True):
+        assert stock.heights is kept
+    assert process.material.uncut is session.room.cut.process.material.uncut
+
+
+def test_of_the_stock_a_copy_keeps_only_the_tiles_that_were_cut():
     heights = np.zeros((150, 200))
     first = checkpoints.KeptHeights(heights, None)
     heights[140, 10] = -1.0
     second = checkpoints.KeptHeights(heights, first)
+    other = checkpoints.KeptHeights(np.zeros((10, 200)), second)
+    assert other.laid_out().shape == (10, 200)
     own = [a is not b for a, b in zip(first.tiles, second.tiles, strict=True)]
     assert own.count(True) == 1
     assert np.array_equal(second.laid_out(), heights)

@@ -129,15 +129,26 @@ def hold_pushes(drives: Drives, load: FloatArray, width: int) -> FloatArray:
     Returns:
         Shape (n, width).
     """
-    count, axes = load.shape
-    pushes = np.zeros((count, width))
-    for row in range(count):
-        for axis in range(axes):
-            push = (load[row, axis] + drives.constant[axis]) * np.sign(drives.scale[axis])
-            pushes[row, drives.dof[axis]] = push
-            if drives.give_dof[axis] >= 0:
-                pushes[row, drives.give_dof[axis]] = push
+    pushes = np.zeros((len(load), width))
+    for row in range(len(load)):
+        hold_push(drives, load[row], pushes[row])
     return pushes
+
+
+@kernel
+def hold_push(drives: Drives, load: FloatArray, pushed: FloatArray) -> None:
+    """One row of ``hold_pushes``.
+
+    Args:
+        drives: The drives.
+        load: What pushes the axes from outside, shape (k,) [N or N m].
+        pushed: Set where an axis is pushed, shape (width,).
+    """
+    for axis in range(len(load)):
+        push = (load[axis] + drives.constant[axis]) * np.sign(drives.scale[axis])
+        pushed[drives.dof[axis]] = push
+        if drives.give_dof[axis] >= 0:
+            pushed[drives.give_dof[axis]] = push
 
 
 @array_kernel

@@ -7,11 +7,13 @@ and of the stock only the tiles that were cut since the copy before.
 import copy
 import dataclasses
 from collections.abc import Iterator
+from itertools import zip_longest
 from typing import Any
 
 import mujoco
 import numpy as np
 
+from twin.cutting.height_map import HeightMap
 from twin.cutting.outline import Outline
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import HeadShape
@@ -42,6 +44,7 @@ class KeptHeights:
 
     Attributes:
         tiles: Row by row.
+        shape: Of all of them.
     """
 
     def __init__(self, heights: FloatArray, before: "KeptHeights | None") -> None:
@@ -49,10 +52,12 @@ class KeptHeights:
 
         Args:
             heights: Shape (ny, nx) [mm].
-            before: Of the same stock, as it was earlier; None: nothing is shared.
+            before: Of the stock as it was earlier; None, or of another shape: nothing is shared.
         """
-        self._shape = heights.shape
-        known = [None] * len(list(self._places())) if before is None else before.tiles
+        self.shape = heights.shape
+        known = [None] * len(list(self._places()))
+        if before is not None and before.shape == heights.shape:
+            known = before.tiles
         self.tiles = [
             old
             if old is not None and np.array_equal(old, heights[place])
@@ -61,7 +66,7 @@ class KeptHeights:
         ]
 
     def _places(self) -> Iterator[tuple[slice, slice]]:
-        rows, columns = self._shape
+        rows, columns = self.shape
         for row in range(0, rows, TILE):
             for column in range(0, columns, TILE):
                 yield slice(row, row + TILE), slice(column, column + TILE)
@@ -72,7 +77,7 @@ class KeptHeights:
 
     def laid_out(self) -> FloatArray:
         """The heights, to be cut again, shape (ny, nx) [mm]."""
-        heights = np.zeros(self._shape)
+        heights = np.zeros(self.shape)
         for place, tile in zip(self._places(), self.tiles, strict=True):
             heights[place] = tile
         return heights
@@ -86,13 +91,13 @@ class Checkpoint:
         tick: Servo periods since the beginning.
         done: How many commands had been given by then.
         room: The copy; its run is planned anew, and its stock laid out, when the copy is used.
-        heights: Of its stock; None: there is none.
+        heights: Of its stock, and of what the force of the cut is felt from, where there are such.
     """
 
     tick: int
     done: int
     room: Room
-    heights: KeptHeights | None
+    heights: tuple[KeptHeights, ...]
 
     def restored(self) -> Room:
         """A room that goes on from there; the copy stays as it is."""
@@ -110,7 +115,7 @@ class Checkpoints:
 
     def __init__(self, room: Room) -> None:
         """Begin with the room as it is."""
-        self._kept = [_checkpoint(room, 0, None)]
+        self._kept = [checkpoint(room, 0, ())]
         self._apart = SLICE * round(APART_S / room.slice_s)
 
     def note(self, room: Room, done: int) -> None:
@@ -121,7 +126,7 @@ class Checkpoints:
             done: How many commands have been given to it.
         """
         if room.tick - self._kept[-1].tick >= self._apart:
-            self._kept.append(_checkpoint(room, done, self._kept[-1].heights))
+            self._kept.append(checkpoint(room, done, self._kept[-1].heights))
             self._thin_out()
 
     def before(self, tick: int) -> Checkpoint:
@@ -145,14 +150,29 @@ def _made_again(run: ProgramRun | ProgramRunCopy | None) -> ProgramRun | None:
     return run.made_again() if isinstance(run, ProgramRunCopy) else run
 
 
-def _checkpoint(room: Room, done: int, before: KeptHeights | None) -> Checkpoint:
+def checkpoint(room: Room, done: int, before: tuple[KeptHeights, ...]) -> Checkpoint:
+    """A copy of a room.
+
+    Args:
+        room: As it is.
+        done: How many commands have been given to it.
+        before: What the copy before kept of the stock.
+    """
     memo: dict[int, Any] = {}
-    kept = None
+    kept: list[KeptHeights] = []
+    for stock, earlier in zip_longest(_stocks(room), before):
+        if stock is not None:
+            kept.append(KeptHeights(stock.heights, earlier))
+            memo[id(stock.heights)], memo[id(stock.uncut)] = kept[-1], stock.uncut
+    return Checkpoint(room.tick, done, _copied(room, memo), tuple(kept))
+
+
+def _stocks(room: Room) -> Iterator[HeightMap]:
+    """What is cut: the part, and what the force of the cut is felt from."""
     if room.work is not None:
-        stock = room.work.map
-        kept = KeptHeights(stock.heights, before)
-        memo[id(stock.heights)], memo[id(stock.uncut)] = kept, stock.uncut
-    return Checkpoint(room.tick, done, _copied(room, memo), kept)
+        yield room.work.map
+    if room.cut.process is not None:
+        yield room.cut.process.material
 
 
 def _copied(room: Room, memo: dict[int, Any]) -> Room:

@@ -168,9 +168,7 @@ class Room:
         for axis, value in file.start.position.items():
             stand[machine.axes.index(axis)] = value
         self.machine = LiveMachine(with_blank(machine, job, zero, over_table), job.tools[0], stand)
-        rotary = machine.part_frame.rotary
-        turn_zero = 0.0 if rotary is None else float(zero[rotary])
-        self.part_frame = dataclasses.replace(machine.part_frame, turn_zero=turn_zero)
+        self.part_frame = machine.part_frame.at(zero)
         self.cut = LiveCut(self.machine, job, self.part_frame, self.tables.true_zero)
         self.work = self._clamped_blank()
         self.mode: Mode = file.start.mode
