@@ -30,6 +30,9 @@ _SURROGATES = "surrogatepass"
 _ANY_BYTE = "latin-1"
 """Decodes any byte; used where a file is neither UTF-8 nor in the dialect's own code page."""
 
+_DIVIDED = 256
+"""Lines that are divided at once: one by one is slow, and a whole page takes eight times its text."""
+
 
 class Page:
     """Some of a program's lines.
@@ -46,13 +49,18 @@ class Page:
         self.data = np.frombuffer(text, np.uint8)
         self.starts = _line_starts(self.data)
         self.lines = range(first, first + len(self.starts) - 1)
-        self._divided: list[bytes] | None = None
+        self._first_divided = -_DIVIDED
+        self._divided: list[bytes] = []
 
     def line(self, number: int) -> str:
         """One of its lines without its end."""
-        if self._divided is None:
-            self._divided = self.text.splitlines()
-        return self._divided[number - self.lines.start].decode(_UTF_8, _SURROGATES)
+        at = number - self.lines.start
+        if not 0 <= at - self._first_divided < _DIVIDED:
+            self._first_divided = at - at % _DIVIDED
+            end = min(self._first_divided + _DIVIDED, len(self.starts) - 1)
+            part = self.text[self.starts[self._first_divided] : self.starts[end]]
+            self._divided = part.splitlines()
+        return self._divided[at - self._first_divided].decode(_UTF_8, _SURROGATES)
 
 
 class Lines(Sequence[str]):
