@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tests.training.session.commanding import do, refused
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session.session import Session
 
@@ -17,16 +18,6 @@ def session() -> Session:
     made = Session(read_scene(scene_path("fagor_first_steps")))
     do(made, "mode", mode="jog")
     return made
-
-
-def do(session: Session, what: str, /, **arguments: object) -> None:
-    assert session.submit({"do": what, **arguments}), session.refusal
-    session.advance()
-
-
-def refused(session: Session, what: str, /, **arguments: object) -> str:
-    assert not session.submit({"do": what, **arguments})
-    return session.refusal
 
 
 def rest(session: Session) -> None:

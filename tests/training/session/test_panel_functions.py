@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from tests.training.session.commanding import do, refused
 from twin.nc.control.settings import ToolData
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.text.source import source_from_text
@@ -17,16 +18,6 @@ from twin.training.session.session import Session
 @pytest.fixture
 def session() -> Session:
     return Session(read_scene(scene_path("fagor_first_steps")))
-
-
-def do(session: Session, what: str, /, **arguments: object) -> None:
-    assert session.submit({"do": what, **arguments}), session.refusal
-    session.advance()
-
-
-def refused(session: Session, what: str, /, **arguments: object) -> str:
-    assert not session.submit({"do": what, **arguments})
-    return session.refusal
 
 
 def rest(session: Session) -> None:

@@ -54,7 +54,7 @@ class PhaseTable:
         return PhaseTable(self.rows[rows], self.rows_pieces[rows])
 
     def shifted(self, by: float) -> "PhaseTable":
-        """The same phases, later."""
+        """These phases, later."""
         rows = self.rows.copy()
         rows[:, 0] += by
         return PhaseTable(rows, self.rows_pieces)

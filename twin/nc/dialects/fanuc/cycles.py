@@ -31,7 +31,7 @@ _DRILLS = {
 
 
 def _unscaled(number: int, code: GCode) -> GCode:
-    """The same cycle, refused under a scale."""
+    """A cycle that is refused under a scale."""
     action = code.action
     assert action is not None
 
