@@ -4,7 +4,7 @@ import collections
 import sys
 import time
 
-from tests.nc.linuxcnc.oracle import RS274, by_twin, difference
+from tests.nc.linuxcnc.oracle import RS274, by_twin, compared
 from tests.nc.linuxcnc.random_programs import contour, program
 
 SHOWN = 3
@@ -17,9 +17,11 @@ def main(count: int = 1000, seed: int = 0) -> int:
         return 2
     begin, differ = time.monotonic(), 0
     said: collections.Counter[str] = collections.Counter()
+    decided: collections.Counter[str] = collections.Counter()
     for number in range(seed, seed + count):
         text = contour(number) if number % 5 == 0 else program(number)
-        found = difference(text)
+        found, decisions = compared(text)
+        decided.update(decisions)
         said["refused by both" if by_twin(text).error else "run by both"] += not found
         if found:
             differ += 1
@@ -27,6 +29,7 @@ def main(count: int = 1000, seed: int = 0) -> int:
                 print(f"--- seed {number}\n{text}{found}\n")
     seconds = time.monotonic() - begin
     print(f"{count} programs in {seconds:.0f} s: {dict(said)}, {differ} differ")
+    print(f"by decision: {dict(decided)}")
     return 1 if differ else 0
 
 
