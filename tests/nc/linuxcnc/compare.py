@@ -6,8 +6,11 @@ import time
 
 from tests.nc.linuxcnc.oracle import RS274, by_twin, compared
 from tests.nc.linuxcnc.random_programs import contour, program
+from tests.nc.linuxcnc.wide_programs import wide, wide_contour
 
-SHOWN = 3
+SHOWN = 60
+KINDS = (contour, program, wide, wide_contour, program, wide, program, wide, program, wide)
+"""Which programs follow each other."""
 
 
 def main(count: int = 1000, seed: int = 0) -> int:
@@ -19,11 +22,12 @@ def main(count: int = 1000, seed: int = 0) -> int:
     said: collections.Counter[str] = collections.Counter()
     decided: collections.Counter[str] = collections.Counter()
     for number in range(seed, seed + count):
-        text = contour(number) if number % 5 == 0 else program(number)
+        text = KINDS[number % len(KINDS)](number)
         found, decisions = compared(text)
         decided.update(decisions)
-        said["refused by both" if by_twin(text).error else "run by both"] += not found
-        if found:
+        if not found:
+            said["refused by both" if by_twin(text).error else "run by both"] += 1
+        else:
             differ += 1
             if differ <= SHOWN:
                 print(f"--- seed {number}\n{text}{found}\n")

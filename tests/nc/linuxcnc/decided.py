@@ -12,8 +12,9 @@ from twin.nc.dialects.linuxcnc.decisions import DECISIONS
 BREAK = "break_within_do"
 LENGTH_BEFORE_CHANGE = "position_after_a_tool_change"
 CLARITY = "refused_for_clarity"
+ENDLESS = "main_program_repeats"
 _KNOWN = {each.example for each in DECISIONS}
-assert {BREAK, LENGTH_BEFORE_CHANGE, CLARITY} <= _KNOWN
+assert {BREAK, LENGTH_BEFORE_CHANGE, CLARITY, ENDLESS} <= _KNOWN
 
 _REFUSED = re.compile(
     r"two codes of the block want its axis words|has no counterpart|a NURBS is ended by G5\.3"

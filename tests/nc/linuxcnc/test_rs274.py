@@ -16,6 +16,7 @@ from tests.nc.linuxcnc.oracle import (
     difference,
 )
 from tests.nc.linuxcnc.random_programs import contour, program
+from tests.nc.linuxcnc.wide_programs import wide, wide_contour
 from tests.nc.running import ROOT
 
 pytestmark = pytest.mark.skipif(
@@ -57,3 +58,13 @@ def test_a_difference_beside_a_decided_one_is_shown() -> None:
     assert compared_answers(twin, answer(15.0, 16.0, forgotten=10.0)).decisions
     assert compared_answers(twin, answer(15.0, 17.0, forgotten=10.0)).said
     assert compared_answers(twin, answer(15.0, 16.0)).said
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_wider_random_programs(seed: int) -> None:
+    assert not difference(wide(seed)), wide(seed)
+
+
+@pytest.mark.parametrize("seed", range(15))
+def test_wider_contours(seed: int) -> None:
+    assert not difference(wide_contour(seed)), wide_contour(seed)

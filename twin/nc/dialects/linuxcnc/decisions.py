@@ -76,7 +76,7 @@ DECISIONS = (
         example="functions_without_a_path",
     ),
     Decision(
-        "In which unit are the parameters of positions of the machine (#5161, #5211, #5221)?",
+        "In which unit are the parameters of the machine (#5161, #5211, #5221, #5401, #5410)?",
         "Millimetres and degrees.",
         "The control keeps them in the machine's unit, which the twin's machines have metric.",
         example="parameters_in_millimetres",
