@@ -13,12 +13,13 @@ BREAK = "break_within_do"
 LENGTH_BEFORE_CHANGE = "position_after_a_tool_change"
 CLARITY = "refused_for_clarity"
 ENDLESS = "main_program_repeats"
+CENTER = "arc_centre_moved_to_fit"
 _KNOWN = {each.example for each in DECISIONS}
-assert {BREAK, LENGTH_BEFORE_CHANGE, CLARITY, ENDLESS} <= _KNOWN
+assert {BREAK, LENGTH_BEFORE_CHANGE, CLARITY, ENDLESS, CENTER, "tool_of_m61"} <= _KNOWN
 
 _REFUSED = re.compile(
     r"two codes of the block want its axis words|has no counterpart|a NURBS is ended by G5\.3"
-    r"|error line-too-long|in square brackets.*\n.*elseif",
+    r"|has changed the unit since a tool length|error line-too-long|in square brackets.*\n.*elseif",
     re.IGNORECASE,
 )
 """What the twin says where it refuses for clarity's sake and ``rs274`` does not."""
@@ -26,15 +27,21 @@ _REFUSED = re.compile(
 _BREAK = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*break", re.IGNORECASE)
 _ENDWHILE = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*endwhile\s*$", re.IGNORECASE)
 _FIRST_LABEL = 700_000
+_MOST_SLIPS = 6
+_LOAD = re.compile(r"^\s*M\s*61\s*Q\s*(\d+)\s*$", re.IGNORECASE)
 
 
-def without_lasting_breaks(text: str) -> str:
-    """A program in which ``rs274`` forgets a break where its while loop ends.
+def for_rs274(text: str) -> tuple[str, frozenset[str]]:
+    """A program as ``rs274`` must read it to do what was decided, and the decisions that changed it.
 
-    It remembers one, even of a loop that was passed over, until a do loop ends, which it then ends.
-    Behind each loop that may break an empty do loop stands, which takes the break away.
+    It remembers a break, even of a loop that was passed over, until a do loop ends, which it then ends:
+    behind each while loop that may break an empty do loop stands, which takes the break away. M61
+    leaves its tool table as it was: M6 stands in its place.
     """
-    return "\n".join(_with_empty_loops(text.split("\n")))
+    looped = list(_with_empty_loops(text.split("\n")))
+    loaded = [_LOAD.sub(r"T\1 M6", line) for line in looped]
+    changes = {BREAK: "\n".join(looped) != text, "tool_of_m61": loaded != looped}
+    return "\n".join(loaded), frozenset(name for name, changed in changes.items() if changed)
 
 
 def _with_empty_loops(lines: list[str]) -> Iterator[str]:
@@ -60,6 +67,6 @@ def slips_of(forgotten: list[float]) -> list[float]:
     programmed, without the lengths that have come into force since; each change may add its own.
     """
     slips = {0.0}
-    for each in forgotten:
+    for each in forgotten[:_MOST_SLIPS]:
         slips |= {slip + each for slip in slips}
     return sorted(slips, key=abs)

@@ -104,6 +104,19 @@ DECISIONS = (
         example="position_after_a_tool_change",
     ),
     Decision(
+        "May the unit change while a tool length is in force?",
+        "Yes, but no other length may follow before G49.",
+        "The control takes the length's number for one of the new unit then, and the axes jump with the next "
+        "move.",
+        example="unit_under_a_tool_length",
+    ),
+    Decision(
+        "Which tool does M61 bring?",
+        "That of its number, whose length G43 takes.",
+        "The machine that rs274 itself brings along leaves the tool table as it was.",
+        example="tool_of_m61",
+    ),
+    Decision(
         "How long may a line be?",
         "252 characters, comments counted.",
         "rs274 of 2.9 refuses a longer one as a command too long; the manual says 256. Of lines that end with "

@@ -51,6 +51,7 @@ class LinuxcncMemory:
         kept_preset: What G92.3 puts back, shape (k,).
         preset_on: The preset counts.
         tool_offset: Of G43, shape (k,) [mm or deg]; None: G49.
+        offset_unit: Unit in force when it came into force [mm].
         homes: Positions of G28 and G30 in machine coordinates, shape (2, k).
         structure: Which O-words belong together; None before it was asked for.
         labels: Lines, from 0, of the O-words that have been run, by scope and name.
@@ -81,6 +82,7 @@ class LinuxcncMemory:
     kept_preset: list[float] = dataclasses.field(default_factory=list)
     preset_on: bool = False
     tool_offset: list[float] | None = None
+    offset_unit: float = 1.0
     homes: list[list[float]] = dataclasses.field(default_factory=list)
     structure: Structure | None = None
     labels: dict[str, int] = dataclasses.field(default_factory=dict)

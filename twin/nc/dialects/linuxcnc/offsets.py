@@ -280,10 +280,15 @@ def _length_here(control: Control, height: float, *, from_fixture: bool) -> floa
 
 
 def tool_length(control: Control) -> None:
-    """G43: the length of tool H, else of the tool in the spindle."""
-    word = control.take("H")
-    number = control.tools.spindle if word is None else tool_numbered(control, word)
-    _set_length(control, _offset_of(control, number))
+    """G43: the length of tool H; without it, and with H0, of the tool in the spindle."""
+    _set_length(control, _offset_of(control, _length_number(control, control.take("H"))))
+
+
+def _length_number(control: Control, word: Word | None) -> int | None:
+    """Number of the tool whose length an H means."""
+    if word is None or control.number(word) == 0.0:
+        return control.tools.spindle
+    return tool_numbered(control, word)
 
 
 def further_tool_length(control: Control) -> None:
@@ -296,7 +301,7 @@ def further_tool_length(control: Control) -> None:
     offset = memory_of(control).tool_offset or [0.0] * len(control.settings.axes)
     more = [0.0] * len(offset)
     if word is not None:
-        more = _offset_of(control, tool_numbered(control, word))
+        more = _offset_of(control, _length_number(control, word))
     for index, each in axes:
         more[index] += control.axis_value(index, each)
     _set_length(control, [a + b for a, b in zip(offset, more, strict=True)])
@@ -318,8 +323,19 @@ def no_tool_length(control: Control) -> None:
 
 
 def _set_length(control: Control, offset: list[float] | None) -> None:
+    """Put a tool offset into force.
+
+    Raises:
+        ProgramError: The unit has changed since another one came into force: the control then takes its
+            number for one of the new unit, and jumps with the next move.
+    """
     refuse_in_compensation(control)
-    memory_of(control).tool_offset = offset
+    memory = memory_of(control)
+    if any(memory.tool_offset or ()) and memory.offset_unit != control.modal.unit:
+        message = "G20 or G21 has changed the unit since a tool length came into force"
+        hint = "write G49 before G20 and G21: the control loses where the axes stand otherwise"
+        control.fail("tool-offset", message, hint=hint)
+    memory.tool_offset, memory.offset_unit = offset, control.modal.unit
     reframe(control)
 
 
