@@ -19,7 +19,8 @@ assert {BREAK, LENGTH_BEFORE_CHANGE, CLARITY, ENDLESS, CENTER, "tool_of_m61"} <=
 
 _REFUSED = re.compile(
     r"two codes of the block want its axis words|has no counterpart|a NURBS is ended by G5\.3"
-    r"|has changed the unit since a tool length|error line-too-long|in square brackets.*\n.*elseif",
+    r"|has changed the unit since a tool length|cannot be turned while G92|tools have a length along Z"
+    r"|#<<|it belongs to lathes|no O-word of the control|error line-too-long|in square brackets.*\n.*elseif",
     re.IGNORECASE,
 )
 """What the twin says where it refuses for clarity's sake and ``rs274`` does not."""
@@ -28,6 +29,7 @@ _BREAK = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*break", re.IGNORECASE)
 _ENDWHILE = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*endwhile\s*$", re.IGNORECASE)
 _FIRST_LABEL = 700_000
 _MOST_SLIPS = 6
+_SPINDLE = re.compile(r"M0*[345](?![0-9.])")
 _LOAD = re.compile(r"^\s*M\s*61\s*Q\s*(\d+)\s*$", re.IGNORECASE)
 
 
@@ -39,7 +41,7 @@ def for_rs274(text: str) -> tuple[str, frozenset[str]]:
     leaves its tool table as it was: M6 stands in its place.
     """
     looped = list(_with_empty_loops(text.split("\n")))
-    loaded = [_LOAD.sub(r"T\1 M6", line) for line in looped]
+    loaded = list(_with_tools(looped))
     changes = {BREAK: "\n".join(looped) != text, "tool_of_m61": loaded != looped}
     return "\n".join(loaded), frozenset(name for name, changed in changes.items() if changed)
 
@@ -53,6 +55,18 @@ def _with_empty_loops(lines: list[str]) -> Iterator[str]:
             label = f"o{_FIRST_LABEL + number}"
             yield f"{label} do"
             yield f"{label} while [0]"
+
+
+def _with_tools(lines: list[str]) -> Iterator[str]:
+    """The lines with M6 in the place of M61, and the spindle as it was."""
+    spindle = "M5"
+    for line in lines:
+        for match in _SPINDLE.findall(line.upper()):
+            spindle = match
+        load = _LOAD.match(line)
+        yield line if load is None else f"T{load[1]} M6"
+        if load is not None:
+            yield spindle
 
 
 def is_decided_refusal(said: str) -> bool:

@@ -41,6 +41,8 @@ ORACLE_SETTINGS = dataclasses.replace(
     },
 )
 _INCH = 25.4
+_PRINTED = 2e-7
+"""What the distance from a centre may lose where the oracle prints nine decimals [mm]."""
 _LONGEST = 10
 """Seconds that ``rs274`` may take: an endless program prints gigabytes."""
 _CALL = re.compile(r"^ *\d+ N\S* +([A-Z0-9_]+)\((.*)\)$")
@@ -54,7 +56,7 @@ class Made(NamedTuple):
     Attributes:
         kind: ``rapid``, ``feed`` or ``arc``.
         end: X, Y, Z, C in machine coordinates [mm or deg].
-        center: Centre of an arc in its plane, or nothing [mm].
+        center: Centre of an arc at the height of its start, X, Y, Z, or nothing [mm].
         turns: Turns of an arc begun, negative clockwise.
     """
 
@@ -207,6 +209,18 @@ class _Reader:
         x, y = place[0] * cosine - place[1] * sine, place[0] * sine + place[1] * cosine
         return [a + b + c for a, b, c in zip([x, y, *place[2:]], system, tool, strict=True)]
 
+    def _programmed_here(self) -> list[float]:
+        """The place of the axes as it would be printed, shape (6,)."""
+        preset, system, tool = (
+            self.shifts[name]
+            for name in ("SET_G92_OFFSET", "SET_G5X_OFFSET", "USE_TOOL_LENGTH_OFFSET")
+        )
+        x, y, z, c = (a - b - d for a, b, d in zip(self.here, system, tool, strict=True))
+        cosine, sine = math.cos(self.rotation), math.sin(self.rotation)
+        turned = [x * cosine + y * sine, y * cosine - x * sine, z, c]
+        x, y, z, c = (a - b for a, b in zip(turned, preset, strict=True))
+        return [x / self.unit, y / self.unit, z / self.unit, 0.0, 0.0, c]
+
     def _go(self, kind: str, end: list[float]) -> None:
         self._moved_with, self._changed = self.shifts["USE_TOOL_LENGTH_OFFSET"][2], False
         if math.dist(end, self.here) > SAME:
@@ -216,13 +230,13 @@ class _Reader:
     def _arc(self, v: list[float]) -> None:
         self._moved_with, self._changed = self.shifts["USE_TOOL_LENGTH_OFFSET"][2], False
         first, second, across = _PLANES[self.plane]
-        values, center = [0.0] * 6, [0.0] * 6
+        values, center = [0.0] * 6, self._programmed_here()
         values[5] = center[5] = v[8]
         values[first], values[second], values[across] = v[0], v[1], v[5]
         center[first], center[second] = v[2], v[3]
         middle = self._place(center)
         end = self._place(values)
-        self.made.append(Made("arc", end, [middle[first], middle[second]], int(v[4])))
+        self.made.append(Made("arc", end, middle[:3], int(v[4])))
         self.here = end
 
 
@@ -238,13 +252,10 @@ def _moves_of(outcome: Outcome) -> list[Made]:
     for row in range(len(moves)):
         end, start = moves.end[row].tolist(), moves.start[row].tolist()
         if moves.shape[row] == Shape.ARC:
-            across = max(range(3), key=lambda axis: abs(moves.normal[row, axis]))
-            first, second, _ = _PLANES[("YZ", "XZ", "XY")[across]]
             sweep = float(moves.sweep[row])
             turns = math.ceil(abs(sweep) / 360.0 - 1e-9)
             turns = int(math.copysign(max(turns, 1), sweep))
-            center = [float(moves.center[row, axis]) for axis in (first, second)]
-            made.append(Made("arc", end, center, turns))
+            made.append(Made("arc", end, moves.center[row].tolist(), turns))
         elif math.dist(end, start) > SAME:
             kind = "rapid" if moves.motion[row] == Motion.RAPID else "feed"
             made.append(Made(kind, end, [], 0))
@@ -298,12 +309,14 @@ def _center_fits(ours: Made, theirs: Made, start: list[float]) -> bool:
     if not _agree(ours._replace(center=[]), theirs._replace(center=[]), 0.0) or ours.kind != "arc":
         return False
     for first, second, _ in _PLANES.values():
-        begin, end = (start[first], start[second]), (theirs.end[first], theirs.end[second])
-        apart = math.dist(begin, theirs.center) - math.dist(end, theirs.center)
-        fitted = math.dist(begin, ours.center) - math.dist(end, ours.center)
-        radius, chord = math.dist(end, theirs.center), math.dist(begin, end)
-        moved = math.dist(ours.center, theirs.center)
-        if abs(fitted) <= SAME < abs(apart) and moved * chord <= 1.01 * radius * abs(apart) + SAME:
+        begin, end, given, fitted = (
+            (place[first], place[second])
+            for place in (start, theirs.end, theirs.center, ours.center)
+        )
+        apart = abs(math.dist(begin, given) - math.dist(end, given)) + _PRINTED
+        chord, moved = math.dist(begin, end), math.dist(given, fitted)
+        fits = abs(math.dist(begin, fitted) - math.dist(end, fitted)) <= SAME
+        if fits and moved * chord <= 1.01 * math.dist(end, given) * apart:
             return True
     return False
 

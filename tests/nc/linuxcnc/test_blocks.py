@@ -24,6 +24,11 @@ REFUSED = {
     "F100\nG81 X1 Z1 R2 L0\nM2\n": "repeat-count",
     f"G0 X1{' ' * 248}\nM2\n": "line-too-long",
     "G43.1 G0 X1\nM2\n": "conflicting-codes",
+    "G43.1 Z4\nG20\nG53 G0 Z1\nM2\n": "tool-offset",
+    "G92 X3\nG10 L2 P1 R30\nM2\n": "preset",
+    "M19 R455\nM2\n": "code-words",
+    "o1 if [0]\no1 breYak\no1 endif\nM2\n": "o-word",
+    "o<> if [0]\nM2\n": "o-word",
     "G43.2 H1 G0 X1\nM2\n": "conflicting-codes",
 }
 ENDS = {
@@ -44,6 +49,11 @@ ENDS = {
     "F100\nG85 X1 Z-3 R-1\nG0 Z5\nG98 G82 X1 Z-4 R1 P1\nX6\nM2\n": [6.0, 0.0, 5.0],
     f"G0 X1{' ' * 247}\nM2\n": [1.0, 0.0, 0.0],
     "G43.1 Z5\nG43.1\nG0 Z1\nM2\n": [0.0, 0.0, 6.0],
+    "T1 M6\nG43 H0\nG0 Z1\nM2\n": [0.0, 0.0, 11.0],
+    "M61 Q2\nG43\nG0 Z1\nM2\n": [0.0, 0.0, 21.0],
+    "G20 F9\nG38.3 X2\nG0 Y#5061\nM2\n": [50.8, 50.8, 0.0],
+    "G20\nG0 X1 Y2\nG0 Z#<_abs_y>\nM2\n": [25.4, 50.8, 50.8],
+    "G43 H99\nG0 X1 Y#<_tool_offset>\nM2\n": [1.0, 0.0, 0.0],
     "T1 M6\nG43\nT2 M6\nG43\nG0 X5\nM2\n": [5.0, 0.0, 0.0],
     "#1=0\no1 while [#1 LT 0]\no1 break\no1 endwhile\no2 do\nG91 G0 X1\n#1=[#1+1]\no2 while [#1 LT 3]\nM2\n":
         [3.0, 0.0, 0.0],

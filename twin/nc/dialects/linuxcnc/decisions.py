@@ -85,7 +85,8 @@ DECISIONS = (
         "What does the twin refuse that rs274 passes over?",
         "Words behind the condition of an elseif that is false, a structure without its end, a NURBS that "
         "another motion ends, Z in G5.2, G5 without I and J that follows no G5, M6 before the first T, a "
-        "motion code beside G43.1 or G43.2.",
+        "motion code beside G43.1 or G43.2, X and Y of a tool in G10 L1, L10 and L11, names of parameters with "
+        "brackets in them, codes of lathes, lines that begin with O and are no O-words.",
         "The manual calls each an error or says nothing of it; what was meant is not done.",
         example="refused_for_clarity",
     ),
@@ -105,10 +106,16 @@ DECISIONS = (
     ),
     Decision(
         "May the unit change while a tool length is in force?",
-        "Yes, but no other length may follow before G49.",
-        "The control takes the length's number for one of the new unit then, and the axes jump with the next "
-        "move.",
+        "Yes, but G43 to G49, G53, G28 and G30 are refused from then on.",
+        "The control takes the length's number for one of the new unit, and the axes jump with the next move.",
         example="unit_under_a_tool_length",
+    ),
+    Decision(
+        "May a coordinate system be turned by G10 L2 R while G92 or G52 is in force?",
+        "Not the one in force while X or Y are shifted.",
+        "The control leaves the shift out when it turns the place where it stands, and the axes jump with the "
+        "next move.",
+        example="turned_under_a_preset",
     ),
     Decision(
         "Which tool does M61 bring?",

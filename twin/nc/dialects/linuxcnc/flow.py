@@ -99,6 +99,11 @@ def _construct_of(control: Control, statement: Statement, word: OWord) -> Constr
         message = f"o{word.label} {word.keyword.lower()} has no counterpart"
         hint = "every if needs its endif, every loop and every sub its end, with the same label"
         refuse(control, statement, "open-structure", message, hint)
+    for line in memory_of(control).garbled:
+        if construct.begin < line < construct.end:
+            control.report.line = line + 1
+            message, width = "no O-word of the control", len(control.program_counter.lines[line])
+            control.report.fail("o-word", message, 0, width, ", ".join(KEYWORDS).lower())
     return construct
 
 
@@ -385,7 +390,7 @@ _WORDS: dict[str, Callable[[Control, Statement, OWord, Assembler], None]] = {
 def _o_word(control: Control, statement: Statement, assembler: Assembler) -> None:
     """A line that begins with an O-word."""
     word = o_word(statement)
-    if word is None:
+    if word is None or not word.label:
         refuse(control, statement, "o-word", "O needs a label", "write o100 or o<name>")
     write = _WORDS.get(word.keyword)
     if write is None:

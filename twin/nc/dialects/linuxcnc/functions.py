@@ -82,6 +82,20 @@ def _with_words(letters: str, needed: str) -> Callable[[Control], None]:
     return action
 
 
+def orient_spindle(control: Control) -> None:
+    """M19 R, P, Q: the spindle's angle changes no path.
+
+    Raises:
+        ProgramError: R is no angle of one turn.
+    """
+    angle = control.take("R")
+    if angle is not None and not 0.0 <= control.number(angle) <= 360.0:
+        control.fail(
+            "code-words", f"{angle.text} is no angle of one turn", angle, "0 to 360 degrees"
+        )
+    _with_words("PQ", "")(control)
+
+
 def read_input(control: Control) -> None:
     """M66 P, E, L, Q: read an input into #5399.
 
@@ -138,7 +152,7 @@ M_CODES = {
     9: MCode(meaning="mist and coolant off", group="coolant", action=_end_coolant,
              ground="manual"),
     19: MCode(meaning="spindle at the angle R, turning by P, within Q seconds", group="spindle",
-              action=_with_words("RPQ", ""), ground="manual"),
+              action=orient_spindle, ground="manual"),
     30: MCode(meaning="end of program, pallets exchanged", group="stop", late=True, ends=True, action=compensation.end,
               ground="manual"),
     48: _function("feed and speed overrides on", "", ""),

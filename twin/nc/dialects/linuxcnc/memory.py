@@ -57,6 +57,7 @@ class LinuxcncMemory:
         labels: Lines, from 0, of the O-words that have been run, by scope and name.
         saved: What M70 and M73 have put aside, by how deep the call is, and whether its end puts it back.
         subroutines: Lines, from 0, of the definitions of subroutines by name, in the order of the text.
+        garbled: Lines, from 0, that begin as one with an O-word and are none.
         tells_calls: The program reads what calls give, or puts aside what is in force; None: not looked.
         called: Names of those that have been called.
         returned: Value of the last subroutine, and whether it gave one.
@@ -88,6 +89,7 @@ class LinuxcncMemory:
     labels: dict[str, int] = dataclasses.field(default_factory=dict)
     saved: dict[int, tuple[SavedState, bool]] = dataclasses.field(default_factory=dict)
     subroutines: dict[str, list[int]] = dataclasses.field(default_factory=dict)
+    garbled: list[int] = dataclasses.field(default_factory=list)
     tells_calls: bool | None = None
     called: set[str] = dataclasses.field(default_factory=set)
     returned: tuple[float, bool] = (0.0, False)

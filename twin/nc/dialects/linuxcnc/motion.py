@@ -9,7 +9,7 @@ from twin.nc.control.interpolation import LineRule
 from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.linuxcnc.compensation import in_force
 from twin.nc.dialects.linuxcnc.memory import memory_of
-from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
+from twin.nc.dialects.linuxcnc.offsets import refuse_changed_unit, refuse_in_compensation
 from twin.nc.geometry.planes import XY
 from twin.nc.iso import base
 from twin.nc.iso.offsets import machine_zero
@@ -113,6 +113,7 @@ FEED = Interpolation(feed_line, rule=LineRule(), without_words=_feed_alone)
 def in_machine_coordinates(control: Control) -> None:
     """G53: G0 or G1 to a position in machine coordinates."""
     refuse_in_compensation(control)
+    refuse_changed_unit(control)
     mode = control.modal.interpolation
     if mode not in (RAPID, FEED) or control.modal.cycle is not None:
         control.fail("machine-coordinates", "G53 moves with G0 or G1 only", hint="write G53 G0 Z0")
@@ -138,6 +139,7 @@ def go_home(place: int) -> Action:
 
     def action(control: Control) -> None:
         refuse_in_compensation(control)
+        refuse_changed_unit(control)
         zero = machine_zero(control, ("G28", "G30")[place])
         named = [control.axis_index.get(letter) for letter in control.words]
         axes = [axis for axis in named if axis is not None]

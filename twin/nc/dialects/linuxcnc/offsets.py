@@ -109,6 +109,20 @@ def refuse_in_compensation(control: Control) -> None:
         control.fail("compensation-change", message, hint="end it by G40 first")
 
 
+def refuse_changed_unit(control: Control) -> None:
+    """What counts with the tool length in force needs the unit in which it came into force.
+
+    Raises:
+        ProgramError: G20 or G21 has changed it: the control takes the length's number for one of the new
+            unit then, and the axes jump with the next move.
+    """
+    memory = memory_of(control)
+    if any(memory.tool_offset or ()) and memory.offset_unit != control.modal.unit:
+        message = "G20 or G21 has changed the unit since a tool length came into force"
+        hint = "write G49 before G20 and G21: the control loses where the axes stand otherwise"
+        control.fail("tool-offset", message, hint=hint)
+
+
 # --- G92, G52
 
 
@@ -204,7 +218,7 @@ def _write_system(control: Control, number: Word, *, here: bool) -> None:
     if turn is not None:
         if here:
             control.fail("code-words", "a rotation R is set by G10 L2", turn)
-        system.rotation = control.number(turn)
+        _turn(control, system, which, control.number(turn))
     if here:
         _set_origin_here(control, system, axes)
     else:
@@ -213,6 +227,22 @@ def _write_system(control: Control, number: Word, *, here: bool) -> None:
             system.origin[index] = control.axis_value(index, word) + zero[index]
     memory.systems[which] = system
     reframe(control)
+
+
+def _turn(control: Control, system: CoordinateSystem, number: int, angle: float) -> None:
+    """Give a system another rotation.
+
+    Raises:
+        ProgramError: It is in force under a preset: the control leaves that out when it turns the place
+            where it stands, and the axes jump with the next move.
+    """
+    memory = memory_of(control)
+    in_force = number == memory.system and system.rotation != angle
+    if in_force and memory.preset_on and any(memory.preset[:2]):
+        message = "a system in force cannot be turned while G92 or G52 shifts X or Y"
+        hint = "write G92.2 before: the control loses where the axes stand otherwise"
+        control.fail("preset", message, hint=hint)
+    system.rotation = angle
 
 
 def _set_origin_here(
@@ -323,18 +353,10 @@ def no_tool_length(control: Control) -> None:
 
 
 def _set_length(control: Control, offset: list[float] | None) -> None:
-    """Put a tool offset into force.
-
-    Raises:
-        ProgramError: The unit has changed since another one came into force: the control then takes its
-            number for one of the new unit, and jumps with the next move.
-    """
+    """Put a tool offset into force."""
     refuse_in_compensation(control)
+    refuse_changed_unit(control)
     memory = memory_of(control)
-    if any(memory.tool_offset or ()) and memory.offset_unit != control.modal.unit:
-        message = "G20 or G21 has changed the unit since a tool length came into force"
-        hint = "write G49 before G20 and G21: the control loses where the axes stand otherwise"
-        control.fail("tool-offset", message, hint=hint)
     memory.tool_offset, memory.offset_unit = offset, control.modal.unit
     reframe(control)
 

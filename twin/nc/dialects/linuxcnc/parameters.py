@@ -272,7 +272,7 @@ _NAMED: dict[str, Callable[[Control], float]] = {
     "units_per_minute": lambda control: float(control.modal.feed_mode is FeedMode.PER_MINUTE),
     "units_per_rev": lambda control: float(control.modal.feed_mode is FeedMode.PER_REVOLUTION),
     "coord_system": _system_code,
-    "tool_offset": lambda control: float(memory_of(control).tool_offset is not None),
+    "tool_offset": lambda control: float(any(memory_of(control).tool_offset or ())),
     "retract_r_plane": lambda control: float(control.modal.return_to_reference),
     "retract_old_z": lambda control: float(not control.modal.return_to_reference),
     "spindle_rpm_mode": lambda _control: 1.0,

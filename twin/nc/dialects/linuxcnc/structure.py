@@ -19,6 +19,8 @@ _LABEL = r"<[^<>]*>|[0-9](?:[0-9 \t]*[0-9])?"
 _LINE = re.compile(
     rf"[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O[ \t]*({_LABEL})[ \t]*([A-Z]*)", re.IGNORECASE
 )
+_BEGIN = re.compile(r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O", re.IGNORECASE)
+_COMPUTED = re.compile(r"[ \t]*[#\[]")
 _WORD = re.compile(rf"[ \t]*({_LABEL}|#[^\[ \t]*|\[[^\]]*\])[ \t]*([A-Z]*)[ \t]*", re.IGNORECASE)
 _COMMENT = re.compile(r"\([^()]*\)")
 _ENDS = {"ENDSUB": "SUB", "ENDIF": "IF", "ENDWHILE": "WHILE", "ENDREPEAT": "REPEAT"}
@@ -57,14 +59,44 @@ def o_word(statement: Statement) -> OWord | None:
     return OWord(label, match[2].upper(), text[match.end() :], statement.text_column + match.end())
 
 
-def structure_of(lines: Iterable[str]) -> tuple[Structure, dict[str, list[int]]]:
-    """Pair the O-words of a program, and find its subroutines; what has no counterpart stays open."""
-    structure, subroutines = Structure(), dict[str, list[int]]()
+def is_garbled(text: str) -> bool:
+    """Whether a line begins as one with an O-word and is none."""
+    begin = _BEGIN.match(text)
+    if begin is None or _COMPUTED.match(text, begin.end()):
+        return False
+    match = _LINE.match(text)
+    if match is None:
+        return True
+    rest = _COMMENT.sub("", text[match.end() :]).partition(";")[0].strip()
+    return match[2].upper() not in KEYWORDS if match[2] else rest != ""
+
+
+class OWords(NamedTuple):
+    """The O-words of a program.
+
+    Attributes:
+        structure: Which belong together; what has no counterpart stays open.
+        subroutines: Lines, from 0, of the definitions of subroutines by name.
+        garbled: Lines, from 0, within a condition, a loop or a subroutine that begin with O and say nothing.
+    """
+
+    structure: Structure
+    subroutines: dict[str, list[int]]
+    garbled: list[int]
+
+
+def structure_of(lines: Iterable[str]) -> OWords:
+    """Pair the O-words of a program, and find its subroutines."""
+    structure, subroutines, garbled = Structure(), dict[str, list[int]](), list[int]()
     open_ones: list[Construct] = []
     for line, text in enumerate(lines):
         if text.startswith(FILE):
             open_ones = []
-        if "O" not in text.upper() or (match := _LINE.match(text)) is None:
+        if "O" not in text.upper():
+            continue
+        if open_ones and is_garbled(text):
+            garbled.append(line)
+        if (match := _LINE.match(text)) is None:
             continue
         name, keyword = name_of_label(match[1]), match[2].upper()
         if keyword in ("SUB", ""):
@@ -72,7 +104,7 @@ def structure_of(lines: Iterable[str]) -> tuple[Structure, dict[str, list[int]]]
         found = _paired(structure, open_ones, name, keyword, line)
         if found is not None:
             structure.by_line[line] = found
-    return structure, subroutines
+    return OWords(structure, subroutines, garbled)
 
 
 def _paired(
@@ -99,7 +131,8 @@ def structure(control: Control) -> Structure:
     """The program's structure."""
     memory = memory_of(control)
     if memory.structure is None:
-        memory.structure, memory.subroutines = structure_of(control.program_counter.lines)
+        found = structure_of(control.program_counter.lines)
+        memory.structure, memory.subroutines, memory.garbled = found
     return memory.structure
 
 
