@@ -151,6 +151,12 @@ CHANGES = (
         "gost/codes/G43",
     ),
     Change(
+        "bytecode/compensation",
+        "signed_offset = side * radius",
+        "signed_offset = -side * radius",
+        "gost/codes/G41",
+    ),
+    Change(
         "bytecode/flow", "stack[top - 1] + width", "stack[top - 1] - width", "fagor8070/rules/flow"
     ),
     Change(

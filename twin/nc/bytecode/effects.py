@@ -41,6 +41,7 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import SHIFTS, add_up
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
 from twin.nc.geometry.planes import along, vector_of
+from twin.nc.path.drilling_cycle import Act
 from twin.nc.path.event_columns import (
     AUXILIARY,
     DWELL,
@@ -70,6 +71,7 @@ from twin.nc.text.expressions import LARGEST_NUMBER
 """What is wrong with an instruction."""
 _NO_EVENT = -1
 _LENGTH = SHIFTS.index("length")
+_WAIT, _SPINDLE_STOPS = int(Act.DWELL), int(Act.M5)
 LARGEST_TOOL, LARGEST_AUXILIARY = LARGEST_NUMBER, 999_999.0
 """Numbers of tools and of auxiliary functions that an event can hold."""
 
@@ -173,6 +175,17 @@ def _report_effect(
     if kind != _NO_EVENT:
         report(on.rows, on.state, block.made, block.line, kind, number, amount)
     return top
+
+
+@compilable
+def report_act(act: int, amount: float, block: BlockPlace, on: Affected) -> None:
+    """What happens at a hole and is no move: a dwell [s], or the spindle with its speed."""
+    kind, value = FUNCTION_WITH_SPEED, on.state.registers[SPINDLE]
+    if act == _WAIT:
+        kind, value = DWELL, amount
+    elif act == _SPINDLE_STOPS:
+        kind, value = FUNCTION_ALONE, np.nan
+    report(on.rows, on.state, block.made, block.line, kind, act, value)
 
 
 @compilable
