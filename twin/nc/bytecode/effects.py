@@ -52,6 +52,7 @@ from twin.nc.path.event_columns import (
 )
 from twin.nc.path.moves import LARGEST_COORDINATE
 from twin.nc.path.rows import Rows, copy
+from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.expressions import LARGEST_NUMBER
 
 (
@@ -309,12 +310,6 @@ def _transform(
             return TRANSFORM_COMPENSATED
         transform(on.constants, state)
     return top
-
-
-@compilable
-def is_whole(value: float, largest: float) -> bool:
-    """Whether a value is a whole number from 0 to the largest."""
-    return 0.0 <= value <= largest and value == np.floor(value)
 
 
 @compilable
