@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.compilation.compilable import compilable
-from twin.nc.text.plain_word import BLANK, KINDS
+from twin.nc.text.plain_word import IS_BLANK
 from twin.nc.text.syntax import Comment
 
 Characters: TypeAlias = "Sequence[int] | npt.NDArray[np.uint8]"
@@ -94,7 +94,7 @@ def _is_blank(line: Characters, begin: int, end: int) -> bool:
     blank = True
     for place in range(begin, end):
         character = line[place]
-        blank = blank and character < len(KINDS) and KINDS[character] == BLANK
+        blank = blank and character < len(IS_BLANK) and IS_BLANK[character]
     return blank
 
 

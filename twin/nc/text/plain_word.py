@@ -9,30 +9,30 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
-BLANK, LETTER, DIGIT, POINT, SIGN, _OTHER = range(6)
+_BLANK, _LETTER, _DIGIT, _POINT, _SIGN = range(5)
 """Kinds of characters."""
 _CHARACTERS: Mapping[int, str] = {
-    BLANK: " \t",
-    LETTER: string.ascii_letters,
-    DIGIT: string.digits,
-    POINT: ".",
-    SIGN: "+-",
+    _BLANK: " \t",
+    _LETTER: string.ascii_letters,
+    _DIGIT: string.digits,
+    _POINT: ".",
+    _SIGN: "+-",
 }
 
-BEGIN, _ADDRESS, _SIGNED, _WHOLE, _LONE_POINT, FRACTION = range(6)
+BEGIN, ADDRESS, _SIGNED, WHOLE, _LONE_POINT, FRACTION = range(6)
 """How far a word has been read: blanks alone; its address; a sign; digits; a point without digits
 before it; digits with a point."""
-_NUMBER = {DIGIT: _WHOLE, POINT: _LONE_POINT}
+_NUMBER = {_DIGIT: WHOLE, _POINT: _LONE_POINT}
 _STEPS: Mapping[int, Mapping[int, int]] = {
-    BEGIN: {BLANK: BEGIN, LETTER: _ADDRESS},
-    _ADDRESS: {BLANK: _ADDRESS, **_NUMBER, SIGN: _SIGNED},
+    BEGIN: {_BLANK: BEGIN, _LETTER: ADDRESS},
+    ADDRESS: {_BLANK: ADDRESS, **_NUMBER, _SIGN: _SIGNED},
     _SIGNED: _NUMBER,
-    _WHOLE: {DIGIT: _WHOLE, POINT: FRACTION},
-    _LONE_POINT: {DIGIT: FRACTION},
-    FRACTION: {DIGIT: FRACTION},
+    WHOLE: {_DIGIT: WHOLE, _POINT: FRACTION},
+    _LONE_POINT: {_DIGIT: FRACTION},
+    FRACTION: {_DIGIT: FRACTION},
 }
 """Where each kind of character leads; any other one ends the word."""
-_ENDS = (_WHOLE, FRACTION)
+_ENDS = (WHOLE, FRACTION)
 """What a whole word has come to."""
 
 
@@ -44,38 +44,42 @@ def _repeated(stage: int) -> str:
 
 def _onward(stage: int, ends: Collection[int]) -> str:
     """Regular expression of what leads on, up to the end of the word."""
-    steps = [(_CHARACTERS[kind], to) for kind, to in _STEPS[stage].items() if to != stage]
-    ways = [f"[{characters}]{_repeated(to)}{_onward(to, ends)}" for characters, to in steps]
-    if not ways:
-        return ""
-    return f"(?:{'|'.join(ways)})" + ("?" if stage in ends else "")
+    steps = {kind: to for kind, to in _STEPS[stage].items() if to != stage}
+    ways: list[str] = []
+    for kind, to in steps.items():
+        one = f"[{_CHARACTERS[kind]}]"
+        rest = {other: behind for other, behind in steps.items() if other != kind}
+        if rest and rest == _STEPS[to]:  # may be left out
+            return f"{one}?{_onward(to, ends)}"
+        several = _repeated(to)
+        ways.append((f"{one}+" if several == f"{one}*" else one + several) + _onward(to, ends))
+    if stage in ends and ways:
+        return f"(?:{'|'.join(ways)})?"
+    return f"(?:{'|'.join(ways)})" if len(ways) > 1 else "".join(ways)
 
 
-BLANKS, BLANKS_BETWEEN = _repeated(BEGIN), _repeated(_ADDRESS)
+BLANKS, BLANKS_BETWEEN = _repeated(BEGIN), _repeated(ADDRESS)
 """What may stand before an address, and behind it; as all others, for regular expressions."""
-NUMBER, SIGNED_NUMBER = _onward(_SIGNED, _ENDS), _onward(_ADDRESS, _ENDS)
+NUMBER, SIGNED_NUMBER = _onward(_SIGNED, _ENDS), _onward(ADDRESS, _ENDS)
 """A number without a sign, and a word's, which may have one."""
-SIGNED_POINTED_NUMBER = _onward(_ADDRESS, (FRACTION,))
+SIGNED_POINTED_NUMBER = _onward(ADDRESS, (FRACTION,))
 """That of a word, with a decimal point."""
 
-
-def _kinds() -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
-    kinds = np.full(256, _OTHER, np.uint8)
-    for kind, characters in _CHARACTERS.items():
-        kinds[list(characters.encode())] = kind
-    return kinds
+END = 255
+"""A byte ends the word."""
 
 
-def _steps() -> np.ndarray[tuple[int, int], np.dtype[np.int8]]:
-    steps = np.full((len(_STEPS), _OTHER + 1), -1, np.int8)
-    for stage, to in _STEPS.items():
-        steps[stage, list(to)] = list(to.values())
-    return steps
+def _walk() -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
+    walk = np.full((len(_STEPS), 256), END, np.uint8)
+    for stage, steps in _STEPS.items():
+        for kind, to in steps.items():
+            walk[stage, list(_CHARACTERS[kind].encode())] = to
+    return walk.ravel()
 
 
-KINDS = _kinds()
-"""Kind of each byte of UTF-8, shape (256,)."""
-STEPS = _steps()
-"""Where each kind leads from each stage, -1: it ends the word; shape (6, 6)."""
+WALK = _walk()
+"""The stage that a byte of UTF-8 leads to, or ``END``: 256 for each stage, shape (1536,)."""
+IS_BLANK = WALK[:256] == BEGIN
+"""Whether a byte is a blank, shape (256,)."""
 IS_WORD = np.isin(np.arange(len(_STEPS)), _ENDS)
 """Whether what has come to a stage is a whole word, shape (6,)."""

@@ -14,16 +14,17 @@ from twin.nc.bytecode.token_kinds import NUMBER, OTHER, UNSUPPORTED, ByteArray, 
 from twin.nc.canonical import FloatArray, IntArray
 from twin.nc.text.comments import comment_end
 from twin.nc.text.plain_word import (
+    ADDRESS,
     BEGIN,
-    DIGIT,
+    END,
     FRACTION,
     IS_WORD,
-    KINDS,
-    LETTER,
-    STEPS,
+    WALK,
+    WHOLE,
 )
 
-_MINUS, _DIGIT_0, _LETTER_A, _TO_UPPER = ord("-"), ord("0"), ord("A"), 0xDF
+_MINUS, _POINT, _DIGIT_0 = ord("-"), ord("."), ord("0")
+_LETTER_A, _TO_UPPER = ord("A"), 0xDF
 _EXACT_MANTISSA = 2**53 // 10 - 1
 """A mantissa up to here takes a further digit and is still exact as a double."""
 _POWERS = 10.0 ** np.arange(23)
@@ -98,17 +99,16 @@ def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int
     mantissa, decimals = 0, 0
     while at < end:
         byte = int(data[at])
-        kind = KINDS[byte]
-        following = STEPS[stage, kind]
-        if following < 0:
+        following = WALK[stage << 8 | byte]
+        if following == END:
             break
-        stage = following
-        if kind == DIGIT:
+        stage = int(following)
+        if stage >= WHOLE and byte != _POINT:
             if mantissa > _EXACT_MANTISSA:
                 return stage, letter, 0.0, UNSUPPORTED
             mantissa = 10 * mantissa + byte - _DIGIT_0
             decimals += stage == FRACTION
-        elif kind == LETTER:
+        elif stage == ADDRESS and byte >= _LETTER_A:
             letter = (byte & _TO_UPPER) - _LETTER_A
         elif byte == _MINUS:
             negative = True
