@@ -24,8 +24,10 @@ class LineTables(NamedTuple):
         token_kinds: What each letter is, shape (26,).
         comments: How comments are marked.
         pointed: Numbers of the letter are plain with a decimal point only, unless 0, shape (26,).
+        longest: Bytes of a line that may be plain.
     """
 
     token_kinds: IntArray
     comments: CommentMarks
     pointed: npt.NDArray[np.bool_]
+    longest: int

@@ -243,6 +243,7 @@ def _line_tables(
         by_letter,
         comment_marks(dialect.syntax.comments).columns,
         np.array([letter in pointed for letter in string.ascii_uppercase]),
+        dialect.syntax.longest_line,
     )
 
 
