@@ -116,6 +116,13 @@ CHANGES = (
         "turn * signed_offset > 0.0",
         "fagor8070/rules/compensation",
     ),
+    Change("text/plain_word", '_POINT: ".",', '_POINT: ",",', "gost/rules/drilling"),
+    Change(
+        "text/comments",
+        "return end if closing[0] == 0 else OPEN_COMMENT",
+        "return OPEN_COMMENT",
+        "mefi/rules/planes_and_arcs",
+    ),
     Change("text/arithmetic", "return a + b\n", "return a + b + 1.0\n", "fagor8070/rules/flow"),
     Change(
         "bytecode/expressions",
