@@ -93,7 +93,7 @@ class Judge:
     def note_singly(self, room: Observed) -> None:
         """Lines of the program were run in single block, from one stop to the next."""
         if room.run is not None and room.running == "program":
-            self._noted(room)[0].update(room.run.singly)
+            self.noted(room)[0].update(room.run.singly)
             self._believe(room)
 
     def note_hold(self, room: Observed) -> None:
@@ -101,14 +101,14 @@ class Judge:
         if room.running == "program":
             self._hold_line = int(room.machine.setpoint.line[0])
 
-    def _noted(self, room: Observed) -> tuple[set[int], set[int]]:
+    def noted(self, room: Observed) -> tuple[set[int], set[int]]:
         """Lines of the program as it is written now: run in single block, and held in."""
         return self._by_program.setdefault(room.lines, (set(), set()))
 
     def _believe(self, room: Observed) -> None:
         """Lines count of the scene's own program, and of another one that has made the part."""
         if room.lines in self._trusted:
-            single, held = self._noted(room)
+            single, held = self.noted(room)
             self.evidence.single |= single
             self.evidence.held |= held
 
@@ -175,7 +175,7 @@ class Judge:
         if room.run is not None and room.running == "program" and room.run.held:
             self.note_singly(room)
             if self._hold_line and not room.moving:
-                self._noted(room)[1].add(self._hold_line)
+                self.noted(room)[1].add(self._hold_line)
                 self._hold_line = 0
                 self._believe(room)
         for number, task in enumerate(self._file.tasks):
