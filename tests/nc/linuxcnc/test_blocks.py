@@ -51,7 +51,6 @@ ENDS = {
     "G43.1 Z5\nG43.1\nG0 Z1\nM2\n": [0.0, 0.0, 6.0],
     "T1 M6\nG43 H0\nG0 Z1\nM2\n": [0.0, 0.0, 11.0],
     "M61 Q2\nG43\nG0 Z1\nM2\n": [0.0, 0.0, 21.0],
-    "G20 F9\nG38.3 X2\nG0 Y#5061\nM2\n": [50.8, 50.8, 0.0],
     "G20\nG0 X1 Y2\nG0 Z#<_abs_y>\nM2\n": [25.4, 50.8, 50.8],
     "G43 H99\nG0 X1 Y#<_tool_offset>\nM2\n": [1.0, 0.0, 0.0],
     "T1 M6\nG43\nT2 M6\nG43\nG0 X5\nM2\n": [5.0, 0.0, 0.0],
@@ -78,3 +77,9 @@ def test_moved(text: str) -> None:
 @pytest.mark.parametrize("text", [*REFUSED, *ENDS])
 def test_as_rs274(text: str) -> None:
     assert not difference(text)
+
+
+def test_a_probe_is_told_in_the_unit_of_the_program() -> None:
+    """The probe that ``rs274`` brings along stops a hundredth of an inch before the end of its path."""
+    made = by_twin("G20 F9\nG38.3 X2\nG21\nG0 Y#5061\nM2\n")
+    assert made.moves[-1].end[:2] == pytest.approx([50.8, 2.0])
