@@ -75,8 +75,9 @@ REFUSED: Mapping[str, str] = {
     "#WRITE": _NO_FILES,
     "#CLOSE": _NO_FILES,
     "#DELETE": _NO_FILES,
-    "#EXEC": "subroutines are called by L, LL, #CALL and #PCALL",
-    "#EXBLK": "subroutines are called by L, LL, #CALL and #PCALL",
+    "#EXEC": "it runs a whole program, in a channel that may be another one, and the twin runs one program; "
+    "make that a subroutine, which ends with #RET, and call it by LL or #CALL",
+    "#EXBLK": "it runs a block that may belong to another channel, and the machine has one; write the block itself",
     "#DEF": "macros are not simulated; write their text",
     "#INIT MACROS": "macros are not simulated; write their text",
     "#MEET": _NO_CHANNELS,
