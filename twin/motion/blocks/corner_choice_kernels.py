@@ -77,10 +77,7 @@ class Corners(NamedTuple):
 LEAST_TURN = 1.5 * math.pi
 """What a run of arcs turns by at least to get a time law of its own (``twin.motion.retiming``) [rad]."""
 
-LEAST_TURN_FROM_REST = math.radians(10.0)
-"""The same of a run that begins or ends at rest [rad]."""
-
-RUN_SHARE = 0.72
+RUN_SHARE = 0.8
 """Share of the time under an arc's bounds that such a run takes from stop to stop."""
 
 FREE, PASSED, STOPPED = -1, 0, 1
@@ -250,8 +247,7 @@ def _time_of_block(
         width, next_width, rounded = width * length / rounded, next_width * length / rounded, length
     time = slower * (width / u if width > 0.0 else 0.0)
     time += slower * (next_width / v if next_width > 0.0 else 0.0)
-    bent = abs(blocks.curves.angle[i]) >= LEAST_TURN_FROM_REST
-    turns = bent and limits.velocity < blocks.velocity[i]
+    turns = abs(blocks.curves.angle[i]) >= LEAST_TURN and limits.velocity < blocks.velocity[i]
     if turns and before == STOPPED and after == STOPPED:
         return RUN_SHARE * travel_time(length, 0.0, 0.0, limits)
     room = length - rounded

@@ -215,9 +215,6 @@ def run_table(
         here[used, 0], here[used, 1] = a / limit, 0.5 * v / limit
         limit = pieces.path_jerk[piece]
         here[kinds + used, 1], here[kinds + used, 2] = 1.5 * a / limit, 0.5 * v / limit
-        if node in (0, count) and v > 0.0:
-            # The state at an end is given, often at the feed itself.
-            most = math.inf
         highest[at, side] = most
         if 0 < node < count:
             forms[node - 1, 1] = here
