@@ -24,7 +24,11 @@ def train(
         ),
     ] = None,
     language: Annotated[
-        str | None, typer.Option("--language", help="en, ru, it or cs; default: the scene's.")
+        str | None,
+        typer.Option(
+            "--language",
+            help="en, ru, it or cs; default: the scene's; of a course that of most sheets.",
+        ),
     ] = None,
     host: Annotated[
         str | None, typer.Option("--host", help="Listen there; needs --certificate.")
@@ -45,7 +49,7 @@ def train(
         room.print_scenes(language)
         return
     if course is not None:
-        room.print_course(course)
+        room.print_course(course, language)
         return
     if rehearse:
         raise typer.Exit(room.rehearse_and_print(scene))
