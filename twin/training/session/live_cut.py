@@ -9,6 +9,7 @@ from twin.coupling.operations import OperatorOperation, cutting_process
 from twin.cutting.forces.tool_strength import tool_strength
 from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.machine.simulation.live import LiveMachine
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
 from twin.recording.form import ToolLoad
@@ -104,6 +105,11 @@ class LiveCut:
         speed = spindle.speed if spindle.turns else None
         sense = -1.0 if counter_clockwise else 1.0
         self._operation.speed = None if speed is None else sense * override * speed
+
+    def told_speed(self, setpoints: Setpoints) -> FloatArray:
+        """How fast the spindle shall turn, at n setpoints, shape (n,) [1/min]; see ``turn``."""
+        speed = self._operation.speed
+        return np.full(len(setpoints), np.nan if speed is None else speed)
 
     def loads(self, felt: ToolLoad | None) -> Loads:
         """What there is to show of what the tool felt."""
