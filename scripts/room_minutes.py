@@ -37,7 +37,7 @@ def looks(room: RoomProcess, minutes: float) -> Iterator[Look]:
     """Keep the room busy, and look at it."""
     begin, programs = time.perf_counter(), 0
     while (passed := time.perf_counter() - begin) < 60.0 * minutes:
-        programs += room.ask("keep_busy")
+        programs += room.ask("keep_busy", 100)
         machine_s, lost_s, memory_mb = room.ask("condition")
         yield Look(passed, machine_s, lost_s, memory_mb, programs)
         time.sleep(LOOK_S)
