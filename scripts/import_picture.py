@@ -75,9 +75,9 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
     ),
     "twin.run": (
         "stages progress run_folder",
-        "placement outcome waits",
+        "messages placement outcome waits",
         "preparation",
-        "dry_run machining messages replay",
+        "dry_run machining replay",
         "run",
         "results",
     ),

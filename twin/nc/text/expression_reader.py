@@ -177,7 +177,7 @@ class _Reading:
             foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
             hint = f"brackets are {opening} {self._syntax.brackets[1]}" if foreign else None
             self._fail("expression", "a value is missing here", hint)
-        name, after = match[0].upper(), match.end()
+        name, after = self._syntax.full_name(match[0].upper()), match.end()
         if name in self._syntax.indexed and self._text[after : after + 1] == opening:
             (index,) = self._arguments(name, after, 1, depth)
             return NumberedVariable(name, index)

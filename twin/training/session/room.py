@@ -26,8 +26,7 @@ from twin.nc.functions import (
     COOLANT_OFF,
     COOLANT_ON,
     PROGRAM_ENDS,
-    SPINDLE_COUNTER_CLOCKWISE,
-    SPINDLE_STARTS,
+    SPINDLE_LIMITED,
     SpindleState,
 )
 from twin.nc.iso.base import jog_block
@@ -123,7 +122,6 @@ class Room:
         feed_override: Feed override dial [%].
         rapid_override: Rapid override dial [%].
         spindle_override: Spindle override dial [%].
-        counter_clockwise: Which way the spindle turns, or turned last.
         switches: Optional stop, block skip, dry run.
         searched: Line at which the next start begins; 0: the first.
         alarm: The alarm that stands.
@@ -177,10 +175,11 @@ class Room:
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
         self.spindle_override = 100
-        self.counter_clockwise = False
         self.switches = Switches()
         self.searched = 0
-        self.spindle = SpindleState(started=file.start.spindle, speed=file.start.speed)
+        self.spindle = dataclasses.replace(
+            preparation.spindle, started=file.start.spindle, speed=file.start.speed
+        )
         self.running_down = False
         self.coolant = False
         self.alarm: Notice | None = None
@@ -257,11 +256,7 @@ class Room:
             self._slice(SLICE)
 
     def _slice(self, count: int) -> None:
-        self.cut.turn(
-            self.spindle,
-            self.spindle_override / 100.0,
-            counter_clockwise=self.counter_clockwise,
-        )
+        self.cut.turn(self.spindle, self.spindle_override / 100.0)
         parts: list[Samples] = []
         if self.machine.alarm is None:
             setpoints = self._setpoints(count)
@@ -334,19 +329,18 @@ class Room:
             self.label = display - end
 
     def _function(self, function: Function) -> None:
-        self.spindle = self.spindle.after(function)
-        if function.word in SPINDLE_STARTS:
-            self.counter_clockwise = function.word == SPINDLE_COUNTER_CLOCKWISE
-            # Started without S the spindle stands until S says more (LinuxCNC, "M3, M4, M5"). A
-            # control that has no word for the speed turns it as the drive is set.
-            if self.spindle.speed is None and self.scene.preparation.dialect.spindle_letter:
-                self.spindle = SpindleState(started=True, speed=0.0)
-        if function.word in PROGRAM_ENDS:
-            self.spindle = self.spindle.stopped()
+        self.turn_spindle(self.spindle.after(function), function.line)
         if function.word in COOLANT_ON:
             self.coolant = True
         elif function.word in COOLANT_OFF | PROGRAM_ENDS:
             self.coolant = False
+
+    def turn_spindle(self, state: SpindleState, line: int = 0) -> None:
+        """Let the spindle go on otherwise; a speed that is limited is told, and stops nothing."""
+        said = state.limit_of(state.speed)
+        if said and state.speed != self.spindle.speed:
+            self.alarms.append(self._notice(SPINDLE_LIMITED, said, line=line))
+        self.spindle = state
 
     def _latch(self, alarm: Alarm | None) -> None:
         # An axis that is jogged off its switch may meet the next alarm while the first one stands.
@@ -373,14 +367,25 @@ class Room:
         self, code: str, message: str, *, axis: str, line: int, finding: Diagnostic | None
     ) -> Notice:
         """Enter what went wrong into the history, for the sheet and the judge too."""
-        here = self.running == "program" or (self.running == "" and line > 0)
-        dialect = self.scene.preparation.dialect
-        block = block_number(dialect, self.program, line) if here else ""
-        notice = Notice(code, message, axis, line, self.time_s, finding, block)
+        notice = self._notice(code, message, axis=axis, line=line, finding=finding)
         self.alarms.append(notice)
         self._keep_moment(notice)
         self.judge.note_alarm(code)
         return notice
+
+    def _notice(
+        self,
+        code: str,
+        message: str,
+        *,
+        axis: str = "",
+        line: int = 0,
+        finding: Diagnostic | None = None,
+    ) -> Notice:
+        here = self.running == "program" or (self.running == "" and line > 0)
+        dialect = self.scene.preparation.dialect
+        block = block_number(dialect, self.program, line) if here else ""
+        return Notice(code, message, axis, line, self.time_s, finding, block)
 
     def _note_breaks(self) -> None:
         """Tools that have lost their edge: the machine does not feel it, and goes on without."""
@@ -496,9 +501,8 @@ class Room:
         self._begin_part(self.run, paused=paused)
 
     def _begin_part(self, run: ProgramRun, *, paused: bool = False) -> None:
-        sense = -1.0 if self.counter_clockwise else 1.0
         where = self.standing_setpoint, self.tables.program_zero
-        run.begin(*where, self.spindle, sense, paused=paused)
+        run.begin(*where, self.spindle, paused=paused)
 
     def drop_run(self) -> None:
         """Forget what runs; the axes slow down where they are."""
@@ -621,6 +625,7 @@ class Room:
         if number not in self.tables.tools:
             raise UsageError(f"no tool {number}")
         self.tables.spindle = number
+        self.spindle = dataclasses.replace(self.spindle, tool_speed=self.tables.tool.speed)
         self.machine.mount(self.tables.tool)
         self.cut.mount(self.tables.tool, float(self.tables.longer[2]))
         if self.work is not None:
