@@ -82,7 +82,7 @@ def test_functions_wait_for_those_before_them(session):
     seen = []
     while not room.moving:
         session.advance()
-        now = (room.line, room.spindle.speed, room.coolant, room.counter_clockwise)
+        now = (room.line, room.spindle.speed, room.coolant, room.spindle.counter_clockwise)
         if now not in seen:
             seen.append(now)
     assert [one for one in seen if one[0]] == [

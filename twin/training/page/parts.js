@@ -86,7 +86,7 @@ export function number(text) {
  * What is typed is marked as such: a browser tells of no change where a sheet was drawn anew under the typing hand.
  */
 export function field(attributes, send) {
-  const made = make("input", { autocomplete: "off", ...attributes });
+  const made = make("input", { autocomplete: "off", "data-hand": "shown", ...attributes });
   const enter = () => {
     if (made.dataset.hand !== "typed" || !made.isConnected) return;
     made.dataset.hand = "sent";
@@ -102,7 +102,7 @@ export function field(attributes, send) {
 
 /** What stands in the fields of a part of the page, of which hand, and where the hand is: to be put back when it has been drawn anew. */
 export function typing(part) {
-  const fields = [...part.querySelectorAll("input:not([type=checkbox]):not([data-hand=sent]), select")];
+  const fields = [...part.querySelectorAll("input:not([type=checkbox]):not([data-hand=shown]):not([data-hand=sent]), select")];
   const here = part.contains(document.activeElement) ? document.activeElement : null;
   const found = { values: fields.map((one) => [one.dataset.key, one.value, one.dataset.hand]), focus: here?.dataset.key, caret: here?.type === "text" ? [here.selectionStart, here.selectionEnd] : null };
   // They are taken away, which is no leaving of a field.
