@@ -82,7 +82,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "results",
     ),
     "twin.machine": ("description", "model", "watching", "simulation", "circle", "describe check"),
-    "twin.training": ("scene", "session", "server"),
+    "twin.training": ("scene", "session", "sheets", "server"),
 }
 """Of each folder with rooms, its rooms from the ground up; those of one floor know nothing of each
 other. An import leads down, never up."""

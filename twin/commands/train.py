@@ -29,7 +29,7 @@ def print_course(folder: Path) -> None:
         UsageError: There is no such folder.
     """
     from twin.files.atomic import write_text
-    from twin.training.session.course import course_of, course_page
+    from twin.training.sheets.course import course_of, course_page
 
     rows, unread = course_of(folder)
     for row in rows:

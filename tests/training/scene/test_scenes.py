@@ -27,6 +27,8 @@ def test_there_are_at_least_eight_two_per_control():
 def test_every_text_is_told_in_every_language(name):
     file = scene(name).file
     texts = [file.title, file.story, *(task.text for task in file.tasks), *file.hints]
+    assert file.lesson is not None, "the sheet must say what the trap was"
+    texts += file.lesson.texts
     for text in texts:
         assert set(text) == set(LANGUAGES)
         figures = {language: re.findall(r"[A-Z]?-?\d+", told) for language, told in text.items()}

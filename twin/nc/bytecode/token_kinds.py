@@ -25,6 +25,7 @@ class LineTables(NamedTuple):
         closings: First bytes of what ends a comment of each kind; 0, 0: the end of the line.
         whole_line: It can only begin its line, shape (c,).
         pointed: Numbers of the letter are plain with a decimal point only, unless 0, shape (26,).
+        longest: Bytes of a line that may be plain.
     """
 
     token_kinds: IntArray
@@ -32,3 +33,4 @@ class LineTables(NamedTuple):
     closings: ByteArray
     whole_line: npt.NDArray[np.bool_]
     pointed: npt.NDArray[np.bool_]
+    longest: int

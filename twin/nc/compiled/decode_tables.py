@@ -246,6 +246,7 @@ def _line_tables(
         _marks([comment.closing for comment in comments]),
         _whole_line(comments),
         np.array([letter in pointed for letter in string.ascii_uppercase]),
+        dialect.syntax.longest_line,
     )
 
 

@@ -11,10 +11,6 @@ from twin.nc.text.line_reader import LineReader
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.syntax import Language
 
-LONGEST_LINE = 65_536
-"""Characters of a line: far beyond any control's block, so that one line cannot eat the memory."""
-
-
 _SPLIT = re.compile(r"[0-9.][ \t]+[0-9.]")
 _NUMBER_WITH_BLANKS = re.compile(r"[0-9.](?:[ \t]*[0-9.])+")
 
@@ -64,9 +60,10 @@ class Lexer:
         return ()
 
     def _check(self, line: str) -> None:
-        if len(line) > LONGEST_LINE:
-            message = f"the line has {len(line)} characters, more than {LONGEST_LINE}"
-            self._report.fail("line-too-long", message, LONGEST_LINE)
+        longest = self._grammar.syntax.longest_line
+        if len(line) > longest:
+            message = f"the line has {len(line)} characters, more than {longest}"
+            self._report.fail("line-too-long", message, longest)
         if not line.isprintable():
             for column, character in enumerate(line):
                 if ord(character) < 32 and character not in "\t\f\v":

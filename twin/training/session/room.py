@@ -37,6 +37,7 @@ from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.block_walk import ModalState
 from twin.training.session.faults import inject
+from twin.training.session.inspection import Inspection, inspect_part
 from twin.training.session.judge import Judge
 from twin.training.session.live_cut import LiveCut
 from twin.training.session.moment import Moment, moment_of
@@ -127,6 +128,7 @@ class Room:
         alarm: The alarm that stands.
         alarms: Those that came, the newest last.
         moments: How the tool stood in the part at each of them.
+        handed_in: The part as it was when the scene was judged; None: it has not been.
         broken: Tools that have lost their edge, by number, with what was said of it.
         pressed: Whether the emergency stop button is pressed.
         spindle: Whether the spindle turns, and how fast.
@@ -184,6 +186,7 @@ class Room:
         self.alarm: Notice | None = None
         self.alarms: deque[Notice] = deque(maxlen=ALARMS_KEPT)
         self.moments: deque[Moment] = deque(maxlen=MOMENTS_KEPT)
+        self.handed_in: Inspection | None = None
         self.broken: dict[int, Notice] = {}
         self.pressed = False
         self.program: Source = preparation.source
@@ -274,6 +277,8 @@ class Room:
         self._note_breaks()
         self._end_of_part()
         self.judge.look(self)
+        if self.judge.over and self.handed_in is None:
+            self.handed_in = inspect_part(self, self._moment(Notice("", "", "", 0, self.time_s)))
 
     def _setpoints(self, count: int) -> Setpoints:
         if self.run is None or self.waiting:
@@ -368,7 +373,7 @@ class Room:
         """Enter what went wrong into the history, for the sheet and the judge too."""
         notice = self._notice(code, message, axis=axis, line=line, finding=finding)
         self.alarms.append(notice)
-        self._keep_moment(notice)
+        self.moments.append(self._moment(notice))
         self.judge.note_alarm(code)
         return notice
 
@@ -395,14 +400,14 @@ class Room:
                 alarm.code, alarm.message, axis="", line=line, finding=None
             )
 
-    def _keep_moment(self, alarm: Notice) -> None:
-        """Keep for the score sheet how the tool stood in the part."""
+    def _moment(self, alarm: Notice) -> Moment:
+        """How the tool stands in the part, for the score sheet."""
         at = self.machine.position - self.tables.longer
         tip = self.part_frame.position(at[None])[0]
         stock = None if self.work is None else self.work.map
         running = self.run is not None and self.running == "program"
         text = self.lines[alarm.line - 1] if running and 0 < alarm.line <= len(self.lines) else ""
-        self.moments.append(moment_of(alarm, text.strip(), tip, self.tables.tool, stock))
+        return moment_of(alarm, text.strip(), tip, self.tables.tool, stock)
 
     def _end_of_part(self) -> None:
         """What comes when the present part of a program has come to its end."""
@@ -415,7 +420,7 @@ class Room:
         if self.run is None:
             return
         ending = run.ending
-        self.judge.note_singly(run.singly)
+        self.judge.note_singly(self)
         if run.dropped or ending in (None, "end"):
             if self.running == "jog":
                 self._end_of_leg()
@@ -621,6 +626,7 @@ class Room:
 
     def new_blank(self) -> None:
         """Clamp a new blank."""
+        self.judge.note_blank()
         self.work = self._clamped_blank()
         if self.work is not None:
             self.work.mount(self.tables.tool)

@@ -9,9 +9,9 @@ from PIL import Image
 from twin.nc.text.source import source_from_text
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import LANGUAGES, Words, vocabulary
-from twin.training.session.course import course_of, course_page
-from twin.training.session.score import SheetWriter, score_page, score_sheet
 from twin.training.session.session import Session
+from twin.training.sheets.course import course_of, course_page
+from twin.training.sheets.score import SheetWriter, score_page, score_sheet
 
 
 @pytest.fixture(scope="module")
