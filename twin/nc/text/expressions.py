@@ -11,9 +11,6 @@ from typing import Any, Protocol
 
 from twin.nc.text import arithmetic
 
-NUMBER = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
-"""An unsigned number, for regular expressions."""
-
 LARGEST_NUMBER = 1e12
 """Largest magnitude of a value: beyond it neither a coordinate nor a count makes sense."""
 

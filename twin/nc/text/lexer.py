@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable
 
 from twin.nc.text.blocks import Block
+from twin.nc.text.comments import is_control
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.expression_reader import ExpressionReader
 from twin.nc.text.grammar import Grammar
@@ -66,7 +67,7 @@ class Lexer:
             self._report.fail("line-too-long", message, longest)
         if not line.isprintable():
             for column, character in enumerate(line):
-                if ord(character) < 32 and character not in "\t\f\v":
+                if is_control(ord(character)):
                     message = f"the line holds the control character {ord(character)}"
                     hint = None if ord(character) else "if the file is UTF-16, save it as UTF-8"
                     self._report.fail("control-character", message, column, hint=hint)

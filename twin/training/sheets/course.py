@@ -1,6 +1,7 @@
 """A course: the score sheets of many sessions as one list."""
 
 import os
+from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import quote
@@ -9,8 +10,15 @@ import jinja2
 import pydantic
 
 from twin.errors import UsageError
+from twin.training.scene.scene_file import read_scene, scene_names, scene_path
+from twin.training.scene.vocabulary import LANGUAGES, Language, in_language, vocabulary
 
 SHEET, PAGE = "score.json", "score.html"
+_LABELS = (
+    "course", "name", "story", "date", "score", "hint", "history", "not_handed_in", "sessions",
+    "full_points",
+)  # fmt: skip
+_TEMPLATE = Path(__file__).with_name("course.html.j2")
 
 
 class CourseRow(NamedTuple):
@@ -19,6 +27,8 @@ class CourseRow(NamedTuple):
     Attributes:
         name: Who was at the panel; empty: nobody said.
         scene: Name of the scene.
+        title: What its sheet calls it.
+        language: Of its sheet.
         date: When it began.
         points: Reached.
         of: What all tasks are worth.
@@ -30,6 +40,8 @@ class CourseRow(NamedTuple):
 
     name: str
     scene: str
+    title: str
+    language: str
     date: str
     points: int
     of: int
@@ -37,6 +49,24 @@ class CourseRow(NamedTuple):
     hints: int
     alarms: tuple[str, ...]
     link: str
+
+
+class Trainee(NamedTuple):
+    """What one trainee has come to.
+
+    Attributes:
+        name: As signed; empty: nobody said.
+        sessions: How many there are.
+        full: Scenes that were handed in with all points at least once.
+        points: Sum of the best of each scene that was handed in.
+        of: What these scenes are worth.
+    """
+
+    name: str
+    sessions: int
+    full: int
+    points: int
+    of: int
 
 
 class _Alarm(pydantic.BaseModel):
@@ -48,6 +78,8 @@ class _Sheet(pydantic.BaseModel):
 
     name: str = ""
     scene: str
+    title: str = ""
+    language: str = "en"
     date: str = ""
     points: int
     of: int
@@ -65,6 +97,8 @@ def _row(sheet: _Sheet, folder: Path) -> CourseRow:
     return CourseRow(
         name=printable(sheet.name),
         scene=printable(sheet.scene),
+        title=printable(sheet.title or sheet.scene),
+        language=sheet.language,
         date=printable(sheet.date),
         points=sheet.points,
         of=sheet.of,
@@ -99,22 +133,51 @@ def course_of(folder: Path) -> tuple[list[CourseRow], list[str]]:
     return rows, unread
 
 
-def course_page(rows: list[CourseRow]) -> str:
-    """The list as a page, with a link to each sheet."""
+def language_of(rows: list[CourseRow]) -> Language:
+    """The language that most of the sheets are in; English where there are none."""
+    spoken = Counter(row.language for row in rows)
+    return max(LANGUAGES, key=lambda language: spoken[language])
+
+
+def trainees(rows: list[CourseRow]) -> list[Trainee]:
+    """What each trainee has come to, by name: of each scene the best sheet that was handed in."""
+    found = []
+    for name in dict.fromkeys(row.name for row in rows):
+        theirs = [row for row in rows if row.name == name]
+        best: dict[str, CourseRow] = {}
+        for row in sorted(theirs, key=lambda row: row.points):
+            if row.handed_in:
+                best[row.scene] = row
+        found.append(
+            Trainee(
+                name=name,
+                sessions=len(theirs),
+                full=sum(row.points == row.of for row in best.values()),
+                points=sum(row.points for row in best.values()),
+                of=sum(row.of for row in best.values()),
+            )
+        )
+    return found
+
+
+def scene_title(row: CourseRow, language: Language) -> str:
+    """What a scene is called in a language; one that is not shipped as its sheet calls it."""
+    if row.scene not in scene_names():
+        return row.title
+    return in_language(read_scene(scene_path(row.scene)).file.title, language)
+
+
+def course_page(rows: list[CourseRow], language: Language) -> str:
+    """The list as a page in a language: what each trainee has come to, and a link to each sheet."""
+    words = vocabulary(language)
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
-    return environment.from_string(_LIST).render(rows=rows)
-
-
-_LIST = """<!doctype html>
-<html lang="en"><meta charset="utf-8"><title>Course</title>
-<style>body { font: 15px/1.5 system-ui, sans-serif; margin: 2rem; color: #1c2329; } table { border-collapse: collapse; }
-td, th { text-align: left; padding: .35rem .8rem; border-bottom: 1px solid #dde3e8; } th { color: #66727d; }
-.number { text-align: right; }</style>
-<h1>Course</h1>
-<table><tr><th>Name</th><th>Scene</th><th>Date</th><th class="number">Points</th><th>Hints</th><th>Alarms</th></tr>
-{% for row in rows %}<tr><td>{{ row.name or "–" }}</td>
-<td><a href="{{ row.link }}">{{ row.scene }}</a></td><td>{{ row.date }}</td>
-<td class="number">{{ row.points }} / {{ row.of }}{{ "" if row.handed_in else " (open)" }}</td>
-<td class="number">{{ row.hints }}</td><td>{{ row.alarms | join(", ") }}</td></tr>
-{% endfor %}</table></html>
-"""
+    template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
+    titles = {row.scene: scene_title(row, language) for row in rows}
+    return template.render(
+        rows=rows,
+        trainees=trainees(rows),
+        titles=titles,
+        words={key: words.labels[key] for key in _LABELS},
+        alarms={code: told.name for code, told in words.alarms.items()},
+        language=language,
+    )
