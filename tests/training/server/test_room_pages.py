@@ -241,6 +241,26 @@ def test_what_the_machine_refuses_is_said_and_taken_back_on_the_page(room, conte
     page.wait_for_selector("#message .refusal")
 
 
+def test_what_is_typed_counts_though_its_sheet_is_drawn_anew(room, context):
+    player = Player(room, open_page(room, context))
+    page, machine = player.page, player.machine
+    length, radius = "[data-key='length 1']", "[data-key='radius 1']"
+    page.click("#tab-tools")
+    for leave, other, expected in (("Tab", 2.25, 625.0), ("Enter", 3.5, 62.5)):
+        page.fill(length, "")
+        page.type(length, "625")
+        page.press(length, "ArrowLeft")
+        before = page.wait_for_selector(length)
+        room.driver.ask({"do": "set_tool", "number": 1, "radius": other}, "trainer", 0)
+        player.until(lambda want=other: float(page.input_value(radius)) == want, "the other value")
+        assert not before.evaluate("(one) => one.isConnected")
+        assert machine.tables.lengths[1] != expected
+        if leave == "Enter":
+            page.keyboard.type(".")
+        page.keyboard.press(leave)
+        player.until(lambda want=expected: machine.tables.lengths[1] == want, "the length")
+
+
 def test_a_program_is_begun_in_its_midst_and_held_and_left_and_found_again(room, context):
     player = Player(room, open_page(room, context))
     page, machine = player.page, player.machine
