@@ -445,3 +445,21 @@ def test_every_sheet_can_be_read_by_everybody(chromium, room):
             tab.click()
             assert page.evaluate(SERIOUS) == [], (role, tab.inner_text())
     context.close()
+
+
+def test_the_way_of_the_program_is_told_before_it_runs_and_why_it_is_not(chromium, room):
+    context = chromium.new_context()
+    without_view(context)
+    page = open_page(room, context, query="?language=en")
+    page.click("[data-key=preview]")
+    note = page.locator("#path-note")
+    page.wait_for_selector("#path-note >> text=rapid dashed")
+    assert "Z -3.3 … 50.0" in note.inner_text()
+    player = Player(room, page)
+    page.click("#line2")
+    page.fill("[data-key=edited]", "N20 QQ")
+    player.press("edit", "edit")
+    page.wait_for_selector("#path-note.refusal >> text=line 2")
+    page.click("[data-key=preview]")
+    page.wait_for_selector("#path-note", state="hidden")
+    context.close()

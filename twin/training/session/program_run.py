@@ -217,13 +217,39 @@ class ProgramRun:
             paused: Whether start is waited for before its first block.
         """
         self._journal.append(("begin", start, zero, spindle, paused))
+        self._prepare_part(start, zero, spindle)
+        self._begin_paused = paused
+        self._look_ahead()
+
+    def _prepare_part(self, start: FloatArray, zero: FloatArray, spindle: SpindleState) -> None:
         self._forget()
         tool = self._control.tools.spindle or 0
         self._waits = Waits(self._machine.file.spindle, {}, tool, spindle)
         self._begin = start, zero
-        self._begin_paused = paused
         self.ending = None
-        self._look_ahead()
+
+    READ_AT_ONCE = BLOCKS_AT_REST
+
+    def read(self, start: FloatArray, zero: FloatArray, spindle: SpindleState) -> Iterator[Moves]:
+        """Interpret the part that comes next to its end, for somebody who drives none of it.
+
+        Args:
+            start: Where the part begins, machine coordinates, shape (k,) [mm or deg].
+            zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+            spindle: What it has been told.
+
+        Yields:
+            Moves, none where ``READ_AT_ONCE`` blocks made too few to be handed on; ``ending`` is
+            known behind the last.
+        """
+        self._prepare_part(start, zero, spindle)
+        while self.ending is None:
+            self._interpret(self.READ_AT_ONCE)
+            if self.ending is None and not self._waiting and len(self._control.path):
+                self._finish_chunk(self._control.path.take())
+            read = [chunk.moves for chunk in self._waiting]
+            self._waiting.clear()
+            yield from read or [Moves.empty(self._control.settings.axes)]
 
     def drive(self, count: int, feed: float, rapid: float, *, single: bool) -> Setpoints | None:
         """The next setpoints; None while the first moves are being interpreted.

@@ -43,6 +43,7 @@ from twin.training.session.judge import Judge
 from twin.training.session.live_cut import LiveCut
 from twin.training.session.moment import Moment, moment_of
 from twin.training.session.observed import Notice, block_number
+from twin.training.session.preview import PathToCome
 from twin.training.session.program_run import Inherited, ProgramRun, RunOptions
 from twin.training.session.tables import Tables
 from twin.training.session.workpiece import Workpiece
@@ -476,6 +477,23 @@ class Room:
             self.raise_alarm("program", message, line=found.line, finding=found)
         except TwinError as error:
             self.raise_alarm("program", str(error))
+
+    def path_to_come(self) -> PathToCome:
+        """What a start of the program would begin with; nothing of it changes with the room."""
+        preparation, tables = self.scene.preparation, self.tables
+        return PathToCome(
+            source=self.program,
+            dialect=preparation.dialect,
+            settings=dataclasses.replace(preparation.settings, **self._situation()),
+            machine=self.machine.machine,
+            search=self.searched,
+            stand=self.standing_setpoint,
+            zero=tables.zero.copy(),
+            longer=tables.longer_by_table(),
+            tool=tables.spindle,
+            spindle=self.spindle,
+            frame=self.part_frame,
+        )
 
     def _situation(self) -> dict[str, Any]:
         """What the interpreter must know of the machine as it stands."""
