@@ -252,11 +252,19 @@ def training_room(bench: Bench) -> Iterator[str]:
     return room_attacks.complaints()
 
 
+def agent(bench: Bench) -> Iterator[str]:
+    """Fifty streams, clients that do not read and nonsense, all at once, for ``twin serve``."""
+    del bench
+    import agent_attacks
+
+    return agent_attacks.complaints()
+
+
 DAYS: Mapping[str, Callable[[Bench], Iterator[str]]] = {
     day.__name__.replace("_", "-"): day
     for day in (
         kill, interrupt, terminate, large_file, full_disk, read_only, memory, cgroup, two_runs,
-        broken_recording, training_room,
+        broken_recording, training_room, agent,
     )
 }  # fmt: skip
 

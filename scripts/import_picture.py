@@ -75,14 +75,14 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
     ),
     "twin.run": (
         "stages progress run_folder",
-        "placement outcome waits",
+        "messages placement outcome waits",
         "preparation",
-        "dry_run machining messages replay",
+        "dry_run machining replay",
         "run",
         "results",
     ),
     "twin.machine": ("description", "model", "watching", "simulation", "circle", "describe check"),
-    "twin.training": ("scene", "session", "server"),
+    "twin.training": ("scene", "session", "sheets", "server"),
 }
 """Of each folder with rooms, its rooms from the ground up; those of one floor know nothing of each
 other. An import leads down, never up."""

@@ -209,6 +209,9 @@ class Player:
             page.click("#tab-run")
             page.click(f"#line{give['line']}")
             self.press("search", "search")
+        elif name == "change_tool":
+            page.click("#tab-tools")
+            self.press(f"change tool {give['number']}", "change_tool")
         elif name in ("spindle", "coolant"):
             stands = self.machine.spindle.started if name == "spindle" else self.machine.coolant
             if stands != give["on"]:

@@ -10,6 +10,7 @@ from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.nc.canonical import Axes
 from twin.nc.control.settings import ControlSettings, ToolData
 from twin.nc.dialects import dialect_named
+from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import source_from_text
 
@@ -18,13 +19,15 @@ TOOLS = (ToolTable(number=1), ToolTable(number=4, diameter=6.0, length=75.0, spe
 JOB = JobFile(program="p.nc", tools=TOOLS, stock=StockTable(shape="box", size=(9.0, 9.0, 9.0)))
 
 
-def summary(text: str, job: JobFile = JOB, dialect: str = "gost") -> ProgramSummary:
+def summary(
+    text: str, job: JobFile = JOB, dialect: str = "gost", spindle: SpindleState | None = None
+) -> ProgramSummary:
     settings = ControlSettings(
         axes=AXES,
         periodic=frozenset("C"),
         tools={tool.number: ToolData(tool.diameter / 2, tool.length) for tool in job.tools},
     )
-    builder = SummaryBuilder(job)
+    builder = SummaryBuilder(job, spindle)
     for chunk in Interpretation(source_from_text(text), dialect_named(dialect), settings).chunks():
         builder.add(chunk)
     return builder.summary()
@@ -53,7 +56,7 @@ def test_the_spindle_as_the_program_speaks_of_it() -> None:
     found = summary(
         "G0 X1\nS900 M3\nG1 X2 F100\nS1200\nG1 X3\nM5\nG0 X4\nM4\nG1 X5\nT4 M6\nG1 X6\nM30\n"
     )
-    assert [found.spindle.at(move) for move in range(6)] == [None, 900, 1200, 0, -1200, -1200]
+    assert [found.spindle.at(move) for move in range(6)] == [0, 900, 1200, 0, -1200, -1200]
     assert [found.tools.at(move).speed for move in range(6)] == [None, 900, 1200, None, 1200, 1200]
 
 
@@ -94,3 +97,10 @@ def test_the_end_of_a_silent_program_is_no_word_about_the_spindle() -> None:
 def test_a_speed_behind_m3_turns_the_spindle() -> None:
     found = summary("M3\nS4000\nG1 X2 F100\nM4\nG1 X3\nM5\nS500\nG1 X4\nM30\n")
     assert [found.spindle.at(move) for move in range(3)] == [4000, -4000, 0]
+
+
+def test_a_start_without_s_stands_where_the_control_has_a_word_for_it_and_the_job_says_nothing():
+    found = summary("M3\nG1 X1 F100\nT4 M6\nG1 X2\nM30\n", spindle=SpindleState(has_word=True))
+    assert [found.spindle.at(move) for move in range(2)] == [0, 500]
+    found = summary("M3\nG1 X1 F100\nS9000\nG1 X2\nM30\n", spindle=SpindleState(fastest=8000.0))
+    assert [found.spindle.at(move) for move in range(2)] == [None, 8000]

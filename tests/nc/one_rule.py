@@ -116,6 +116,13 @@ CHANGES = (
         "turn * signed_offset > 0.0",
         "fagor8070/rules/compensation",
     ),
+    Change("text/plain_word", '_POINT: ".",', '_POINT: ",",', "gost/rules/drilling"),
+    Change(
+        "text/comments",
+        "return end if closing[0] == 0 else OPEN_COMMENT",
+        "return OPEN_COMMENT",
+        "mefi/rules/planes_and_arcs",
+    ),
     Change("text/arithmetic", "return a + b\n", "return a + b + 1.0\n", "fagor8070/rules/flow"),
     Change(
         "bytecode/expressions",
@@ -149,6 +156,12 @@ CHANGES = (
         "state.part[axis] - state.total[axis]",
         "state.part[axis] - state.total[axis] + 1.0",
         "gost/codes/G43",
+    ),
+    Change(
+        "bytecode/compensation",
+        "signed_offset = side * radius",
+        "signed_offset = -side * radius",
+        "gost/codes/G41",
     ),
     Change(
         "bytecode/flow", "stack[top - 1] + width", "stack[top - 1] - width", "fagor8070/rules/flow"

@@ -18,7 +18,11 @@ def said(word: str, speed: float | None = None) -> Function:
         ([], SpindleState(), False),
         ([said("M3")], SpindleState(started=True), True),
         ([said("S", 800.0)], SpindleState(speed=800.0), False),
-        ([said("S", 800.0), said("M4")], SpindleState(started=True, speed=800.0), True),
+        (
+            [said("S", 800.0), said("M4")],
+            SpindleState(started=True, speed=800.0, counter_clockwise=True),
+            True,
+        ),
         (
             [said("M3", 900.0), said("M5"), said("M3")],
             SpindleState(started=True, speed=900.0),
@@ -26,6 +30,7 @@ def said(word: str, speed: float | None = None) -> Function:
         ),
         ([said("M3", 900.0), said("S", 0.0)], SpindleState(started=True, speed=0.0), False),
         ([said("M3", 900.0), said("M19")], SpindleState(speed=900.0), False),
+        ([said("M3", 900.0), said("M30")], SpindleState(speed=900.0), False),
         ([said("M8")], SpindleState(), False),
     ],
 )
@@ -47,3 +52,26 @@ def test_it_turns_when_the_last_word_for_it_was_a_start(words):
     assert now.turns == (bool(orders) and orders[-1] in ("M3", "M4"))
     assert not now.stopped().turns
     assert now.stopped().speed == now.speed
+
+
+@pytest.mark.parametrize(
+    ("given", "turning"),
+    [
+        ({"has_word": True}, 0.0),
+        ({"has_word": False}, None),
+        ({"has_word": True, "tool_speed": 4000.0}, -4000.0),
+        ({"tool_speed": 4000.0, "speed": 700.0}, -700.0),
+        ({"speed": 9000.0, "fastest": 6000.0}, -6000.0),
+        ({"tool_speed": 9000.0, "fastest": 6000.0}, -6000.0),
+    ],
+)
+def test_a_start_without_s_and_what_the_machine_limits(given, turning):
+    assert SpindleState(**given).after(said("M4")).turning == turning
+    assert SpindleState(**given).turning == 0.0
+
+
+def test_more_than_the_machine_gives_is_told_where_it_is_asked_for():
+    spindle = SpindleState(fastest=6000.0)
+    assert spindle.limited_by(said("M3", 6000.0)) == spindle.limited_by(said("M5", 7000.0)) == ""
+    assert "S7000" in spindle.limited_by(said("S", 7000.0))
+    assert SpindleState().limited_by(said("S", 7000.0)) == ""

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from command_line import Twin, machine_with_gain
 
+from twin.check.runner import check_program
+from twin.check.task import CheckSettings
 from twin.files.shipped import resource_root
 
 PROGRAMS = resource_root("programs")
@@ -32,10 +34,7 @@ def test_it_passes_ends_where_it_shall_and_fails_with_half_the_gain(
     for axis, value in FINAL.get(f"{job.parent.name}/{job.stem}", {}).items():
         assert final["commanded"][axis] == pytest.approx(value, abs=1e-9)
         assert final["simulated"][axis] == pytest.approx(value, abs=2e-3)
-    dull = twin(
-        "run", job, "--machine", machine_with_gain(tmp_path, 0.5), "--out", tmp_path / "half"
-    )
-    assert dull.code == 1, dull.stderr
-    result = json.loads((tmp_path / "half" / "result.json").read_text(encoding="utf-8"))
-    assert result["verdict"] == "fail"
-    assert f"{job.stem}.nc:{result['reasons'][0]['line']}:" in dull.stderr
+    dull = check_program(job, CheckSettings(machine=str(machine_with_gain(tmp_path, 0.5))))
+    assert (dull.verdict, dull.exit_code) == ("fail", 1)
+    assert any(f"{job.stem}.nc:" in str(finding) for finding in dull.findings)
+    assert dull.worst_line > 0

@@ -10,6 +10,7 @@ import twin
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.description.config import SpindleTable
 from twin.nc.canonical import Axes, Chunk, Dwell, Event, Function, Moves
+from twin.nc.functions import SpindleState
 from twin.run.waits import with_waits
 
 AXES = Axes(("X", "Y", "Z"), ("linear",) * 3)
@@ -27,7 +28,8 @@ def said(*words: str | tuple[str, float], spindle: SpindleTable = SPINDLE) -> li
     job = JobFile(program="part.nc", tools=TOOLS)
     found: list[Event] = []
     # One chunk for each event: what is known is carried from one to the next.
-    for chunk in with_waits((Chunk(Moves.empty(AXES), (e,)) for e in events), spindle, job):
+    chunks = (Chunk(Moves.empty(AXES), (event,)) for event in events)
+    for chunk in with_waits(chunks, spindle, job, SpindleState()):
         found += chunk.events
     return found
 
@@ -68,7 +70,7 @@ def test_a_speed_alone_starts_nothing_and_the_end_is_not_waited_for():
 def test_a_path_that_goes_on_does_not_wait():
     event = Function(0, 3, "M3", {"S": 6000.0}, at=0.5)
     job = JobFile(program="part.nc")
-    (chunk,) = with_waits([Chunk(Moves.empty(AXES), (event,))], SPINDLE, job)
+    (chunk,) = with_waits([Chunk(Moves.empty(AXES), (event,))], SPINDLE, job, SpindleState())
     assert list(chunk.events) == [event]
 
 

@@ -24,7 +24,11 @@ def train(
         ),
     ] = None,
     language: Annotated[
-        str | None, typer.Option("--language", help="en, ru, it or cs; default: the scene's.")
+        str | None,
+        typer.Option(
+            "--language",
+            help="en, ru, it or cs; default: the scene's; of a course that of most sheets.",
+        ),
     ] = None,
     host: Annotated[
         str | None, typer.Option("--host", help="Listen there; needs --certificate.")
@@ -45,7 +49,7 @@ def train(
         room.print_scenes(language)
         return
     if course is not None:
-        room.print_course(course)
+        room.print_course(course, language)
         return
     if rehearse:
         raise typer.Exit(room.rehearse_and_print(scene))
@@ -92,13 +96,19 @@ def serve(
         float,
         typer.Option("--speed", min=0.01, max=1000.0, help="How much faster than the day."),
     ] = 1.0,
+    buffer: Annotated[
+        int,
+        typer.Option("--buffer", min=100, max=1 << 24, help="Observations that are remembered."),
+    ] = 1 << 17,
     dialect: DialectOption = None,
     machine: MachineOption = None,
 ) -> None:
     """Tell monitors over MTConnect of a machine that runs a job again and again, or of a room."""
     from twin.commands import serve as agent
 
-    source = agent.Source(host=host, port=port, speed=speed, dialect=dialect, machine=machine)
+    source = agent.Source(
+        host=host, port=port, speed=speed, buffer=buffer, dialect=dialect, machine=machine
+    )
     if (job is None) == (scene is None):
         raise UsageError("give a program or a job, or --scene and a training scene")
     if scene is not None:

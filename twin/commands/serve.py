@@ -2,6 +2,7 @@
 
 import contextlib
 import dataclasses
+import logging
 import socket
 import tempfile
 import threading
@@ -37,6 +38,7 @@ class Source:
         host: Address to listen at.
         port: 0: the first free one from ``FIRST_PORT`` on.
         speed: Seconds of the twin for each second of the day.
+        buffer: How many observations are remembered.
         dialect: Overrides the job's dialect.
         machine: Overrides the job's machine.
     """
@@ -44,6 +46,7 @@ class Source:
     host: str
     port: int
     speed: float = 1.0
+    buffer: int = 1 << 17
     dialect: str | None = None
     machine: str | None = None
 
@@ -71,7 +74,8 @@ def serve_job(path: Path, source: Source) -> ExitCode:
         production = _produce(run, Path(folder))
         machine = run.preparation.machine
         device = device_of(machine.file.name, machine.axes)
-        agent = Agent(device, Clock(source.speed), _description(source.speed))
+        description = _description(source.speed)
+        agent = Agent(device, Clock(source.speed), description, source.buffer)
         stop = threading.Event()
         with (
             _served(agent, lambda: feed(agent, ticks(production)), listener, stop),
@@ -111,7 +115,8 @@ def serve_scene(name: str, source: Source) -> ExitCode:
         scene = read_scene(scene_path(name))
         machine = scene.preparation.machine
         device = device_of(machine.file.name, machine.axes)
-        agent = Agent(device, Clock(), f"The machine of the training scene {scene.name}")
+        description = f"The machine of the training scene {scene.name}"
+        agent = Agent(device, Clock(), description, source.buffer)
         observer = RoomObserver(scene.preparation.source.name)
         with open_room(scene, out=Path("out") / "training") as room:
             stop = threading.Event()
@@ -199,7 +204,6 @@ def _served(
             stop.set()
             failed()
 
-    # Answers that never end are cut off when the server ends.
     config = uvicorn.Config(
         application(agent, observed), log_level="error", timeout_graceful_shutdown=1
     )
@@ -209,6 +213,8 @@ def _served(
     try:
         yield
     finally:
+        # Streams never end by themselves: that they are cut off here is no error.
+        logging.getLogger("uvicorn.error").disabled = True
         server.should_exit = True
         thread.join()
     if failures:

@@ -22,15 +22,20 @@ def print_scenes(language: str | None) -> None:
         typer.echo(f"{name:26} {dialect:11} {scene.points:3} points  {title}")
 
 
-def print_course(folder: Path) -> None:
+def print_course(folder: Path, language: str | None) -> None:
     """List the score sheets of a course, and write the list beside them.
 
+    Args:
+        folder: Where the sheets are.
+        language: Of the list; None: that of most of the sheets.
+
     Raises:
-        UsageError: There is no such folder.
+        UsageError: There is no such folder, or the panel does not speak the language.
     """
     from twin.files.atomic import write_text
-    from twin.training.session.course import course_of, course_page
+    from twin.training.sheets.course import course_of, course_page, language_of
 
+    chosen = language_named(language)
     rows, unread = course_of(folder)
     for row in rows:
         alarms = ", ".join(row.alarms) or "-"
@@ -38,7 +43,7 @@ def print_course(folder: Path) -> None:
         typer.echo(f"{row.name or '-':20} {row.scene:24} {row.date:16} {points:>10}  {alarms}")
     for path in unread:
         typer.echo(f"{path}: no score sheet", err=True)
-    write_text(folder / "course.html", course_page(rows))
+    write_text(folder / "course.html", course_page(rows, chosen or language_of(rows)))
     typer.echo(f"{len(rows)} sessions; {folder / 'course.html'}")
 
 

@@ -39,8 +39,8 @@ class ProgramOperation:
     def turnings(self, setpoints: Setpoints) -> Iterator[Turning]:
         """Split setpoints where the tool changes; see ``Operation``."""
         # At the end of a move's path the spindle has heard what comes before the next one.
-        move = np.maximum(setpoints.move + (setpoints.fraction >= 1.0), 0)
-        speed = self._speed[np.searchsorted(self._first_move, move, side="right") - 1]
+        place = np.maximum(setpoints.move + np.clip(setpoints.fraction, 0.0, 1.0), 0.0)
+        speed = self._speed[np.searchsorted(self._first_move, place, side="right") - 1]
         for rows, tool in self._tools.runs(setpoints.move):
             told = np.full(rows.stop - rows.start, _known(tool.speed))
             yield Turning(

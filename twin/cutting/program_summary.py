@@ -2,6 +2,7 @@
 
 import bisect
 import dataclasses
+from collections.abc import Sequence
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -13,15 +14,18 @@ from twin.job.job_file import JobFile, ToolTable
 from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
 from twin.nc.functions import (
     PROGRAM_ENDS,
-    SPINDLE_COUNTER_CLOCKWISE,
     SPINDLE_SPEED,
     SPINDLE_STARTS,
     SPINDLE_STOPS,
     TOOL_CHANGE,
+    SpindleState,
 )
 
 BoolArray = npt.NDArray[np.bool_]
 ValueT = TypeVar("ValueT")
+
+_OF_SPINDLE = SPINDLE_STARTS | SPINDLE_STOPS | {SPINDLE_SPEED}
+"""Words of a program that speaks of the spindle."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -29,11 +33,12 @@ class Steps(Generic[ValueT]):
     """A value that changes between moves.
 
     Attributes:
-        first_move: Number of the first move that each value holds for, never falling from 0.
+        first_move: Number of the first move that each value holds for, never falling from 0; a
+            fraction counts within the move.
         values: As many.
     """
 
-    first_move: tuple[int, ...]
+    first_move: tuple[float, ...]
     values: tuple[ValueT, ...]
 
     def at(self, move: int) -> ValueT:
@@ -49,7 +54,9 @@ class ProgramSummary:
         tools: What is in the spindle when, at which speed.
         rapid: Whether each move is a rapid, shape (n,).
         spindle: Its speed [1/min], negative where it turns counter-clockwise, 0 where it stands;
-            None where nothing is known of it.
+            None where nothing is known of it. A program that never speaks of the spindle has one
+            value: it runs with it turning, since someone has switched it on by hand. One that does
+            is held to it from its first move on.
         shown: What the control's screen adds to the axes' positions, shape (k,) each [mm or deg];
             none: nothing ever.
     """
@@ -70,11 +77,12 @@ class ProgramSummary:
 class SummaryBuilder:
     """Reads a program along, chunk by chunk."""
 
-    def __init__(self, job: JobFile) -> None:
+    def __init__(self, job: JobFile, spindle: SpindleState | None = None) -> None:
         """Begin with the job's first tool in a spindle of which nothing was said.
 
         Args:
             job: Its tools are those that the program may bring.
+            spindle: As the machine and the control have it; None: without a limit.
         """
         self._tools = {tool.number: tool for tool in job.tools}
         # Without a list of tools every number means the default tool, as in a run without one.
@@ -82,11 +90,10 @@ class SummaryBuilder:
         self._cuts = job.stock is not None
         self._selected: int | None = None
         self._tool = job.tools[0]
-        self._speed = job.tools[0].speed
-        self._turns: float | None = self._speed
-        self._sense = 1.0 if self._speed else 0.0
+        self._state = spindle or SpindleState(tool_speed=self._tool.speed)
+        self._speaks = False
         self._plan: list[tuple[int, ToolTable]] = [(0, self._tool)]
-        self._spindle: list[tuple[int, float | None]] = [(0, self._turns)]
+        self._spindle: list[tuple[float, float | None]] = [(0.0, self._tool.speed)]
         self._shown: list[tuple[int, FloatArray]] = []
         self._rapid = bytearray()
 
@@ -115,6 +122,8 @@ class SummaryBuilder:
             zero = np.zeros_like(self._shown[0][1])
             shown = _steps([(0, zero), *self._shown])
         first_move, tools = zip(*self._plan, strict=True)
+        if self._speaks:
+            self._spindle[0] = (0.0, 0.0)
         return ProgramSummary(
             tools=ToolPlan(tools, first_move),
             rapid=np.frombuffer(bytes(self._rapid), np.bool_),
@@ -128,18 +137,10 @@ class SummaryBuilder:
             self._selected = int(word[1:])
         elif word == TOOL_CHANGE and self._selected is not None:
             self._change_tool(self._selected, event.line, move)
-        elif word in SPINDLE_STARTS:
-            self._speed = event.arguments.get("S", self._speed)
-            self._sense = -1.0 if word == SPINDLE_COUNTER_CLOCKWISE else 1.0
-            self._turn(None if self._speed is None else self._sense * self._speed, move)
-        elif word in SPINDLE_STOPS or (word in PROGRAM_ENDS and len(self._spindle) > 1):
+        elif word in _OF_SPINDLE or (word in PROGRAM_ENDS and self._speaks):
             # The end of a program that never spoke of the spindle says nothing about it.
-            self._sense = 0.0
-            self._turn(0.0, move)
-        elif word == SPINDLE_SPEED:
-            self._speed = event.arguments["S"]
-            if self._sense:
-                self._turn(self._sense * self._speed, move)
+            self._speaks = True
+            self._turn(self._state.after(event), move, event.at)
 
     def _change_tool(self, number: int, line: int, move: int) -> None:
         tool = self._tools.get(number, EMPTY_SPINDLE if number == 0 else None)
@@ -151,24 +152,25 @@ class SummaryBuilder:
             )
         if tool is not None:
             self._tool = tool
-            self._plan.append((move, self._turning()))
+            state = dataclasses.replace(self._state, tool_speed=tool.speed)
+            if self._speaks:
+                self._turn(state, move)
+            else:
+                self._state = state
+                self._plan.append((move, tool))
 
-    def _turn(self, turns: float | None, move: int) -> None:
-        self._turns = turns
-        self._spindle.append((move, turns))
-        self._plan.append((move, self._turning()))
-
-    def _turning(self) -> ToolTable:
-        """The tool at the speed that the program gave it; the job's, where it never spoke of one."""
-        if len(self._spindle) == 1:
-            return self._tool
-        return self._tool.model_copy(update={"speed": abs(self._turns) if self._turns else None})
+    def _turn(self, state: SpindleState, move: int, at: float = 0.0) -> None:
+        """The spindle goes on otherwise; the tool is at the speed that it turns at then."""
+        self._state, turning = state, state.turning
+        self._spindle.append((move + at, turning))
+        speed = abs(turning) if turning else None
+        self._plan.append((move, self._tool.model_copy(update={"speed": speed})))
 
 
 _SHOWN_STEP = 1e-9
 """Changes of what the screen adds that are the arithmetic's doing [mm or deg]."""
 
 
-def _steps(pairs: list[tuple[int, ValueT]]) -> Steps[ValueT]:
+def _steps(pairs: Sequence[tuple[float, ValueT]]) -> Steps[ValueT]:
     first_move, values = zip(*pairs, strict=True)
     return Steps(first_move, values)

@@ -10,6 +10,8 @@ SPINDLE_COUNTER_CLOCKWISE = "M4"
 SPINDLE_STARTS = frozenset({SPINDLE_CLOCKWISE, SPINDLE_COUNTER_CLOCKWISE})
 SPINDLE_STOPS = frozenset({"M5", "M19"})
 """M19 holds the spindle at an angle."""
+SPINDLE_LIMITED = "spindle-limited"
+"""Code of the notice that more was asked for than the machine's greatest speed."""
 SPINDLE_SPEED = "S"
 """Sets the speed, and starts nothing."""
 COOLANT_ON = frozenset({"M7", "M8"})
@@ -34,35 +36,76 @@ def turns_behind(function: int, turned: float) -> float:
     return 0.0 if function == 5 else turned
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
 class SpindleState:
     """The spindle as a program, or a hand, has left it.
 
-    A start turns the spindle even where nobody has given a speed (the control of CODESYS has no word
-    for one): it turns at whatever its drive is set to. A speed alone starts nothing, and S0 stops.
+    A speed alone starts nothing, and S0 stops. A start without any speed turns the spindle as the job
+    says of the tool. Where the job says nothing either, a control with a word for the speed lets it
+    stand, as if S0 were in force (LinuxCNC, "M3, M4, M5"), and one without (CODESYS) turns it as its
+    drive is set, nobody knows how fast. What is above the machine's greatest speed is limited to it,
+    and the program goes on (SINUMERIK 840D sl, "Axes and spindles", maximum speed of the gear stage).
 
     Attributes:
         started: Whether it has been started.
+        counter_clockwise: Which way it turns, or turned last.
         speed: Its last speed [1/min]; None where nobody has said.
+        tool_speed: What the job says of the tool in it [1/min], or None.
+        has_word: The control has a word for the speed.
+        fastest: The machine's greatest speed [1/min]; None: not limited.
     """
 
     started: bool = False
+    counter_clockwise: bool = False
     speed: float | None = None
+    tool_speed: float | None = None
+    has_word: bool = False
+    fastest: float | None = None
+
+    @property
+    def asked(self) -> float | None:
+        """The speed that a start turns it at, before it is limited [1/min]; None: not known."""
+        if self.speed is not None:
+            return self.speed
+        return 0.0 if self.tool_speed is None and self.has_word else self.tool_speed
+
+    @property
+    def turning(self) -> float | None:
+        """How fast it turns [1/min], negative counter-clockwise, 0 at a stand; None: not known."""
+        if not self.started or self.asked is None:
+            return None if self.started else 0.0
+        speed = self.asked if self.fastest is None else min(self.asked, self.fastest)
+        return -speed if self.counter_clockwise else speed
 
     @property
     def turns(self) -> bool:
         """Whether it turns."""
-        return self.started and self.speed != 0.0
+        return self.turning != 0.0
 
     def after(self, function: Function) -> "SpindleState":
         """The state after a function."""
-        started, speed = self.started, self.speed
+        started, sense, speed = self.started, self.counter_clockwise, self.speed
         if function.word in SPINDLE_STARTS | {SPINDLE_SPEED}:
             speed = function.arguments.get("S", speed)
-        if function.word in SPINDLE_STARTS | SPINDLE_STOPS:
+        if function.word in SPINDLE_STARTS | SPINDLE_STOPS | PROGRAM_ENDS:
             started = function.word in SPINDLE_STARTS
-        return SpindleState(started, speed)
+        if function.word in SPINDLE_STARTS:
+            sense = function.word == SPINDLE_COUNTER_CLOCKWISE
+        return dataclasses.replace(self, started=started, counter_clockwise=sense, speed=speed)
 
     def stopped(self) -> "SpindleState":
         """At a stand; the speed is remembered."""
-        return SpindleState(started=False, speed=self.speed)
+        return dataclasses.replace(self, started=False)
+
+    def limited_by(self, function: Function) -> str:
+        """What there is to say where a function asks for more than the machine gives; else nothing."""
+        asked = function.arguments.get("S", 0.0)
+        if function.word not in SPINDLE_STARTS | {SPINDLE_SPEED}:
+            return ""
+        return self.limit_of(asked)
+
+    def limit_of(self, asked: float | None) -> str:
+        """What there is to say where a speed is more than the machine gives [1/min]; else nothing."""
+        if asked is None or self.fastest is None or asked <= self.fastest:
+            return ""
+        return f"S{asked:g} is more than this spindle gives: it turns at {self.fastest:g} /min"

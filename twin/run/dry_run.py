@@ -2,15 +2,19 @@
 
 import dataclasses
 from collections.abc import Iterable
+from itertools import islice
 
 from twin.cutting.program_summary import ProgramSummary, SummaryBuilder
-from twin.cutting.spindle import speaks_of_spindle
 from twin.machine.watching.alarms import Alarm
 from twin.machine.watching.travel import soft_limit_alarm
-from twin.nc.canonical import Chunk, FloatArray
+from twin.nc.canonical import Chunk, FloatArray, Function
 from twin.nc.text.diagnostics import Diagnostic
+from twin.run.messages import speed_notice
 from twin.run.preparation import Preparation
 from twin.run.stages import StageClock
+
+NOTICES_KEPT = 100
+"""Lines whose speed of the spindle was limited that are told."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -19,16 +23,14 @@ class DryRun:
 
     Attributes:
         moves: How many moves the program makes.
-        warnings: What the interpreter had to say.
+        warnings: What the interpreter and the spindle had to say.
         alarm: The soft-limit alarm of the first move that leaves the travel, if any.
-        speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
         summary: What the program says beside its moves.
     """
 
     moves: int
     warnings: tuple[Diagnostic, ...]
     alarm: Alarm | None
-    speaks_of_spindle: bool
     summary: ProgramSummary
 
 
@@ -45,19 +47,27 @@ def interpret_all(preparation: Preparation, part_zero: FloatArray, clock: StageC
         ConfigError: It brings a tool that the job does not list.
     """
     interpretation = preparation.interpretation()
-    moves, alarm, speaks = 0, None, False
-    builder = SummaryBuilder(preparation.job.file)
+    moves, alarm = 0, None
+    builder = SummaryBuilder(preparation.job.file, preparation.spindle)
+    limited: dict[int, str] = {}
     chunks: Iterable[Chunk] = clock.watch("interpret", interpretation.chunks())
     for chunk in chunks:
         moves += len(chunk.moves)
         builder.add(chunk)
-        speaks = speaks or speaks_of_spindle(chunk)
+        for event in chunk.events:
+            if isinstance(event, Function) and (said := preparation.spindle.limited_by(event)):
+                limited.setdefault(event.line, said)
         if alarm is None:
             alarm = soft_limit_alarm(preparation.machine, chunk.moves, part_zero)
     return DryRun(
         moves=moves,
-        warnings=tuple(interpretation.diagnostics),
+        warnings=(
+            *interpretation.diagnostics,
+            *(
+                speed_notice(line, message, preparation.source)
+                for line, message in islice(limited.items(), NOTICES_KEPT)
+            ),
+        ),
         alarm=alarm,
-        speaks_of_spindle=speaks,
         summary=builder.summary(),
     )

@@ -10,12 +10,12 @@ from twin.cutting.forces.load_log import LoadLog
 from twin.cutting.nominal import NominalGouge, NominalWatch
 from twin.cutting.part import write_stl
 from twin.cutting.program_summary import ProgramSummary
-from twin.cutting.spindle import Spindle
+from twin.cutting.spindle import standing
 from twin.job.job_file import JobFile, ToolTable
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import head_shape
 from twin.machine.watching.alarms import Alarm
-from twin.nc.canonical import Chunk, FloatArray
+from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
 from twin.toolpath.part_frame import PartFrame
 
@@ -34,8 +34,6 @@ class Machining:
         summary: ProgramSummary,
         part_frame: PartFrame,
         part_zero: FloatArray,
-        *,
-        speaks_of_spindle: bool,
     ) -> None:
         """Lay the blank on the table.
 
@@ -45,11 +43,9 @@ class Machining:
             summary: What is in the spindle when, and which moves are rapids.
             part_frame: How the part turns under the tool.
             part_zero: Machine coordinates of program zero, shape (k,) [mm or deg].
-            speaks_of_spindle: Whether the program starts, stops or sets the spindle anywhere.
         """
         self._summary = summary
         self.loads = LoadLog()
-        self._spindle = Spindle(held_to_program=speaks_of_spindle)
         self._cutter: Cutter | None = None
         self._nominal: NominalWatch | None = None
         self._gouge_stops = job.nominal is not None and job.nominal.gouge == "alarm"
@@ -66,10 +62,6 @@ class Machining:
         """The deepest cut into the nominal part beyond what it allows."""
         return None if self._nominal is None else self._nominal.worst
 
-    def expect(self, chunk: Chunk) -> None:
-        """Take note of a chunk of the program, before its samples come."""
-        self._spindle.expect(chunk)
-
     def add(self, samples: Samples) -> tuple[Samples, Alarm | None]:
         """Cut along a chunk.
 
@@ -81,7 +73,7 @@ class Machining:
             return samples, None
         move = samples.setpoint.move
         rapid = self._summary.is_rapid(move)
-        cutter.add(samples, rapid, self._spindle.standing(samples.setpoint))
+        cutter.add(samples, rapid, standing(self._summary, samples.setpoint))
         found = None if self._nominal is None else self._nominal.look(samples)
         if found is not None and self._gouge_stops:
             gouge, sample = found

@@ -4,10 +4,12 @@ import re
 
 from twin.compare.verdict import Reason
 from twin.machine.watching.alarms import Alarm, NearMiss
+from twin.nc.functions import SPINDLE_LIMITED
 from twin.nc.text.diagnostics import Diagnostic, Severity
 from twin.nc.text.source import Source
 
 _FIRST_WORD = re.compile(r"\S+")
+_SPEED_WORD = re.compile(r"S\d*\s*=?\s*[\d.#$]\S*", re.IGNORECASE)
 _WHOLE_LINE = re.compile(r".*", re.DOTALL)
 _WITHOUT_INDENT = re.compile(r"\S(.*\S)?", re.DOTALL)
 
@@ -42,6 +44,19 @@ def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
         f"(after {near_miss.time_s:.3f} s)"
     )
     return _at_line(source, near_miss.line, "near-miss", message, _WHOLE_LINE, severity="warning")
+
+
+def speed_notice(line: int, message: str, source: Source) -> Diagnostic:
+    """Show a speed of the spindle that was limited as a warning at its S.
+
+    Args:
+        line: That asks for it.
+        message: What happened.
+        source: The program that runs.
+    """
+    return _at_line(
+        source, line, SPINDLE_LIMITED, message, _SPEED_WORD, _FIRST_WORD, severity="warning"
+    )
 
 
 def reason_text(reason: Reason, source: Source) -> str:

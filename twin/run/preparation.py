@@ -15,6 +15,7 @@ from twin.machine.description.config import Machine, read_machine
 from twin.nc.canonical import Chunk, FloatArray
 from twin.nc.control.settings import ControlSettings, MachineFunction, ToolData
 from twin.nc.dialects import Dialect, dialect_named, recognise
+from twin.nc.functions import SpindleState
 from twin.nc.interpreter import Interpretation
 from twin.nc.text.source import Source, read_source, source_from_text
 from twin.recording.reader import RecordingHeader
@@ -47,7 +48,16 @@ class Preparation:
     def timed_chunks(self) -> Iterator[Chunk]:
         """A fresh pass over the program, with the time of tool changes and spindle as dwells."""
         chunks = self.interpretation().chunks()
-        return with_waits(chunks, self.machine.file.spindle, self.job.file)
+        return with_waits(chunks, self.machine.file.spindle, self.job.file, self.spindle)
+
+    @property
+    def spindle(self) -> SpindleState:
+        """The spindle before anybody has said anything of it, with the job's first tool."""
+        return SpindleState(
+            tool_speed=self.job.file.tools[0].speed,
+            has_word=bool(self.dialect.spindle_letter),
+            fastest=self.machine.file.spindle.max_speed,
+        )
 
     @functools.cached_property
     def start(self) -> FloatArray:

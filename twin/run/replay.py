@@ -24,7 +24,7 @@ def summary_of(preparation: Preparation) -> ProgramSummary:
         ProgramError: The program is wrong.
         ConfigError: It brings a tool that the job does not list.
     """
-    builder = SummaryBuilder(preparation.job.file)
+    builder = SummaryBuilder(preparation.job.file, preparation.spindle)
     for chunk in preparation.interpretation().chunks():
         builder.add(chunk)
     return builder.summary()

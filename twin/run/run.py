@@ -125,10 +125,10 @@ class Run:
         if alarm is None:
             with self._recording(out) as writer:
                 if motion is None:
-                    setpoints = self._setpoints(comparison, machining)
+                    setpoints = self._setpoints(comparison)
                     motion = self._simulation(setpoints, dry_run.summary)
                 else:
-                    self._expect_all(comparison, machining)
+                    self._expect_all(comparison)
                 if self._process is None or not speeds_are_known(dry_run.summary):
                     _refuse_unjudged_loads(self.preparation.job.file.tolerance)
                 growth = Growth(self.machine, ProgramOperation(dry_run.summary).speed)
@@ -185,11 +185,10 @@ class Run:
         found = () if self._process is None else self._process.breaks
         return tuple(each.alarm for each in found if each.time_s <= until_s)
 
-    def _expect_all(self, comparison: Comparison, machining: Machining) -> None:
+    def _expect_all(self, comparison: Comparison) -> None:
         """Let those who judge the motion hear of the whole program at once."""
         for chunk in self.clock.watch("interpret", self.preparation.interpretation().chunks()):
             comparison.expect(chunk.moves)
-            machining.expect(chunk)
 
     def _gouge_checks(self, gouge: NominalGouge | None) -> list[Check]:
         nominal = self.preparation.job.file.nominal
@@ -201,7 +200,7 @@ class Run:
         limit = nominal.gouge_um
         return [Check("gouge_um", "gouge into the nominal part", depth, limit, "µm", line, when)]
 
-    def _setpoints(self, comparison: Comparison, machining: Machining) -> Iterator[Setpoints]:
+    def _setpoints(self, comparison: Comparison) -> Iterator[Setpoints]:
         """The planned motion; those who judge it hear of every move before it is simulated."""
         machine = self.preparation.machine
         period = machine.file.servo_period_s
@@ -209,7 +208,6 @@ class Run:
         def moves() -> Iterator[Chunk]:
             for chunk in self.preparation.timed_chunks():
                 comparison.expect(chunk.moves)
-                machining.expect(chunk)
                 yield chunk
 
         def planned() -> Iterator[Setpoints]:
@@ -250,7 +248,6 @@ class Run:
             dry_run.summary,
             self.part_frame,
             self.part_zero,
-            speaks_of_spindle=dry_run.speaks_of_spindle,
         )
 
     def _recording(self, out: Path | None) -> AbstractContextManager[RecordingWriter | None]:

@@ -6,15 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from twin.job.job_file import JobFile
 from twin.machine.description.config import SpindleTable
 from twin.nc.canonical import Chunk, Dwell, Event, Function
-from twin.nc.functions import (
-    SPINDLE_COUNTER_CLOCKWISE,
-    SPINDLE_STARTS,
-    TOOL_CHANGE,
-    SpindleState,
-)
+from twin.nc.functions import PROGRAM_ENDS, TOOL_CHANGE, SpindleState
 
 
-def with_waits(chunks: Iterable[Chunk], spindle: SpindleTable, job: JobFile) -> Iterator[Chunk]:
+def with_waits(
+    chunks: Iterable[Chunk], spindle: SpindleTable, job: JobFile, state: SpindleState
+) -> Iterator[Chunk]:
     """A program with a dwell behind every function that a machine takes time for.
 
     A tool change takes ``tool_change_s`` and stops the spindle first; one that brings the tool that
@@ -27,11 +24,13 @@ def with_waits(chunks: Iterable[Chunk], spindle: SpindleTable, job: JobFile) -> 
         chunks: The program.
         spindle: How long the machine takes.
         job: Says the first tool, and the speeds of tools for programs that say none.
+        state: The spindle before the program.
     """
     if not spindle.tool_change_s and not spindle.acceleration:
         yield from chunks
         return
-    waits = Waits(spindle, {tool.number: tool.speed for tool in job.tools}, job.tools[0].number)
+    speeds = {tool.number: tool.speed for tool in job.tools}
+    waits = Waits(spindle, speeds, job.tools[0].number, state)
     for chunk in chunks:
         yield dataclasses.replace(chunk, events=tuple(waits.among(chunk.events)))
 
@@ -44,8 +43,7 @@ class Waits:
         spindle: SpindleTable,
         speeds: Mapping[int, float | None],
         tool: int,
-        state: SpindleState | None = None,
-        sense: float = 1.0,
+        state: SpindleState,
     ) -> None:
         """Begin with what is in the spindle.
 
@@ -53,15 +51,13 @@ class Waits:
             spindle: How long the machine takes.
             speeds: Of the tools, for programs that say none [1/min].
             tool: Number of the tool in the spindle.
-            state: What the spindle has been told; None: nothing.
-            sense: Which way it turns, -1 counter-clockwise.
+            state: What the spindle has been told.
         """
         self._spindle = spindle
         self._speeds = speeds
         self._tool = self._selected = tool
-        self._state = state or SpindleState()
-        self._sign = sense
-        self._turns = sense * (self._state.speed or 0.0) if self._state.turns else 0.0
+        self._state = state
+        self._turns = state.turning or 0.0
 
     def among(self, events: Iterable[Event]) -> Iterator[Event]:
         """The events with their dwells."""
@@ -80,15 +76,12 @@ class Waits:
         if word == TOOL_CHANGE:
             if self._selected == self._tool:
                 return 0.0
-            self._tool, self._state = self._selected, self._state.stopped()
+            self._tool, stopped = self._selected, self._state.stopped()
+            self._state = dataclasses.replace(stopped, tool_speed=self._speeds.get(self._tool))
             return self._spindle.tool_change_s + self._turn(0.0)
-        self._state = self._state.after(event)
-        if word in SPINDLE_STARTS:
-            self._sign = -1.0 if word == SPINDLE_COUNTER_CLOCKWISE else 1.0
-        speed = self._state.speed if self._state.turns else 0.0
-        if speed is None:
-            speed = self._speeds.get(self._tool) or 0.0
-        return self._turn(self._sign * speed)
+        if word not in PROGRAM_ENDS:
+            self._state = self._state.after(event)
+        return self._turn(self._state.turning or 0.0)
 
     def _turn(self, turns: float) -> float:
         """How long the spindle takes to another speed [s], negative counter-clockwise [1/min]."""

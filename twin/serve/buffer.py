@@ -1,8 +1,7 @@
 """The agent's memory: observations with sequence numbers, the oldest of which are overwritten."""
 
-from collections import deque
-from collections.abc import Collection, Iterable
-from itertools import islice
+import dataclasses
+from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
 from twin.serve.device import UNAVAILABLE
@@ -29,7 +28,8 @@ Value = str | Condition
 NORMAL = Condition("Normal")
 
 
-class Observation(NamedTuple):
+@dataclasses.dataclass(slots=True)
+class Observation:
     """One value of one data item.
 
     Attributes:
@@ -37,12 +37,15 @@ class Observation(NamedTuple):
         item: Identifier of the data item.
         time: When, in ISO 8601 with the time zone UTC.
         value: What was observed.
+        xml: It as an element, once somebody asked for it: however many clients there are, it is
+            written once.
     """
 
     sequence: int
     item: str
     time: str
     value: Value
+    xml: str = dataclasses.field(default="", compare=False)
 
 
 class OutOfRangeError(Exception):
@@ -65,7 +68,7 @@ class ObservationBuffer:
             size: How many observations are remembered.
         """
         self.size = size
-        self._kept: deque[Observation] = deque()
+        self._kept: list[Observation] = []
         self._next = 1
         self._latest: dict[str, Observation] = {}
         self._before_first: dict[str, Observation] = {}
@@ -90,10 +93,12 @@ class ObservationBuffer:
         observation = Observation(self._next, item, time, value)
         self._next += 1
         self._latest[item] = observation
-        self._kept.append(observation)
-        if len(self._kept) > self.size:
-            gone = self._kept.popleft()
-            self._before_first[gone.item] = gone
+        if len(self._kept) < self.size:
+            self._kept.append(observation)
+            return
+        place = (observation.sequence - 1) % self.size
+        gone, self._kept[place] = self._kept[place], observation
+        self._before_first[gone.item] = gone
 
     def current(self, wanted: Collection[str], at: int | None = None) -> list[Observation]:
         """The last observation of each data item.
@@ -112,7 +117,7 @@ class ObservationBuffer:
                     f"'at' is {at}; the buffer holds {self.first_sequence} to {self._next - 1}"
                 )
             latest = self._before_first.copy()
-            for observation in islice(self._kept, at - self.first_sequence + 1):
+            for observation in self._range(self.first_sequence, at + 1):
                 latest[observation.item] = observation
         found = [latest[item] for item in wanted if item in latest]
         return sorted(found, key=lambda observation: observation.sequence)
@@ -141,15 +146,20 @@ class ObservationBuffer:
             raise OutOfRangeError(f"'from' is {first}; the buffer holds {oldest} to {newest}")
         found: list[Observation] = []
         if count > 0:
-            for observation in islice(self._kept, first - oldest, None):
+            for observation in self._range(first, self._next):
                 if observation.item in wanted:
                     found.append(observation)
                     if len(found) == count:
                         return found, observation.sequence + 1
             return found, self._next
-        for observation in islice(reversed(self._kept), newest - min(first, newest), None):
+        for observation in self._range(min(first, newest), oldest - 1, -1):
             if observation.item in wanted:
                 found.append(observation)
                 if len(found) == -count:
                     return found, max(observation.sequence - 1, oldest)
         return found, oldest
+
+    def _range(self, begin: int, end: int, step: int = 1) -> Iterator[Observation]:
+        """Remembered observations by their numbers, the last one left out."""
+        kept, size = self._kept, self.size
+        return (kept[(sequence - 1) % size] for sequence in range(begin, end, step))

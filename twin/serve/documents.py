@@ -2,7 +2,7 @@
 
 import dataclasses
 import xml.etree.ElementTree as ET  # only writes; nothing from outside is parsed
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from twin.serve.buffer import Condition, Observation
 from twin.serve.device import UNAVAILABLE, Component, DataItem
@@ -101,7 +101,7 @@ def streams_document(
         header: Its head.
         device: The device that was observed.
         uuid: Its identifier everywhere.
-        observations: In order.
+        observations: In any order.
         sequences: Number of the first and the last observation that is remembered, and of the one
             with which the next request goes on.
     """
@@ -111,33 +111,56 @@ def streams_document(
     ET.SubElement(root, "Header", header.attributes() | numbers)
     stream = ET.SubElement(ET.SubElement(root, "Streams"), "DeviceStream")
     stream.attrib |= {"name": device.name, "uuid": uuid}
-    by_item: dict[str, list[Observation]] = {}
-    for observation in observations:
-        by_item.setdefault(observation.item, []).append(observation)
+    wanted = {observation.item for observation in observations}
+    holders: dict[str, Holder] = {}
     for component in device.walk():
-        _component_stream(stream, component, by_item)
+        seen = [item for item in component.items if item.id in wanted]
+        if seen:
+            holders |= dict(_component_stream(stream, component, seen))
+    for observation in sorted(observations, key=lambda each: each.sequence):
+        holders[observation.item].observations.append(observation)
     return root
 
 
+class Holder(ET.Element):
+    """An element that holds observations of one category: they become its children as it is written.
+
+    Attributes:
+        data_items: Of the observations, by their identifiers.
+        observations: In the order of their numbers.
+    """
+
+    def __init__(self, tag: str, data_items: Mapping[str, DataItem]) -> None:
+        super().__init__(tag)
+        self.data_items = data_items
+        self.observations: list[Observation] = []
+
+    def children(self) -> Iterator[ET.Element]:
+        """The observations as elements."""
+        for observation in self.observations:
+            yield _observation_element(self.data_items[observation.item], observation)
+
+    def xml(self) -> Iterator[str]:
+        """The observations as they are written, each of which is written once for all clients."""
+        for observation in self.observations:
+            if not observation.xml:
+                element = _observation_element(self.data_items[observation.item], observation)
+                observation.xml = ET.tostring(element, encoding="unicode")
+            yield observation.xml
+
+
 def _component_stream(
-    stream: ET.Element, component: Component, by_item: Mapping[str, Sequence[Observation]]
-) -> None:
-    seen = [item for item in component.items if item.id in by_item]
-    if not seen:
-        return
+    stream: ET.Element, component: Component, seen: Sequence[DataItem]
+) -> Iterator[tuple[str, Holder]]:
+    """Add a component to a stream; yield the holder of each of its data items."""
     element = ET.SubElement(stream, "ComponentStream", component=component.element)
     element.attrib |= {"name": component.name, "componentId": component.id}
-    for category, holder in _CATEGORIES.items():
-        found = [
-            (item, observation)
-            for item in seen
-            if item.category == category
-            for observation in by_item[item.id]
-        ]
+    for category, tag in _CATEGORIES.items():
+        found = {item.id: item for item in seen if item.category == category}
         if found:
-            found.sort(key=lambda pair: pair[1].sequence)
-            inner = ET.SubElement(element, holder)
-            inner.extend(_observation_element(*pair) for pair in found)
+            holder = Holder(tag, found)
+            element.append(holder)
+            yield from ((item, holder) for item in found)
 
 
 def _observation_element(item: DataItem, observation: Observation) -> ET.Element:

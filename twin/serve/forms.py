@@ -10,6 +10,10 @@ import math
 import xml.etree.ElementTree as ET  # only writes; nothing from outside is parsed
 from collections.abc import Callable
 from typing import NamedTuple
+from xml.sax.saxutils import XMLGenerator
+from xml.sax.xmlreader import AttributesImpl
+
+from twin.serve.documents import Holder
 
 _JSON_VERSION = 2
 _SINGLE = frozenset(
@@ -61,9 +65,23 @@ def accepted_form(accept: str) -> Form:
 
 
 def _xml(root: ET.Element) -> bytes:
-    out = io.BytesIO()
-    ET.ElementTree(root).write(out, encoding="UTF-8", xml_declaration=True)
-    return out.getvalue()
+    out = io.StringIO()
+    # Every tag is ended for itself, so that what is written already can stand between two of them.
+    writer = XMLGenerator(out, "UTF-8", short_empty_elements=False)
+    writer.startDocument()
+    _write(writer, out, root)
+    return out.getvalue().encode()
+
+
+def _write(writer: XMLGenerator, out: io.StringIO, element: ET.Element) -> None:
+    writer.startElement(element.tag, AttributesImpl(element.attrib))
+    if element.text:
+        writer.characters(element.text)
+    if isinstance(element, Holder):
+        out.writelines(element.xml())
+    for child in element:
+        _write(writer, out, child)
+    writer.endElement(element.tag)
 
 
 def _json(root: ET.Element) -> bytes:
@@ -84,7 +102,8 @@ def _members(element: ET.Element, *, measured: bool = False) -> dict[str, object
     }
     if element.text:
         members["value"] = _number(element.text) if measured else element.text
-    for child in element:
+    children = element.children() if isinstance(element, Holder) else element
+    for child in children:
         inner = _members(child, measured=element.tag == "Samples")
         if child.tag in _SINGLE:
             members[child.tag] = inner

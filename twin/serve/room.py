@@ -54,7 +54,7 @@ class RoomObserver:
             "part_count": str(self._parts),
             "path_feedrate": f"{now.feed / SECONDS_PER_MINUTE:.4f}",
             "program": self._program,
-            "spindle_speed": f"{now.spindle.speed or 0.0:g}" if now.spindle.started else "0",
+            "spindle_speed": f"{abs(now.spindle.turning or 0.0):g}",
             "system": _condition(now),
             "tool_number": str(now.tool),
         }

@@ -4,10 +4,13 @@ import collections
 import sys
 import time
 
-from tests.nc.linuxcnc.oracle import RS274, by_twin, difference
+from tests.nc.linuxcnc.oracle import RS274, by_twin, compared
 from tests.nc.linuxcnc.random_programs import contour, program
+from tests.nc.linuxcnc.wide_programs import wide, wide_contour
 
-SHOWN = 3
+SHOWN = 60
+KINDS = (contour, program, wide, wide_contour, program, wide, program, wide, program, wide)
+"""Which programs follow each other."""
 
 
 def main(count: int = 1000, seed: int = 0) -> int:
@@ -17,16 +20,20 @@ def main(count: int = 1000, seed: int = 0) -> int:
         return 2
     begin, differ = time.monotonic(), 0
     said: collections.Counter[str] = collections.Counter()
+    decided: collections.Counter[str] = collections.Counter()
     for number in range(seed, seed + count):
-        text = contour(number) if number % 5 == 0 else program(number)
-        found = difference(text)
-        said["refused by both" if by_twin(text).error else "run by both"] += not found
-        if found:
+        text = KINDS[number % len(KINDS)](number)
+        found, decisions = compared(text)
+        decided.update(decisions)
+        if not found:
+            said["refused by both" if by_twin(text).error else "run by both"] += 1
+        else:
             differ += 1
             if differ <= SHOWN:
                 print(f"--- seed {number}\n{text}{found}\n")
     seconds = time.monotonic() - begin
     print(f"{count} programs in {seconds:.0f} s: {dict(said)}, {differ} differ")
+    print(f"by decision: {dict(decided)}")
     return 1 if differ else 0
 
 

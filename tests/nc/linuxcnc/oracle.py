@@ -14,6 +14,15 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
+from tests.nc.linuxcnc.decided import (
+    BREAK,
+    CLARITY,
+    ENDLESS,
+    LENGTH_BEFORE_CHANGE,
+    is_decided_refusal,
+    slips_of,
+    without_lasting_breaks,
+)
 from tests.nc.running import SETTINGS, Outcome, run
 from twin.nc.canonical import Motion, Shape
 from twin.nc.control.settings import ToolData
@@ -32,6 +41,8 @@ ORACLE_SETTINGS = dataclasses.replace(
     },
 )
 _INCH = 25.4
+_LONGEST = 10
+"""Seconds that ``rs274`` may take: an endless program prints gigabytes."""
 _CALL = re.compile(r"^ *\d+ N\S* +([A-Z0-9_]+)\((.*)\)$")
 _PLANES = {"XY": (0, 1, 2), "XZ": (2, 0, 1), "YZ": (1, 2, 0)}
 _CONVERSATION = re.compile(r"^(?:executing|preview.*|)$")
@@ -59,10 +70,25 @@ class Answer(NamedTuple):
     Attributes:
         moves: Those that go somewhere.
         error: Why it refuses; empty: it does not.
+        forgotten: Lengths that were in force when a tool was changed, and not yet when the axes moved last
+            [mm]; of ``rs274``.
     """
 
     moves: list[Made]
     error: str
+    forgotten: list[float]
+
+
+class Compared(NamedTuple):
+    """How two interpreters agree on a program.
+
+    Attributes:
+        said: What they say differently of it; empty: nothing, or only what was decided.
+        decisions: By which decisions they differ.
+    """
+
+    said: str
+    decisions: frozenset[str] = frozenset()
 
 
 @functools.cache
@@ -95,20 +121,24 @@ def by_linuxcnc(text: str) -> Answer:
     parameters.write_text("")
     command = [folder / "rs274", "-g", "-t", folder / "tools.tbl", "-v", parameters, program]
     own_home = {**os.environ, "HOME": str(folder)}  # the tool table in use lies there
-    done = subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=30,
-        errors="replace",
-        env=own_home,
-    )
+    try:
+        done = subprocess.run(
+            command,
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=_LONGEST,
+            errors="replace",
+            env=own_home,
+        )
+    except subprocess.TimeoutExpired:
+        return Answer([], f"rs274 runs longer than {_LONGEST} s", [])
     said = [each for each in done.stderr.splitlines() if not _CONVERSATION.match(each)]
     error = said[0] if done.returncode and said else ""
     if done.returncode and not error:
         error = f"rs274 ends with {done.returncode}"
-    return Answer(_Reader().moves_of(done.stdout), error)
+    reader = _Reader()
+    return Answer(reader.moves_of(done.stdout), error, reader.forgotten)
 
 
 class _Reader:
@@ -122,6 +152,8 @@ class _Reader:
         }
         self.here = [0.0] * 4
         self.made: list[Made] = []
+        self.forgotten: list[float] = []
+        self._moved_with = 0.0
 
     def moves_of(self, text: str) -> list[Made]:
         for line in text.splitlines():
@@ -146,6 +178,10 @@ class _Reader:
             self._go(kind, self._place([float(each) for each in given.split(",")]))
         elif name == "ARC_FEED":
             self._arc([float(each) for each in given.split(",")])
+        elif name == "CHANGE_TOOL":
+            forgotten = self.shifts["USE_TOOL_LENGTH_OFFSET"][2] - self._moved_with
+            if forgotten:
+                self.forgotten.append(forgotten)
         elif name == "RIGID_TAP":
             start = self.here
             values = [*(float(each) for each in given.split(",")), 0.0, 0.0, 0.0]
@@ -166,11 +202,13 @@ class _Reader:
         return [a + b + c for a, b, c in zip([x, y, *place[2:]], system, tool, strict=True)]
 
     def _go(self, kind: str, end: list[float]) -> None:
+        self._moved_with = self.shifts["USE_TOOL_LENGTH_OFFSET"][2]
         if math.dist(end, self.here) > SAME:
             self.made.append(Made(kind, end, [], 0))
         self.here = end
 
     def _arc(self, v: list[float]) -> None:
+        self._moved_with = self.shifts["USE_TOOL_LENGTH_OFFSET"][2]
         first, second, across = _PLANES[self.plane]
         values, center = [0.0] * 6, [0.0] * 6
         values[5] = center[5] = v[8]
@@ -185,7 +223,7 @@ class _Reader:
 def by_twin(text: str) -> Answer:
     """Run a program by the twin."""
     outcome = run(text, "linuxcnc", ORACLE_SETTINGS)
-    return Answer(_moves_of(outcome), "" if outcome.error is None else str(outcome.error))
+    return Answer(_moves_of(outcome), "" if outcome.error is None else str(outcome.error), [])
 
 
 def _moves_of(outcome: Outcome) -> list[Made]:
@@ -208,23 +246,54 @@ def _moves_of(outcome: Outcome) -> list[Made]:
 
 
 def difference(text: str) -> str:
-    """What the two say differently of a program; empty: nothing."""
-    twin, control = by_twin(text), by_linuxcnc(text)
+    """What the two say differently of a program that is not decided; empty: nothing."""
+    return compared(text).said
+
+
+def compared(text: str) -> Compared:
+    """Run a program by both."""
+    without = without_lasting_breaks(text)
+    twin = by_twin(text)
+    if "error endless-program" in twin.error:
+        return Compared("", frozenset({ENDLESS}))
+    control = by_linuxcnc(without)
+    answers = compared_answers(twin, control)
+    if without != text and _are_different(control, by_linuxcnc(text)):
+        return answers._replace(decisions=answers.decisions | {BREAK})
+    return answers
+
+
+def compared_answers(twin: Answer, control: Answer) -> Compared:
+    """Hold the twin's answer against that of ``rs274``."""
+    decisions: set[str] = set()
     if bool(twin.error) != bool(control.error):
-        return f"twin: {twin.error or 'accepts'}\nrs274: {control.error or 'accepts'}"
+        if is_decided_refusal(twin.error):
+            return Compared("", frozenset({CLARITY}))
+        return Compared(f"twin: {twin.error or 'accepts'}\nrs274: {control.error or 'accepts'}")
     if twin.error:
-        return ""
+        return Compared("")
+    slips = slips_of(control.forgotten)
     for number, (ours, theirs) in enumerate(zip(twin.moves, control.moves, strict=False)):
-        if not _agree(ours, theirs):
-            return f"move {number}: twin {ours}\n        rs274 {theirs}"
+        slip = next((each for each in slips if _agree(ours, theirs, each)), None)
+        if slip is None:
+            return Compared(f"move {number}: twin {ours}\n        rs274 {theirs}")
+        if slip:
+            decisions.add(LENGTH_BEFORE_CHANGE)
     if len(twin.moves) != len(control.moves):
-        return f"twin makes {len(twin.moves)} moves, rs274 {len(control.moves)}"
-    return ""
+        return Compared(f"twin makes {len(twin.moves)} moves, rs274 {len(control.moves)}")
+    return Compared("", frozenset(decisions))
 
 
-def _agree(ours: Made, theirs: Made) -> bool:
+def _are_different(one: Answer, other: Answer) -> bool:
+    return (one.moves, bool(one.error)) != (other.moves, bool(other.error))
+
+
+def _agree(ours: Made, theirs: Made, slip: float) -> bool:
+    """Whether two moves are the same, but for so much along Z."""
     if ours.kind != theirs.kind or ours.turns != theirs.turns:
         return False
-    return all(abs(a - b) <= SAME for a, b in zip(ours.end, theirs.end, strict=True)) and all(
-        abs(a - b) <= 2.0 * SAME for a, b in zip(ours.center, theirs.center, strict=True)
-    )
+    ends = [*ours.end[:2], ours.end[2] + slip, ours.end[3]]
+    if any(abs(a - b) > SAME for a, b in zip(ends, theirs.end, strict=True)):
+        return False
+    apart = [abs(a - b) for a, b in zip(ours.center, theirs.center, strict=True)]
+    return all(min(each, abs(each - abs(slip))) <= 2.0 * SAME for each in apart)

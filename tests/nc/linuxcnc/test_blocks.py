@@ -22,6 +22,9 @@ REFUSED = {
     "G80 X1\nM2\n": "no-motion-code",
     "G80 G0 G1 X1\nM2\n": "conflicting-codes",
     "F100\nG81 X1 Z1 R2 L0\nM2\n": "repeat-count",
+    f"G0 X1{' ' * 248}\nM2\n": "line-too-long",
+    "G43.1 G0 X1\nM2\n": "conflicting-codes",
+    "G43.2 H1 G0 X1\nM2\n": "conflicting-codes",
 }
 ENDS = {
     "G80 G0 X3 Y5\nM2\n": [3.0, 5.0, 0.0],
@@ -39,6 +42,13 @@ ENDS = {
     "T1\nT2 M6\nM6\nG43\nG0 Z1\nM2\n": [0.0, 0.0, 21.0],
     "F100\nG73 X1 Y1 Z-3 R1 Q1\nG91 G83 X1 Z-3 R1 Q1 L3\nM2\n": [4.0, 1.0, 1.0],
     "F100\nG85 X1 Z-3 R-1\nG0 Z5\nG98 G82 X1 Z-4 R1 P1\nX6\nM2\n": [6.0, 0.0, 5.0],
+    f"G0 X1{' ' * 247}\nM2\n": [1.0, 0.0, 0.0],
+    "G43.1 Z5\nG43.1\nG0 Z1\nM2\n": [0.0, 0.0, 6.0],
+    "T1 M6\nG43\nT2 M6\nG43\nG0 X5\nM2\n": [5.0, 0.0, 0.0],
+    "#1=0\no1 while [#1 LT 0]\no1 break\no1 endwhile\no2 do\nG91 G0 X1\n#1=[#1+1]\no2 while [#1 LT 3]\nM2\n":
+        [3.0, 0.0, 0.0],
+    "F100\nG41.1 D6\nG1 X20 Y0\nG3 X30.3 Y9.7 I0.3 J10\nG1 X40 Y0\nG40\nM2\n": [42.1213203, 2.1213203, 0.0],
+    "F100\nG41.1 D6\nG1 X20 Y0\nG1 X10 Y-1\nG2 X19 Y24 I17 J8\nG40\nM2\n": [17.7226089, 26.7144561, 0.0],
 }  # fmt: skip
 
 

@@ -7,8 +7,16 @@ from pathlib import Path
 
 import pytest
 
-from tests.nc.linuxcnc.oracle import RS274, difference
+from tests.nc.linuxcnc.oracle import (
+    RS274,
+    Answer,
+    Made,
+    compared,
+    compared_answers,
+    difference,
+)
 from tests.nc.linuxcnc.random_programs import contour, program
+from tests.nc.linuxcnc.wide_programs import wide, wide_contour
 from tests.nc.running import ROOT
 
 pytestmark = pytest.mark.skipif(
@@ -17,12 +25,16 @@ pytestmark = pytest.mark.skipif(
 PROGRAMS = sorted((ROOT / "programs" / "linuxcnc").glob("*.nc"))
 
 
-@pytest.mark.parametrize("seed", range(60))
+DECIDED = (60014, 60519, 60213)
+"""Seeds whose programs differ, but only as it was decided."""
+
+
+@pytest.mark.parametrize("seed", [*range(60), 60117, *DECIDED])
 def test_random_programs(seed: int) -> None:
     assert not difference(program(seed)), program(seed)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", [*range(30), 40150, 40495, 60270])
 def test_contours_under_compensation(seed: int) -> None:
     assert not difference(contour(seed)), contour(seed)
 
@@ -30,3 +42,29 @@ def test_contours_under_compensation(seed: int) -> None:
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
 def test_shipped_programs(path: Path) -> None:
     assert not difference(path.read_text())
+
+
+@pytest.mark.parametrize("seed", DECIDED)
+def test_a_decided_difference_is_named(seed: int) -> None:
+    assert compared(program(seed)).decisions
+
+
+def test_a_difference_beside_a_decided_one_is_shown() -> None:
+    def answer(*heights: float, forgotten: float = 0.0) -> Answer:
+        moves = [Made("rapid", [1.0, 0.0, height, 0.0], [], 0) for height in heights]
+        return Answer(moves, "", [forgotten] if forgotten else [])
+
+    twin = answer(5.0, 6.0)
+    assert compared_answers(twin, answer(15.0, 16.0, forgotten=10.0)).decisions
+    assert compared_answers(twin, answer(15.0, 17.0, forgotten=10.0)).said
+    assert compared_answers(twin, answer(15.0, 16.0)).said
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_wider_random_programs(seed: int) -> None:
+    assert not difference(wide(seed)), wide(seed)
+
+
+@pytest.mark.parametrize("seed", range(15))
+def test_wider_contours(seed: int) -> None:
+    assert not difference(wide_contour(seed)), wide_contour(seed)

@@ -13,11 +13,8 @@ from twin.nc.text.diagnostics import Diagnostic
 from twin.nc.text.explain import findings
 from twin.training.scene import phrases
 from twin.training.scene.phrases import PhrasesFile, finding_in, translated
-from twin.training.scene.scene_file import read_scene, scene_names, scene_path
 from twin.training.scene.vocabulary import LANGUAGES, Language
 from twin.training.session.commands import WRONG
-from twin.training.session.script import play
-from twin.training.session.session import Session
 
 ROOM = Path(training.__file__).parent / "session"
 SPEAKERS = ("actions.py", "room.py", "session.py", "tables.py")
@@ -73,25 +70,6 @@ def test_every_refusal_is_translated(text):
     assert translated(text, "en") == text
     for language in OTHERS:
         assert translated(text, language) != text
-
-
-@pytest.mark.parametrize("name", scene_names())
-def test_every_alarm_of_a_scenes_scripts_is_translated(name, monkeypatch):
-    scene = read_scene(scene_path(name))
-    said: list[str] = []
-    for steps in (scene.file.solution, scene.file.mistake):
-        session = Session(scene)
-        raised = session.room.raise_alarm
-
-        def note(code, message, raised=raised, **where):
-            said.append(message)
-            raised(code, message, **where)
-
-        monkeypatch.setattr(session.room, "raise_alarm", note)
-        play(session, steps)
-    for message in said:
-        for language in OTHERS:
-            assert translated(message, language) != message, message
 
 
 @pytest.mark.parametrize("kind", WRONG)

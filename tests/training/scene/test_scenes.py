@@ -1,10 +1,13 @@
 """Every shipped scene, played headless: its solution reaches full points, its mistake fails."""
 
+import functools
 import re
+from typing import Any, Literal, NamedTuple
 
 import pytest
 
 from twin.errors import ConfigError
+from twin.training.scene.phrases import translated
 from twin.training.scene.scene_file import Scene, read_scene, scene_names, scene_path
 from twin.training.scene.vocabulary import LANGUAGES
 from twin.training.session.script import ScriptError, play, rehearse
@@ -17,6 +20,31 @@ def scene(name: str) -> Scene:
     return read_scene(scene_path(name))
 
 
+class Played(NamedTuple):
+    """What came of one of a scene's scripts: its tasks' states, its score, messages of alarms."""
+
+    states: tuple[str, ...]
+    score: int
+    said: tuple[str, ...]
+
+
+@functools.cache
+def played(name: str, script: Literal["solution", "mistake"]) -> Played:
+    """A script, played once for all tests: that takes seconds."""
+    session = Session(scene(name))
+    said: list[str] = []
+    raise_alarm = session.room.raise_alarm
+
+    def note(code: str, message: str, **about: Any) -> None:
+        said.append(message)
+        raise_alarm(code, message, **about)
+
+    session.room.raise_alarm = note
+    play(session, getattr(session.scene.file, script))
+    judge = session.room.judge
+    return Played(tuple(verdict.state for verdict in judge.verdicts), judge.score, tuple(said))
+
+
 def test_there_are_at_least_eight_two_per_control():
     dialects = [scene(name).preparation.dialect.name for name in scene_names()]
     assert len(dialects) >= 8
@@ -27,6 +55,8 @@ def test_there_are_at_least_eight_two_per_control():
 def test_every_text_is_told_in_every_language(name):
     file = scene(name).file
     texts = [file.title, file.story, *(task.text for task in file.tasks), *file.hints]
+    assert file.lesson is not None, "the sheet must say what the trap was"
+    texts += file.lesson.texts
     for text in texts:
         assert set(text) == set(LANGUAGES)
         figures = {language: re.findall(r"[A-Z]?-?\d+", told) for language, told in text.items()}
@@ -41,22 +71,26 @@ def test_every_text_is_told_in_every_language(name):
 
 @pytest.mark.parametrize("name", scene_names())
 def test_the_solution_reaches_full_points(name):
-    session = Session(scene(name))
-    play(session, session.scene.file.solution)
-    judge = session.room.judge
-    assert [verdict.state for verdict in judge.verdicts] == ["done"] * len(judge.verdicts)
-    assert judge.score == session.scene.points
+    done = played(name, "solution")
+    assert done.states == ("done",) * len(scene(name).file.tasks)
+    assert done.score == scene(name).points
 
 
 @pytest.mark.parametrize("name", scene_names())
 def test_the_mistake_fails_as_intended(name):
-    session = Session(scene(name))
-    play(session, session.scene.file.mistake)
-    states = [verdict.state for verdict in session.room.judge.verdicts]
-    failed = tuple(number for number, state in enumerate(states, 1) if state == "failed")
-    assert failed == session.scene.file.mistake_fails
+    done = played(name, "mistake")
+    failed = tuple(number for number, state in enumerate(done.states, 1) if state == "failed")
+    assert failed == scene(name).file.mistake_fails
     assert failed
-    assert session.room.judge.score < session.scene.points
+    assert done.score < scene(name).points
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_every_alarm_of_a_scenes_scripts_is_translated(name):
+    for script in ("solution", "mistake"):
+        for message in played(name, script).said:
+            for language in LANGUAGES:
+                assert (translated(message, language) == message) == (language == "en"), message
 
 
 def test_a_script_that_ends_otherwise_is_told(tmp_path):

@@ -12,8 +12,8 @@ from twin.training.server.driver import CAUGHT_UP_AT_ONCE_S, HELD_S, MOST_BEHIND
 from twin.training.session import program_run
 from twin.training.session.log import Who
 from twin.training.session.program_run import BLOCKS_AT_REST, BLOCKS_FOR_PLANNER
-from twin.training.session.score import score_sheet
 from twin.training.session.session import Session
+from twin.training.sheets.score import score_sheet
 
 PAGE = 7
 

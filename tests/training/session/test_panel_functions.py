@@ -62,7 +62,9 @@ def test_single_block_stops_behind_blocks_that_move_nothing(session):
         (5, True, True, 5.0),
     ]
     assert session.room.run is None
-    assert session.room.judge.evidence.single == {1, 2, 3, 4, 5, 6}
+    assert session.room.judge.noted(session.room)[0] == {1, 2, 3, 4, 5, 6}
+    # It is not the scene's program, and has not made the part.
+    assert session.room.judge.evidence.single == set()
 
 
 def test_a_block_that_began_in_automatic_was_not_run_singly(session):
@@ -181,7 +183,7 @@ def test_a_search_does_not_begin_within_a_compensated_contour(session, code, end
     settings = dataclasses.replace(given, start=begin, tools={1: ToolData(radius=1.0, length=60.0)})
     run = ProgramRun(source_from_text(text, "test"), LINUXCNC, settings, machine, options)
     where = room.standing_setpoint, room.tables.program_zero
-    run.begin(*where, room.spindle, 1.0)
+    run.begin(*where, room.spindle)
     assert (run.ending, "compensated" in run.message) == (end or "stop", bool(end))
 
 
@@ -368,6 +370,15 @@ def test_a_start_without_a_speed_turns_nothing(session):
     session.advance(20)
     assert session.room.spindle.started
     assert not session.room.spindle.turns
+
+
+def test_more_speed_than_the_spindle_gives_is_limited_told_once_and_stops_nothing(session):
+    load(session, "N10 S15000 M3\nN20 G90 G1 X5 F600\nN30 M3\nN40 G1 X0\nN50 M30")
+    do(session, "cycle_start")
+    session.advance(200)
+    now = session.snapshot()
+    assert (now.alarm, now.spindle_turning) == (None, 12000.0)
+    assert [(told.code, told.block) for told in now.alarms] == [("spindle-limited", "N10")]
 
 
 def test_coolant_closes_with_an_alarm_and_stays_closed(session):

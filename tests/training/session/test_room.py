@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given, settings
 
 from twin.errors import UsageError
-from twin.nc.functions import SpindleState
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.session import checkpoints
 from twin.training.session import session as session_module
@@ -89,7 +88,7 @@ def test_distance_to_go_and_the_screen_agree(session):
     assert now.modal is not None
     assert {"G1", "G17", "G90"} <= set(now.modal.codes)
     assert now.modal.feed == 1200.0
-    assert now.spindle == SpindleState(started=True, speed=6000.0)
+    assert now.spindle.turning == 6000.0
 
 
 def test_emergency_stop_latches_until_it_is_turned_free_and_reset(session):
@@ -292,7 +291,7 @@ def test_a_spindle_starts_at_its_last_speed_and_without_one_not_at_all(session):
     room = session.room
     do(session, "mode", mode="mdi")
     for text, turns, speed in (
-        ("M3", False, 0.0), ("S1500 M4", True, 1500.0), ("M5", False, 1500.0), ("M3", True, 1500.0),
+        ("M3", False, None), ("S1500 M4", True, 1500.0), ("M5", False, 1500.0), ("M3", True, 1500.0),
     ):  # fmt: skip
         do(session, "mdi", text=text)
         do(session, "cycle_start")
@@ -302,7 +301,7 @@ def test_a_spindle_starts_at_its_last_speed_and_without_one_not_at_all(session):
     do(session, "spindle", on=False)
     assert not room.spindle.turns
     do(session, "spindle", on=True)
-    assert room.spindle == SpindleState(started=True, speed=1500.0)
+    assert room.spindle.turning == 1500.0
 
 
 def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch):

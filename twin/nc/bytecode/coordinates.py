@@ -17,11 +17,9 @@ from twin.nc.bytecode.registers import (
     State,
 )
 from twin.nc.canonical import FloatArray
-from twin.nc.geometry import frame, matrices
+from twin.nc.geometry import frame
 from twin.nc.geometry.matrices import IDENTITY, Matrix
 from twin.nc.geometry.planes import Vector, vector_of
-from twin.nc.path.compensation import leads
-from twin.nc.path.compensation.contour import OFF, STAGE, Contour
 
 _ROTATION_SHIFT = frame.SHIFTS.index("rotation")
 
@@ -96,36 +94,6 @@ def transform(constants: Constants, state: State) -> None:
     state.shifts[_ROTATION_SHIFT, :] = 0.0
     put(shift, state.shifts[_ROTATION_SHIFT])
     reframe(state)
-
-
-@compilable
-def begin_compensation(
-    side: int, radius: float, constants: Constants, state: State, contour: Contour
-) -> bool:
-    """Compensate from the next move on: ``tool_compensation.compensate``; False where that refuses.
-
-    Args:
-        side: +1 left of the contour, -1 right of it.
-        radius: Of the tool [mm].
-        constants: What stays.
-        state: Its plane, as the part sees it, is compensated.
-        contour: Is made to wait for the move that leads in.
-    """
-    if contour.counts[STAGE] != OFF or not radius >= 0.0:
-        return False
-    if radius == 0.0:
-        return True
-    axes = directions(constants, int(state.modal[PLANE]))
-    signed_offset = side * radius
-    if state.registers[TURNED] != 0.0:
-        matrix = matrix_of(state)
-        axes = frame.plane_of_part(matrix, axes)
-        signed_offset *= matrices.handedness(matrix)
-    put(axes[0], contour.plane[0])
-    put(axes[1], contour.plane[1])
-    put(axes[2], contour.plane[2])
-    leads.begin(contour, signed_offset, constants.square_corners, constants.indirect_leads)
-    return True
 
 
 @inlined

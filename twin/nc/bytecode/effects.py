@@ -41,6 +41,7 @@ from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import SHIFTS, add_up
 from twin.nc.geometry.matrices import LARGEST_SCALE, SMALLEST_SCALE
 from twin.nc.geometry.planes import along, vector_of
+from twin.nc.path.drilling_cycle import Act
 from twin.nc.path.event_columns import (
     AUXILIARY,
     DWELL,
@@ -51,6 +52,7 @@ from twin.nc.path.event_columns import (
 )
 from twin.nc.path.moves import LARGEST_COORDINATE
 from twin.nc.path.rows import Rows, copy
+from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.expressions import LARGEST_NUMBER
 
 (
@@ -70,6 +72,7 @@ from twin.nc.text.expressions import LARGEST_NUMBER
 """What is wrong with an instruction."""
 _NO_EVENT = -1
 _LENGTH = SHIFTS.index("length")
+_WAIT, _SPINDLE_STOPS = int(Act.DWELL), int(Act.M5)
 LARGEST_TOOL, LARGEST_AUXILIARY = LARGEST_NUMBER, 999_999.0
 """Numbers of tools and of auxiliary functions that an event can hold."""
 
@@ -173,6 +176,17 @@ def _report_effect(
     if kind != _NO_EVENT:
         report(on.rows, on.state, block.made, block.line, kind, number, amount)
     return top
+
+
+@compilable
+def report_act(act: int, amount: float, block: BlockPlace, on: Affected) -> None:
+    """What happens at a hole and is no move: a dwell [s], or the spindle with its speed."""
+    kind, value = FUNCTION_WITH_SPEED, on.state.registers[SPINDLE]
+    if act == _WAIT:
+        kind, value = DWELL, amount
+    elif act == _SPINDLE_STOPS:
+        kind, value = FUNCTION_ALONE, np.nan
+    report(on.rows, on.state, block.made, block.line, kind, act, value)
 
 
 @compilable
@@ -296,12 +310,6 @@ def _transform(
             return TRANSFORM_COMPENSATED
         transform(on.constants, state)
     return top
-
-
-@compilable
-def is_whole(value: float, largest: float) -> bool:
-    """Whether a value is a whole number from 0 to the largest."""
-    return 0.0 <= value <= largest and value == np.floor(value)
 
 
 @compilable

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from twin.nc.canonical import IntArray
+from twin.nc.text.comments import CommentMarks
 
 ByteArray = npt.NDArray[np.uint8]
 
@@ -21,14 +22,12 @@ class LineTables(NamedTuple):
 
     Attributes:
         token_kinds: What each letter is, shape (26,).
-        openings: First bytes of each kind of comment, 0 where there is none, shape (c, 2).
-        closings: First bytes of what ends a comment of each kind; 0, 0: the end of the line.
-        whole_line: It can only begin its line, shape (c,).
+        comments: How comments are marked.
         pointed: Numbers of the letter are plain with a decimal point only, unless 0, shape (26,).
+        longest: Bytes of a line that may be plain.
     """
 
     token_kinds: IntArray
-    openings: ByteArray
-    closings: ByteArray
-    whole_line: npt.NDArray[np.bool_]
+    comments: CommentMarks
     pointed: npt.NDArray[np.bool_]
+    longest: int

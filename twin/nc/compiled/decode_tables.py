@@ -52,7 +52,7 @@ from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.drilling_cycle import Cycle
-from twin.nc.text.syntax import Comment
+from twin.nc.text.comments import comment_marks
 
 _FIELDS: Mapping[str, int] = {
     "interpolation": INTERPOLATION,
@@ -239,13 +239,11 @@ def _line_tables(
     by_letter = np.full(26, OTHER, np.int64)
     for letter, token_kind in token_kinds.items():
         by_letter[ord(letter) - ord("A")] = token_kind
-    comments = dialect.syntax.comments
     return LineTables(
         by_letter,
-        _marks([comment.opening for comment in comments]),
-        _marks([comment.closing for comment in comments]),
-        _whole_line(comments),
+        comment_marks(dialect.syntax.comments).columns,
         np.array([letter in pointed for letter in string.ascii_uppercase]),
+        dialect.syntax.longest_line,
     )
 
 
@@ -264,12 +262,3 @@ def _token_kinds(dialect: Dialect, settings: ControlSettings) -> dict[str, int]:
     }
     token_kinds.update(dict.fromkeys(dialect.feed_letter, FEED))
     return {**token_kinds, "N": NUMBER, "G": CODE, "M": FUNCTION}
-
-
-def _marks(texts: list[str]) -> np.ndarray[tuple[int, int], np.dtype[np.uint8]]:
-    """Texts of one or two ASCII characters, shape (n, 2); 0 where there is none."""
-    return np.array([[*text.encode("ascii"), 0, 0][:2] for text in texts], np.uint8).reshape(-1, 2)
-
-
-def _whole_line(comments: tuple[Comment, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    return np.array([comment.whole_line for comment in comments], np.bool_)

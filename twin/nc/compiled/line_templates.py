@@ -14,13 +14,12 @@ from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import BytecodeTable
 from twin.nc.bytecode.token_kinds import CODE, FUNCTION
 from twin.nc.canonical import FloatArray, IntArray
-from twin.nc.text.expressions import LARGEST_NUMBER, NUMBER
+from twin.nc.text.expressions import LARGEST_NUMBER
+from twin.nc.text.plain_word import BLANKS_BETWEEN, NUMBER, SIGNED_NUMBER, SIGNED_POINTED_NUMBER
 
 _LABEL = re.compile(r"[ \t]*N[ \t]*([0-9]{1,9})(?=[ \t])", re.IGNORECASE)
 _SHARED = (opcodes.SNAPSHOT, opcodes.CYCLE_WORD)
 """Opcodes of lines that may share a template, besides those that compute and move."""
-_POINTED = r"(?:[0-9]+\.[0-9]*|\.[0-9]+)"
-"""An unsigned number with a decimal point."""
 _MOST_TEMPLATES = 1000
 """Templates that are kept: a program that has more gains nothing by them."""
 
@@ -54,9 +53,9 @@ class LineTemplates:
         """
         # A word with its number, or a number that belongs to no name.
         plain, others = "".join(letters - pointed), "".join(letters & pointed)
-        word = [rf"[{plain}][ \t]*[-+]?{NUMBER}"] if plain else []
+        word = [rf"[{plain}]{BLANKS_BETWEEN}{SIGNED_NUMBER}"] if plain else []
         if others:
-            word.append(rf"[{others}][ \t]*[-+]?{_POINTED}")
+            word.append(rf"[{others}]{BLANKS_BETWEEN}{SIGNED_POINTED_NUMBER}")
         self._number = re.compile(
             rf"((?<![\w.$#])(?:{'|'.join(word)})|(?<![\w.$#]){NUMBER})", re.IGNORECASE
         )

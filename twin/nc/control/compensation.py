@@ -1,11 +1,35 @@
 """How a control begins radius compensation, and the tools that its words name."""
 
+from collections.abc import Mapping
+
+from twin.nc.bytecode.compensation import (
+    BEGINS,
+    IN_FORCE,
+    LEADS_OUT,
+    NO_RADIUS,
+    begin,
+    may_begin,
+)
 from twin.nc.control.control import Control
 from twin.nc.control.state import integer_of
 from twin.nc.text.blocks import Word
 
 NEEDS_TOOL = "give the job a tool with its radius and length: [[tools]]"
 """Hint where a code needs a tool that the job does not have."""
+_FINDINGS: Mapping[int, tuple[str, str, str | None]] = {
+    NO_RADIUS: ("compensation-radius", "a tool cannot have the radius {radius:g}", None),
+    IN_FORCE: (
+        "compensation-change",
+        "compensation is in force already",
+        "end it by G40 before it starts on another side or with another radius",
+    ),
+    LEADS_OUT: (
+        "compensation-end",
+        "compensation has ended, and no line has led out of it yet",
+        "write a straight move in the plane before it starts anew",
+    ),
+}
+"""Code, message and hint of why compensation cannot begin."""
 
 
 def tool_numbered(control: Control, word: Word) -> int:
@@ -37,26 +61,15 @@ def compensate(control: Control, side: float, radius: float) -> None:
     Raises:
         ProgramError: It is in force already, or the radius is no radius.
     """
-    if radius < 0.0:
-        control.fail("compensation-radius", f"a tool cannot have the radius {radius:g}")
-    if control.path.compensating:
-        control.fail(
-            "compensation-change",
-            "compensation is in force already",
-            hint="end it by G40 before it starts on another side or with another radius",
+    path, modal = control.path, control.modal
+    answer = may_begin(radius, path.contour)
+    if answer < 0:
+        code, message, hint = _FINDINGS[answer]
+        control.fail(code, message.format(radius=radius), hint=hint)
+    if answer == BEGINS:
+        path.flush()
+        on = control.begin_effect()
+        constants = on.constants._replace(
+            square_corners=modal.square_corners, indirect_leads=modal.indirect_leads
         )
-    if control.path.leading_out:
-        control.fail(
-            "compensation-end",
-            "compensation has ended, and no line has led out of it yet",
-            hint="write a straight move in the plane before it starts anew",
-        )
-    if radius == 0.0:
-        return
-    plane = control.part_plane()
-    control.path.start_compensation(
-        plane,
-        side * control.frame.handedness * radius,
-        square=control.modal.square_corners,
-        indirect=control.modal.indirect_leads,
-    )
+        begin(side, radius, constants, on.state, path.contour)

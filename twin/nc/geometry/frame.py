@@ -185,11 +185,6 @@ class Frame:
         """A direction of the part's X, Y, Z as it is programmed."""
         return vector if self.is_identity else applied(inverse(self.matrix), vector)
 
-    @property
-    def handedness(self) -> float:
-        """-1 where the matrix mirrors, else 1."""
-        return 1.0 if self.is_identity else handedness(self.matrix)
-
     def arc(self, normal: Vector, sweep: float) -> tuple[Vector, float]:
         """Normal and sweep of an arc as the part sees them; a mirror reverses the sense."""
         return (normal, sweep) if self.is_identity else arc_of_part(self.matrix, normal, sweep)

@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Callable, Mapping
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.effects import BlockPlace, report_act
 from twin.nc.control.codes import CodeWriter, GCode, Ground, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
@@ -29,23 +30,27 @@ from twin.nc.path.drilling_cycle import (
 )
 
 
-def cycle_code(
-    rule: CycleRule,
-    meaning: str,
-    target: Callable[[Control], list[float]] = Control.target,
-    ground: Ground = "decision",
-    repeats: str = "",
-) -> GCode:
-    """The code that calls a cycle.
+class Holes(NamedTuple):
+    """How the blocks of a cycle name their holes.
 
-    Args:
-        rule: The cycle and its words.
-        meaning: For people.
+    Attributes:
         target: Takes the words that name the hole; its programmed position, shape (k,).
         ground: On what the meaning rests.
         repeats: Address that says how often a block drills, each hole as far from the last as the
             block's increments say; 0: its words are taken and nothing is drilled. Empty: none.
     """
+
+    target: Callable[[Control], list[float]] = Control.target
+    ground: Ground = "decision"
+    repeats: str = ""
+
+
+ONE_HOLE = Holes()
+"""Axis words name one hole."""
+
+
+def cycle_code(rule: CycleRule, meaning: str, holes: Holes = ONE_HOLE) -> GCode:
+    """The code that calls a cycle with its words, told to people by its meaning."""
     cycle = rule.cycle
 
     def call(control: Control) -> None:
@@ -55,7 +60,7 @@ def cycle_code(
             take_words(control, rule)
 
     def perform(control: Control) -> None:
-        count = repeats_of(control, repeats)
+        count = repeats_of(control, holes.repeats)
         given = dict(control.words)
         if count == 0:
             take_words(control, rule)
@@ -65,7 +70,7 @@ def cycle_code(
                 control.words = dict(given)
             if cycle.lasting:
                 take_words(control, rule)
-            drill(control, _hole(control, rule), target(control))
+            drill(control, _hole(control, rule), holes.target(control))
 
     return GCode(
         meaning=meaning,
@@ -73,7 +78,7 @@ def cycle_code(
         sets={"cycle": Interpolation(perform, rule=rule)},
         action=call,
         compiler=_write_words(rule.words),
-        ground=ground,
+        ground=holes.ground,
     )
 
 
@@ -186,7 +191,6 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
     axis = control.modal.plane.axes[2]
     room = most_acts(hole.stops)
     acts, amounts = [0.0] * room, [0.0] * room
-    turning = {} if control.spindle is None else {"S": control.spindle}
     for number in range(write_acts(hole, control.programmed[axis], acts, amounts)):
         act, amount = Act(int(acts[number])), amounts[number]
         if act in (Act.RAPID, Act.FEED, Act.ACROSS):
@@ -194,7 +198,7 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
             there = list(control.programmed if over is None else over)
             there[axis] = amount
             control.line_to(there, rapid=act is not Act.FEED)
-        elif act is Act.DWELL:
-            control.dwell(amount)
         else:
-            control.function(act.name, {} if act is Act.M5 else turning)
+            place = BlockPlace(control.block.line, 0, control.path.compensating)
+            report_act(act, amount, place, control.begin_effect())
+            control.end_effect()

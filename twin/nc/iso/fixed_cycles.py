@@ -7,13 +7,11 @@ block without a hole drills where the tool stands; the tool returns to the heigh
 was called, or with G99 to the reference plane; the plane cannot change before the cycle has ended.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
-from twin.nc.control.codes import GCode, Ground
-from twin.nc.control.control import Control
+from twin.nc.control.codes import GCode
 from twin.nc.control.interpolation import CycleRule
-from twin.nc.iso.drilling import cycle_code
+from twin.nc.iso.drilling import ONE_HOLE, Holes, cycle_code
 from twin.nc.path.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, Cycle, Pecking, Retract
 
 
@@ -46,14 +44,8 @@ DRILLS = {
 }
 
 
-def drilling_code(
-    number: int,
-    drill: Drill,
-    target: Callable[[Control], list[float]] = Control.target,
-    ground: Ground = "decision",
-    repeats: str = "",
-) -> GCode:
-    """The code of a cycle; arguments as for ``cycle_code``."""
+def drilling_code(number: int, drill: Drill, holes: Holes = ONE_HOLE) -> GCode:
+    """The code of a cycle."""
     words = {"R": REFERENCE}
     if drill.dwell:
         words["P"] = DWELL
@@ -68,8 +60,8 @@ def drilling_code(
         retract=drill.retract,
         lift=drill.lift,
     )
-    meaning = " ".join([f"{drill.meaning}: X Y Z", *words, *repeats])
-    return cycle_code(CycleRule(f"G{number}", cycle, words), meaning, target, ground, repeats)
+    meaning = " ".join([f"{drill.meaning}: X Y Z", *words, *holes.repeats])
+    return cycle_code(CycleRule(f"G{number}", cycle, words), meaning, holes)
 
 
 BY_HAND = "the operator moves the axes by hand in it"

@@ -10,7 +10,6 @@ from twin.nc.canonical import Axes, Chunk, Motion
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.blends import Blend
 from twin.nc.path.compensation.contour import (
-    LEADING_OUT,
     MOVED,
     MOVED_EVENTS,
     MOVED_ROWS,
@@ -57,7 +56,7 @@ class Path:
 
     def finish(self) -> None:
         """Nothing follows: emit what the stages hold."""
-        self._flush()
+        self.flush()
         self.end_compensation()
         self.keep_loops()
         if self._synchronous is not None:
@@ -179,7 +178,8 @@ class Path:
                 self._rounding.flush()
                 self._rounding = None
 
-    def _flush(self) -> None:
+    def flush(self) -> None:
+        """Emit what splines and blends hold."""
         self._end_spline(None)
         if self._rounding is not None:
             self._rounding.flush()
@@ -196,9 +196,9 @@ class Path:
         self._compensation.event(lambda: self._record(happen))
 
     @property
-    def leading_out(self) -> bool:
-        """Compensation has ended, and no line has led out yet."""
-        return self._compensation.stage == LEADING_OUT
+    def contour(self) -> Contour:
+        """How far compensation has come."""
+        return self._compensation.contour
 
     @property
     def compensating(self) -> bool:
@@ -210,13 +210,6 @@ class Path:
         """Compensation is in force and a move of its contour has come."""
         return self.compensating and self._compensation.stage != STARTED
 
-    def start_compensation(
-        self, plane: Plane, signed_offset: float, *, square: bool, indirect: bool
-    ) -> None:
-        """Compensate from the next move on; as ``Compensation.begin``."""
-        self._flush()
-        self._compensation.begin(plane, signed_offset, square=square, indirect=indirect)
-
     def compensate_in(self, plane: Plane) -> None:
         """Compensation, which has not moved yet, acts in another plane."""
         self._compensation.contour.plane[:] = plane.directions
@@ -224,7 +217,7 @@ class Path:
     def end_compensation(self) -> None:
         """The next line leads out."""
         if self._compensation.in_force:
-            self._flush()
+            self.flush()
             self._compensation.end()
 
     # --- loops
@@ -237,13 +230,13 @@ class Path:
     def cut_loops(self, plane: Plane) -> None:
         """Loops of the path in a plane are cut out from now on."""
         if self._loops is None:
-            self._flush()
+            self.flush()
             self._loops = Loops(plane, self._out)
 
     def keep_loops(self) -> None:
         """Loops stay."""
         if self._loops is not None:
-            self._flush()
+            self.flush()
             self._loops.flush()
             self._loops = None
 
@@ -251,7 +244,7 @@ class Path:
 
     def go_evenly(self, axis: int) -> None:
         """From now on the axis of this column goes evenly over the moves that follow."""
-        self._flush()
+        self.flush()
         if self._synchronous is None:
             self._synchronous = SynchronousAxes(self._columns.add)
         self._synchronous.begin(axis)
@@ -259,7 +252,7 @@ class Path:
     def go_as_programmed(self, axis: int) -> None:
         """It has arrived, and goes with each move again."""
         if self._synchronous is not None:
-            self._flush()
+            self.flush()
             self._synchronous.end(axis)
             if self._synchronous.idle:
                 self._synchronous = None

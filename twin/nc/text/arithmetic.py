@@ -19,6 +19,12 @@ SAME_NUMBER = 0.0001
 
 
 @compilable
+def is_whole(value: float, largest: float) -> bool:
+    """Whether a value is a whole number from 0 to the largest."""
+    return 0.0 <= value <= largest and value == int(value)
+
+
+@compilable
 def add(a: float, b: float) -> float:
     """The sum."""
     return a + b

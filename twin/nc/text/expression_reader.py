@@ -5,7 +5,6 @@ from typing import NoReturn
 
 from twin.nc.text.expressions import (
     LARGEST_NUMBER,
-    NUMBER,
     Computed,
     Exists,
     Expression,
@@ -18,6 +17,7 @@ from twin.nc.text.expressions import (
     Tree,
     Variable,
 )
+from twin.nc.text.plain_word import BLANKS, NUMBER
 
 _DEEPEST = 40
 """Brackets within brackets that an expression may have."""
@@ -45,12 +45,12 @@ class ExpressionReader:
         self._kept: dict[tuple[str, int], tuple[Expression, int]] = {}
         symbols = sorted(syntax.operators, key=len, reverse=True)
         self.operator = re.compile(
-            rf"[ \t]*({'|'.join(map(operator_pattern, symbols))})", re.IGNORECASE
+            rf"{BLANKS}({'|'.join(map(operator_pattern, symbols))})", re.IGNORECASE
         )
         self.number = re.compile(NUMBER)
         self.variable = re.compile(syntax.variable, re.IGNORECASE)
         self.name = re.compile(r"[A-Z_][A-Z_0-9]*", re.IGNORECASE)
-        self.quotient = re.compile(rf"[ \t]*/[ \t]*(?={re.escape(syntax.brackets[0])})")
+        self.quotient = re.compile(rf"{BLANKS}/{BLANKS}(?={re.escape(syntax.brackets[0])})")
 
     def read(self, text: str, start: int) -> tuple[Expression, int]:
         """Read the longest expression that begins at ``start``; return it with its end.
@@ -177,7 +177,7 @@ class _Reading:
             foreign = self._text[self.at : self.at + 1] in ("(", "[", "{")
             hint = f"brackets are {opening} {self._syntax.brackets[1]}" if foreign else None
             self._fail("expression", "a value is missing here", hint)
-        name, after = match[0].upper(), match.end()
+        name, after = self._syntax.full_name(match[0].upper()), match.end()
         if name in self._syntax.indexed and self._text[after : after + 1] == opening:
             (index,) = self._arguments(name, after, 1, depth)
             return NumberedVariable(name, index)

@@ -11,9 +11,6 @@ from typing import Any, Protocol
 
 from twin.nc.text import arithmetic
 
-NUMBER = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
-"""An unsigned number, for regular expressions."""
-
 LARGEST_NUMBER = 1e12
 """Largest magnitude of a value: beyond it neither a coordinate nor a count makes sense."""
 
@@ -123,6 +120,7 @@ class ExpressionSyntax:
             leaves its word out.
         of_vacant: Operators that see that a variable has no value.
         exclusive: Operators that need brackets where one follows another.
+        shortest_name: Letters of a function's name that suffice; 0: it is written in full.
     """
 
     operators: Mapping[str, Operator]
@@ -142,6 +140,13 @@ class ExpressionSyntax:
     vacant: bool = False
     of_vacant: tuple[str, ...] = ()
     exclusive: tuple[str, ...] = ()
+    shortest_name: int = 0
+
+    def full_name(self, name: str) -> str:
+        """The function that a name means, where the dialect lets it be shortened."""
+        if len(name) != self.shortest_name:
+            return name
+        return next((full for full in self.functions if full.startswith(name)), name)
 
 
 ARITHMETIC: Mapping[str, Operator] = {

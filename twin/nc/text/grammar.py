@@ -3,8 +3,10 @@
 import re
 from collections.abc import Callable
 
+from twin.nc.text.comments import comment_marks
 from twin.nc.text.expression_reader import ExpressionReader, operator_pattern
-from twin.nc.text.expressions import NUMBER, ExpressionSyntax
+from twin.nc.text.expressions import ExpressionSyntax
+from twin.nc.text.plain_word import BLANKS, BLANKS_BETWEEN, SIGNED_NUMBER
 from twin.nc.text.syntax import Language
 
 
@@ -14,6 +16,8 @@ class Grammar:
     Attributes:
         language: Whose syntax it is.
         syntax: Its declaration.
+        comments: How comments are marked.
+        comment_openings: The characters that they may begin with.
         word: An address with a plain number and, where the dialect has it, the incremental suffix.
         address: An address alone.
         suffix: The incremental suffix alone.
@@ -30,21 +34,23 @@ class Grammar:
         continues = "[0-9.]"
         if syntax.expressions is not None and not syntax.expressions.bracketed:
             operators = sorted(syntax.expressions.operators, key=len, reverse=True)
-            continues += rf"|[ \t]*(?:=|{'|'.join(map(operator_pattern, operators))})"
+            continues += rf"|{BLANKS}(?:=|{'|'.join(map(operator_pattern, operators))})"
         self.unfinished = _unfinished(syntax.expressions) if syntax.expressions else None
         suffix = r"(I(?![ \t]*[-+.0-9=\[P])|)" if syntax.incremental_suffix else "()"
         self.word = _compiled(
-            rf"[ \t]*({syntax.address})[ \t]*([+-]?{NUMBER})(?!{continues}){suffix}"
+            rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}({SIGNED_NUMBER})(?!{continues}){suffix}"
         )
         kinds = [
             re.escape(each.opening) + ".*?" + (re.escape(each.closing) or "$")
             for each in syntax.comments
         ]
         self._comment = re.compile(f"({'|'.join(kinds)})")
-        self.address = _compiled(rf"[ \t]*({syntax.address})[ \t]*")
+        self.comments = comment_marks(syntax.comments)
+        self.comment_openings = {comment.opening[0] for comment in syntax.comments}
+        self.address = _compiled(rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}")
         self.suffix = _compiled(suffix)
         self.statement = (
-            _compiled(rf"[ \t]*({syntax.statement})") if syntax.statement is not None else None
+            _compiled(rf"{BLANKS}({syntax.statement})") if syntax.statement is not None else None
         )
 
     def outside_comments(
@@ -68,7 +74,7 @@ def _unfinished(expressions: ExpressionSyntax) -> re.Pattern[str]:
     """Operators, names of functions and prefixes, and what stands before a value."""
     names = "|".join([*expressions.functions, *expressions.prefixes])
     operators = "|".join(map(operator_pattern, expressions.operators))
-    return _compiled(rf"(?:[=,]|{operators}|\b(?:{names}))[ \t]*\Z")
+    return _compiled(rf"(?:[=,]|{operators}|\b(?:{names})){BLANKS}\Z")
 
 
 def _compiled(pattern: str) -> re.Pattern[str]:

@@ -4,16 +4,13 @@ import re
 from collections.abc import Callable
 
 from twin.nc.text.blocks import Block
+from twin.nc.text.comments import is_control
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.expression_reader import ExpressionReader
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.line_reader import LineReader
 from twin.nc.text.reporter import Reporter
 from twin.nc.text.syntax import Language
-
-LONGEST_LINE = 65_536
-"""Characters of a line: far beyond any control's block, so that one line cannot eat the memory."""
-
 
 _SPLIT = re.compile(r"[0-9.][ \t]+[0-9.]")
 _NUMBER_WITH_BLANKS = re.compile(r"[0-9.](?:[ \t]*[0-9.])+")
@@ -64,12 +61,13 @@ class Lexer:
         return ()
 
     def _check(self, line: str) -> None:
-        if len(line) > LONGEST_LINE:
-            message = f"the line has {len(line)} characters, more than {LONGEST_LINE}"
-            self._report.fail("line-too-long", message, LONGEST_LINE)
+        longest = self._grammar.syntax.longest_line
+        if len(line) > longest:
+            message = f"the line has {len(line)} characters, more than {longest}"
+            self._report.fail("line-too-long", message, longest)
         if not line.isprintable():
             for column, character in enumerate(line):
-                if ord(character) < 32 and character not in "\t\f\v":
+                if is_control(ord(character)):
                     message = f"the line holds the control character {ord(character)}"
                     hint = None if ord(character) else "if the file is UTF-16, save it as UTF-8"
                     self._report.fail("control-character", message, column, hint=hint)

@@ -6,7 +6,9 @@ import unicodedata
 from typing import NoReturn
 
 from twin.nc.canonical import NO_BLOCK_NUMBER
+from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
+from twin.nc.text.comments import NO_COMMENT, OPEN_COMMENT, comment_end
 from twin.nc.text.expressions import (
     LARGEST_NUMBER,
     ExpressionError,
@@ -14,6 +16,7 @@ from twin.nc.text.expressions import (
     Variable,
 )
 from twin.nc.text.grammar import Grammar
+from twin.nc.text.plain_word import BLANKS
 from twin.nc.text.reporter import Reporter
 
 LARGEST_LABEL = 4_294_967_295
@@ -26,8 +29,8 @@ _SKIP_LEVEL = re.compile(r"[1-9](?=[ \t]*[A-Z#/])", re.IGNORECASE)
 _LATE_SKIP = re.compile(r"(N[ \t]*[0-9]+)[ \t]*/", re.IGNORECASE)
 _NEXT_LABEL = re.compile(r"(?<=[ \t])N[ \t]*[0-9]", re.IGNORECASE)
 _NAMED_LABEL = re.compile(r"\[[ \t]*([A-Z_]\w*)[ \t]*\]", re.IGNORECASE)
-_BLANKS = re.compile(r"[ \t]*")
-_EQUALS = re.compile(r"[ \t]*=")
+_BLANKS = re.compile(BLANKS)
+_EQUALS = re.compile(rf"{BLANKS}=")
 _PROSE = re.compile(r"[^\W\d_]{2,}(?:[ \t,;:'-]+[^\W\d_]+)+[ \t]*[.!?:]?[ \t]*(?=$|N[ \t]*[0-9])")
 """At least two words of letters alone, up to the end of the line or the next block."""
 _NO_NUMBER = re.compile(r"\b[A-Z](?:nan|inf|infinity|null|none|undefined)\b", re.IGNORECASE)
@@ -107,11 +110,8 @@ class LineReader:
         self._at = blanks.end()
         if self._at == len(self._line):
             return False
-        for comment in self._syntax.comments:
-            if self._line.startswith(comment.opening, self._at) and (
-                not comment.whole_line or not self._line[: self._at].strip()
-            ):
-                return self._comment(comment.opening, comment.closing)
+        if self._line[self._at] in self._grammar.comment_openings and self._comment():
+            return True
         if self._block_skip() or self._named_label() or self._label_colon() or self._assignment():
             return True
         if not self._computed_word():
@@ -131,16 +131,26 @@ class LineReader:
         self._at = match.end()
         return True
 
-    def _comment(self, opening: str, closing: str) -> bool:
-        """Pass over a comment; False where it runs to the end of the line."""
-        if not closing:
+    def _comment(self) -> bool:
+        """Pass over a comment; False where none begins."""
+        line, at = list(map(ord, self._line)), self._at
+        end = comment_end(line, 0, at, len(line), self._grammar.comments)
+        if end == OPEN_COMMENT:
+            self._refuse_open_comment(self._line[at:], at)
+        if end == NO_COMMENT:
             return False
-        end = self._line.find(closing, self._at + len(opening))
-        if end < 0:
-            message = f"the comment is not closed by '{closing}'"
-            self._fail("open-comment", message, self._at, hint="close it on its own line")
-        self._at = end + len(closing)
+        self._at = end
         return True
+
+    def _refuse_open_comment(self, text: str, at: int) -> NoReturn:
+        """A comment that begins a text, at a column, is not closed.
+
+        Raises:
+            ProgramError: Always.
+        """
+        begun = next(each for each in self._syntax.comments if text.startswith(each.opening))
+        message = f"the comment is not closed by '{begun.closing}'"
+        self._fail("open-comment", message, at, hint="close it on its own line")
 
     def _block_skip(self) -> bool:
         if self._line[self._at] != "/" or self._words or self._number != NO_BLOCK_NUMBER:
@@ -210,9 +220,7 @@ class LineReader:
             while comment.closing and (opening := text.find(comment.opening)) >= 0:
                 end = text.find(comment.closing, opening + len(comment.opening))
                 if end < 0:
-                    message = f"the comment is not closed by '{comment.closing}'"
-                    hint = "close it on its own line"
-                    self._fail("open-comment", message, start + opening, hint=hint)
+                    self._refuse_open_comment(text[opening:], start + opening)
                 end += len(comment.closing)
                 text = text[:opening] + " " * (end - opening) + text[end:]
         return text
@@ -303,7 +311,7 @@ class LineReader:
 
     def _label(self, number: str, begin: int) -> None:
         value = float(number)
-        if not (value <= LARGEST_LABEL and value == int(value) and value >= 0.0):
+        if not is_whole(value, LARGEST_LABEL):
             self._fail("label", f"N{number} is no block number", begin)
         if self._words or self._number != NO_BLOCK_NUMBER:
             if not self._syntax.several_blocks:

@@ -6,6 +6,9 @@ from typing import Protocol
 
 from twin.nc.text.expressions import ExpressionSyntax
 
+LONGEST_LINE = 65_536
+"""Characters of a line: far beyond any control's block, so that one line cannot eat the memory."""
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Comment:
@@ -47,6 +50,7 @@ class Syntax:
             is none.
         open_assignments: What is assigned needs no brackets around its operators.
         blanks_in_numbers: Blanks between the characters of a number do not count.
+        longest_line: Characters that a line may have.
         excused: Why a line that cannot be read may be left out, given it and the line before:
             code of the warning, or None.
     """
@@ -66,6 +70,7 @@ class Syntax:
     assigned: str = ""
     open_assignments: bool = False
     blanks_in_numbers: bool = False
+    longest_line: int = LONGEST_LINE
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
 
 

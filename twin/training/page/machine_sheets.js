@@ -7,7 +7,7 @@ const SPINDLE_STEP = 10;
 
 export function manual_sheet(sheets) {
   const { now, words, line, scene, desk } = sheets, hand = desk.hand;
-  const speed = make("input", { id: "spindle-speed", "data-key": "spindle speed", inputmode: "decimal", value: now.spindle.speed ?? "", "aria-label": words.label("spindle_speed") });
+  const speed = make("input", { id: "spindle-speed", "data-key": "spindle speed", inputmode: "decimal", value: now.spindle.speed ?? now.spindle.tool_speed ?? "", "aria-label": words.label("spindle_speed") });
   const turn = (name, counter_clockwise) => sheets.button(name, words.label(name), () => line.say({ do: "spindle", on: true, counter_clockwise, ...(speed.value.trim() ? { speed: number(speed.value) } : {}) }));
   const [low, high] = scene.overrides.spindle;
   const nudge = (by, sign) => {

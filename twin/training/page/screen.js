@@ -105,7 +105,7 @@ export class Screen {
     const per_second = now.modal?.per_minute === SECONDS_PER_MINUTE;
     const unit = words.label(per_second ? "per_second" : "per_minute"), shown = per_second ? (state.feed / SECONDS_PER_MINUTE).toFixed(1) : state.feed.toFixed(0);
     const turns = now.counter_clockwise ? "↺" : "↻";
-    const spindle = now.spindle.started ? (now.spindle.speed === null ? "-" : (0.01 * now.spindle_override * now.spindle.speed).toFixed(0)) : "0";
+    const spindle = now.spindle_turning === null ? "-" : Math.abs(0.01 * now.spindle_override * now.spindle_turning).toFixed(0);
     const real = Number.isNaN(state.spindleSpeed) || Math.abs(state.spindleSpeed - Number(spindle)) < 0.01 * Number(spindle) + 1 ? "" : `${state.spindleSpeed.toFixed(0)} → `;
     const speeds = [["", `F ${shown}`], ["quiet", `(${feed}) ${unit}`], [state.turns ? "on" : "quiet", `S ${real}${spindle}${state.turns ? ` ${turns}` : ""}`], [now.broken ? "broken" : "", `T ${now.tool}${now.broken ? " ✕" : ""}`]];
     if (now.searched) speeds.push(["contact", `▶ ${now.searched}`]);

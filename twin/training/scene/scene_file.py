@@ -77,6 +77,22 @@ class PartTable(Table):
     """Of the points [mm]."""
 
 
+class LessonTable(Table):
+    """What the sheet tells of the scene's trap to somebody who fell into it."""
+
+    cause: Text
+    """What went wrong, and at which block."""
+    consequence: Text
+    """What it does to part, tool or machine."""
+    right: Text
+    """What would have been right."""
+
+    @property
+    def texts(self) -> tuple[Text, Text, Text]:
+        """All of it, in this order."""
+        return self.cause, self.consequence, self.right
+
+
 class StepTable(Table):
     """A step of a scripted operator: a command, or something to wait for."""
 
@@ -120,6 +136,8 @@ class SceneFile(Table):
     tasks: Annotated[tuple[TaskTable, ...], Field(min_length=1)]
     part: PartTable | None = None
     """The part by which the condition ``finished`` is judged; none: the program's end is enough."""
+    lesson: LessonTable | None = None
+    """Told on the sheet of a scene that was handed in with less than all points."""
     hints: tuple[Text, ...] = ()
     """Given one after the other when the operator asks for one."""
     hint_cost: Annotated[int, Field(ge=0)] = 1

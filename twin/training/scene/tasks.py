@@ -1,7 +1,9 @@
 """Tasks: conditions that are checked against the running machine.
 
 A task is done at the moment at which its condition holds, and stays done. A task with ``to_end``
-is one that must never be broken: it fails at the moment at which it is, and is done at the end.
+is one that must never be broken: it fails at the moment at which it is, and is done at the end. What
+stands in the control's tables is judged when the scene is handed in, so that no value can be found
+by trying.
 """
 
 from typing import Annotated, Literal
@@ -22,6 +24,8 @@ class ReachedTable(Table):
     """[mm or deg]."""
     frame: Literal["part", "machine"] = "part"
     """From the part's true zero, whatever the control believes; or machine coordinates."""
+    by_program: bool = False
+    """Only where a program has brought them that has finished the part."""
 
 
 class StayedTable(Table):
@@ -84,6 +88,8 @@ class TaskTable(Table):
     """None of these alarms comes; ``any`` for all. Holds to the end."""
     within_s: Annotated[float, Field(gt=0)] | None = None
     """All other tasks are done within this machine time [s]."""
+    blanks: Annotated[int, Field(ge=1)] | None = None
+    """No more blanks than these have been clamped, the first one counted. Holds to the end."""
     removed_mm3: tuple[float, float] | None = None
     """What has been cut off lies in this range when the program has ended [mm³]."""
     question: QuestionTable | None = None
@@ -104,7 +110,12 @@ class TaskTable(Table):
     @property
     def to_end(self) -> bool:
         """Whether it is judged at the end, since it can be broken until then."""
-        return self.condition in ("stayed", "no_alarm", "within_s")
+        return self.condition in ("stayed", "no_alarm", "within_s", "blanks")
+
+    @property
+    def at_end(self) -> bool:
+        """Whether it is looked at only when the scene is handed in."""
+        return self.condition in ("zero", "tool_length")
 
     def axes_named(self) -> list[str]:
         """The axes that its condition speaks of."""
@@ -115,6 +126,6 @@ class TaskTable(Table):
 
 CONDITIONS = (
     "reached", "stayed", "zero", "tool_length", "finished", "single_block", "held", "cleared",
-    "no_alarm", "within_s", "removed_mm3", "question",
+    "no_alarm", "within_s", "blanks", "removed_mm3", "question",
 )  # fmt: skip
 """Keys of a task that are conditions."""

@@ -41,7 +41,13 @@ def state_message(look: Look, cutting: bool) -> bytes:
     now = look.now
     flags = now.moving | now.touches << 1 | now.spindle.turns << 2 | now.coolant << 3 | cutting << 4
     rows = [getattr(now, name) for name in _STATE_ALONE[1:]]
-    numbers = [now.time_s, now.speed, now.feed, now.spindle.speed or 0.0, *now.trail]
+    numbers = [
+        now.time_s,
+        now.speed,
+        now.feed,
+        abs(now.spindle.turning or now.spindle.asked or 0.0),
+        *now.trail,
+    ]
     for row in rows:
         numbers += row
     numbers += now.loads

@@ -11,8 +11,8 @@ from twin.training.scene.scene_file import Scene
 from twin.training.scene.vocabulary import Language, Words
 from twin.training.server.app import ROLES, RoomApp
 from twin.training.server.driver import Driver
-from twin.training.session.score import SheetWriter
 from twin.training.session.session import Session
+from twin.training.sheets.score import SheetWriter
 from twin.web.doorkeeper import Doorkeeper
 from twin.web.guard import Guard
 from twin.web.server import LOOPBACK, WebServer, require_three

@@ -1,1 +1,1 @@
-"""A session: the room, what is done in it, its score."""
+"""A session: the room, and what is done in it."""

@@ -1,10 +1,10 @@
 """What each command does at the machine, and why it may be refused."""
 
+import dataclasses
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from twin.errors import UsageError
-from twin.nc.functions import SpindleState
 from twin.nc.text.source import source_from_text
 from twin.training.session import commands as c
 from twin.training.session.faults import forget_offset, inject, repair
@@ -236,13 +236,15 @@ def _load(room: Room, lines: Iterable[str]) -> None:
 
 
 def _spindle(room: Room, command: c.Spindle) -> None:
-    speed = room.spindle.speed if command.speed is None else command.speed
+    state = dataclasses.replace(room.spindle, started=command.on)
+    if command.speed is not None:
+        state = dataclasses.replace(state, speed=command.speed)
     if command.on:
         _require_no_alarm(room)
-        if not speed:
+        if not state.asked:
             raise UsageError("no spindle speed is set: type S first")
-        room.counter_clockwise = command.counter_clockwise
-    room.spindle = SpindleState(started=command.on, speed=speed)
+        state = dataclasses.replace(state, counter_clockwise=command.counter_clockwise)
+    room.turn_spindle(state)
 
 
 def _coolant(room: Room, command: c.Coolant) -> None:

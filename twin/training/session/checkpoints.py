@@ -21,6 +21,7 @@ from twin.machine.watching.relative_motion import RelativeMotion
 from twin.nc.canonical import FloatArray
 from twin.nc.text.source import Source
 from twin.training.scene.scene_file import Scene
+from twin.training.session.inspection import Inspection
 from twin.training.session.moment import Moment
 from twin.training.session.program_run import ProgramRun, ProgramRunCopy
 from twin.training.session.room import SLICE, Room
@@ -35,7 +36,17 @@ SPREAD = 0.2
 TILE = 64
 """Cells along a side of a tile of the stock."""
 
-_SHARED = (Scene, Machine, Source, mujoco.MjModel, HeadShape, RelativeMotion, Outline, Moment)
+_SHARED = (
+    Scene,
+    Machine,
+    Source,
+    mujoco.MjModel,
+    HeadShape,
+    RelativeMotion,
+    Outline,
+    Moment,
+    Inspection,
+)
 """What never changes and need not be copied."""
 
 

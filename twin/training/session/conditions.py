@@ -24,6 +24,9 @@ class Evidence:
         held: Lines in which the axes were held to a stand.
         answers: What was answered, by number of the task.
         since_touch_s: Machine time since the panel was touched first [s].
+        made: The program has finished the part at least once.
+        brought: The axes stand where a program has brought them that finished the part.
+        blanks: How many have been clamped.
     """
 
     alarms: list[str] = dataclasses.field(default_factory=list)
@@ -33,22 +36,15 @@ class Evidence:
     held: set[int] = dataclasses.field(default_factory=set)
     answers: dict[int, str] = dataclasses.field(default_factory=dict)
     since_touch_s: float = 0.0
+    made: bool = False
+    brought: bool = False
+    blanks: int = 1
 
 
-def part_is_right(room: Observed) -> bool:
-    """Whether the part on the table is the one that the scene asks for."""
-    part, work = room.scene.file.part, room.work
-    if part is None:
-        return True
-    if work is None or not part.removed_mm3[0] <= work.removed <= part.removed_mm3[1]:
-        return False
-    return all(abs(work.height_at(x, y) - z) <= part.tolerance for x, y, z in part.points)
-
-
-def _reached(_evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
+def _reached(evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     goal = task.reached
     assert goal is not None
-    if room.moving:
+    if room.moving or (goal.by_program and not evidence.brought):
         return "open"
     zero = room.tables.tip_zero if goal.frame == "part" else np.zeros(len(room.tables.zero))
     names = room.machine.machine.axes.names
@@ -107,6 +103,11 @@ def _within(evidence: Evidence, _room: Observed, task: TaskTable, _number: int) 
     return "failed" if evidence.since_touch_s > task.within_s else "open"
 
 
+def _blanks(evidence: Evidence, _room: Observed, task: TaskTable, _number: int) -> State:
+    assert task.blanks is not None
+    return "failed" if evidence.blanks > task.blanks else "open"
+
+
 def _removed(evidence: Evidence, room: Observed, task: TaskTable, _number: int) -> State:
     assert task.removed_mm3 is not None
     if not evidence.ended_well or room.work is None:
@@ -133,6 +134,7 @@ CHECKS: dict[str, Callable[[Evidence, Observed, TaskTable, int], State]] = {
     "cleared": _alarm_cleared,
     "no_alarm": _no_alarm,
     "within_s": _within,
+    "blanks": _blanks,
     "removed_mm3": _removed,
     "question": _question,
 }

@@ -3,7 +3,8 @@
 import dataclasses
 
 from twin.errors import UsageError
-from twin.training.session.conditions import CHECKS, Evidence, State, part_is_right
+from twin.training.session.conditions import CHECKS, Evidence, State
+from twin.training.session.inspection import part_is_right
 from twin.training.session.observed import Observed
 
 
@@ -38,6 +39,8 @@ class Judge:
         self.evidence = Evidence()
         self._trouble = False
         self._hold_line = 0
+        self._by_program: dict[tuple[str, ...], tuple[set[int], set[int]]] = {}
+        self._trusted = {tuple(room.scene.preparation.source.lines)}
         self._touched_s: float | None = None
 
     @property
@@ -71,19 +74,43 @@ class Judge:
     def note_start(self, *, whole: bool) -> None:
         """The program has been started; ``whole``: from its beginning, and to cut."""
         self._trouble = not whole
+        self._hold_line = 0
         self.evidence.ended_well = False
 
     def note_end(self, room: Observed) -> None:
         """The program has run to its end."""
-        self.evidence.ended_well = not self._trouble and part_is_right(room)
+        well = not self._trouble and part_is_right(room)
+        self.evidence.ended_well = self.evidence.brought = well
+        self.evidence.made |= well
+        if well:
+            self._trusted.add(room.lines)
+            self._believe(room)
 
-    def note_singly(self, lines: set[int]) -> None:
-        """Those lines were run in single block, from one stop to the next."""
-        self.evidence.single |= lines
+    def note_blank(self) -> None:
+        """A new blank has been clamped."""
+        self.evidence.blanks += 1
+
+    def note_singly(self, room: Observed) -> None:
+        """Lines of the program were run in single block, from one stop to the next."""
+        if room.run is not None and room.running == "program":
+            self.noted(room)[0].update(room.run.singly)
+            self._believe(room)
 
     def note_hold(self, room: Observed) -> None:
         """The operator has asked for a feed hold."""
-        self._hold_line = int(room.machine.setpoint.line[0])
+        if room.running == "program":
+            self._hold_line = int(room.machine.setpoint.line[0])
+
+    def noted(self, room: Observed) -> tuple[set[int], set[int]]:
+        """Lines of the program as it is written now: run in single block, and held in."""
+        return self._by_program.setdefault(room.lines, (set(), set()))
+
+    def _believe(self, room: Observed) -> None:
+        """Lines count of the scene's own program, and of another one that has made the part."""
+        if room.lines in self._trusted:
+            single, held = self.noted(room)
+            self.evidence.single |= single
+            self.evidence.held |= held
 
     def answer(self, task: int, choice: str) -> None:
         """Take an answer; the first one counts.
@@ -115,11 +142,20 @@ class Judge:
         """Judge what holds to the end; what is open fails."""
         if self.over:
             return
-        for number, task in enumerate(self._file.tasks):
-            if self.verdicts[number].state != "open":
-                continue
-            kept = task.to_end and (task.condition != "within_s" or self._others_done())
-            self.verdicts[number] = Verdict("done" if kept else "failed", room.time_s)
+        left = [
+            (number, task)
+            for number, task in enumerate(self._file.tasks)
+            if self.verdicts[number].state == "open"
+        ]
+        for number, task in sorted(left, key=lambda one: one[1].to_end):
+            if task.at_end:
+                good = CHECKS[task.condition](self.evidence, room, task, number + 1) == "done"
+            else:
+                # What was only never broken earns nothing where no part was made.
+                good = task.to_end and self.evidence.made
+            if task.condition == "within_s":
+                good = good and self._others_done()
+            self.verdicts[number] = Verdict("done" if good else "failed", room.time_s)
         self.over = True
 
     def _others_done(self) -> bool:
@@ -134,13 +170,16 @@ class Judge:
         if self.over:
             return
         self.evidence.since_touch_s = self.time_s(room)
+        if room.run is not None:
+            self.evidence.brought = False
         if room.run is not None and room.running == "program" and room.run.held:
-            self.note_singly(room.run.singly)
+            self.note_singly(room)
             if self._hold_line and not room.moving:
-                self.evidence.held.add(self._hold_line)
+                self.noted(room)[1].add(self._hold_line)
                 self._hold_line = 0
+                self._believe(room)
         for number, task in enumerate(self._file.tasks):
-            if self.verdicts[number].state == "open":
+            if self.verdicts[number].state == "open" and not task.at_end:
                 state = CHECKS[task.condition](self.evidence, room, task, number + 1)
                 if state != "open":
                     self.verdicts[number] = Verdict(state, room.time_s)

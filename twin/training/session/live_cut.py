@@ -96,14 +96,12 @@ class LiveCut:
         self._told |= {one.tool for one in found}
         return found
 
-    def turn(self, spindle: SpindleState, override: float, *, counter_clockwise: bool) -> None:
+    def turn(self, spindle: SpindleState, override: float) -> None:
         """Tell the drive of the spindle what is asked of it; ``override`` is a factor.
 
         An edge that stands may touch the part, as a feeler: what it must not do is the part's to see.
         """
-        speed = spindle.speed if spindle.turns else None
-        sense = -1.0 if counter_clockwise else 1.0
-        self._operation.speed = None if speed is None else sense * override * speed
+        self._operation.speed = override * spindle.turning if spindle.turning else None
 
     def loads(self, felt: ToolLoad | None) -> Loads:
         """What there is to show of what the tool felt."""

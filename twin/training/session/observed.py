@@ -70,6 +70,7 @@ class Observed(Protocol):
     machine: LiveMachine
     tables: Tables
     work: Workpiece | None
+    lines: tuple[str, ...]
     mode: Mode
     run: ProgramRun | None
     running: str

@@ -205,7 +205,6 @@ class ProgramRun:
         start: FloatArray,
         zero: FloatArray,
         spindle: SpindleState,
-        sense: float,
         *,
         paused: bool = False,
     ) -> None:
@@ -215,14 +214,13 @@ class ProgramRun:
             start: Where the setpoints stand, machine coordinates, shape (k,) [mm or deg].
             zero: Machine coordinates of program zero, shape (k,) [mm or deg].
             spindle: What it has been told: the axes wait until it has come to its speed.
-            sense: Which way it turns, -1 counter-clockwise.
             paused: Whether start is waited for before its first block.
         """
-        self._journal.append(("begin", start, zero, spindle, sense, paused))
+        self._journal.append(("begin", start, zero, spindle, paused))
         self._forget()
         # A tool is changed at once, so that one which is not there is told at once.
         table = self._machine.file.spindle.model_copy(update={"tool_change_s": 0.0})
-        self._waits = Waits(table, {}, self._control.tools.spindle or 0, spindle, sense)
+        self._waits = Waits(table, {}, self._control.tools.spindle or 0, spindle)
         self._begin = start, zero
         self._begin_paused = paused
         self.ending = None

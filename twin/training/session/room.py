@@ -25,8 +25,7 @@ from twin.nc.functions import (
     COOLANT_OFF,
     COOLANT_ON,
     PROGRAM_ENDS,
-    SPINDLE_COUNTER_CLOCKWISE,
-    SPINDLE_STARTS,
+    SPINDLE_LIMITED,
     SpindleState,
 )
 from twin.nc.iso.base import jog_block
@@ -38,6 +37,7 @@ from twin.training.scene.fault_table import FaultTable
 from twin.training.scene.scene_file import Mode, Scene
 from twin.training.session.block_walk import ModalState
 from twin.training.session.faults import inject
+from twin.training.session.inspection import Inspection, inspect_part
 from twin.training.session.judge import Judge
 from twin.training.session.live_cut import LiveCut
 from twin.training.session.moment import Moment, moment_of
@@ -122,12 +122,12 @@ class Room:
         feed_override: Feed override dial [%].
         rapid_override: Rapid override dial [%].
         spindle_override: Spindle override dial [%].
-        counter_clockwise: Which way the spindle turns, or turned last.
         switches: Optional stop, block skip, dry run.
         searched: Line at which the next start begins; 0: the first.
         alarm: The alarm that stands.
         alarms: Those that came, the newest last.
         moments: How the tool stood in the part at each of them.
+        handed_in: The part as it was when the scene was judged; None: it has not been.
         broken: Tools that have lost their edge, by number, with what was said of it.
         pressed: Whether the emergency stop button is pressed.
         spindle: Whether the spindle turns, and how fast.
@@ -175,15 +175,17 @@ class Room:
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
         self.spindle_override = 100
-        self.counter_clockwise = False
         self.switches = Switches()
         self.searched = 0
-        self.spindle = SpindleState(started=file.start.spindle, speed=file.start.speed)
+        self.spindle = dataclasses.replace(
+            preparation.spindle, started=file.start.spindle, speed=file.start.speed
+        )
         self.running_down = False
         self.coolant = False
         self.alarm: Notice | None = None
         self.alarms: deque[Notice] = deque(maxlen=ALARMS_KEPT)
         self.moments: deque[Moment] = deque(maxlen=MOMENTS_KEPT)
+        self.handed_in: Inspection | None = None
         self.broken: dict[int, Notice] = {}
         self.pressed = False
         self.program: Source = preparation.source
@@ -255,11 +257,7 @@ class Room:
             self._slice(SLICE)
 
     def _slice(self, count: int) -> None:
-        self.cut.turn(
-            self.spindle,
-            self.spindle_override / 100.0,
-            counter_clockwise=self.counter_clockwise,
-        )
+        self.cut.turn(self.spindle, self.spindle_override / 100.0)
         parts: list[Samples] = []
         if self.machine.alarm is None:
             setpoints = self._setpoints(count)
@@ -278,6 +276,8 @@ class Room:
         self._note_breaks()
         self._end_of_part()
         self.judge.look(self)
+        if self.judge.over and self.handed_in is None:
+            self.handed_in = inspect_part(self, self._moment(Notice("", "", "", 0, self.time_s)))
 
     def _setpoints(self, count: int) -> Setpoints:
         if self.run is None or self.waiting:
@@ -332,19 +332,18 @@ class Room:
             self.label = display - end
 
     def _function(self, function: Function) -> None:
-        self.spindle = self.spindle.after(function)
-        if function.word in SPINDLE_STARTS:
-            self.counter_clockwise = function.word == SPINDLE_COUNTER_CLOCKWISE
-            # Started without S the spindle stands until S says more (LinuxCNC, "M3, M4, M5"). A
-            # control that has no word for the speed turns it as the drive is set.
-            if self.spindle.speed is None and self.scene.preparation.dialect.spindle_letter:
-                self.spindle = SpindleState(started=True, speed=0.0)
-        if function.word in PROGRAM_ENDS:
-            self.spindle = self.spindle.stopped()
+        self.turn_spindle(self.spindle.after(function), function.line)
         if function.word in COOLANT_ON:
             self.coolant = True
         elif function.word in COOLANT_OFF | PROGRAM_ENDS:
             self.coolant = False
+
+    def turn_spindle(self, state: SpindleState, line: int = 0) -> None:
+        """Let the spindle go on otherwise; a speed that is limited is told, and stops nothing."""
+        said = state.limit_of(state.speed)
+        if said and state.speed != self.spindle.speed:
+            self.alarms.append(self._notice(SPINDLE_LIMITED, said, line=line))
+        self.spindle = state
 
     def _latch(self, alarm: Alarm | None) -> None:
         # An axis that is jogged off its switch may meet the next alarm while the first one stands.
@@ -371,14 +370,25 @@ class Room:
         self, code: str, message: str, *, axis: str, line: int, finding: Diagnostic | None
     ) -> Notice:
         """Enter what went wrong into the history, for the sheet and the judge too."""
+        notice = self._notice(code, message, axis=axis, line=line, finding=finding)
+        self.alarms.append(notice)
+        self.moments.append(self._moment(notice))
+        self.judge.note_alarm(code)
+        return notice
+
+    def _notice(
+        self,
+        code: str,
+        message: str,
+        *,
+        axis: str = "",
+        line: int = 0,
+        finding: Diagnostic | None = None,
+    ) -> Notice:
         here = self.running == "program" or (self.running == "" and line > 0)
         dialect = self.scene.preparation.dialect
         block = block_number(dialect, self.program, line) if here else ""
-        notice = Notice(code, message, axis, line, self.time_s, finding, block)
-        self.alarms.append(notice)
-        self._keep_moment(notice)
-        self.judge.note_alarm(code)
-        return notice
+        return Notice(code, message, axis, line, self.time_s, finding, block)
 
     def _note_breaks(self) -> None:
         """Tools that have lost their edge: the machine does not feel it, and goes on without."""
@@ -389,14 +399,14 @@ class Room:
                 alarm.code, alarm.message, axis="", line=line, finding=None
             )
 
-    def _keep_moment(self, alarm: Notice) -> None:
-        """Keep for the score sheet how the tool stood in the part."""
+    def _moment(self, alarm: Notice) -> Moment:
+        """How the tool stands in the part, for the score sheet."""
         at = self.machine.position - self.tables.longer
         tip = self.part_frame.position(at[None])[0]
         stock = None if self.work is None else self.work.map
         running = self.run is not None and self.running == "program"
         text = self.lines[alarm.line - 1] if running and 0 < alarm.line <= len(self.lines) else ""
-        self.moments.append(moment_of(alarm, text.strip(), tip, self.tables.tool, stock))
+        return moment_of(alarm, text.strip(), tip, self.tables.tool, stock)
 
     def _end_of_part(self) -> None:
         """What comes when the present part of a program has come to its end."""
@@ -409,7 +419,7 @@ class Room:
         if self.run is None:
             return
         ending = run.ending
-        self.judge.note_singly(run.singly)
+        self.judge.note_singly(self)
         if run.dropped or ending in (None, "end"):
             if self.running == "jog":
                 self._end_of_leg()
@@ -501,9 +511,8 @@ class Room:
         self._begin_part(self.run, paused=paused)
 
     def _begin_part(self, run: ProgramRun, *, paused: bool = False) -> None:
-        sense = -1.0 if self.counter_clockwise else 1.0
         where = self.standing_setpoint, self.tables.program_zero
-        run.begin(*where, self.spindle, sense, paused=paused)
+        run.begin(*where, self.spindle, paused=paused)
 
     def drop_run(self) -> None:
         """Forget what runs; the axes slow down where they are."""
@@ -599,6 +608,7 @@ class Room:
 
     def new_blank(self) -> None:
         """Clamp a new blank."""
+        self.judge.note_blank()
         self.work = self._clamped_blank()
         if self.work is not None:
             self.work.mount(self.tables.tool)
@@ -626,6 +636,7 @@ class Room:
         if number not in self.tables.tools:
             raise UsageError(f"no tool {number}")
         self.tables.spindle = number
+        self.spindle = dataclasses.replace(self.spindle, tool_speed=self.tables.tool.speed)
         self.machine.mount(self.tables.tool)
         self.cut.mount(self.tables.tool, float(self.tables.longer[2]))
         if self.work is not None:

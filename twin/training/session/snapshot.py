@@ -63,6 +63,8 @@ class Snapshot:
     feed_override: int
     rapid_override: int
     spindle: SpindleState
+    spindle_turning: float | None
+    """Speed that it is told, negative counter-clockwise, 0 at a stand; None: not known [1/min]."""
     spindle_override: int
     counter_clockwise: bool
     coolant: bool
@@ -140,8 +142,9 @@ def take_snapshot(room: Room) -> Snapshot:
         feed_override=room.feed_override,
         rapid_override=room.rapid_override,
         spindle=room.spindle,
+        spindle_turning=room.spindle.turning,
         spindle_override=room.spindle_override,
-        counter_clockwise=room.counter_clockwise,
+        counter_clockwise=room.spindle.counter_clockwise,
         coolant=room.coolant,
         optional_stop=room.switches.optional_stop,
         block_skip=room.switches.block_skip,

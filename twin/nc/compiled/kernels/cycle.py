@@ -3,7 +3,7 @@
 import numpy as np
 
 from twin.compilation.compilable import compilable
-from twin.nc.bytecode.effects import report
+from twin.nc.bytecode.effects import Affected, BlockPlace, report_act
 from twin.nc.bytecode.registers import (
     CORNER,
     CYCLE,
@@ -12,7 +12,6 @@ from twin.nc.bytecode.registers import (
     FEED_FACTOR,
     INCREMENTAL,
     PLANE,
-    SPINDLE,
     TO_REFERENCE,
     UNIT,
     BlockTables,
@@ -33,16 +32,14 @@ from twin.nc.compiled.kernels.move_row import (
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.path import drilling_cycle
 from twin.nc.path.drilling_cycle import Act, Cycle, Hole
-from twin.nc.path.event_columns import DWELL, FUNCTION_ALONE, FUNCTION_WITH_SPEED
-from twin.nc.path.moves import LARGEST_COORDINATE, line_length
+from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length
 from twin.nc.path.rows import Rows, copy
 
 NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
 _REPEATS_ONLY = Cycle._fields.index("repeats_only")
-_UP, _DOWN, _DWELL, _M5 = int(Act.RAPID), int(Act.FEED), int(Act.DWELL), int(Act.M5)
-_ACROSS = int(Act.ACROSS)
+_UP, _DOWN, _ACROSS = int(Act.RAPID), int(Act.FEED), int(Act.ACROSS)
 
 
 @compilable
@@ -158,7 +155,8 @@ def _emit_hole(
         return NO_ROOM
     if np.isnan(feed) and not constants.feed_may_lack:
         return UNSUPPORTED
-    pace = constants.default_feed if np.isnan(feed) else feed * modal[UNIT] * modal[FEED_FACTOR]
+    otherwise = (constants.default_feed, constants.default_rotary_feed)
+    pace = feed_per_minute(feed, False, modal[UNIT], modal[FEED_FACTOR], otherwise)
     rapidly = Travel(RAPID, constants.rapid_feed, STOP)
     feeding = Travel(FEED, pace, int(modal[CORNER]))
     axis = int(constants.planes[int(modal[PLANE])][2])
@@ -178,12 +176,8 @@ def _emit_hole(
             if after == UNSUPPORTED:
                 return UNSUPPORTED
         else:
-            kind, amount = FUNCTION_WITH_SPEED, state.registers[SPINDLE]
-            if act == _DWELL:
-                kind, amount = DWELL, amounts[step]
-            elif act == _M5:
-                kind, amount = FUNCTION_ALONE, np.nan
-            report(rows, state, after, block.line, kind, act, amount)
+            place = BlockPlace(block.line, after, False)
+            report_act(act, amounts[step], place, Affected(constants, state, rows))
     copy(here, constants.over)
     copy(part, state.target)
     return after

@@ -4,9 +4,8 @@ Each does what ``opcodes`` says of it; opcodes of one kind have a function.
 """
 
 from twin.compilation.compilable import inlined
-from twin.nc.bytecode import opcodes
+from twin.nc.bytecode import compensation, opcodes
 from twin.nc.bytecode.bytecode import PART_BITS, BytecodeTable, Instruction
-from twin.nc.bytecode.coordinates import begin_compensation
 from twin.nc.bytecode.effects import Affected, BlockPlace, run_effect
 from twin.nc.bytecode.flow import (
     Transfer,
@@ -39,7 +38,7 @@ from twin.nc.compiled.kernels.block import BlockBegin, run_words
 from twin.nc.compiled.kernels.cycle import NO_ROOM
 from twin.nc.compiled.kernels.expression import compute
 from twin.nc.path.compensation import leads
-from twin.nc.path.compensation.contour import OFF, STAGE
+from twin.nc.path.compensation.contour import OFF, STAGE, Contour
 from twin.nc.path.compensation.lookahead import hold_events
 from twin.nc.path.drilling_cycle import Cycle
 
@@ -89,8 +88,8 @@ def dispatch_loop(
                 copy_state(state, scratch.snapshot)
             has_snapshot = True
         elif opcode == opcodes.COMPENSATE:
-            side, top = instruction.operand, top - 1
-            if not begin_compensation(side, stack[top], machine.constants, state, contour):
+            top -= 1
+            if not _compensate(instruction.operand, stack[top], machine, contour):
                 break
         elif opcode == opcodes.END_COMPENSATION:
             hold_events(contour, machine.rows, first_event, state.event_count[0])
@@ -126,6 +125,15 @@ def dispatch_loop(
             return DONE
     _undo(has_snapshot, compensates, state, execution, scratch)
     return why
+
+
+@inlined
+def _compensate(side: int, radius: float, machine: Machine, contour: Contour) -> bool:
+    """Begin compensation with a radius [mm]; whether nothing is wrong with that."""
+    answer = compensation.may_begin(radius, contour)
+    if answer == compensation.BEGINS:
+        compensation.begin(side, radius, machine.constants, machine.state, contour)
+    return answer >= 0
 
 
 @inlined

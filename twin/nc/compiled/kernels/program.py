@@ -43,7 +43,6 @@ from twin.nc.compiled.kernels.tokenizer import (
     read_words,
 )
 from twin.nc.path.compensation.contour import MOST_LET_GO, OFF, STAGE
-from twin.nc.text.lexer import LONGEST_LINE
 
 
 class PageColumns(NamedTuple):
@@ -108,7 +107,7 @@ def run_program(
                 return OFF_PAGE
             begin = int(starts[at])
             end = line_end(data, begin, int(starts[at + 1]))
-            if progress[PART] > 0 or end - begin > LONGEST_LINE:
+            if progress[PART] > 0 or end - begin > line_tables.longest:
                 return UNCOMPILED_LINE
             words = read_words(data, begin, end, line_tables, scratch.token_kinds, scratch.values)
             if words == UNSUPPORTED:
@@ -152,7 +151,7 @@ def unread_lines(
     for each in range(line + 1, last):
         begin = starts[each - first_line]
         end = line_end(data, begin, starts[each - first_line + 1])
-        if first[each] != NOT_COMPILED or end - begin > LONGEST_LINE:
+        if first[each] != NOT_COMPILED or end - begin > line_tables.longest:
             continue
         if read_words(data, begin, end, line_tables, token_kinds, values) == UNSUPPORTED:
             found[count] = each

@@ -1,8 +1,9 @@
 """The bytes of a plain line to words: letters with plain numbers, and comments passed over.
 
 A line is plain when the reading of lines (``line_reader``) would find nothing in it but words of
-the letters that ``DecodeTables`` names, each with a plain number, and comments. Whatever else it
-holds, right or wrong, is left to that reader: it alone makes diagnostics.
+the letters that ``DecodeTables`` names, each with a plain number, and comments. How these are
+written, ``text.plain_word`` and ``text.comments`` say for both. Whatever else the line holds, right or
+wrong, is left to that reader: it alone makes diagnostics.
 """
 
 import numpy as np
@@ -11,9 +12,19 @@ from twin.compilation.compilable import compilable
 from twin.nc.bytecode.registers import MOST_WORDS
 from twin.nc.bytecode.token_kinds import NUMBER, OTHER, UNSUPPORTED, ByteArray, LineTables
 from twin.nc.canonical import FloatArray, IntArray
+from twin.nc.text.comments import comment_end
+from twin.nc.text.plain_word import (
+    ADDRESS,
+    BEGIN,
+    END,
+    FRACTION,
+    IS_WORD,
+    WALK,
+    WHOLE,
+)
 
-_BLANK, _TAB, _PLUS, _MINUS, _POINT = 32, 9, 43, 45, 46
-_DIGIT_0, _DIGIT_9, _LETTER_A, _LETTER_Z, _TO_UPPER = 48, 57, 65, 90, 0xDF
+_MINUS, _POINT, _DIGIT_0 = ord("-"), ord("."), ord("0")
+_LETTER_A, _TO_UPPER = ord("A"), 0xDF
 _EXACT_MANTISSA = 2**53 // 10 - 1
 """A mantissa up to here takes a further digit and is still exact as a double."""
 _POWERS = 10.0 ** np.arange(23)
@@ -61,94 +72,50 @@ def read_words(
     """
     count, at = 0, begin
     while True:
-        at = skip_blanks(data, at, end)
-        if at == end:
-            return count
-        letter = int(data[at]) & _TO_UPPER
-        if not _LETTER_A <= letter <= _LETTER_Z:
-            at = _skip_comment(data, begin, at, end, tables)
-            if at == UNSUPPORTED:
+        stage, letter, value, at = _read_word(data, at, end)
+        if stage == BEGIN:
+            if at == end:
+                return count
+            at = comment_end(data, begin, at, end, tables.comments)
+            if at < 0:
                 return UNSUPPORTED
             continue
-        token_kind = tables.token_kinds[letter - _LETTER_A]
+        token_kind = tables.token_kinds[letter]
         if token_kind == OTHER or count == MOST_WORDS or (token_kind == NUMBER and count > 0):
             return UNSUPPORTED
-        value, pointed, at = _read_number(data, skip_blanks(data, at + 1, end), end)
-        if at == UNSUPPORTED:
-            return UNSUPPORTED
-        if not pointed and value != 0.0 and tables.pointed[letter - _LETTER_A]:
+        if at == UNSUPPORTED or (stage != FRACTION and value != 0.0 and tables.pointed[letter]):
             return UNSUPPORTED
         token_kinds[count], values[count] = token_kind, value
         count += 1
 
 
 @compilable
-def skip_blanks(data: ByteArray, at: int, end: int) -> int:
-    """The first place from ``at`` on that holds no blank, or ``end``."""
-    while at < end and (data[at] == _BLANK or data[at] == _TAB):
-        at += 1
-    return at
+def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int]:
+    """A word: the stage that it has come to, its letter from 0, its number, and the place behind it.
 
-
-@compilable
-def _read_number(data: ByteArray, at: int, end: int) -> tuple[float, bool, int]:
-    """A number, whether it has a point, and the place behind it.
-
-    That place is ``UNSUPPORTED`` where there is no number or it is very long.
+    That place is ``UNSUPPORTED`` where the word has no number or a very long one.
     """
-    negative = at < end and data[at] == _MINUS
-    if negative or (at < end and data[at] == _PLUS):
-        at += 1
-    mantissa, digits, decimals, fraction = 0, 0, 0, False
+    stage, letter, negative = BEGIN, 0, False
+    mantissa, decimals = 0, 0
     while at < end:
         byte = int(data[at])
-        if byte == _POINT:
-            if fraction:
-                return 0.0, True, UNSUPPORTED
-            fraction = True
-        elif _DIGIT_0 <= byte <= _DIGIT_9:
-            if mantissa > _EXACT_MANTISSA:
-                return 0.0, fraction, UNSUPPORTED
-            mantissa = 10 * mantissa + byte - _DIGIT_0
-            digits += 1
-            decimals += fraction
-        else:
+        following = WALK[stage << 8 | byte]
+        if following == END:
             break
+        stage = int(following)
+        if stage >= WHOLE and byte != _POINT:
+            if mantissa > _EXACT_MANTISSA:
+                return stage, letter, 0.0, UNSUPPORTED
+            mantissa = 10 * mantissa + byte - _DIGIT_0
+            decimals += stage == FRACTION
+        elif stage == ADDRESS and byte >= _LETTER_A:
+            letter = (byte & _TO_UPPER) - _LETTER_A
+        elif byte == _MINUS:
+            negative = True
         at += 1
-    if digits == 0 or decimals >= len(_POWERS):
-        return 0.0, fraction, UNSUPPORTED
+    if stage == BEGIN:
+        return stage, letter, 0.0, at
+    if not IS_WORD[stage] or decimals >= len(_POWERS):
+        return stage, letter, 0.0, UNSUPPORTED
     value = mantissa / _POWERS[decimals]
-    return (-value if negative else value), fraction, at
-
-
-@compilable
-def _skip_comment(data: ByteArray, begin: int, at: int, end: int, tables: LineTables) -> int:
-    """The place behind the comment that begins here; ``UNSUPPORTED`` where none does."""
-    for kind in range(len(tables.openings)):
-        behind = _behind(data, at, end, tables.openings[kind])
-        if behind == UNSUPPORTED:
-            continue
-        if tables.whole_line[kind] and skip_blanks(data, begin, end) != at:
-            continue
-        closing = tables.closings[kind]
-        for place in range(behind, end):
-            if data[place] < _BLANK and data[place] != _TAB:
-                return UNSUPPORTED
-            if closing[0] != 0:
-                closed = _behind(data, place, end, closing)
-                if closed != UNSUPPORTED:
-                    return closed
-        return end if closing[0] == 0 else UNSUPPORTED
-    return UNSUPPORTED
-
-
-@compilable
-def _behind(data: ByteArray, at: int, end: int, mark: ByteArray) -> int:
-    """The place behind a mark of one or two bytes; ``UNSUPPORTED`` where it does not stand here."""
-    if at >= end or data[at] != mark[0]:
-        return UNSUPPORTED
-    if mark[1] == 0:
-        return at + 1
-    if at + 1 < end and data[at + 1] == mark[1]:
-        return at + 2
-    return UNSUPPORTED
+    return stage, letter, (-value if negative else value), at

@@ -8,7 +8,7 @@ left untouched; the control runs it and makes its diagnostics.
 import numpy as np
 
 from twin.compilation.compilable import inlined
-from twin.nc.bytecode.effects import is_whole, report
+from twin.nc.bytecode.effects import report
 from twin.nc.bytecode.registers import (
     ARC,
     CODES,
@@ -48,6 +48,7 @@ from twin.nc.functions import turns_behind
 from twin.nc.path.event_columns import FUNCTION_ALONE
 from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length, only_turns
 from twin.nc.path.rows import copy
+from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.line_reader import LARGEST_LABEL
 
 _MOTION_WORDS = -1 << RADIUS

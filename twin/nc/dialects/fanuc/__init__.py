@@ -119,7 +119,7 @@ FANUC = Dialect(
         "R": "radius of the arc, negative: the larger of the two; plane where a cycle's feed begins; angle of G68",
         "P": "milliseconds of a dwell; program or block; work offset of G54.1; scale of G51",
         "Q": "depth of a peck; shift of G76 and G87",
-        "L": "how often a subprogram runs; kind of data of G10",
+        "L": "how often a subprogram runs (a cycle: K); kind of data of G10",
         "D": "row of the tool radius",
         "H": "row of the tool length",
         "F": "feed",

@@ -10,7 +10,7 @@ from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
-from twin.nc.dialects.fanuc.motion import target
+from twin.nc.dialects.fanuc.motion import holes_of, target
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
 from twin.nc.iso.drilling import cycle_code, take_words
 from twin.nc.path.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, START, Cycle, either
@@ -22,7 +22,7 @@ def boring_code(number: int, meaning: str, variant: Variant) -> GCode:
     """The code that calls G76 or G87."""
     cycle = Cycle(lasting=True, across=BOTTOM, needed=0)
     rule = CycleRule(f"G{number}", cycle, _WORDS)
-    code = cycle_code(rule, f"{meaning}: X Y Z R P Q", target, "manual", variant.counting)
+    code = cycle_code(rule, f"{meaning}: X Y Z R P Q", holes_of(variant))
     begin = code.action
     assert begin is not None
 

@@ -14,7 +14,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import decimal_point
 from twin.nc.dialects.fanuc.boring import boring_code
 from twin.nc.dialects.fanuc.memory import Variant, letter_patterns, memory_of
-from twin.nc.dialects.fanuc.motion import target
+from twin.nc.dialects.fanuc.motion import holes_of
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
 from twin.nc.iso import base
 from twin.nc.iso.fixed_cycles import BY_HAND, CYCLES, DRILLS, Drill, drilling_code
@@ -45,8 +45,7 @@ def _unscaled(number: int, code: GCode) -> GCode:
 def cycles(variant: Variant) -> dict[float, GCode]:
     """The cycles of a control of the family."""
     made = {
-        number: drilling_code(number, drill, target, "manual", variant.counting)
-        for number, drill in _DRILLS.items()
+        number: drilling_code(number, drill, holes_of(variant)) for number, drill in _DRILLS.items()
     }
     return {
         **{n: _unscaled(n, code) if _DRILLS[n].peck else code for n, code in made.items()},

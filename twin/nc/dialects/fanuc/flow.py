@@ -20,14 +20,14 @@ from twin.nc.text.expressions import (
 from twin.nc.text.lines import Lines
 
 PATTERN = (
-    r"IF(?=[ \t]*\[)|WHILE(?=[ \t]*\[)|GOTO(?![A-Z])|DO(?=[ \t]*[0-9])|END(?=[ \t]*[0-9])"
+    r"IF(?=[ \t]*\[)|WH(?:ILE)?(?=[ \t]*\[)|GOTO(?![A-Z])|DO(?=[ \t]*[0-9])|END(?=[ \t]*[0-9])"
     r"|G6[56](?![0-9.])|DPRNT(?=\[)|BPRNT(?=\[)|POPEN|PCLOS|SETVN(?![A-Z])"
 )
 """What begins a statement."""
 DEEPEST_LOOP = 3
 _LOOP = re.compile(
     r"[ \t]*/?[1-9]?[ \t]*(?:N[ \t]*[0-9]+[ \t]*)?"
-    r"(?:(?:WHILE[^(]*\][ \t]*)?DO[ \t]*(?P<begin>[0-9]+)|END[ \t]*(?P<end>[0-9]+))",
+    r"(?:(?:WH(?:ILE)?[^(]*\][ \t]*)?DO[ \t]*(?P<begin>[0-9]+)|END[ \t]*(?P<end>[0-9]+))",
     re.IGNORECASE,
 )
 _LOOP_SOMEWHERE = letter_patterns("D", rb"[Oo][ \t]*[0-9]")
@@ -246,7 +246,7 @@ def _pass_over(control: Control, statement: Statement) -> None:
 STATEMENTS: dict[str, StatementAction] = {
     "IF": StatementEffect(_if),
     "GOTO": StatementEffect(_go_to),
-    "WHILE": StatementEffect(_while),
+    **dict.fromkeys(("WHILE", "WH"), StatementEffect(_while)),
     "DO": StatementEffect(_do),
     "END": StatementEffect(_end),
     **dict.fromkeys(("DPRNT", "BPRNT", "POPEN", "PCLOS", "SETVN"), _pass_over),

@@ -11,10 +11,11 @@ from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import LineRule
 from twin.nc.dialects.fanuc import cylinder
-from twin.nc.dialects.fanuc.memory import memory_of
+from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.transformations import refuse_uneven_arc
 from twin.nc.geometry.arcs import direction
 from twin.nc.iso.circular import arc_rule, iso_arc_center, plane_center_letters, sweep_arc
+from twin.nc.iso.drilling import Holes
 
 
 def target(control: Control) -> list[float]:
@@ -44,6 +45,11 @@ def target(control: Control) -> list[float]:
     goal[abscissa] = memory.polar_center[0] + length * cosine
     goal[ordinate] = memory.polar_center[1] + length * sine
     return goal
+
+
+def holes_of(variant: Variant) -> Holes:
+    """How blocks of a control of the family name the holes of a cycle."""
+    return Holes(target, "manual", variant.counting)
 
 
 def begin_polar(control: Control) -> None:

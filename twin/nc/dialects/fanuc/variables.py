@@ -80,6 +80,7 @@ EXPRESSIONS = ExpressionSyntax(
     vacant=True,
     of_vacant=("EQ", "NE"),
     exclusive=("EQ", "NE", "GT", "GE", "LT", "LE"),
+    shortest_name=2,
 )
 """Angles are degrees."""
 

@@ -21,6 +21,8 @@ from twin.nc.iso import base
 from twin.nc.path.drilling_cycle import START as CALL_HEIGHT
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
+_LONGEST_LINE = 252
+"""``rs274`` of 2.9 refuses a longer line as a command too long: its buffer of 255 takes the line's end too."""
 _WITH_PITCH = (33, 33.1)
 """Codes whose feed follows from the spindle's speed."""
 
@@ -83,6 +85,7 @@ LINUXCNC = Dialect(
         statement=r"O(?=[ \t]*[0-9<#\[])|%",
         assigned="#",
         blanks_in_numbers=True,
+        longest_line=_LONGEST_LINE,
     ),
     groups=GROUPS,
     g=CODES,

@@ -186,13 +186,13 @@ MODAL = {
     43.1: GCode(
         meaning="tool offset by words of axes",
         group="length",
-        perform=offsets.given_tool_length,
+        perform=_alone_with_axes(offsets.given_tool_length),
         ground="manual",
     ),
     43.2: GCode(
         meaning="a further tool offset, H or words of axes",
         group="length",
-        perform=offsets.further_tool_length,
+        perform=_alone_with_axes(offsets.further_tool_length),
         ground="manual",
     ),
     49: GCode(

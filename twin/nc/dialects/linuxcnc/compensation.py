@@ -23,8 +23,8 @@ CORNER = 0.05
 """Angle [rad] from which a corner counts as one (``rs274``)."""
 _QUARTER = math.pi / 2.0
 _SAME = 1e-4
-_TURNED_BACK = 0.001
-"""How much further an arc may sweep when its end is moved [rad]."""
+_TURNED_BACK, _TURNED_BACK_INCH = 0.0254, 0.001
+"""How much further an arc may sweep when its end is moved [rad]: with G20 less (``rs274``)."""
 _MISMATCH = 0.01
 """How far a moved end may lie beside its arc [mm]."""
 
@@ -171,6 +171,7 @@ class Compensation:
             back = radius / math.tan(half)
             self._move_ends(_along(self._here, before + side * _QUARTER, back))
         elif turn > CORNER:
+            self._move_ends(self._here)
             self._turn_around(start, middle, rapid=rapid)
         else:
             self._let_go()
@@ -201,6 +202,7 @@ class Compensation:
             self._move_ends(meeting)
         elif turn > CORNER:
             aside = inward if inside else inward + math.pi
+            self._let_go()  # before an arc nothing asks whether the moves went back (``rs274``)
             self._turn_around(start, _along(start, aside, self.radius), rapid=False)
         else:
             self._let_go()
@@ -210,7 +212,6 @@ class Compensation:
     def _turn_around(self, point: Point, middle: Point, *, rapid: bool) -> None:
         """Turn around a convex corner of the contour."""
         control = self._control
-        self._move_ends(self._here)
         goal = self._place(control.programmed, middle)
         if rapid:
             self._hold_line(goal, middle, (0.0, 0.0), rapid=True)
@@ -312,7 +313,8 @@ class Compensation:
                 self._refuse("the tool does not reach into this concave corner", held)
             if held.sweep and start is not None:
                 swept = abs(_sweep(start, end, held.center, held.turns))
-                if swept > abs(held.sweep) + _TURNED_BACK:
+                metric = self._control.modal.unit == 1.0
+                if swept > abs(held.sweep) + (_TURNED_BACK if metric else _TURNED_BACK_INCH):
                     self._refuse("the tool does not reach into this concave corner", held)
         held.end = end
 

@@ -76,7 +76,7 @@ DECISIONS = (
         example="functions_without_a_path",
     ),
     Decision(
-        "In which unit are the parameters of positions of the machine (#5161, #5211, #5221)?",
+        "In which unit are the parameters of the machine (#5161, #5211, #5221, #5401, #5410)?",
         "Millimetres and degrees.",
         "The control keeps them in the machine's unit, which the twin's machines have metric.",
         example="parameters_in_millimetres",
@@ -84,15 +84,31 @@ DECISIONS = (
     Decision(
         "What does the twin refuse that rs274 passes over?",
         "Words behind the condition of an elseif that is false, a structure without its end, a NURBS that "
-        "another motion ends, Z in G5.2, G5 without I and J that follows no G5, M6 before the first T.",
+        "another motion ends, Z in G5.2, G5 without I and J that follows no G5, M6 before the first T, a "
+        "motion code beside G43.1 or G43.2.",
         "The manual calls each an error or says nothing of it; what was meant is not done.",
         example="refused_for_clarity",
     ),
     Decision(
         "What does break leave within a do loop?",
         "The loop of its label alone.",
-        "In rs274 of 2.9 a break of an inner loop also ends the do loop around it, against the manual.",
+        "rs274 of 2.9 remembers the break of a while loop, even of one that is passed over, until the next do "
+        "loop, and ends that one after its first round, against the manual.",
         example="break_within_do",
+    ),
+    Decision(
+        "Where does the tool stand after M6?",
+        "Where it stood before, with the length that is in force.",
+        "The control reads it from the machine. The machine that rs274 itself brings along forgets a length "
+        "that came into force after the last move, and stands elsewhere along Z.",
+        example="position_after_a_tool_change",
+    ),
+    Decision(
+        "How long may a line be?",
+        "252 characters, comments counted.",
+        "rs274 of 2.9 refuses a longer one as a command too long; the manual says 256. Of lines that end with "
+        "CR LF the control takes one character less.",
+        example="longest_line",
     ),
     Decision(
         "Does G43.2 take words of axes?",

@@ -69,7 +69,7 @@ class LinuxcncMemory:
         control_line: Line of its last point, from 1.
         spline_order: Its order.
         prepared: T has prepared a tool: it stays so for the next M6.
-        probe: Where the last probe ended, shape (k,), and whether it met something.
+        probe: Where the last probe ended, shape (k,) [unit of the program then, or deg].
         converted_feed: F as it was written, where the unit has changed since; else None.
         percent: The program began with %.
         percent_ended: A second % has ended it.

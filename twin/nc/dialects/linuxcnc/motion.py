@@ -221,7 +221,10 @@ def probe(control: Control) -> None:
     goal = target(control)
     control.function("G38", {})
     control.line_to(goal, rapid=False)
-    memory_of(control).probe = list(control.programmed)
+    memory_of(control).probe = [
+        value / control.modal.unit if linear else value
+        for value, linear in zip(control.programmed, control.linear, strict=True)
+    ]
 
 
 PROBE = Interpolation(probe, without_words=need_axes)

@@ -303,12 +303,8 @@ def further_tool_length(control: Control) -> None:
 
 
 def given_tool_length(control: Control) -> None:
-    """G43.1: the words of axes are the tool's offset."""
+    """G43.1: the words of axes are the tool's offset; alone it keeps the one in force (``rs274``)."""
     axes = control.take_axis_words()
-    if not axes:
-        control.fail(
-            "tool-offset", "G43.1 needs words of axes", hint="write G43.1 Z and the length"
-        )
     offset = memory_of(control).tool_offset or [0.0] * len(control.settings.axes)
     offset = list(offset)
     for index, word in axes:

@@ -147,12 +147,13 @@ def _read_live(control: Control, number: int) -> float | None:
         return _read_tool(control, number)
     if 5420 <= number <= 5428:
         axis = _axis(control, number - 5420)
-        return 0.0 if axis is None else _in_units(control, control.programmed, axis)
+        return 0.0 if axis is None else _in_units(control, control.programmed[axis], axis)
     return None
 
 
-def _in_units(control: Control, values: list[float], axis: int) -> float:
-    return values[axis] / (control.modal.unit if control.linear[axis] else 1.0)
+def _in_units(control: Control, value: float, axis: int) -> float:
+    """A position as the program counts it."""
+    return value / (control.modal.unit if control.linear[axis] else 1.0)
 
 
 def _read_system(control: Control, at: int) -> float | None:
@@ -167,14 +168,15 @@ def _read_system(control: Control, at: int) -> float | None:
 
 
 def _read_tool(control: Control, number: int) -> float:
+    """The tool in the spindle, as the tool table has it, whichever length is in force."""
     if number == 5400:
         return float(control.tools.spindle or 0)
+    data = control.tools.data(control.tools.spindle)
+    if data is None:
+        return 0.0
     if number == 5410:
-        data = control.tools.data(control.tools.spindle)
-        return 0.0 if data is None else 2.0 * data.radius / control.modal.unit
-    offset = memory_of(control).tool_offset
-    axis = _axis(control, number - 5401)
-    return 0.0 if offset is None or axis is None else _in_units(control, offset, axis)
+        return 2.0 * data.radius
+    return data.length if _AXES[number - 5401] == "Z" else 0.0
 
 
 def _write_live(control: Control, number: int, value: float) -> bool:
@@ -227,7 +229,7 @@ def _switched(name: str) -> Callable[[Control], float]:
 def _position(letter: str) -> Callable[[Control], float]:
     def value(control: Control) -> float:
         axis = control.axis_index.get(letter)
-        return 0.0 if axis is None else _in_units(control, control.programmed, axis)
+        return 0.0 if axis is None else _in_units(control, control.programmed[axis], axis)
 
     return value
 
@@ -237,7 +239,7 @@ def _machine_position(letter: str) -> Callable[[Control], float]:
         axis = control.axis_index.get(letter)
         if axis is None:
             return 0.0
-        return control.part[axis] - _zero(control, axis)
+        return _in_units(control, control.part[axis] - _zero(control, axis), axis)
 
     return value
 

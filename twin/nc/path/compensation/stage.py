@@ -5,7 +5,6 @@ from typing import NoReturn
 
 import numpy as np
 
-from twin.nc.geometry.planes import Plane
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import (
     BEGINS_ON_ARC,
@@ -115,18 +114,6 @@ class Compensation:
     def holds_events(self) -> bool:
         """Events wait for the end of the held move."""
         return bool(self._events)
-
-    def begin(self, plane: Plane, signed_offset: float, *, square: bool, indirect: bool) -> None:
-        """Compensate from the next move on.
-
-        Args:
-            plane: Working plane in part coordinates.
-            signed_offset: The tool's radius, positive left of the contour [mm].
-            square: Outside corners between lines are extended as far as 90°.
-            indirect: Leads go around the contour's first and last point.
-        """
-        self.contour.plane[:] = plane.directions
-        leads.begin(self.contour, signed_offset, square, indirect)
 
     def end(self) -> None:
         """The next line leads out."""

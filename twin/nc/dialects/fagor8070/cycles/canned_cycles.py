@@ -21,7 +21,7 @@ from twin.nc.control.interpolation import CycleRule
 from twin.nc.dialects.fagor8070.cycles.pockets import call_pocket, mill_pocket
 from twin.nc.dialects.fagor8070.cycles.tapping import tapping_code
 from twin.nc.dialects.fagor8070.polar import take_goal
-from twin.nc.iso.drilling import cycle_code
+from twin.nc.iso.drilling import Holes, cycle_code
 from twin.nc.path.drilling_cycle import (
     BOTTOM,
     CHIP_CLEARANCE,
@@ -67,7 +67,7 @@ def _drilling(
     """A cycle that drills, by its words besides Z and I; ``options`` change nothing of its path."""
     rule = CycleRule(f"G{number}", cycle, {**words, "I": BOTTOM})
     meaning = f"{meaning}: Z I {' '.join(words)}"
-    code = cycle_code(rule, meaning, _hole, ground)
+    code = cycle_code(rule, meaning, Holes(_hole, ground))
     return code if options is None else _with_options(code, options)
 
 

@@ -12,7 +12,9 @@ import jinja2
 
 from twin.files.atomic import write_text
 from twin.training.scene.phrases import finding_in, translated
+from twin.training.scene.scene_file import Scene
 from twin.training.scene.vocabulary import Words, in_language
+from twin.training.session.inspection import Inspection
 from twin.training.session.moment import Moment
 from twin.training.session.session import Session
 from twin.version import __version__
@@ -23,7 +25,7 @@ WRITTEN_EVERY_S = 1.0
 
 _LABELS = (
     "tasks", "score", "alarm", "hint", "seconds", "name", "date", "wrong", "why", "right", "line",
-    "section", "from_above",
+    "section", "from_above", "trap", "cause", "consequence", "measured", "should_be", "is", "removed",
 )  # fmt: skip
 _TEMPLATE = Path(__file__).with_name("score.html.j2")
 
@@ -58,6 +60,8 @@ def score_sheet(session: Session, words: Words, date: str = "") -> dict[str, Any
             {"code": code, "name": words.alarm(code).name} for code in room.judge.evidence.alarms
         ],
         "wrong": [_wrong(moment, words) for moment in tuple(room.moments)],
+        "lesson": _lesson(scene, words) if _fell_into_it(session) else None,
+        "measured": None if room.handed_in is None else _measured(room.handed_in),
         "tasks": [
             {
                 "text": in_language(task.text, language),
@@ -101,19 +105,55 @@ def _wrong(moment: Moment, words: Words) -> dict[str, Any]:
     }
 
 
-def score_page(sheet: dict[str, Any], words: Words, pictures: Sequence[bytes | None] = ()) -> str:
+def _fell_into_it(session: Session) -> bool:
+    """Whether the scene was handed in with a task that failed."""
+    judge = session.room.judge
+    return judge.over and any(verdict.state == "failed" for verdict in judge.verdicts)
+
+
+def _lesson(scene: Scene, words: Words) -> dict[str, str] | None:
+    """The scene's trap: what went wrong, what it does, and what would have been right."""
+    lesson = scene.file.lesson
+    if lesson is None:
+        return None
+    cause, consequence, right = (in_language(text, words.language) for text in lesson.texts)
+    return {"cause": cause, "consequence": consequence, "right": right}
+
+
+def _measured(part: Inspection) -> dict[str, Any]:
+    """What was measured at the part that was handed in [mm, mm³]."""
+    return {
+        "places": [
+            {
+                **place._asdict(),
+                "found": None if place.found is None else round(place.found, 3),
+            }
+            for place in part.places
+        ],
+        "removed_mm3": None if part.removed is None else round(part.removed, 1),
+        "wanted_removed_mm3": part.wanted_removed,
+    }
+
+
+def score_page(
+    sheet: dict[str, Any],
+    words: Words,
+    pictures: Sequence[bytes | None] = (),
+    part: bytes | None = None,
+) -> str:
     """The score sheet as one self-contained page.
 
     Args:
         sheet: As ``score_sheet`` gives it.
         words: Language and control.
         pictures: Of what went wrong, as PNG, in the sheet's order.
+        part: Picture of the part that was handed in, as PNG.
     """
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
     labels = {key: words[key] for key in _LABELS}
-    shown = [one and base64.b64encode(one).decode("ascii") for one in pictures]
-    return template.render(sheet=sheet, words=labels, pictures=shown)
+    shown = [one and base64.b64encode(one).decode("ascii") for one in (*pictures, part)]
+    return template.render(sheet=sheet, words=labels, pictures=shown[:-1], part=shown[-1])
 
 
 class SheetWriter:
@@ -137,6 +177,7 @@ class SheetWriter:
         now = dt.datetime.now().astimezone()
         self._date = now.strftime("%Y-%m-%d %H:%M")
         self._pictures: dict[float, bytes | None] = {}
+        self._part: bytes | None = None
         self.folder = out / f"{session.scene.name}_{now.strftime('%Y-%m-%d_%H%M%S')}"
         self._due = threading.Event()
         self._over = threading.Event()
@@ -197,5 +238,10 @@ class SheetWriter:
                 file.writelines(lines[self._logged :])
         self._logged = len(lines)
         pictures = [self._pictures.get(one["time_s"]) for one in sheet["wrong"]]
+        handed_in = self._session.room.handed_in
+        if handed_in is None:
+            self._part = None
+        elif self._part is None:
+            self._part = handed_in.moment.picture()
         write_text(folder / "score.json", json.dumps(sheet, ensure_ascii=False, indent=1))
-        write_text(folder / "score.html", score_page(sheet, self._words, pictures))
+        write_text(folder / "score.html", score_page(sheet, self._words, pictures, self._part))

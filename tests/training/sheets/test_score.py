@@ -9,9 +9,16 @@ from PIL import Image
 from twin.nc.text.source import source_from_text
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.scene.vocabulary import LANGUAGES, Words, vocabulary
-from twin.training.session.course import course_of, course_page
-from twin.training.session.score import SheetWriter, score_page, score_sheet
 from twin.training.session.session import Session
+from twin.training.sheets.course import (
+    CourseRow,
+    Trainee,
+    course_of,
+    course_page,
+    language_of,
+    trainees,
+)
+from twin.training.sheets.score import SheetWriter, score_page, score_sheet
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +87,22 @@ def test_a_course_lists_the_sheets_of_a_folder(tmp_path, wrecked):
         ("Jan Novák", "fagor_first_steps", 0, ("rapid-into-stock", "tool-broken"))
     ]
     assert unread == ["other/score.json"]
-    assert "Jan Novák" in course_page(rows)
+    for language in LANGUAGES:
+        page = html.unescape(course_page(rows, language))
+        shown = ("Jan Novák", vocabulary(language).alarms["tool-broken"].name, f'lang="{language}"')
+        assert all(each in page for each in shown)
+        assert read_scene(scene_path("fagor_first_steps")).file.title[language] in page
+
+
+def test_a_course_is_in_the_language_of_most_sheets_and_counts_the_best_of_each_scene():
+    row = CourseRow("Eva", "a", "A", "cs", "", 3, 10, True, 0, (), "")
+    rows = [
+        row, row._replace(points=10), row._replace(scene="b", points=4, handed_in=False),
+        row._replace(name="Jan", language="en", points=6),
+    ]  # fmt: skip
+    assert language_of(rows) == "cs"
+    assert language_of([]) == "en"
+    assert trainees(rows) == [Trainee("Eva", 3, 1, 10, 10), Trainee("Jan", 1, 0, 6, 10)]
 
 
 @pytest.mark.parametrize(
@@ -98,4 +120,4 @@ def test_a_course_is_not_ended_by_a_sheet_that_is_none(tmp_path, wrong):
     rows, unread = course_of(tmp_path)
     assert unread == ["bad/score.json"]
     assert [(row.name, row.points) for row in rows] == [(" [2J", 1)]
-    assert "score.html" in course_page(rows)
+    assert "score.html" in course_page(rows, "en")

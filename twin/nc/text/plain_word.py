@@ -1,0 +1,85 @@
+"""How a plain word is written: blanks, an address, blanks, a number.
+
+One table of steps says it: regular expressions for the interpreter tier are made of it, and the
+compiled tier's tokenizer goes by it from byte to byte.
+"""
+
+import string
+from collections.abc import Collection, Mapping
+
+import numpy as np
+
+_BLANK, _LETTER, _DIGIT, _POINT, _SIGN = range(5)
+"""Kinds of characters."""
+_CHARACTERS: Mapping[int, str] = {
+    _BLANK: " \t",
+    _LETTER: string.ascii_letters,
+    _DIGIT: string.digits,
+    _POINT: ".",
+    _SIGN: "+-",
+}
+
+BEGIN, ADDRESS, _SIGNED, WHOLE, _LONE_POINT, FRACTION = range(6)
+"""How far a word has been read: blanks alone; its address; a sign; digits; a point without digits
+before it; digits with a point."""
+_NUMBER = {_DIGIT: WHOLE, _POINT: _LONE_POINT}
+_STEPS: Mapping[int, Mapping[int, int]] = {
+    BEGIN: {_BLANK: BEGIN, _LETTER: ADDRESS},
+    ADDRESS: {_BLANK: ADDRESS, **_NUMBER, _SIGN: _SIGNED},
+    _SIGNED: _NUMBER,
+    WHOLE: {_DIGIT: WHOLE, _POINT: FRACTION},
+    _LONE_POINT: {_DIGIT: FRACTION},
+    FRACTION: {_DIGIT: FRACTION},
+}
+"""Where each kind of character leads; any other one ends the word."""
+_ENDS = (WHOLE, FRACTION)
+"""What a whole word has come to."""
+
+
+def _repeated(stage: int) -> str:
+    """Regular expression of what does not lead on."""
+    characters = [_CHARACTERS[kind] for kind, to in _STEPS[stage].items() if to == stage]
+    return f"[{characters[0]}]*" if characters else ""
+
+
+def _onward(stage: int, ends: Collection[int]) -> str:
+    """Regular expression of what leads on, up to the end of the word."""
+    steps = {kind: to for kind, to in _STEPS[stage].items() if to != stage}
+    ways: list[str] = []
+    for kind, to in steps.items():
+        one = f"[{_CHARACTERS[kind]}]"
+        rest = {other: behind for other, behind in steps.items() if other != kind}
+        if rest and rest == _STEPS[to]:  # may be left out
+            return f"{one}?{_onward(to, ends)}"
+        several = _repeated(to)
+        ways.append((f"{one}+" if several == f"{one}*" else one + several) + _onward(to, ends))
+    if stage in ends and ways:
+        return f"(?:{'|'.join(ways)})?"
+    return f"(?:{'|'.join(ways)})" if len(ways) > 1 else "".join(ways)
+
+
+BLANKS, BLANKS_BETWEEN = _repeated(BEGIN), _repeated(ADDRESS)
+"""What may stand before an address, and behind it; as all others, for regular expressions."""
+NUMBER, SIGNED_NUMBER = _onward(_SIGNED, _ENDS), _onward(ADDRESS, _ENDS)
+"""A number without a sign, and a word's, which may have one."""
+SIGNED_POINTED_NUMBER = _onward(ADDRESS, (FRACTION,))
+"""That of a word, with a decimal point."""
+
+END = 255
+"""A byte ends the word."""
+
+
+def _walk() -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
+    walk = np.full((len(_STEPS), 256), END, np.uint8)
+    for stage, steps in _STEPS.items():
+        for kind, to in steps.items():
+            walk[stage, list(_CHARACTERS[kind].encode())] = to
+    return walk.ravel()
+
+
+WALK = _walk()
+"""The stage that a byte of UTF-8 leads to, or ``END``: 256 for each stage, shape (1536,)."""
+IS_BLANK = WALK[:256] == BEGIN
+"""Whether a byte is a blank, shape (256,)."""
+IS_WORD = np.isin(np.arange(len(_STEPS)), _ENDS)
+"""Whether what has come to a stage is a whole word, shape (6,)."""

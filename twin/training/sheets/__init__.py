@@ -1,0 +1,1 @@
+"""Score sheets: of one session, and the list of a course."""
