@@ -101,7 +101,8 @@ def test_a_word_of_a_vacant_variable_is_as_if_it_were_not_written(
         seen(source_from_text(text), dialect, WITH_TABLES, compiled_from, Speed.COLD)
         for text in (VACANT, WITHOUT)
     )
-    assert with_words.error is None and without.error is None
+    assert with_words.error is None
+    assert without.error is None
     assert len(without.moves) == 12
     assert with_words.moves.end.tolist() == without.moves.end.tolist()
     assert with_words.moves.feed.tobytes() == without.moves.feed.tobytes()
