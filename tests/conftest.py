@@ -5,12 +5,18 @@ import sys
 
 import pytest
 from command_line import Finished, Twin
+from hypothesis import HealthCheck, settings
 
 from twin import cli
 from twin.compilation.speed import VARIABLE
 
 # What is compiled beside a run, and when it is ready, would differ from one run of the tests to the next.
 os.environ.setdefault(VARIABLE, "wait")
+# How long examples take to draw is the machine's load: a property fails by its examples alone.
+settings.register_profile(
+    "untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow], print_blob=True
+)
+settings.load_profile("untimed")
 
 
 @pytest.fixture

@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 
 from twin.training.scene.scene_file import read_scene, scene_path
@@ -22,8 +23,12 @@ OVERRIDE = 20
 FEED = 400.0
 """The helix's feed at this override [mm/min]."""
 PATIENCE_S = 60.0
+LONG_LOOK_S = 0.1
+"""Between two looks at whether a program runs [s]."""
 LOOK_S = 0.002
 """Between two looks at the machine [s]: often enough to tell, and rarely enough not to disturb."""
+STEADY = 0.005
+"""Share of the feed that the speed may be off by: the teeth shake the axes."""
 GONE = 0.02
 """Share of the speed that is gone when the machine counts as having reacted."""
 
@@ -62,12 +67,46 @@ class MeasuredRoom:
         """What the machine has lived so far [s]."""
         return self._room.session.room.time_s
 
+    def condition(self) -> tuple[float, float, float]:
+        """What the machine has lived and what it has lost [s], and what the room needs now [MB]."""
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+        memory = pages * resource.getpagesize() / 1e6
+        return self.machine_time(), self._room.driver.lost_s, memory
+
+    def keep_busy(self, percent: int) -> bool:
+        """Begin the program again on a new blank where it has come to its end; whether it was so.
+
+        Args:
+            percent: Feed override.
+        """
+        room = self._room.session.room
+        if room.running or room.moving:
+            return False
+        for command in (
+            {"do": "reset"},
+            {"do": "mode", "mode": "jog"},
+            {"do": "spindle", "on": False},
+            {"do": "new_blank"},
+            {"do": "mode", "mode": "auto"},
+            {"do": "override", "dial": "feed", "percent": percent},
+            {"do": "cycle_start"},
+        ):
+            self._room.driver.ask(command, "operator", 0)
+        wait_until(lambda: bool(self._room.session.room.running))
+        return True
+
     def run_steadily(self) -> None:
-        """Let the program run at its steady feed."""
-        if not self._steady():
-            wait_until(lambda: not self._room.session.room.moving)
-            self._room.driver.ask({"do": "cycle_start"}, "operator", 0)
-            wait_until(self._steady)
+        """Let the program run at its steady feed: go on where it is held, begin anew at its end."""
+        end = time.perf_counter() + PATIENCE_S
+        while not self._steady():
+            room = self._room.session.room
+            if room.held and not room.moving:
+                self._room.driver.ask({"do": "cycle_start"}, "operator", 0)
+            else:
+                self.keep_busy(OVERRIDE)
+            if time.perf_counter() > end:
+                raise TimeoutError(f"the program does not run: {room.alarm}, {room.line}")
+            time.sleep(LONG_LOOK_S)
 
     def braked(self) -> float:
         """Wait for the first loss of speed; returns when it was, by ``time.time`` [s]."""
@@ -76,7 +115,7 @@ class MeasuredRoom:
         return time.time()
 
     def _steady(self) -> bool:
-        return abs(self._speed() - FEED) < 0.001 * FEED
+        return abs(self._speed() - FEED) < STEADY * FEED
 
     def _speed(self) -> float:
         velocity = self._room.session.room.samples.joint_velocity[-1, :3]

@@ -1,7 +1,7 @@
 """Cutting: the recorded motion takes material off the stock, and what it did is noted."""
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
 import numpy as np
@@ -180,10 +180,9 @@ class Cutter:
             if tool.number != self.tool.number:
                 self._last = None
             self.tool = tool
-            whole = _with_edge(samples, run)
-            if whole.stop > whole.start:
-                force = self._cut(way[whole].lowered(self.plan.longer(tool)))
-                self.force[run.start : run.start + len(force)] = force
+            for part, edge in _by_edge(samples, run):
+                force = self._cut(way[part].lowered(self.plan.longer(tool)), edge=edge)
+                self.force[part.start : part.start + len(force)] = force
         return sum(self._removed.values()) - before
 
     def events(self) -> tuple[CutEvent, ...]:
@@ -209,8 +208,13 @@ class Cutter:
             power_w=self._power,
         )
 
-    def _cut(self, way: "_Way") -> FloatArray:
+    def _cut(self, way: "_Way", *, edge: bool) -> FloatArray:
         """Cut with one tool from the last point of the run before through all of this one's.
+
+        Args:
+            way: Where the tool went.
+            edge: Whether it has its edge: without one it takes nothing off, and what it must not
+                meet it still meets.
 
         Returns:
             Force on the tool during each sample that was cut along, shape (m, 3) [N].
@@ -221,20 +225,21 @@ class Cutter:
         self._last = way.points[-1:].copy(), way.turn[-1:].copy(), float(way.time[-1])
         points = np.concatenate([before, way.points])
         turns = np.concatenate([turn, way.turn])
-        edge = profile(self.tool)
+        cutter = profile(self.tool)
         group = way.group
         chosen = thin(
             points,
             np.concatenate([group[:1], group]),
             min(STRAIGHT_SHARE * self.map.cell, STRAIGHT_MM),
-            LONGEST_SHARE * edge.radius,
+            LONGEST_SHARE * cutter.radius,
             MOST_JOINED,
         )
         points, sample = Points(points[chosen], turns[chosen]), chosen[1:] - 1
         rapid, off, lag = way.rapid[sample], way.standing[sample], way.lag[sample]
         rapids = self._rapids.suspects(points.tip, rapid, lag)
         standing = self._standing.suspects(points.tip, ~rapid & off, lag)
-        found, met = self._take_off(points, edge, (rapids > 0) | (standing > 0))
+        suspect = (rapids > 0) | (standing > 0)
+        found, met = self._take_off(points, cutter, suspect, edge=edge)
         count = len(found.volume)
         points, sample = points[: count + 1], sample[:count]
         rapids, standing = rapids[:count], standing[:count]
@@ -244,29 +249,32 @@ class Cutter:
         time, line = way.time[sample], way.line[sample]
         stretches = Stretches(points.tip, time, line, rapid[:count], *found)
         latest = self._note_contacts(stretches, met)
-        hits = met.pop(EDGE, np.zeros(count)) > 0.0
-        self._rapids.add(stretches, rapids, hits)
-        self._standing.add(stretches, standing, hits)
+        reached = met.pop(EDGE, np.zeros(count))
+        hits = reached > 0.0
+        watched = stretches if edge else dataclasses.replace(stretches, depth=reached)
+        self._rapids.add(watched, rapids, hits)
+        self._standing.add(watched, standing, hits)
         if self._halts and (latest is not None or hits.any()):
             (self.halted,) = (*self._rapids.events(), *self._standing.events()) or (latest,)
         force = self._note(stretches, np.diff(stretches.time, prepend=since))
         return np.repeat(force, np.diff(sample, prepend=-1), axis=0)
 
     def _take_off(
-        self, points: Points, edge: Profile, suspect: BoolArray
+        self, points: Points, cutter: Profile, suspect: BoolArray, *, edge: bool
     ) -> tuple[Removal, dict[str, FloatArray]]:
         """Take off what lies in the way, up to where something meets that must not, if that halts.
 
         Args:
             points: Ends of n stretches.
-            edge: The cutting edge.
+            cutter: The form of the cutting edge.
             suspect: In which of them the edge must not cut, shape (n,).
+            edge: As for ``_cut``.
 
         Returns:
             What each stretch took off, and by name how deep something was in the material that
             must not be, shape (n,) [mm]; fewer than n stretches where cutting halted.
         """
-        contact = StockContact(self.tool, edge, self._head)
+        contact = StockContact(self.tool, cutter, self._head)
         doubtful = contact.measure(self.map, points, suspect)
         count, done = len(suspect), 0
         removal = Removal(*np.zeros((3, count)))
@@ -275,7 +283,8 @@ class Cutter:
         flagged = np.flatnonzero(np.any([o.depth for o in doubtful.values()], axis=0) & (count > 0))
         # Against the material as the stretches before have left it.
         for k in flagged.tolist():
-            self._sweep(points.tip, edge, removal, mark, slice(done, k))
+            if edge:
+                self._sweep(points.tip, cutter, removal, mark, slice(done, k))
             done = k
             here = slice(k, k + 1)
             for name, overlap in contact.measure(
@@ -285,12 +294,13 @@ class Cutter:
             if self._halts and any(depth[k] for depth in met.values()):
                 count = k + 1
                 break
-        self._sweep(points.tip, edge, removal, mark, slice(done, count))
+        if edge:
+            self._sweep(points.tip, cutter, removal, mark, slice(done, count))
         removal = Removal(*(column[:count] for column in removal))
         return removal, {name: depth[:count] for name, depth in met.items()}
 
     def _sweep(
-        self, tip: FloatArray, edge: Profile, removal: Removal, mark: FloatArray, part: slice
+        self, tip: FloatArray, cutter: Profile, removal: Removal, mark: FloatArray, part: slice
     ) -> None:
         """Take off what lies in the way of some of the stretches."""
         if part.start >= part.stop:
@@ -298,7 +308,7 @@ class Cutter:
         found = sweep_lines(
             self.map,
             tip[part.start : part.stop + 1],
-            edge,
+            cutter,
             Marks(self.marks, mark[part]),
             stood=part.start > 0,
         )
@@ -365,12 +375,14 @@ class _Way:
         return self.line * 4 + self.rapid * 2 + self.standing
 
 
-def _with_edge(samples: Samples, run: slice) -> slice:
-    """The samples of a run up to the one at which the tool loses its edge."""
-    if samples.tool is None:
-        return run
-    gone = np.flatnonzero(samples.tool.broken[run])
-    return slice(run.start, run.start + int(gone[0])) if len(gone) else run
+def _by_edge(samples: Samples, run: slice) -> Iterator[tuple[slice, bool]]:
+    """The samples of a run up to the one at which the tool loses its edge, and those from there on."""
+    gone = np.zeros(0) if samples.tool is None else np.flatnonzero(samples.tool.broken[run])
+    lost = run.start + int(gone[0]) if len(gone) else run.stop
+    if lost > run.start:
+        yield slice(run.start, lost), True
+    if lost < run.stop:
+        yield slice(lost, run.stop), False
 
 
 def _lengths(points: FloatArray) -> FloatArray:

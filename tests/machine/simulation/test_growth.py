@@ -11,6 +11,7 @@ import pytest
 from tests.machine.machine_fixtures import PERIOD, setpoints
 from twin.errors import ConfigError
 from twin.files.shipped import machine_file
+from twin.machine.circle.circular_test import circular_test
 from twin.machine.description.config import Machine, MachineFile, read_machine
 from twin.machine.simulation.growth import Growth
 from twin.nc.canonical import FloatArray
@@ -115,3 +116,16 @@ def test_growth_shifts_the_tool_beside_its_bend() -> None:
     machine = growing()
     samples = dataclasses.replace(driven(3, 0.0, 0.0), growth=np.full((3, 3), 0.002))
     assert samples.real(machine.part_frame)[:, :3] == pytest.approx(np.full((3, 3), 0.002))
+
+
+def test_a_drive_that_warms_shows_in_the_circular_test() -> None:
+    """Both directions in one session: what grew along X moves the second circle aside."""
+    screw = SCREW | {"at": 1.0, "time_constant_s": 600.0, "um": [50.0, 0.0, 0.0]}
+    cold = circular_test(growing(), 30.0, 4000.0)
+    warm = circular_test(growing(screw=screw), 30.0, 4000.0)
+    aside = [
+        getattr(warm, way) - getattr(cold, way) for way in ("counter_clockwise_um", "clockwise_um")
+    ]
+    shift = [float(2.0 * np.mean(one * np.cos(np.deg2rad(cold.angle_deg)))) for one in aside]
+    assert 0.05 < shift[0] < shift[1]
+    assert max(np.abs(one).max() for one in aside) < 2.0 * shift[1]

@@ -11,7 +11,14 @@ from twin.cutting.patches import LEVELS
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.app import RoomApp
 from twin.training.server.driver import Driver
-from twin.training.server.frames import Changes, StockFeed, as_texts, panel_words, state_message
+from twin.training.server.frames import (
+    Changes,
+    StockFeed,
+    as_texts,
+    panel_words,
+    path_message,
+    state_message,
+)
 from twin.training.server.launch import CELLS_ACROSS
 from twin.training.server.seats import MESSAGES, MOST_PAGES, Seats
 from twin.training.session.live_cut import Loads
@@ -122,3 +129,31 @@ def test_there_is_an_end_to_pages_and_to_what_one_may_say():
     page = pages[0]
     assert page is not None
     assert sum(page.may_speak() for _ in range(10_000)) < 2 * MESSAGES
+
+
+def test_a_path_is_a_head_and_then_its_points():
+    session = Session(read_scene(scene_path("fagor_first_steps")))
+    preview = session.room.path_to_come().drawn()
+    message = path_message(preview, {"en": "a word", "cs": "slovíčko"})
+    (length,) = struct.unpack("<I", message[:4])
+    head = json.loads(message[4 : 4 + length])
+    assert length % 4 == 0
+    assert (head["moves"], head["complete"], head["message"]["cs"]) == (
+        preview.moves,
+        True,
+        "slovíčko",
+    )
+    points = np.frombuffer(message, "<f4", 3 * head["points"], 4 + length)
+    rapid = np.frombuffer(message, "u1", -1, 4 + length + points.nbytes)
+    assert np.array_equal(points.reshape(-1, 3), preview.points)
+    assert np.array_equal(rapid.astype(bool), preview.rapid)
+
+
+def test_the_machine_answers_between_two_slices_and_outlives_a_question_that_fails():
+    driver = Driver(Session(read_scene(scene_path("fagor_first_steps"))))
+    tick, failing = driver.inquire(lambda room: room.tick), driver.inquire(lambda _room: 1 / 0)
+    assert not tick.done()
+    driver._step(0.0)
+    assert tick.result() == 0
+    assert isinstance(failing.exception(), ZeroDivisionError)
+    assert driver.session.room.alarm is None

@@ -241,6 +241,26 @@ def test_what_the_machine_refuses_is_said_and_taken_back_on_the_page(room, conte
     page.wait_for_selector("#message .refusal")
 
 
+def test_what_is_typed_counts_though_its_sheet_is_drawn_anew(room, context):
+    player = Player(room, open_page(room, context))
+    page, machine = player.page, player.machine
+    length, radius = "[data-key='length 1']", "[data-key='radius 1']"
+    page.click("#tab-tools")
+    for leave, other, expected in (("Tab", 2.25, 625.0), ("Enter", 3.5, 62.5)):
+        page.fill(length, "")
+        page.type(length, "625")
+        page.press(length, "ArrowLeft")
+        before = page.wait_for_selector(length)
+        room.driver.ask({"do": "set_tool", "number": 1, "radius": other}, "trainer", 0)
+        player.until(lambda want=other: float(page.input_value(radius)) == want, "the other value")
+        assert not before.evaluate("(one) => one.isConnected")
+        assert machine.tables.lengths[1] != expected
+        if leave == "Enter":
+            page.keyboard.type(".")
+        page.keyboard.press(leave)
+        player.until(lambda want=expected: machine.tables.lengths[1] == want, "the length")
+
+
 def test_a_program_is_begun_in_its_midst_and_held_and_left_and_found_again(room, context):
     player = Player(room, open_page(room, context))
     page, machine = player.page, player.machine
@@ -424,4 +444,22 @@ def test_every_sheet_can_be_read_by_everybody(chromium, room):
         for tab in page.locator("#tabs button").all():
             tab.click()
             assert page.evaluate(SERIOUS) == [], (role, tab.inner_text())
+    context.close()
+
+
+def test_the_way_of_the_program_is_told_before_it_runs_and_why_it_is_not(chromium, room):
+    context = chromium.new_context()
+    without_view(context)
+    page = open_page(room, context, query="?language=en")
+    page.click("[data-key=preview]")
+    note = page.locator("#path-note")
+    page.wait_for_selector("#path-note >> text=rapid dashed")
+    assert "Z -3.3 … 50.0" in note.inner_text()
+    player = Player(room, page)
+    page.click("#line2")
+    page.fill("[data-key=edited]", "N20 QQ")
+    player.press("edit", "edit")
+    page.wait_for_selector("#path-note.refusal >> text=line 2")
+    page.click("[data-key=preview]")
+    page.wait_for_selector("#path-note", state="hidden")
     context.close()

@@ -33,8 +33,10 @@ no_alarm = ["any"]
 SLOT = "%S\nN10 G90 S4000 M3\nN20 G0 X-40 Y0 Z-2\nN30 G1 X20 F{feed}\nN40 G0 Z50\nN50 M30\n"
 
 
-def session_of(folder: Path, feed: float, material: str = 'material = "C45"') -> Session:
-    (folder / "p.nc").write_text(SLOT.format(feed=feed))
+def session_of(
+    folder: Path, feed: float, material: str = 'material = "C45"', slot: str = SLOT
+) -> Session:
+    (folder / "p.nc").write_text(slot.format(feed=feed))
     (folder / "scene.toml").write_text(SCENE.format(material=material))
     return Session(read_scene(folder / "scene.toml"))
 
@@ -117,6 +119,19 @@ def test_a_broken_tool_is_told_and_goes_on_until_it_is_changed(tmp_path):
     run_to_end(session)
     assert session.snapshot().broken is None
     assert room.work.removed == pytest.approx(whole, rel=0.05)
+
+
+def test_a_rapid_of_a_broken_tool_into_the_stock_is_an_alarm(tmp_path):
+    """It has no edge, and yet it is in the way; what it leaves on its way up is no collision."""
+    back = SLOT.replace("N40 G0 Z50", "N35 G0 Z20\nN36 X-40\nN37 Z-2\nN38 X-20\nN40 G0 Z50")
+    session = session_of(tmp_path, 6000, slot=back)
+    run_to_end(session)
+    room = session.room
+    assert room.broken[1].line == 4
+    assert room.alarm is not None
+    assert (room.alarm.code, room.alarm.line) == ("rapid-into-stock", 8)
+    assert room.work is not None
+    assert room.work.height_at(0.0, 0.0) == 0.0
 
 
 def test_going_back_mends_a_tool_that_broke_since(tmp_path):

@@ -44,6 +44,56 @@ def at(session: Session) -> tuple[float, ...]:
     return tuple(np.round(room.machine.position - room.tables.zero, 2)[:3])
 
 
+def seconds(session: Session, text: str) -> float:
+    """Machine time of a program [s]."""
+    load(session, text)
+    do(session, "cycle_start")
+    began = session.room.time_s
+    rest(session)
+    return session.room.time_s - began
+
+
+def test_a_tool_change_takes_the_time_that_the_machine_file_says(session):
+    """As in a run: twin.run.waits; a tool that is there already takes none."""
+    session.room.tables.tools[2] = session.room.tables.tool.model_copy(update={"number": 2})
+    session.room.tables.lengths[2], session.room.tables.radii[2] = 60.0, 4.0
+    change_s = session.room.machine.machine.file.spindle.tool_change_s
+    assert change_s > 1.0
+    same = seconds(session, "N10 T1 M6\nN20 G90 G1 F500 X1\nN30 M30")
+    other = seconds(session, "N10 T2 M6\nN20 G90 G1 F500 X2\nN30 M30")
+    assert session.room.tables.spindle == 2
+    assert other - same == pytest.approx(change_s, abs=0.05)
+
+
+def test_a_tool_that_is_not_there_is_told_at_once(session):
+    assert seconds(session, "N10 T9 M6\nN20 G90 G1 F500 X1\nN30 M30") < 1.0
+    alarm = session.room.alarm
+    assert (alarm.code, alarm.message, alarm.line) == ("program", "no tool 9", 1)
+
+
+def test_functions_wait_for_those_before_them(session):
+    """Between two moves: each function comes when the waits before it are over."""
+    load(
+        session,
+        "N10 S4000 M3\nN20 G4 K1\nN30 M8\nN40 G4 K1\nN50 M9\nN60 S2000 M4\nN70 G1 F500 X1\nN80 M30",
+    )
+    do(session, "cycle_start")
+    room = session.room
+    seen = []
+    while not room.moving:
+        session.advance()
+        now = (room.line, room.spindle.speed, room.coolant, room.spindle.counter_clockwise)
+        if now not in seen:
+            seen.append(now)
+    assert [one for one in seen if one[0]] == [
+        (1, 4000.0, False, False),
+        (2, 4000.0, False, False),
+        (4, 4000.0, True, False),
+        (6, 2000.0, False, True),
+        (7, 2000.0, False, True),
+    ]
+
+
 def test_single_block_stops_behind_blocks_that_move_nothing(session):
     load(session, "N10 G90 F500\nN20 S3000 M3\nN30 G0 X0 Y0\nN40 M8\nN50 G1 X5\nN60 M30")
     do(session, "mode", mode="single")

@@ -380,6 +380,18 @@ def test_going_far_back_restores_a_checkpoint_without_living_it_again(session, m
     assert session.room.time_s == pytest.approx(3.0)
 
 
+def test_copies_are_bounded_in_number_and_the_beginning_is_kept(session, monkeypatch):
+    for name, value in (("DENSE", 2), ("MOST", 4), ("SPREAD", 0.0), ("APART_S", 0.02)):
+        monkeypatch.setattr(checkpoints, name, value)
+    session = Session(session.scene)
+    session.advance(10)
+    for _ in range(10):
+        session.advance(2)
+        assert len(session._checkpoints._kept) <= 4
+    session.rewind(session.room.time_s)
+    assert session.room.tick == 0
+
+
 def test_a_reset_in_the_midst_of_a_cut_is_no_cut_without_rotation(session):
     do(session, "cycle_start")
     while session.room.machine.setpoint.line[0] < 5 or not session.room.moving:

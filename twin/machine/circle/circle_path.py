@@ -10,6 +10,7 @@ from twin.errors import UsageError
 from twin.machine.description.config import Machine
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
+from twin.recording.form import Samples
 from twin.units import DEGREE, SECONDS_PER_MINUTE
 
 PLANES = {"XY": ("X", "Y"), "ZX": ("Z", "X"), "YZ": ("Y", "Z"), "XYC": ("X", "Y")}
@@ -151,22 +152,22 @@ class CirclePath:
         none = np.zeros(n, np.int64)
         return Setpoints(time, none, none, np.zeros(n), position, velocity, acceleration)
 
-    def measured(self, joints: FloatArray) -> FloatArray:
+    def measured(self, samples: Samples) -> FloatArray:
         """What a ball bar sees: the tool from the centre of the circle.
 
         Args:
-            joints: Machine coordinates, shape (n, k) [mm or deg].
+            samples: n samples of the machine.
 
         Returns:
             Shape (n, 2) [mm].
         """
         center = self._center()
+        frame = self.machine.part_frame.at(center)
+        real = samples.real(frame)
         if self.plane != "XYC":
             first, second = self._columns()
-            frame = self.machine.part_frame.at(center)
-            return (frame.real(joints) - center)[:, [first, second]]
+            return (real - center)[:, [first, second]]
         # The followed point is (radius, 0) of the part, which turns against the circle. There, with
         # the table at zero, its place was measured.
-        frame = self.machine.part_frame.at(center)
-        seen = frame.position(frame.real(joints))[:, :2] - np.array([self.radius, 0.0])
+        seen = frame.position(real)[:, :2] - np.array([self.radius, 0.0])
         return seen * np.array([1.0, -1.0])

@@ -1,7 +1,8 @@
 """The circular test of ISO 230-4 on the simulated machine: how round does it go?
 
 A circle is run at a constant feed in both directions; the run-up and a quarter turn settle it, the
-turn after that is measured. From the measured points, seen from the commanded centre, come
+turn after that is measured. The machine is cold at first and warms by its drives; its spindle
+stands. From the measured points, seen from the commanded centre, come
 
 * radial deviation F: the largest and smallest distance outward from the commanded circle;
 * circular deviation G(b): the smallest width of two circles about one centre that hold the paths of
@@ -20,6 +21,7 @@ from twin.errors import UsageError
 from twin.machine.circle.circle_path import PLANES, RUN_IN, CirclePath
 from twin.machine.description.config import Machine
 from twin.machine.model.model import build_spec, physics_model
+from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.simulate import simulate
 from twin.nc.canonical import FloatArray
 from twin.units import UM_PER_MM
@@ -105,7 +107,8 @@ def circular_test(machine: Machine, radius: float, feed: float, plane: str = "XY
     paths = [CirclePath(machine, plane, radius, feed, direction) for direction in (1, -1)]
     model = physics_model(machine, build_spec(machine))
     angle = np.arange(ANGLES, dtype=np.float64) * (360.0 / ANGLES)
-    forth, back = (_deviation_um(path, model, angle) for path in paths)
+    growth = Growth(machine)
+    forth, back = (_deviation_um(path, model, growth, angle) for path in paths)
     x, y, mean = _least_squares_circle(angle, (forth + back) / 2)
     turned = np.deg2rad(angle)
     centred = np.stack([forth, back]) - x * np.cos(turned) - y * np.sin(turned)
@@ -127,11 +130,13 @@ def circular_test(machine: Machine, radius: float, feed: float, plane: str = "XY
     )
 
 
-def _deviation_um(path: CirclePath, model: mujoco.MjModel, angle: FloatArray) -> FloatArray:
+def _deviation_um(
+    path: CirclePath, model: mujoco.MjModel, growth: Growth, angle: FloatArray
+) -> FloatArray:
     """Measured turn of one direction at even angles, shape (n,) [µm]."""
     run = simulate(path.machine, model, path.setpoints())
     # Only the plane's two coordinates are kept: a slow, large circle has millions of samples.
-    points = np.concatenate([path.measured(samples.joint_position) for samples in run])
+    points = np.concatenate([path.measured(growth.warm(samples)) for samples in run])
     if run.alarm is not None:
         raise UsageError(f"the circle stopped with an alarm: {run.alarm.message}")
     along = path.direction * np.unwrap(np.arctan2(points[:, 1], points[:, 0]))

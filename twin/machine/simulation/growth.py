@@ -24,13 +24,15 @@ from twin.units import UM_PER_MM, to_si
 class Growth:
     """Follows a run from cold on, chunk by chunk."""
 
-    def __init__(self, machine: Machine, spindle_speed: Callable[[Setpoints], FloatArray]) -> None:
+    def __init__(
+        self, machine: Machine, spindle_speed: Callable[[Setpoints], FloatArray] | None = None
+    ) -> None:
         """Begin with a cold machine.
 
         Args:
             machine: Its file says how it grows.
             spindle_speed: Speed of the spindle at setpoints, shape (n,) [1/min]; not a number
-                where it is not known, which warms nothing.
+                where it is not known, which warms nothing. None: it stands.
         """
         tables = list(machine.file.thermal.values())
         self._spindle_speed = spindle_speed
@@ -49,10 +51,12 @@ class Growth:
         """The samples of a chunk that follows the last one, with what the machine has grown."""
         if not len(self._state) or not len(samples):
             return samples
-        if samples.tool is None:
+        if samples.tool is not None:
+            speed = samples.tool.spindle_speed
+        elif self._spindle_speed is not None:
             speed = np.nan_to_num(self._spindle_speed(samples.setpoint))
         else:
-            speed = samples.tool.spindle_speed
+            speed = np.zeros(len(samples))
         power = np.abs(samples.drive_force * samples.joint_velocity) * self._unit
         driven = [speed if axis is None else power[:, axis] for axis in self._sources]
         goal = np.abs(np.column_stack(driven)) / self._at

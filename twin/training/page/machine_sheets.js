@@ -16,7 +16,7 @@ export function manual_sheet(sheets) {
     return made;
   };
   const feed = make("input", { id: "jog-feed", "data-key": "jog feed", inputmode: "decimal", value: hand.feed ?? "", placeholder: "2000", "aria-label": words.label("jog_feed") });
-  feed.addEventListener("change", () => { hand.feed = feed.value.trim() ? number(feed.value) : null; });
+  feed.addEventListener("input", () => { hand.feed = feed.value.trim() ? number(feed.value) : null; });
   const rapid = make("input", { type: "checkbox", id: "jog-rapid", "data-key": "jog rapid" });
   rapid.checked = hand.rapid;
   rapid.addEventListener("change", () => { hand.rapid = rapid.checked; });

@@ -5,6 +5,7 @@ import { PATCH, readState, STATE } from "../view/wire.js";
 import { Connection } from "./connection.js";
 import { Desk } from "./desk.js";
 import { act_on, make, Words } from "./parts.js";
+import { Preview } from "./preview.js";
 import { Screen } from "./screen.js";
 import { Sheets } from "./sheets.js";
 
@@ -29,6 +30,7 @@ const line = new Connection(hear, (down) => {
     document.getElementById("banner").hidden = true;
   }
 });
+const preview = new Preview(view);
 const desk = new Desk(scene, line), screen = new Screen(scene, line), sheets = new Sheets(scene, line, view, desk, screen);
 screen.on_choice = () => { if (now.mode !== undefined && words) sheets.show(now, words); };
 
@@ -69,6 +71,7 @@ function show_soon() {
       desk.show(now, words);
       screen.show(now, words, changed);
       sheets.show(now, words);
+      preview.show(now, changed);
       show_hand_over();
       changed.clear();
       document.body.dataset.ready = "yes";
@@ -104,10 +107,10 @@ async function speak(language) {
     act_on(button, () => {
       follow = name;
       view.say("look", name);
-      for (const one of button.parentElement.children) one.setAttribute("aria-pressed", one === button);
+      for (const one of button.parentElement.querySelectorAll("[data-key^='view ']")) one.setAttribute("aria-pressed", one === button);
     });
     return button;
-  }));
+  }), preview.button(words));
   if (told) banner(...told);
   for (const name of Object.keys(now)) changed.add(name);
   show_soon();

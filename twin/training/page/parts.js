@@ -81,10 +81,45 @@ export function number(text) {
   return /^\s*[+-]?(\d+[.,]?\d*|[.,]\d+)\s*$/.test(text) ? Number(text.replace(",", ".")) : text;
 }
 
-/** A field whose value goes to the machine when it is entered; where it is refused, the sheet shows the machine's own again. */
+/**
+ * A field whose value goes to the machine when it is entered; where it is refused, the sheet shows the machine's own again.
+ * What is typed is marked as such: a browser tells of no change where a sheet was drawn anew under the typing hand.
+ */
 export function field(attributes, send) {
-  const made = make("input", { autocomplete: "off", ...attributes });
-  made.addEventListener("input", () => { delete made.dataset.sent; });
-  made.addEventListener("change", () => { made.dataset.sent = "yes"; send(made.value); });
+  const made = make("input", { autocomplete: "off", "data-hand": "shown", ...attributes });
+  const enter = () => {
+    if (made.dataset.hand !== "typed" || !made.isConnected) return;
+    made.dataset.hand = "sent";
+    send(made.value);
+  };
+  made.addEventListener("input", () => { made.dataset.hand = "typed"; });
+  made.addEventListener("keydown", (event) => { if (event.key === "Enter") enter(); });
+  made.addEventListener("change", enter);
+  // A window that loses the focus is no field that is left.
+  made.addEventListener("blur", () => { if (document.activeElement !== made) enter(); });
   return made;
+}
+
+/** What stands in the fields of a part of the page, of which hand, and where the hand is: to be put back when it has been drawn anew. */
+export function typing(part) {
+  const fields = [...part.querySelectorAll("input:not([type=checkbox]):not([data-hand=shown]):not([data-hand=sent]), select")];
+  const here = part.contains(document.activeElement) ? document.activeElement : null;
+  const found = { values: fields.map((one) => [one.dataset.key, one.value, one.dataset.hand]), focus: here?.dataset.key, caret: here?.type === "text" ? [here.selectionStart, here.selectionEnd] : null };
+  // They are taken away, which is no leaving of a field.
+  for (const one of fields) delete one.dataset.hand;
+  return found;
+}
+
+/** Put back what ``typing`` found; without values, the focus alone. */
+export function put_back(part, { values, focus, caret }) {
+  const fields = new Map([...part.querySelectorAll("[data-key]")].map((one) => [one.dataset.key, one]));
+  for (const [name, value, hand] of values) {
+    const one = fields.get(name);
+    if (!one) continue;
+    one.value = value;
+    if (hand) one.dataset.hand = hand;
+    one.dispatchEvent(new Event("restored"));
+  }
+  fields.get(focus)?.focus();
+  if (caret && fields.get(focus)?.type === "text") fields.get(focus).setSelectionRange(...caret);
 }

@@ -1,7 +1,7 @@
 // The sheets beside the view: tasks, what is done by hand, how programs run, tables, alarms, view, trainer.
 
 import { alarm_sheet, manual_sheet, run_sheet } from "./machine_sheets.js";
-import { act_on, field, make, number } from "./parts.js";
+import { act_on, field, make, number, put_back, typing } from "./parts.js";
 
 const MARKS = { open: "○", done: "●", failed: "×" };
 const BACK_S = [10, 60];
@@ -46,14 +46,11 @@ export class Sheets {
     const drawn = JSON.stringify([this.sheet, words.language, acts, now.refusals, what[this.sheet]]);
     if (drawn === this.drawn) return;
     // What is being typed stays; what has been sent is shown as the machine has it.
-    const typed = this.drawn && JSON.parse(this.drawn)[0] === this.sheet ? new Map([...sheet.querySelectorAll("input:not([type=checkbox]):not([data-sent]), select")].map((one) => [one.dataset.key, one.value])) : new Map();
+    const same = this.drawn && JSON.parse(this.drawn)[0] === this.sheet, before = typing(sheet);
     this.drawn = drawn;
-    const focus = sheet.contains(document.activeElement) ? document.activeElement.dataset.key : "";
     sheet.replaceChildren(...this[this.sheet]());
-    if (!acts) for (const field of sheet.querySelectorAll("button, input, select")) field.disabled = this.sheet !== "display";
-    const fields = new Map([...sheet.querySelectorAll("[data-key]")].map((one) => [one.dataset.key, one]));
-    for (const [name, value] of typed) if (fields.has(name)) fields.get(name).value = value;
-    fields.get(focus)?.focus();
+    if (!acts) for (const one of sheet.querySelectorAll("button, input, select")) one.disabled = this.sheet !== "display";
+    put_back(sheet, same ? before : { ...before, values: [] });
   }
 
   button(name, text, act) {
@@ -163,20 +160,22 @@ export class Sheets {
     const axis = make("select", { id: "fault-axis", "data-key": "fault axis", "aria-label": words.label("axis") }, ...now.axes.map((name) => make("option", {}, name)));
     const value = make("input", { id: "fault-value", inputmode: "decimal", "data-key": "fault value", "aria-label": words.label("value") });
     const unit = make("span");
+    const unit_of = (fault) => scene.faults[fault.kind][now.units[now.axes.indexOf(fault.axis)] === "deg" ? 2 : 1];
     const fit = () => {
-      const [normal, linear, rotary] = scene.faults[kind.value];
-      const turns = now.units[now.axes.indexOf(axis.value)] === "deg";
-      value.value = normal;
-      unit.textContent = turns ? rotary : linear;
+      unit.textContent = unit_of({ kind: kind.value, axis: axis.value });
       for (const part of [axis, value, unit]) part.hidden = kind.value === "alarm";
     };
-    kind.addEventListener("change", fit);
-    axis.addEventListener("change", () => { unit.textContent = scene.faults[kind.value][now.units[now.axes.indexOf(axis.value)] === "deg" ? 2 : 1]; });
-    fit();
+    const begin = () => {
+      [value.value] = scene.faults[kind.value];
+      fit();
+    };
+    kind.addEventListener("change", begin);
+    for (const event of ["change", "restored"]) axis.addEventListener(event, fit);
+    begin();
     const inject = this.button("inject", words.label("inject"), () => line.say({
       do: "inject", fault: kind.value === "alarm" ? { kind: "alarm" } : { kind: kind.value, axis: axis.value, value: number(value.value) },
     }));
-    const active = now.faults.map((fault) => make("li", { class: "failed" }, `● ${words.label(`fault_${fault.kind}`)} ${fault.axis} ${fault.value} ${scene.faults[fault.kind][now.units[now.axes.indexOf(fault.axis)] === "deg" ? 2 : 1]}`));
+    const active = now.faults.map((fault) => make("li", { class: "failed" }, `● ${words.label(`fault_${fault.kind}`)} ${fault.axis} ${fault.value} ${unit_of(fault)}`));
     return [
       make("div", { class: "row" }, ...time), make("h3", {}, words.label("inject")), make("div", { class: "row" }, kind), make("div", { class: "row" }, axis, value, unit), make("div", { class: "row" }, inject),
       make("h3", {}, words.label("active_faults")), active.length ? make("ul", {}, ...active) : make("p", { class: "quiet" }, words.label("no_faults")), make("div", { class: "row" }, ask("repair")),

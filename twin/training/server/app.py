@@ -29,8 +29,17 @@ from twin.training.scene.scene_file import (
 )
 from twin.training.scene.vocabulary import LANGUAGES, Language, Words
 from twin.training.server.driver import Driver, Look
-from twin.training.server.frames import Changes, StockFeed, as_texts, panel_words, state_message
+from twin.training.server.frames import (
+    Changes,
+    StockFeed,
+    as_texts,
+    panel_words,
+    path_message,
+    state_message,
+)
 from twin.training.server.seats import Page, Seats
+from twin.training.session.preview import Preview
+from twin.training.session.room import Room
 from twin.web.guard import ASSETS
 
 ROLES = ("operator", "trainer", "watcher")
@@ -67,6 +76,8 @@ class RoomApp:
         self.messages = 0
         self._stock = StockFeed()
         self._spoken: tuple[Look | None, dict[str, str]] = None, {}
+        self._one_path = asyncio.Lock()
+        self._last_path: tuple[Any, bytes] = None, b""
         self._drawn = functools.cache(self._draw)
         inner = [
             Route("/", self._page),
@@ -74,6 +85,7 @@ class RoomApp:
             Route("/words/{language}.json", self._words),
             Route("/machine.json", self._machine),
             Route("/machine.glb", self._glb),
+            Route("/path.bin", self._path),
             WebSocketRoute("/stream", self._stream),
             Mount("/view", StaticFiles(directory=ASSETS, follow_symlink=False)),
             Mount("/page", StaticFiles(directory=PAGE, follow_symlink=False)),
@@ -142,6 +154,17 @@ class RoomApp:
         if drawn is None:
             return Response(status_code=404)
         return Response(drawn[1], media_type="model/gltf-binary")
+
+    async def _path(self, _request: Request) -> Response:
+        """The program's way, drawn beside the machine's thread; one at a time."""
+        path = await asyncio.wrap_future(self._driver.inquire(Room.path_to_come))
+        async with self._one_path:
+            key, message = self._last_path
+            if key != path.key:
+                preview = await anyio.to_thread.run_sync(path.drawn)
+                message = path_message(preview, _said_of(preview))
+                self._last_path = path.key, message
+        return Response(message, media_type="application/octet-stream")
 
     async def _drawing(self, request: Request) -> tuple[DrawnMachine, bytes] | None:
         tools = self._driver.session.room.tables.tools
@@ -249,6 +272,14 @@ class RoomApp:
             )
         words["refusal"] = words["refusal"] and _in_all(words["refusal"])
         return words
+
+
+def _said_of(preview: Preview) -> dict[str, str] | None:
+    """Why a path is not drawn to its end, in every language; None: nothing is to be said."""
+    found = preview.finding
+    if found is not None:
+        return {language: finding_in(found, language) for language in LANGUAGES}
+    return _in_all(preview.message) if preview.message else None
 
 
 @functools.lru_cache(maxsize=256)

@@ -7,13 +7,16 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
-from typing import Any
+from concurrent.futures import Future
+from typing import Any, TypeVar
 
 from twin.errors import TwinError
 from twin.training.session.log import Who
 from twin.training.session.room import Room
 from twin.training.session.session import Session
 from twin.training.session.snapshot import Snapshot
+
+ResultT = TypeVar("ResultT")
 
 SHORTEST_REST_S = 0.001
 """What the machine always leaves to the server between two looks at the clock [s]."""
@@ -67,6 +70,9 @@ class Driver:
         self.lost_s = 0.0
         self.trouble: Callable[[], str] = str
         self._changed = changed
+        self._questions: queue.SimpleQueue[tuple[Callable[[Room], Any], Future[Any]]] = (
+            queue.SimpleQueue()
+        )
         self._asked: queue.SimpleQueue[tuple[Any, Who, int]] = queue.SimpleQueue()
         self._wake = threading.Event()
         self._over = threading.Event()
@@ -94,6 +100,17 @@ class Driver:
         self._beats[page] = time.perf_counter()
         self._asked.put((command, who, page))
         self._wake.set()
+
+    def inquire(self, question: Callable[[Room], ResultT]) -> "Future[ResultT]":
+        """Ask the machine something, from any thread: answered on its own between two slices.
+
+        Args:
+            question: Quickly answered; changes nothing.
+        """
+        answer: Future[ResultT] = Future()
+        self._questions.put((question, answer))
+        self._wake.set()
+        return answer
 
     def beat(self, page: int) -> None:
         """A page says that its key is still held."""
@@ -124,6 +141,7 @@ class Driver:
         """One turn; whatever goes wrong in it becomes an alarm."""
         try:
             self._do_what_was_asked()
+            self._answer()
             self._let_go_of_lost_keys()
             self._go_on(passed)
         except TwinError as error:
@@ -153,6 +171,16 @@ class Driver:
         if done:
             self._shown = -1.0
             self._changed()
+
+    def _answer(self) -> None:
+        """Answer what was inquired of the machine; what goes wrong in it is told to who asked."""
+        with contextlib.suppress(queue.Empty):
+            while True:
+                question, answer = self._questions.get_nowait()
+                try:
+                    answer.set_result(question(self.session.room))
+                except Exception as error:  # noqa: BLE001 - the asker's, never the machine's
+                    answer.set_exception(error)
 
     def _let_go_of_lost_keys(self) -> None:
         """Dead man's key: what moves while a key is held stops when its page falls silent."""

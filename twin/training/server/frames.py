@@ -11,6 +11,7 @@ from twin.cutting.height_map import HeightMap
 from twin.cutting.patches import patch_message
 from twin.cutting.sweeping import Rectangle, union
 from twin.training.server.driver import Look
+from twin.training.session.preview import Preview
 from twin.training.session.room import Room
 from twin.training.session.snapshot import Snapshot
 
@@ -52,6 +53,28 @@ def state_message(look: Look, cutting: bool) -> bytes:
         numbers += row
     numbers += now.loads
     return struct.pack(f"<BBHI{len(numbers)}d", STATE, flags, len(now.axes), 0, *numbers)
+
+
+def path_message(preview: Preview, message: dict[str, str] | None) -> bytes:
+    """A program's way: the length of a head in JSON, that head, then the points.
+
+    The head, filled up to a multiple of four, has ``moves``, ``points``, ``origin``, ``complete``,
+    ``line`` and ``message``. X, Y, Z
+    of each point follow as numbers of 32 bits, then a byte each: 1 where a rapid leads to it.
+    """
+    head = json.dumps(
+        {
+            "moves": preview.moves,
+            "points": len(preview.points),
+            "origin": preview.origin.tolist(),
+            "complete": preview.complete,
+            "line": preview.line,
+            "message": message,
+        }
+    ).encode()
+    head += b" " * (-len(head) % 4)
+    rapid = preview.rapid.astype("u1").tobytes()
+    return struct.pack("<I", len(head)) + head + preview.points.astype("<f4").tobytes() + rapid
 
 
 def panel_words(look: Look) -> dict[str, Any]:

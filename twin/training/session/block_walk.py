@@ -7,9 +7,10 @@ stopped by the planner; between two of them each further press of start goes one
 
 import bisect
 import dataclasses
+import itertools
 from collections import deque
 
-from twin.nc.canonical import Function
+from twin.nc.canonical import Dwell, Event, Function
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -46,9 +47,9 @@ class BlockWalk:
         self.paused = False
         self.singly: set[int] = set()
         self._marks: list[int] = []
-        self._functions: deque[tuple[float, int, Function]] = deque()
+        self._events: deque[tuple[float, int, Event]] = deque()
         self._current = -1
-        self._of_function = 0
+        self._of_event = 0
         self._stepping = False
 
     def note(self, mark: int, state: ModalState) -> None:
@@ -61,13 +62,14 @@ class BlockWalk:
         self._marks.append(mark)
         self.blocks.append(state)
 
-    def note_function(self, place: float, function: Function) -> None:
-        """A function of the blocks so far; ``place``: how many moves lie before it."""
-        for index in range(self._of_function, len(self.blocks)):
-            if self.blocks[index].line == function.line:
-                self._of_function = index
+    def note_event(self, moves: int, event: Event) -> None:
+        """A function of the blocks so far, or a wait; ``moves``: how many of the part lie before its chunk."""
+        for index in range(self._of_event, len(self.blocks)):
+            if self.blocks[index].line == event.line:
+                self._of_event = index
                 break
-        self._functions.append((place, self._of_function, function))
+        at = event.at if isinstance(event, Function) else 0.0
+        self._events.append((moves + event.before + at, self._of_event, event))
 
     def of_move(self, move: int) -> int:
         """Number of the block that a move belongs to, as far as its mark tells; -1: none."""
@@ -141,18 +143,31 @@ class BlockWalk:
         index = self._current + 1
         return self.blocks[index].line if index < len(self.blocks) else 0
 
-    def due(self, place: float) -> list[Function]:
-        """Functions that have happened and were not told yet.
+    def due(self, place: float, line: int) -> list[Function]:
+        """Functions that have happened and were not told yet: what they wait for is over.
 
         Args:
             place: How many moves, and which share of the next, lie behind.
+            line: Source line of what the setpoints do there, be it a wait.
         """
         last = self._current if self._stepping or self.paused else len(self.blocks)
         found: list[Function] = []
-        while self._functions:
-            at, block, function = self._functions[0]
-            if block > last or (at > place and not (self.paused and block <= self._current)):
+        while self._events:
+            at, block, event = self._events[0]
+            behind = self.paused and block <= self._current
+            if block > last or (at > place and not behind):
                 break
-            found.append(function)
-            self._functions.popleft()
+            if isinstance(event, Function):
+                found.append(event)
+            elif at == place and not behind and not self._is_over(line):
+                break
+            self._events.popleft()
         return found
+
+    def _is_over(self, line: int) -> bool:
+        """Whether the setpoints have come from the first wait that is noted to a later one."""
+        first, _, wait = self._events[0]
+        here = itertools.takewhile(lambda one: one[0] == first, self._events)
+        return line != wait.line and any(
+            isinstance(event, Dwell) and event.line == line for _, _, event in here
+        )

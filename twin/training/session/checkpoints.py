@@ -33,6 +33,8 @@ DENSE = 20
 
 SPREAD = 0.2
 """Between older copies lies at least this share of their age."""
+MOST = 28
+"""Copies that are kept at most, the beginning with them: a room needs no more memory after a day."""
 TILE = 64
 """Cells along a side of a tile of the stock."""
 
@@ -154,7 +156,8 @@ class Checkpoints:
             recent = number >= len(self._kept) - DENSE
             if recent or one.tick - kept[-1].tick >= SPREAD * (newest - one.tick):
                 kept.append(one)
-        self._kept = kept
+        # The oldest behind the beginning goes first: it lies so far back that a session is left there.
+        self._kept = [*kept[:1], *kept[1:][-(MOST - 1) :]]
 
 
 def _made_again(run: ProgramRun | ProgramRunCopy | None) -> ProgramRun | None:

@@ -9,6 +9,7 @@ from twin.coupling.operations import OperatorOperation, cutting_process
 from twin.cutting.forces.tool_strength import tool_strength
 from twin.job.job_file import JobFile, StockTable, ToolTable
 from twin.machine.simulation.live import LiveMachine
+from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 from twin.nc.functions import SpindleState
 from twin.recording.form import ToolLoad
@@ -102,6 +103,11 @@ class LiveCut:
         An edge that stands may touch the part, as a feeler: what it must not do is the part's to see.
         """
         self._operation.speed = override * spindle.turning if spindle.turning else None
+
+    def told_speed(self, setpoints: Setpoints) -> FloatArray:
+        """How fast the spindle shall turn, at n setpoints, shape (n,) [1/min]; see ``turn``."""
+        speed = self._operation.speed
+        return np.full(len(setpoints), np.nan if speed is None else speed)
 
     def loads(self, felt: ToolLoad | None) -> Loads:
         """What there is to show of what the tool felt."""

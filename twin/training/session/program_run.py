@@ -22,7 +22,7 @@ from twin.machine.description.motion_limits import motion_limits
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.motion.live.live_motion import LiveMotion
 from twin.motion.setpoints.setpoints import Setpoints
-from twin.nc.canonical import Chunk, FloatArray, Function, Motion, Moves
+from twin.nc.canonical import Chunk, Event, FloatArray, Function, Motion, Moves
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.executor import Executor
 from twin.nc.control.modal import FEED_FACTORS, SavedModal
@@ -217,14 +217,39 @@ class ProgramRun:
             paused: Whether start is waited for before its first block.
         """
         self._journal.append(("begin", start, zero, spindle, paused))
-        self._forget()
-        # A tool is changed at once, so that one which is not there is told at once.
-        table = self._machine.file.spindle.model_copy(update={"tool_change_s": 0.0})
-        self._waits = Waits(table, {}, self._control.tools.spindle or 0, spindle)
-        self._begin = start, zero
+        self._prepare_part(start, zero, spindle)
         self._begin_paused = paused
-        self.ending = None
         self._look_ahead()
+
+    def _prepare_part(self, start: FloatArray, zero: FloatArray, spindle: SpindleState) -> None:
+        self._forget()
+        tool = self._control.tools.spindle or 0
+        self._waits = Waits(self._machine.file.spindle, {}, tool, spindle)
+        self._begin = start, zero
+        self.ending = None
+
+    READ_AT_ONCE = BLOCKS_AT_REST
+
+    def read(self, start: FloatArray, zero: FloatArray, spindle: SpindleState) -> Iterator[Moves]:
+        """Interpret the part that comes next to its end, for somebody who drives none of it.
+
+        Args:
+            start: Where the part begins, machine coordinates, shape (k,) [mm or deg].
+            zero: Machine coordinates of program zero, shape (k,) [mm or deg].
+            spindle: What it has been told.
+
+        Yields:
+            Moves, none where ``READ_AT_ONCE`` blocks made too few to be handed on; ``ending`` is
+            known behind the last.
+        """
+        self._prepare_part(start, zero, spindle)
+        while self.ending is None:
+            self._interpret(self.READ_AT_ONCE)
+            if self.ending is None and not self._waiting and len(self._control.path):
+                self._finish_chunk(self._control.path.take())
+            read = [chunk.moves for chunk in self._waiting]
+            self._waiting.clear()
+            yield from read or [Moves.empty(self._control.settings.axes)]
 
     def drive(self, count: int, feed: float, rapid: float, *, single: bool) -> Setpoints | None:
         """The next setpoints; None while the first moves are being interpreted.
@@ -431,10 +456,12 @@ class ProgramRun:
             chunk = Chunk(chunk.moves[:outside], ())
             self.ending, self.message = "soft-limit", alarm.message
             self.ending_line = alarm.line
+        # No time passes for a tool that is not there: it is told at once.
+        changes = self.ending == "tool"
+        happen = [one for one in chunk.events if changes or not _is_tool_change(one)]
+        chunk = Chunk(chunk.moves, tuple(self._waits.among(happen)))
         for event in chunk.events:
-            if isinstance(event, Function):
-                self._walk.note_function(self._count + event.before + event.at, event)
-        chunk = Chunk(chunk.moves, tuple(self._waits.among(chunk.events)))
+            self._walk.note_event(self._count, event)
         self._firsts.append(self._count)
         self._moves.append(chunk.moves)
         self._count += len(chunk.moves)
@@ -452,6 +479,8 @@ class ProgramRun:
                  and isinstance(word.value, float)]  # fmt: skip
         if TOOL_CHANGE in words:
             self.ending, self.tool = "tool", self._control.tools.spindle
+            if self.tool not in self._control.settings.tools:
+                self.ending, self.message = "program", f"no tool {self.tool}"
         elif any(word in PROGRAM_STOPS for word in words):
             self.ending, self.optional = "stop", OPTIONAL_STOP in words
         if self.ending is not None:
@@ -461,11 +490,14 @@ class ProgramRun:
         """The functions that have happened since the last call."""
         if self._motion is None:
             return []
-        place = math.inf if self.finished else -1.0
-        if len(setpoints) and not self.finished:
+        if self.finished:
+            return self._walk.due(math.inf, 0)
+        found: list[Function] = []
+        for row in _changes(setpoints):
             # What comes before the first move begins with the wait for it.
-            place = max(int(setpoints.move[-1]) + float(setpoints.fraction[-1]), 0.0)
-        return self._walk.due(place)
+            place = max(int(setpoints.move[row]) + float(setpoints.fraction[row]), 0.0)
+            found += self._walk.due(place, int(setpoints.line[row]))
+        return found
 
     def modal(self, move: int) -> ModalState | None:
         """What is in force during a move of the part."""
@@ -544,6 +576,16 @@ class ProgramRun:
             return None
         chunk = bisect.bisect_right(self._firsts, move) - 1
         return self._moves[chunk], move - self._firsts[chunk]
+
+
+def _is_tool_change(event: Event) -> bool:
+    return isinstance(event, Function) and event.word == TOOL_CHANGE
+
+
+def _changes(setpoints: Setpoints) -> list[int]:
+    """The last setpoint of each block, of a wait as of a move."""
+    border = (np.diff(setpoints.line) != 0) | (np.diff(setpoints.move) != 0)
+    return [*np.flatnonzero(border).tolist(), len(setpoints) - 1] if len(setpoints) else []
 
 
 @dataclasses.dataclass(frozen=True)

@@ -15,6 +15,7 @@ from twin.cutting.tools import default_cell
 from twin.errors import TwinError, UsageError
 from twin.job.job_file import StockTable
 from twin.machine.model.model import spindle_over_table_mm
+from twin.machine.simulation.growth import Growth
 from twin.machine.simulation.live import STANDSTILL, LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode, AlarmStandsError
 from twin.machine.watching.watch import limit_switches
@@ -42,6 +43,7 @@ from twin.training.session.judge import Judge
 from twin.training.session.live_cut import LiveCut
 from twin.training.session.moment import Moment, moment_of
 from twin.training.session.observed import Notice, block_number
+from twin.training.session.preview import PathToCome
 from twin.training.session.program_run import Inherited, ProgramRun, RunOptions
 from twin.training.session.tables import Tables
 from twin.training.session.workpiece import Workpiece
@@ -171,6 +173,7 @@ class Room:
         self.part_frame = machine.part_frame.at(zero)
         self.cut = LiveCut(self.machine, job, self.part_frame, self.tables.true_zero)
         self.work = self._clamped_blank()
+        self._growth = Growth(self.machine.machine, self.cut.told_speed)
         self.mode: Mode = file.start.mode
         self.feed_override = file.start.feed_override
         self.rapid_override = file.start.rapid_override
@@ -294,7 +297,7 @@ class Room:
         """Cut along samples; what must not be cut raises an alarm."""
         if not len(part):
             return
-        self.samples = part
+        self.samples = part = self._growth.warm(part)
         if self.work is None or self.machine.alarm is not None:
             return
         longer = self.tables.longer
@@ -434,18 +437,11 @@ class Room:
         elif ending == "stop":
             self.waiting = True
         elif ending == "tool":
-            self._change_tool(run)
+            self.mount(run.tool)
+            self.go_on(paused=self.mode == "single")
         else:
             assert ending is not None
             self.raise_alarm(ending, run.message, line=run.ending_line, finding=run.finding)
-
-    def _change_tool(self, run: ProgramRun) -> None:
-        try:
-            self.mount(run.tool)
-        except TwinError as error:
-            self.raise_alarm("program", str(error), line=run.ending_line)
-        else:
-            self.go_on(paused=self.mode == "single")
 
     @property
     def _stops_at_m1(self) -> bool:
@@ -481,6 +477,23 @@ class Room:
             self.raise_alarm("program", message, line=found.line, finding=found)
         except TwinError as error:
             self.raise_alarm("program", str(error))
+
+    def path_to_come(self) -> PathToCome:
+        """What a start of the program would begin with; nothing of it changes with the room."""
+        preparation, tables = self.scene.preparation, self.tables
+        return PathToCome(
+            source=self.program,
+            dialect=preparation.dialect,
+            settings=dataclasses.replace(preparation.settings, **self._situation()),
+            machine=self.machine.machine,
+            search=self.searched,
+            stand=self.standing_setpoint,
+            zero=tables.zero.copy(),
+            longer=tables.longer_by_table(),
+            tool=tables.spindle,
+            spindle=self.spindle,
+            frame=self.part_frame,
+        )
 
     def _situation(self) -> dict[str, Any]:
         """What the interpreter must know of the machine as it stands."""

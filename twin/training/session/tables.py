@@ -50,6 +50,10 @@ class Tables:
         """Machine coordinates of program zero with the tool in the spindle, shape (k,)."""
         return self.zero + self._along_z(self.lengths[self.spindle] - self._reference)
 
+    def longer_by_table(self) -> dict[int, float]:
+        """How much longer than the first each tool is in the control's table, by number [mm]."""
+        return {number: length - self._reference for number, length in self.lengths.items()}
+
     @property
     def tip_zero(self) -> FloatArray:
         """Machine coordinates at which the tip stands on the part's true zero, shape (k,)."""

@@ -11,6 +11,7 @@ import { readPatch, readState } from "./wire.js";
 const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 const FASTEST_MS = 33;
 const SLOW_MS = 120;
+const DASH_MM = 2.5; // Of the dashes of a rapid, and between them.
 const ABOVE_MM = 0.15; // What a path lies above the floor that it was cut into.
 
 let renderer, scene, camera, base, fine, by_processor, size = [1, 1], dirty = true, busy = false, last = 0, pictures = 0, drawing = 0, dots = 1, slow = 0;
@@ -20,6 +21,7 @@ const shown = { trail: true, stock: true, collision: false };
 const trail = new Trail();
 trail.line.position.z = ABOVE_MM;
 let path = null;
+const preview = [];
 
 function open({ canvas, width, height, ratio, address, quality }) {
   by_processor = drawn_by_processor();
@@ -129,6 +131,7 @@ function assemble(described, root) {
   }
   part.add(trail.line);
   if (path) part.add(path);
+  if (preview.length) part.add(...preview);
   found.chips = new Chips(0xe8d9b0, 0.0014);
   found.coolant = new Coolant(described.tool.length);
   tip.add(found.chips.points, found.coolant.points);
@@ -290,6 +293,27 @@ function drawPath({ places, colours }) {
   dirty = true;
 }
 
+/** The way of a program that has not been run [mm]: feed in one line, rapids in another, dashed; seen through the part. */
+function drawPreview(given) {
+  for (const one of preview.splice(0)) {
+    one.removeFromParent();
+    one.geometry.dispose();
+    one.material.dispose();
+  }
+  for (const [places, material] of given ? [[given.feed, new THREE.LineBasicMaterial({ color: 0x59e2ff })], [given.fast, new THREE.LineDashedMaterial({ color: 0xffa43d, dashSize: DASH_MM, gapSize: DASH_MM })]] : []) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));
+    Object.assign(material, { depthTest: false, transparent: true, toneMapped: false });
+    const lines = new THREE.LineSegments(geometry, material);
+    lines.computeLineDistances();
+    lines.frustumCulled = false;
+    lines.renderOrder = 1;
+    preview.push(lines);
+    machine?.part.add(lines);
+  }
+  dirty = true;
+}
+
 const heard = {
   open(given) { open(given); draw(); },
   load,
@@ -305,6 +329,7 @@ const heard = {
     }).catch((error) => postMessage({ failed: String(error) }));
   },
   path: drawPath,
+  preview: drawPreview,
   size: resize,
   look,
   turn,
