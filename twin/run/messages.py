@@ -4,6 +4,7 @@ import re
 
 from twin.compare.verdict import Reason
 from twin.machine.watching.alarms import Alarm, NearMiss
+from twin.machine.watching.clearance import TOUCH
 from twin.nc.functions import SPINDLE_LIMITED
 from twin.nc.text.diagnostics import Diagnostic, Severity
 from twin.nc.text.source import Source
@@ -34,15 +35,17 @@ def alarm_diagnostic(alarm: Alarm, source: Source) -> Diagnostic:
 def near_miss_diagnostic(near_miss: NearMiss, source: Source) -> Diagnostic:
     """Show a near miss as a warning at the line in which it was closest.
 
+    Two faces that lie on each other are no collision, since the axes tremble by as much.
+
     Args:
         near_miss: The closest approach of the run.
         source: The program that ran.
     """
     one, two = near_miss.between
-    message = (
-        f"the {one} passes the {two} with {near_miss.clearance_mm:.2f} mm to spare "
-        f"(after {near_miss.time_s:.3f} s)"
-    )
+    room = f"passes the {two} with {near_miss.clearance_mm:.2f} mm to spare"
+    if near_miss.clearance_mm <= TOUCH:
+        room = f"touches the {two}: there is no room between them"
+    message = f"the {one} {room} (after {near_miss.time_s:.3f} s)"
     return _at_line(source, near_miss.line, "near-miss", message, _WHOLE_LINE, severity="warning")
 
 

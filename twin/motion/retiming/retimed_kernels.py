@@ -82,7 +82,7 @@ def excess(
         machine: Limits of the axes and the path.
         override: Factor of the programmed feed.
     """
-    most = 0.0
+    fast, hard, sudden = 0.0, 0.0, 0.0
     for row in range(len(phases)):
         _, duration, begin, v0, a0, j = phases[row]
         for part in range(3):
@@ -90,19 +90,20 @@ def excess(
             piece = phase_pieces[row, 0]
             x = begin + ((j / 6.0 * t + 0.5 * a0) * t + v0) * t
             v, a = v0 + (0.5 * j * t + a0) * t, a0 + j * t
-            if v < -1e-9:
+            # Not a number where the solver went astray, for which no comparison holds.
+            if not (v >= -1e-9 and abs(a) < math.inf and abs(j) < math.inf and abs(x) < math.inf):
                 return math.inf
-            most = max(most, v / (pieces.feed[piece] * override))
-            most = max(most, math.sqrt(abs(a) / pieces.path_acceleration[piece]))
-            most = max(most, np.cbrt(abs(j) / pieces.path_jerk[piece]))
+            fast = max(fast, v / (pieces.feed[piece] * override))
+            hard = max(hard, abs(a) / pieces.path_acceleration[piece])
+            sudden = max(sudden, abs(j) / pieces.path_jerk[piece])
             squares = 0.0
             for axis in range(len(machine.jerk)):
                 q1, q2, q3 = derivatives_at(pieces, piece, x, axis)
                 squares += q2 * q2 if axis < 3 else 0.0
                 acceleration = abs(q2 * v * v + q1 * a)
                 jerk = abs((q3 * v * v + 3.0 * q2 * a) * v + q1 * j)
-                most = max(most, abs(q1 * v) / machine.velocity[axis])
-                most = max(most, math.sqrt(acceleration / machine.acceleration[axis]))
-                most = max(most, np.cbrt(jerk / machine.jerk[axis]))
-            most = max(most, v * math.sqrt(math.sqrt(squares) / machine.path[0]))
-    return most
+                fast = max(fast, abs(q1 * v) / machine.velocity[axis])
+                hard = max(hard, acceleration / machine.acceleration[axis])
+                sudden = max(sudden, jerk / machine.jerk[axis])
+            hard = max(hard, v * v * math.sqrt(squares) / machine.path[0])
+    return max(fast, math.sqrt(hard), np.cbrt(sudden))

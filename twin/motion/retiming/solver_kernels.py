@@ -64,14 +64,12 @@ class Sides(NamedTuple):
         slack: What is left of the limit, and of its loosening.
         price: Its multiplier.
         loosened: By how much more than the limit is allowed for the time being.
-        slack_change: Of a whole step.
         price_change: Of a whole step.
     """
 
     slack: FloatArray
     price: FloatArray
     loosened: FloatArray
-    slack_change: FloatArray
     price_change: FloatArray
 
 
@@ -95,15 +93,16 @@ def fastest_rate(
     count, kinds = len(step), forms.shape[2]
     c = start.copy()
     shape = (count, 2, 2 * kinds + 1)
-    sides = Sides(np.ones(shape), np.ones(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape))
-    _begin(table, jerk, c, sides)
+    sides = Sides(np.ones(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape))
+    watched = count * (3 * kinds + 1) + kinds + 1
+    _begin(table, jerk, c, sides, watched)
     band, right = np.zeros((count + 2, 3)), np.zeros(count + 2)
     total = np.sum(step)
     for _ in range(MOST_STEPS):
         gap = np.sum(sides.slack * sides.price)
         if gap < GAP and np.max(sides.loosened) == 0.0:
             break
-        target = CENTERING * gap / sides.slack.size
+        target = CENTERING * gap / watched
         _assemble(table, jerk, c, sides, target, total, band, right)
         for end in range(2):
             if free[end]:
@@ -117,19 +116,32 @@ def fastest_rate(
 
 
 @arithmetic_kernel
-def _begin(table: RunTable, jerk: float, c: FloatArray, sides: Sides) -> None:
-    """Slacks, loosened where there is none, and multipliers for them."""
-    step, forms, highest = table
+def _watched(count: int, kinds: int, i: int, end: int) -> tuple[int, bool]:
+    """What is watched at an end of interval i.
+
+    Where two intervals meet only the jerk differs: the rest is watched at the begin of the second.
+
+    Returns:
+        The first form, and whether the highest s is.
+    """
+    return (kinds >> 1, False) if end == 1 and i + 1 < count else (0, True)
+
+
+@arithmetic_kernel
+def _begin(table: RunTable, jerk: float, c: FloatArray, sides: Sides, watched: int) -> None:
+    """Slacks, loosened where there is none, and multipliers for them; 0 for what is not watched."""
+    step, forms, _ = table
     kinds = forms.shape[2]
     for i in range(len(step)):
         for end in range(2):
             z = spline_at(step, c, i, end)
-            for side in range(2 * kinds + 1):
-                room = _room(forms[i, end], highest[i, end], jerk, z, side)
+            first, whole = _watched(len(step), kinds, i, end)
+            for side in range(2 * first, 2 * kinds + int(whole)):
+                room = _room(table, jerk, i, end, z, side)
                 loosened = max(0.0, LEAST_SLACK - room)
                 sides.loosened[i, end, side] = loosened
                 sides.slack[i, end, side] = room + loosened
-                sides.price[i, end, side] = 0.1 / sides.slack.size / (room + loosened)
+                sides.price[i, end, side] = 0.1 / watched / (room + loosened)
 
 
 @arithmetic_kernel
@@ -137,7 +149,11 @@ def _assemble(
     table: RunTable, jerk: float, c: FloatArray, sides: Sides, target: float, total: float,
     band: FloatArray, right: FloatArray,
 ) -> None:  # fmt: skip
-    """The matrix and the right side of a step of Newton's."""
+    """The matrix and the right side of a step of Newton's.
+
+    The two sides of a limit have the normals (lean + f0, f1, f2) and (lean - f0, -f1, -f2), f being
+    its form, so that their shares come as sums and differences.
+    """
     step, forms, highest = table
     kinds = forms.shape[2]
     band[:] = 0.0
@@ -151,20 +167,31 @@ def _assemble(
             weight = 0.5 * step[i] / total * root / z[0]
             h00, h01, h02, h11, h12, h22 = 0.75 * weight / z[0], 0.0, 0.0, 0.0, 0.0, 0.0
             g0, g1, g2 = -0.5 * weight, 0.0, 0.0
-            for side in range(2 * kinds + 1):
-                n0, n1, n2 = _normal(forms[i, end], highest[i, end], jerk, z, side)
-                per = 1.0 / sides.slack[i, end, side]
-                share = sides.price[i, end, side] * per
-                push = target * per + share * sides.loosened[i, end, side]
-                g0 += push * n0
-                g1 += push * n1
-                g2 += push * n2
-                h00 += share * n0 * n0
-                h01 += share * n0 * n1
-                h02 += share * n0 * n2
-                h11 += share * n1 * n1
-                h12 += share * n1 * n2
-                h22 += share * n2 * n2
+            slack, price = sides.slack[i, end], sides.price[i, end]
+            loosened = sides.loosened[i, end]
+            first, whole = _watched(len(step), kinds, i, end)
+            for k in range(first, kinds):
+                lean = 0.5 * jerk * root / z[0] if 2 * k >= kinds else 0.0
+                f0, f1, f2 = forms[i, end, k, 0], forms[i, end, k, 1], forms[i, end, k, 2]
+                per, other_per = 1.0 / slack[2 * k], 1.0 / slack[2 * k + 1]
+                share, other_share = price[2 * k] * per, price[2 * k + 1] * other_per
+                push = target * per + share * loosened[2 * k]
+                other_push = target * other_per + other_share * loosened[2 * k + 1]
+                both, apart = share + other_share, share - other_share
+                g0 += (push - other_push) * f0 + (push + other_push) * lean
+                g1 += (push - other_push) * f1
+                g2 += (push - other_push) * f2
+                h00 += both * (f0 * f0 + lean * lean) + 2.0 * apart * f0 * lean
+                h01 += (both * f0 + apart * lean) * f1
+                h02 += (both * f0 + apart * lean) * f2
+                h11 += both * f1 * f1
+                h12 += both * f1 * f2
+                h22 += both * f2 * f2
+            if whole:
+                normal, per = 1.0 / highest[i, end], 1.0 / slack[2 * kinds]
+                share = price[2 * kinds] * per
+                g0 += (target * per + share * loosened[2 * kinds]) * normal
+                h00 += share * normal * normal
             for p in range(3):
                 b0, b1, b2 = basis[p]
                 right[i + p] -= b0 * g0 + b1 * g1 + b2 * g2
@@ -232,30 +259,32 @@ def _advance(
     """Go as far as slacks and multipliers stay positive."""
     step, forms, highest = table
     kinds = forms.shape[2]
-    primal, dual = 1.0, 1.0
+    steps = 1.0, 1.0
     for i in range(len(step)):
         for end in range(2):
             z, dz = spline_at(step, c, i, end), spline_at(step, change, i, end)
             if dz[0] < 0.0:
-                primal = min(primal, -LARGEST_FALL * z[0] / dz[0])
-            for side in range(2 * kinds + 1):
-                n0, n1, n2 = _normal(forms[i, end], highest[i, end], jerk, z, side)
-                slack, price = sides.slack[i, end, side], sides.price[i, end, side]
-                ds = -(n0 * dz[0] + n1 * dz[1] + n2 * dz[2]) - sides.loosened[i, end, side]
-                dp = (target - price * ds) / slack - price
-                sides.slack_change[i, end, side] = ds
-                sides.price_change[i, end, side] = dp
-                if primal * ds < -(1.0 - KEPT) * slack:
-                    primal = -(1.0 - KEPT) * slack / ds
-                if dual * dp < -(1.0 - KEPT) * price:
-                    dual = -(1.0 - KEPT) * price / dp
+                steps = min(steps[0], -LARGEST_FALL * z[0] / dz[0]), steps[1]
+            falls = 0.5 * jerk / (z[0] * math.sqrt(z[0])) * dz[0]
+            first, whole = _watched(len(step), kinds, i, end)
+            for k in range(first, kinds):
+                form = forms[i, end, k]
+                rises = form[0] * dz[0] + form[1] * dz[1] + form[2] * dz[2]
+                lean = falls if 2 * k >= kinds else 0.0
+                steps = _change_side(sides, i, end, 2 * k, -lean - rises, target, steps)
+                steps = _change_side(sides, i, end, 2 * k + 1, rises - lean, target, steps)
+            if whole:
+                rises = dz[0] / highest[i, end]
+                steps = _change_side(sides, i, end, 2 * kinds, -rises, target, steps)
+    primal, dual = steps
     for i in range(len(c)):
         c[i] += primal * change[i]
     for i in range(len(step)):
         for end in range(2):
             z = spline_at(step, c, i, end)
-            for side in range(2 * kinds + 1):
-                room = _room(forms[i, end], highest[i, end], jerk, z, side)
+            first, whole = _watched(len(step), kinds, i, end)
+            for side in range(2 * first, 2 * kinds + int(whole)):
+                room = _room(table, jerk, i, end, z, side)
                 loosened = sides.loosened[i, end, side] * (1.0 - primal)
                 if room > LEAST_SLACK:
                     loosened = 0.0
@@ -265,31 +294,43 @@ def _advance(
 
 
 @arithmetic_kernel
+def _change_side(
+    sides: Sides, i: int, end: int, side: int, gain: float, target: float,
+    steps: tuple[float, float],
+) -> tuple[float, float]:  # fmt: skip
+    """Change a multiplier with its slack, and say how far both may go.
+
+    Args:
+        sides: Of the limits.
+        i: Interval.
+        end: Of it.
+        side: Which limit.
+        gain: Of the slack with a whole step.
+        target: Of the complementarity.
+        steps: How far slacks and multipliers may go so far.
+    """
+    primal, dual = steps
+    slack, price = sides.slack[i, end, side], sides.price[i, end, side]
+    ds = gain - sides.loosened[i, end, side]
+    dp = (target - price * ds) / slack - price
+    sides.price_change[i, end, side] = dp
+    if primal * ds < -(1.0 - KEPT) * slack:
+        primal = -(1.0 - KEPT) * slack / ds
+    if dual * dp < -(1.0 - KEPT) * price:
+        dual = -(1.0 - KEPT) * price / dp
+    return primal, dual
+
+
+@arithmetic_kernel
 def _room(
-    forms: FloatArray, highest: float, jerk: float, z: tuple[float, float, float], side: int
+    table: RunTable, jerk: float, i: int, end: int, z: tuple[float, float, float], side: int
 ) -> float:
     """What is left of a limit."""
-    kinds = len(forms)
+    kinds = table.forms.shape[2]
     if side == 2 * kinds:
-        return 1.0 - z[0] / highest
-    form = forms[side >> 1]
+        return 1.0 - z[0] / table.highest[i, end]
+    form = table.forms[i, end, side >> 1]
     value = form[0] * z[0] + form[1] * z[1] + form[2] * z[2]
     if side & 1:
         value = -value
     return 1.0 - value if side < kinds else jerk / math.sqrt(z[0]) - value
-
-
-@arithmetic_kernel
-def _normal(
-    forms: FloatArray, highest: float, jerk: float, z: tuple[float, float, float], side: int
-) -> tuple[float, float, float]:
-    """By what a limit's slack falls with value, slope and second derivative."""
-    kinds = len(forms)
-    if side == 2 * kinds:
-        return 1.0 / highest, 0.0, 0.0
-    form = forms[side >> 1]
-    sign = -1.0 if side & 1 else 1.0
-    n0 = sign * form[0]
-    if side >= kinds:
-        n0 += 0.5 * jerk / (z[0] * math.sqrt(z[0]))
-    return n0, sign * form[1], sign * form[2]
