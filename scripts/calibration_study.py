@@ -1,21 +1,28 @@
 """Synthetic machines whose truth is known: do the intervals of ``twin calibrate`` cover it?
 
-``python scripts/calibration_study.py [MACHINES] [SEED] [FIRST]`` draws machines (200 by default) with
-random drives, noise, quantisation, delay and rates from 50 Hz to 4 kHz, with force, with a current or
-with positions alone; half of them have a dead time, a filter of speed or command, an integrator, or a
-log behind a measuring filter. Those before FIRST are passed over. It prints by parameter how many
-intervals cover the truth, and ends with 1 where less than 90 % or more than 99 % of all do, or where
-something that is not told is not named.
+``python scripts/calibration_study.py [MACHINES]`` draws machines (200 by default) with random drives, noise,
+quantisation, delay and rates from 50 Hz to 4 kHz, with force, with a current or with positions alone;
+half of them have a dead time, a filter of speed or command, an integrator, or a log behind a measuring
+filter. ``--first N`` passes over those before, ``--processes N`` fits so many at a time, ``--json FILE``
+keeps every interval beside its truth. It prints by parameter how many intervals cover the truth, and
+ends with 1 where less than 90 % or more than 99 % of all do, or where something that is not told is
+not named.
 """
 
+import argparse
 import collections
 import dataclasses
+import json
+import multiprocessing
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
 from twin.calibrate.fit.parameters import Parameters, of_base
 from twin.calibrate.fit.simulation import command_of, seen_at, simulate_axis
+from twin.calibrate.fit.solve import Interval
 from twin.calibrate.fit.stages import OF_THE_LOG, AxisFit, fit_axis
 from twin.calibrate.fit.stretch import stretches_of
 from twin.files.shipped import machine_file
@@ -150,22 +157,28 @@ def _mean(values: FloatArray, times: int) -> FloatArray:
     return values[: len(values) // times * times].reshape(-1, times).mean(axis=1)
 
 
-def covered(drawn: Drawn, found: AxisFit) -> dict[str, bool]:
-    """Which intervals hold the truth; what stands on the base's mass is held to that."""
+def truths(drawn: Drawn, found: AxisFit) -> dict[str, float]:
+    """What the intervals of a fit should hold; what stands on the base's mass is held to that."""
     truth = drawn.truth
     ratio = 1.0 if drawn.kind == "force" else BASE_MASS / truth.mass
     if "current_at_rest" in found.conditional:
         hidden = truth.constant_force / truth.current_scale
         truth = dataclasses.replace(truth, current_at_rest=truth.current_at_rest - hidden)
-    told = dict(found.fitted)
-    told |= {name: interval for name, (interval, _) in found.conditional.items()}
     scaled = ("dry_friction", "constant_force", "viscous_friction", "current_scale")
     return {
-        name: interval.low
-        <= getattr(truth, name) * (ratio if name in scaled else 1.0)
-        <= interval.high
-        for name, interval in told.items()
+        name: getattr(truth, name) * (ratio if name in scaled else 1.0) for name in intervals(found)
     }
+
+
+def intervals(found: AxisFit) -> dict[str, Interval]:
+    """All that a fit has taken from a log."""
+    return found.fitted | {name: interval for name, (interval, _) in found.conditional.items()}
+
+
+def covered(drawn: Drawn, found: AxisFit) -> dict[str, bool]:
+    """Which intervals hold the truth."""
+    true, told = truths(drawn, found), intervals(found)
+    return {name: told[name].low <= true[name] <= told[name].high for name in told}
 
 
 def unnamed(drawn: Drawn, found: AxisFit) -> list[str]:
@@ -175,36 +188,83 @@ def unnamed(drawn: Drawn, found: AxisFit) -> list[str]:
         {"current_scale", "current_at_rest"} if "current" not in drawn.log.more else set()
     )
     every = {field.name for field in dataclasses.fields(Parameters)}
-    needed = hidden[drawn.kind] | (every - silent - set(found.fitted) - set(found.conditional))
+    needed = hidden[drawn.kind] | (every - silent - set(intervals(found)))
     return sorted(needed - set(found.undetermined))
 
 
-def main(arguments: list[str]) -> int:
+@dataclasses.dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of one machine.
+
+    Attributes:
+        number: Of the machine.
+        rate: Of its log [Hz].
+        kind: What is logged beside positions.
+        extras: What of ``_EXTRAS`` it has.
+        intervals: By parameter: low, value and high, and what is true.
+        missed: Parameters whose interval does not hold the truth.
+        unnamed: What is neither told nor named.
+    """
+
+    number: int
+    rate: int
+    kind: str
+    extras: list[str]
+    intervals: dict[str, tuple[float, float, float, float]]
+    missed: list[str]
+    unnamed: list[str]
+
+    def __str__(self) -> str:
+        """One line of the table."""
+        has, missed = " ".join(self.extras), " ".join(self.missed)
+        silent = f"not named: {' '.join(self.unnamed)}" if self.unnamed else ""
+        line = f"{self.number:4} {self.rate:5} Hz {self.kind:10} [{has}] {missed} {silent}"
+        return line.rstrip()
+
+
+def judge(numbered: tuple[int, Drawn]) -> Outcome:
+    """Fit a drawn machine and hold the result to its truth."""
+    number, drawn = numbered
+    found = fit(drawn)
+    true, told = truths(drawn, found), intervals(found)
+    marks = covered(drawn, found)
+    return Outcome(
+        number, drawn.rate, drawn.kind, extras_of(drawn),
+        {name: (one.low, one.value, one.high, true[name]) for name, one in told.items()},
+        [name for name, hit in marks.items() if not hit], unnamed(drawn, found),
+    )  # fmt: skip
+
+
+def main(arguments: Sequence[str]) -> int:
     """Run the study and print its table."""
-    count, seed, first = (int(text) for text in [*arguments, *["200", "1", "0"][len(arguments) :]])
-    random = np.random.default_rng(seed)
+    parser = argparse.ArgumentParser(
+        description="Do the intervals of twin calibrate cover the truth?"
+    )
+    parser.add_argument("machines", nargs="?", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--processes", type=int, default=1)
+    parser.add_argument("--json", type=Path)
+    asked = parser.parse_args(arguments)
+    random = np.random.default_rng(asked.seed)
+    drawn = [(number, draw(random)) for number in range(asked.machines)][asked.first :]
+    outcomes = []
+    with multiprocessing.Pool(asked.processes) as pool:
+        for outcome in pool.imap_unordered(judge, drawn):
+            outcomes.append(outcome)
+            print(outcome, flush=True)
+    if asked.json:
+        kept = sorted(outcomes, key=lambda one: one.number)
+        asked.json.write_text(json.dumps([dataclasses.asdict(one) for one in kept], indent=1))
     hits: dict[str, list[bool]] = collections.defaultdict(list)
-    lost = 0
-    for number in range(count):
-        drawn = draw(random)
-        if number < first:
-            continue
-        found = fit(drawn)
-        marks = covered(drawn, found)
-        for name, hit in marks.items():
-            hits[name].append(hit)
-        silent = unnamed(drawn, found)
-        lost += bool(silent)
-        missed = " ".join(name for name, hit in marks.items() if not hit)
-        has = " ".join(extras_of(drawn))
-        print(
-            f"{number:4} {drawn.rate:5} Hz {drawn.kind:10} [{has}] {missed} {silent or ''}".rstrip(),
-            flush=True,
-        )
+    for outcome in outcomes:
+        for name in outcome.intervals:
+            hits[name].append(name not in outcome.missed)
     every = [hit for found in hits.values() for hit in found]
+    lost = sum(bool(outcome.unnamed) for outcome in outcomes)
     for name, found in sorted(hits.items()):
         print(f"{name:24} {np.mean(found):6.1%} of {len(found)}")
-    print(f"{'all':24} {np.mean(every):6.1%} of {len(every)}; not named: {lost} of {count - first}")
+    print(f"{'all':24} {np.mean(every):6.1%} of {len(every)}; not named: {lost} of {len(outcomes)}")
     return 0 if 0.90 <= np.mean(every) <= 0.99 and not lost else 1
 
 

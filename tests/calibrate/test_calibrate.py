@@ -76,6 +76,18 @@ def test_positions_alone_leave_mass_and_viscous_friction_open(forced: MachineLog
     assert friction.value == pytest.approx(TRUTH["dry_friction"] * ratio, rel=0.05)
 
 
+def test_an_integrator_tells_viscous_friction_from_the_loop_gain() -> None:
+    base, true = mill(reset_time_s=0.02), {"kv": 4.0, "damping_ratio": 0.5, "viscous_friction": 4.0}
+    machine = base.changed("X", reset_time_s=0.03, dry_friction=300.0, **true)
+    log = noisy(without_force(logged(machine, strokes(3.0))))
+    fit = calibrate(base, [log]).axes["X"].fit
+    friction, given = fit.conditional["viscous_friction"]
+    assert given == ("mass",)
+    assert friction.low < true["viscous_friction"] < friction.high < 1.5 * friction.value
+    assert fit.fitted["kv"].value == pytest.approx(true["kv"], rel=0.01)
+    assert fit.fitted["damping_ratio"].value == pytest.approx(true["damping_ratio"], rel=0.02)
+
+
 def test_a_log_of_mill4_gives_mill4_back(twin: Twin, tmp_path: Path) -> None:
     mill4 = read_machine(machine_file("mill4"))
     log = write_log(tmp_path / "own.csv", logged(mill4, strokes(3.0)))

@@ -30,6 +30,10 @@ _MARGIN = 5.0
 _JUDGED_UM = 1000.0
 """Contour tolerance of the jobs: the motion is to be measured, not judged [µm]."""
 _RAPIDS = 3
+_SQUARE_FEED = 2000.0
+"""Of the square's sides [mm/min]."""
+_CORNER_S = 0.2
+"""Dwell at its corners where a dialect has no exact stop [s]."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -37,25 +41,45 @@ class Wording:
     """What the dialects say differently.
 
     Attributes:
-        first: Line that begins a program.
+        first: Lines that begin a program.
         comment: Around a comment.
         dwell: Word of the seconds behind G4.
         exact: Words that begin and end exact stops; none where every corner is left to a dwell.
+        modal: Codes that the motions rest on.
+        last: Lines behind the end of the program.
+        rapid: Word of the feed of G0, where a dialect moves at F without it.
         per_second: Feeds are per second, not per minute.
+        point: Every number has a decimal point: without one it would count least increments.
     """
 
-    first: str
+    first: tuple[str, ...]
     comment: tuple[str, str]
     dwell: str
     exact: tuple[str, str] | None
+    modal: str = "G90 G17"
+    last: tuple[str, ...] = ()
+    rapid: str = ""
     per_second: bool = False
+    point: bool = False
+
+    def number(self, value: float) -> str:
+        """A number as the dialect wants it."""
+        text = f"{value:.6g}"
+        return text + "." if self.point and "." not in text else text
 
 
 WORDINGS = {
-    "gost": Wording("%", ("$ ", ""), "P", ("G61", "G64")),
-    "codesys": Wording("", ("(", ")"), "T", None, per_second=True),
-    "fagor8070": Wording("", ("; ", ""), "K", ("G7", "G50")),
-    "mefi": Wording("%", ('"', ""), "P", None),
+    "gost": Wording(("%",), ("$ ", ""), "P", ("G61", "G64")),
+    "codesys": Wording((), ("(", ")"), "T", None, rapid="FF", per_second=True),
+    "fagor8070": Wording((), ("; ", ""), "K", ("G7", "G50")),
+    "mefi": Wording(("%",), ('"', ""), "P", None),
+    "fanuc": Wording(
+        ("%", "O0019"), ("(", ")"), "X", ("G61", "G64"), "G90 G94 G17 G21", ("%",), point=True
+    ),
+    "haas": Wording(
+        ("%", "O00019"), ("(", ")"), "P", ("G61", "G64"), "G90 G94 G17 G21", ("%",), point=True
+    ),
+    "linuxcnc": Wording((), ("(", ")"), "P", ("G61.1", "G64"), "G90 G94 G17 G21 G64"),
 }
 
 
@@ -85,37 +109,44 @@ def write_programs(machine: Machine, folder: Path, named: str = "") -> list[Path
 
 
 def _lines(machine: Machine, wording: Wording) -> Iterator[str]:
-    if wording.first:
-        yield wording.first
+    yield from wording.first
     yield _comment(wording, "test motions in the air: no tool, nothing on the table")
     zero = " ".join(f"{axis}{_zero(machine, axis):g}" for axis in SPATIAL_AXES)
     yield _comment(
         wording, f"part zero at machine {zero}: the middle of X and Y, the upper end of Z"
     )
-    yield "G90 G17"
-    yield f"G0 Z{_CLEAR:g}"
-    yield "G0 X0 Y0"
-    yield from _dwell(wording)
+    yield wording.modal
+    if wording.rapid:
+        fastest = max(machine.axis(name).velocity for name in SPATIAL_AXES)
+        yield _line(wording, "G0", **{wording.rapid: fastest})
+    yield _line(wording, "G0", Z=_CLEAR)
+    yield _line(wording, "G0", X=0.0, Y=0.0)
+    yield _dwell(wording)
     for axis in SPATIAL_AXES:
         yield from _strokes(machine, wording, axis)
     yield from _circles(machine, wording)
     yield from _square(machine, wording)
     yield from _rapids(machine, wording)
     yield "M30"
+    yield from wording.last
 
 
 def _comment(wording: Wording, text: str) -> str:
-    return f"{wording.comment[0]}{text}{wording.comment[1]}"
+    return f"{wording.comment[0]}{text.upper()}{wording.comment[1]}"
 
 
-def _dwell(wording: Wording) -> Iterator[str]:
-    yield f"G4 {wording.dwell}{_DWELL_S:g}"
+def _line(wording: Wording, code: str, **words: float) -> str:
+    return " ".join([code, *(f"{word}{wording.number(value)}" for word, value in words.items())])
 
 
-def _feed(wording: Wording, machine: Machine, feed: float) -> str:
+def _dwell(wording: Wording, seconds: float = _DWELL_S) -> str:
+    return _line(wording, "G4", **{wording.dwell: seconds})
+
+
+def _feed(wording: Wording, machine: Machine, feed: float) -> float:
     slowest = min(machine.axis(name).velocity for name in SPATIAL_AXES) * 60.0
     value = min(feed, slowest)
-    return f"F{value / 60.0 if wording.per_second else value:.6g}"
+    return value / 60.0 if wording.per_second else value
 
 
 def _ends(machine: Machine, axis: str) -> tuple[float, float]:
@@ -143,41 +174,42 @@ def _strokes(machine: Machine, wording: Wording, axis: str) -> Iterator[str]:
     low, high = _ends(machine, axis)
     yield _comment(wording, f"strokes of {axis}")
     for feed in FEEDS:
-        yield f"G1 {axis}{high:g} {_feed(wording, machine, feed)}"
-        yield f"G1 {axis}{low:g}"
+        yield _line(wording, "G1", **{axis: high}, F=_feed(wording, machine, feed))
+        yield _line(wording, "G1", **{axis: low})
     for _ in range(_RAPIDS):
-        yield f"G0 {axis}{high:g}"
-        yield f"G0 {axis}{low:g}"
+        yield _line(wording, "G0", **{axis: high})
+        yield _line(wording, "G0", **{axis: low})
     home = _home(axis)
-    yield f"G0 {axis}{home:g}"
-    yield from _dwell(wording)
+    yield _line(wording, "G0", **{axis: home})
+    yield _dwell(wording)
     yield _comment(wording, f"slow reversals of {axis}")
     for _ in range(_CREEPS):
-        yield f"G1 {axis}{home + _CREEP:g} {_feed(wording, machine, _CREEP_FEED)}"
-        yield f"G1 {axis}{home:g}"
-    yield from _dwell(wording)
+        yield _line(wording, "G1", **{axis: home + _CREEP}, F=_feed(wording, machine, _CREEP_FEED))
+        yield _line(wording, "G1", **{axis: home})
+    yield _dwell(wording)
 
 
 def _circles(machine: Machine, wording: Wording) -> Iterator[str]:
     radius = min(_ends(machine, "X")[1], _ends(machine, "Y")[1], 50.0)
     yield _comment(wording, "circles both ways")
-    yield f"G0 X{radius:g} Y0"
+    yield _line(wording, "G0", X=radius, Y=0.0)
     for feed in CIRCLE_FEEDS:
-        for word in ("G2", "G3"):
-            yield f"{word} X{radius:g} Y0 I{-radius:g} J0 {_feed(wording, machine, feed)}"
-            yield from _dwell(wording)
+        for code in ("G2", "G3"):
+            speed = _feed(wording, machine, feed)
+            yield _line(wording, code, X=radius, Y=0.0, I=-radius, J=0.0, F=speed)
+            yield _dwell(wording)
 
 
 def _square(machine: Machine, wording: Wording) -> Iterator[str]:
     half = min(_ends(machine, "X")[1], _ends(machine, "Y")[1], 25.0)
     yield _comment(wording, "a square with exact stops")
-    yield f"G0 X{-half:g} Y{-half:g}"
+    yield _line(wording, "G0", X=-half, Y=-half)
     if wording.exact:
         yield wording.exact[0]
     for x, y in ((half, -half), (half, half), (-half, half), (-half, -half)):
-        yield f"G1 X{x:g} Y{y:g} {_feed(wording, machine, 2000.0)}"
+        yield _line(wording, "G1", X=x, Y=y, F=_feed(wording, machine, _SQUARE_FEED))
         if not wording.exact:
-            yield f"G4 {wording.dwell}0.2"
+            yield _dwell(wording, _CORNER_S)
     if wording.exact:
         yield wording.exact[1]
 
@@ -187,5 +219,5 @@ def _rapids(machine: Machine, wording: Wording) -> Iterator[str]:
     yield _comment(wording, "rapids of three axes")
     for _ in range(_RAPIDS):
         for side in (1, 0):
-            yield "G0 " + " ".join(f"{axis}{ends[axis][side]:g}" for axis in SPATIAL_AXES)
-        yield from _dwell(wording)
+            yield _line(wording, "G0", **{axis: ends[axis][side] for axis in SPATIAL_AXES})
+        yield _dwell(wording)

@@ -8,7 +8,7 @@ clustered in time), with Student's t for their number.
 """
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,10 @@ on_one_thread: Any = ThreadpoolController().wrap(limits=1, user_api="blas")
 """Decorator: matrices of ten rows are worked in a thousandth of the time that it takes to wake threads."""
 _NOTHING = 1e-12
 _MOST_EVALUATIONS = 40
+_FIRST = 0.05
+"""Share of a way by which its tangent is taken."""
+_CURVED = 2.0
+"""A way is followed until what is left has changed by so many times what its tangent says of the whole."""
 EXACT, ROUGH = 1e-8, 1e-5
 """Changes of the cost, as a share, below which a search ends: for an answer, and to compare structures."""
 
@@ -159,33 +163,6 @@ def solve(
     )
 
 
-def promised_costs(
-    problem: Problem, best: Solution, starts: Mapping[str, Parameters]
-) -> dict[str, float]:
-    """What the cost would come to with one parameter more, by the tangents at an optimum.
-
-    Args:
-        problem: What is minimised.
-        best: The optimum.
-        starts: Parameters, each of which is tried by itself: its name, and the optimum with some of
-            it, where its own tangent is taken.
-    """
-    here = problem.residuals(best.parameters)
-
-    def tangent(moved: str, at: Parameters, rest: FloatArray) -> FloatArray:
-        slope = _tangent(problem, at, moved, rest)
-        return slope / max(float(np.sqrt(slope @ slope)), _NOTHING)
-
-    known = [tangent(moved, best.parameters, here) for moved in best.free]
-    promised = {}
-    for name, start in starts.items():
-        rest = here if start == best.parameters else problem.residuals(start)
-        tangents = np.column_stack([*known, tangent(name, start, rest)])
-        step_to, *_ = np.linalg.lstsq(tangents, -rest, rcond=1e-10)
-        promised[name] = float(np.sqrt(np.mean((rest + tangents @ step_to) ** 2)))
-    return promised
-
-
 def linear_intervals(
     columns: FloatArray, values: FloatArray, batch: IntArray
 ) -> tuple[Interval, ...]:
@@ -216,13 +193,13 @@ def movers(problem: Problem, best: Solution, names: Sequence[str]) -> list[str]:
         names: Of those that were not fitted, each of which is tried by itself.
     """
     here = problem.residuals(best.parameters)
-    known = np.column_stack([_tangent(problem, best.parameters, name, here) for name in best.free])
+    known = np.column_stack([slope(problem, best.parameters, name, here) for name in best.free])
     reach = _reach(problem.batch)
     own = reach * np.sqrt(np.diag(_covariance(known, here, problem.batch)))
     found = []
     for name in names:
         way = problem.coordinates[name]
-        tangent = _tangent(problem, best.parameters, name, here)
+        tangent = slope(problem, best.parameters, name, here)
         both = np.column_stack([known, tangent])
         spread = float(np.sqrt(_covariance(both, here, problem.batch)[-1, -1]))
         if not np.isfinite(spread):
@@ -250,12 +227,14 @@ def intervals_beside(problem: Problem, solution: Solution, name: str) -> dict[st
     reach = _reach(problem.batch)
     point = _inside(problem, solution.parameters, solution.free)
     half = reach * float(np.sqrt(covariance[index, index]))
-    ends = np.array([point[index] - half, point[index] + half])
-    ends = np.clip(ends, *problem.coordinates[name].bounds) - point[index]
-    slope = covariance[:, index] / covariance[index, index]
-    rest = np.diag(covariance) - slope**2 * covariance[index, index]
+    slopes = covariance[:, index] / covariance[index, index]
+    shifts = np.column_stack(
+        [slopes * _as_far_as_straight(problem, solution, slopes * side, name)
+         for side in (-half, half)]
+    )  # fmt: skip
+    shifts = shifts * np.array([-half, half])
+    rest = np.diag(covariance) - slopes**2 * covariance[index, index]
     own = reach * np.sqrt(np.maximum(rest, 0.0))
-    shifts = np.outer(slope, ends)
     lows, highs = point + shifts.min(axis=1) - own, point + shifts.max(axis=1) + own
     found = {}
     for other, low, high in zip(solution.free, lows, highs, strict=True):
@@ -265,6 +244,41 @@ def intervals_beside(problem: Problem, solution: Solution, name: str) -> dict[st
     return found
 
 
+def _as_far_as_straight(
+    problem: Problem, solution: Solution, shift: FloatArray, name: str
+) -> float:
+    """What share of the way to an interval's end is open.
+
+    It ends at the bounds of the one that leads, and where what is left has changed by more than tangents say
+    of the whole way: a short filter is not told from a delay, a long one is.
+
+    Args:
+        problem: What is minimised.
+        solution: Its optimum.
+        shift: The way of all coordinates, shape (p,).
+        name: Of the one that leads.
+    """
+    point = _inside(problem, solution.parameters, solution.free)
+    index, way = solution.free.index(name), problem.coordinates[name]
+    end = float(np.clip(point[index] + shift[index], *way.bounds))
+    share = (end - point[index]) / shift[index]
+    ways = [problem.coordinates[other] for other in solution.free]
+    here = problem.residuals(solution.parameters)
+
+    def changed(part: float) -> float:
+        values = {
+            other: one.outside(float(np.clip(value, *one.bounds)))
+            for other, one, value in zip(solution.free, ways, point + part * shift, strict=True)
+        }
+        rest = problem.residuals(dataclasses.replace(solution.parameters, **values)) - here
+        return float(np.sqrt(rest @ rest))
+
+    promised = changed(_FIRST * share) / (_FIRST * share) if share > 0.0 else 0.0
+    while share > _FIRST and changed(share) > _CURVED * promised:
+        share /= 2.0
+    return share
+
+
 def _inside(problem: Problem, parameters: Parameters, names: Sequence[str]) -> FloatArray:
     ways = [problem.coordinates[name] for name in names]
     return np.array(
@@ -272,8 +286,15 @@ def _inside(problem: Problem, parameters: Parameters, names: Sequence[str]) -> F
     )
 
 
-def _tangent(problem: Problem, at: Parameters, name: str, here: FloatArray) -> FloatArray:
-    """Derivative of the residuals by a coordinate."""
+def slope(problem: Problem, at: Parameters, name: str, here: FloatArray) -> FloatArray:
+    """Derivative of the residuals by a coordinate, shape (n,).
+
+    Args:
+        problem: Whose residuals.
+        at: Where it is taken.
+        name: Of the parameter that is moved.
+        here: The residuals there, shape (n,).
+    """
     way = problem.coordinates[name]
     value = way.inside(getattr(at, name))
     step = way.step if value + way.step < way.bounds[1] else -way.step
@@ -304,7 +325,8 @@ def _covariance(jacobian: FloatArray, rest: FloatArray, batch: IntArray) -> Floa
     few = count / max(1, count - even.shape[1])
     clustered = inverse @ (few * sums.T @ sums) @ inverse
     white = inverse * float(rest @ rest) / max(1, len(rest) - even.shape[1])
-    both = np.sqrt(np.maximum(1.0, np.diag(white) / np.maximum(np.diag(clustered), 1e-300)))
+    least = np.maximum(np.diag(clustered), _NOTHING**2 * np.diag(white))
+    both = np.sqrt(np.maximum(1.0, np.diag(white) / np.maximum(least, 1e-300)))
     clustered = clustered * np.outer(both, both)
     covariance[np.ix_(seen, seen)] = clustered / np.outer(size[seen], size[seen])
     return covariance

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from twin.calibrate.fit.parameters import Parameters, coordinates
+from twin.calibrate.fit.promising import EXTRAS, INTEGRATOR, Core, started
 from twin.calibrate.fit.simulation import drawn_otherwise
 from twin.calibrate.fit.solve import (
     BATCHES,
@@ -19,15 +20,7 @@ from twin.calibrate.fit.solve import (
     solve,
 )
 from twin.calibrate.fit.stretch import Stretch, predict
-from twin.calibrate.fit.structure import (
-    EXTRAS,
-    INTEGRATOR,
-    Choice,
-    choose_structure,
-    leaves_less,
-    started,
-    with_integrator,
-)
+from twin.calibrate.fit.structure import Choice, choose_structure, leaves_less
 from twin.nc.canonical import FloatArray, IntArray
 from twin.units import AxisKind, kv_per_second, to_si
 
@@ -88,18 +81,18 @@ def fit_axis(
     if filtered:
         start = dataclasses.replace(start, measuring_filter=_FILTER_S)
         names.append("measuring_filter")
-    forced = _has(stretches, "force")
     problem = _weighted(kind, stretches, start)
+    forced = _has(stretches, "force")
     cores = _core_fits(problem, start, names, forced=forced)
-    problem = _weighted(kind, stretches, cores[0].parameters)
-    choice = Choice(solve(problem, cores[0].parameters, cores[0].free))
+    problem = _weighted(kind, stretches, cores[0][0].parameters)
+    again = [(solve(problem, one.parameters, one.free), core) for one, core in cores]
+    choice = Choice(again[0][0])
     if _share_left(stretches, choice.best.parameters) > _ENOUGH:
-        others = [solve(problem, other.parameters, other.free) for other in cores[1:]]
-        choice = choose_structure(problem, [choice.best, *others], forced=forced)
+        choice = choose_structure(problem, again)
         best = solve(problem, choice.best.parameters, choice.best.free)
         choice = dataclasses.replace(choice, best=best)
     best, undetermined = _without_undetermined(problem, choice.best, base)
-    fitted = _allowing_for_others(problem, Choice(best, choice.rivals))
+    fitted = _allowing_for_others(problem, dataclasses.replace(choice, best=best))
     if best.parameters.reset_time_s != base.reset_time_s and "reset_time_s" not in fitted:
         other = solve(problem, best.parameters, [*best.free, "reset_time_s"])
         fitted["reset_time_s"] = dataclasses.replace(
@@ -115,43 +108,42 @@ def fit_axis(
 
 
 def _core_fits(
-    problem: Problem, start: Parameters, free: Sequence[str], *, forced: bool
-) -> list[Solution]:
+    problem: Problem, start: Parameters, names: Sequence[str], *, forced: bool
+) -> list[tuple[Solution, Core]]:
     """Optima of gain, damping, friction and mass, with and without an integrator.
 
     First comes what the log asks for; where it does not tell, the drive integrates or not as the
     base does.
     """
+    unset = dataclasses.replace(start, reset_time_s=0.0)
+    plain, base = Core(tuple(names), unset, forced), Core(tuple(names), start, forced)
 
-    def best(parameters: Parameters, names: Sequence[str]) -> Solution:
+    def best(parameters: Parameters, free: Sequence[str]) -> Solution:
         starts = (dataclasses.replace(parameters, damping_ratio=z) for z in _DAMPINGS)
         return min(
-            (solve(problem, one, names, until=ROUGH) for one in starts),
+            (solve(problem, one, free, until=ROUGH) for one in starts),
             key=lambda found: found.cost,
         )
 
-    plain = best(dataclasses.replace(start, reset_time_s=0.0), free)
-    integrates = best(started(start, INTEGRATOR), with_integrator(free, forced=forced))
+    rigid = best(unset, names)
+    integrates = best(started(start, INTEGRATOR), plain.free([INTEGRATOR]))
+    both = [(rigid, plain), (integrates, plain)]
     if not start.reset_time_s:
-        both = [plain, integrates]
-        return both[::-1] if leaves_less(integrates, plain) else both
-    kept = solve(
-        problem,
-        dataclasses.replace(integrates.parameters, reset_time_s=start.reset_time_s),
-        with_integrator(free, forced=forced)[:-1],
-    )
-    if leaves_less(integrates, kept) and leaves_less(integrates, plain):
-        return [integrates, plain]
-    return [plain, integrates] if plain.cost < kept.cost else [kept, plain, integrates]
+        return both[::-1] if leaves_less(integrates, rigid) else both
+    held = dataclasses.replace(integrates.parameters, reset_time_s=start.reset_time_s)
+    kept = solve(problem, held, base.free([]))
+    if leaves_less(integrates, kept) and leaves_less(integrates, rigid):
+        return both[::-1]
+    return both if rigid.cost < kept.cost else [(kept, base), *both]
 
 
 def _allowing_for_others(problem: Problem, choice: Choice) -> dict[str, Interval]:
     """Intervals that hold what rivals have, and what comes of parameters that were not taken in."""
-    best = choice.best
-    others = [name for name in EXTRAS if name not in best.free]
-    moving = dict.fromkeys([*movers(problem, best, others), *({"delay"} & set(others))])
-    freed = {
-        name: solve(problem, best.parameters, [*best.free, name], until=ROUGH) for name in moving
+    best, freed = choice.best, dict(choice.larger)
+    others = [name for name in EXTRAS if name not in best.free and name not in freed]
+    freed |= {
+        name: solve(problem, best.parameters, [*best.free, name], until=ROUGH)
+        for name in dict.fromkeys([*movers(problem, best, others), *({"delay"} & set(others))])
     }
     fitted = dict(best.intervals)
     alternatives = [(rival.parameters, rival.intervals) for rival in choice.rivals]
@@ -164,7 +156,9 @@ def _allowing_for_others(problem: Problem, choice: Choice) -> dict[str, Interval
             held = intervals.get(name, Interval(value, value, value))
             fitted[name] = interval.spanning(held)
     if "delay" not in fitted:
-        fitted["delay"] = Interval(0.0, 0.0, 0.0).spanning(freed["delay"].intervals["delay"])
+        late = [freed["delay"], *choice.rivals]
+        told = [one.intervals["delay"] for one in late if "delay" in one.intervals]
+        fitted["delay"] = Interval(0.0, 0.0, 0.0).spanning(*told)
     return fitted
 
 
@@ -344,16 +338,14 @@ def _told(
     told = dict(undetermined)
     conditional: dict[str, tuple[Interval, tuple[str, ...]]] = {}
     mass = best.parameters.mass
+    if "constant_force" not in best.free:
+        told.setdefault("constant_force", "an integrating drive takes up whatever is constant")
     if not _has(stretches, "force"):
         known = _has(stretches, "current")
-        if best.parameters.reset_time_s:
-            told["constant_force"] = "an integrating drive takes up whatever is constant"
-            if "current_at_rest" in fitted:
-                conditional["current_at_rest"] = (
-                    fitted.pop("current_at_rest"),
-                    ("constant_force",),
-                )
-                told["current_at_rest"] = "the log does not tell it from a constant force"
+        if "constant_force" not in best.free and "current_at_rest" in fitted:
+            at_rest = fitted.pop("current_at_rest")
+            conditional["current_at_rest"] = (at_rest, ("constant_force",))
+            told["current_at_rest"] = "the log does not tell it from a constant force"
         told["mass"] = (
             "a current of unknown scale does not tell it" if known
             else "positions alone do not tell it"
@@ -365,7 +357,7 @@ def _told(
                     f"only its ratio to the mass is told; {conditional[name][0].value:.4g} holds "
                     f"for the base's {mass:.5g}"
                 )
-        if not known:
+        if not known and "viscous_friction" not in best.free:
             told["viscous_friction"] = (
                 "positions alone do not tell it from kv (correlation 1.000); kv holds from the base's "
                 f"viscous friction to {100 * _VISCOUS_SHARE:g} % of the velocity loop's gain"

@@ -1,4 +1,4 @@
-"""Which structure a log asks for: filters, dead time, feed-forward, an integrator, one after the other.
+"""Which structure a log asks for: filters, dead time, feed-forward, an integrator.
 
 One parameter more always leaves less. It is taken where it leaves less in nearly every stretch of time,
 and given up again where another that came later does its work. Structures that do as well as
@@ -10,29 +10,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from twin.calibrate.fit.parameters import Parameters
-from twin.calibrate.fit.solve import ROUGH, Problem, Solution, promised_costs, solve
+from twin.calibrate.fit.promising import Core, Promise, promising, started
+from twin.calibrate.fit.solve import ROUGH, Problem, Solution, solve
 from twin.nc.canonical import FloatArray
 
-EXTRAS = (
-    "delay", "force_delay", "velocity_feedforward", "acceleration_feedforward", "measuring_filter", "reset_time_s",
-    "loop_delay_s", "velocity_filter_s", "command_filter_s",
-)  # fmt: skip
-"""What a drive or a log may have besides gain, damping, mass and friction."""
 _PLAIN = 0.9
 """What leaves less than this share of what was left without it is worth a parameter more."""
 _WORTH = 0.99
 """So is what leaves less than this share, where it is no chance:"""
 _SURE = 4.0
 """its gain over the stretches of time is more than so many of its standard errors."""
-_HOPE = 0.997
-"""A parameter is tried where the tangent at the optimum promises less than this share."""
-_STARTS = {
-    "reset_time_s": 0.03, "loop_delay_s": 0.001, "velocity_filter_s": 0.001, "command_filter_s": 0.003,
-    "measuring_filter": 0.002,
-}  # fmt: skip
-"""Where the search for what an axis has not begins [s]: off none, where a search within bounds hardly moves."""
-INTEGRATOR = "reset_time_s"
 _WHITE = 0.05
 """Below this correlation of neighbours, what is left is noise."""
 
@@ -44,10 +31,12 @@ class Choice:
     Attributes:
         best: Its optimum.
         rivals: Optima of other structures that leave no more, for all that the log tells.
+        larger: Optima with one extra more, by its name: they leave less, but by chance.
     """
 
     best: Solution
     rivals: tuple[Solution, ...] = ()
+    larger: dict[str, Solution] = dataclasses.field(default_factory=dict)
 
 
 def leaves_less(one: Solution, other: Solution) -> bool:
@@ -58,38 +47,21 @@ def leaves_less(one: Solution, other: Solution) -> bool:
     return one.cost < (_WORTH if sure else _PLAIN) * other.cost
 
 
-def with_integrator(free: Sequence[str], *, forced: bool) -> list[str]:
-    """Names that are fitted where the drive integrates.
-
-    Args:
-        free: Names that are fitted where it does not.
-        forced: Whether a force is logged: without one, the integrator hides a constant force.
-    """
-    return [*(name for name in free if forced or name != "constant_force"), INTEGRATOR]
-
-
-def started(parameters: Parameters, name: str) -> Parameters:
-    """These, with some of a parameter where they have none of it."""
-    value = getattr(parameters, name) or _STARTS.get(name, 0.0)
-    return dataclasses.replace(parameters, **{name: value})
-
-
-def choose_structure(problem: Problem, cores: Sequence[Solution], *, forced: bool) -> Choice:
+def choose_structure(problem: Problem, cores: Sequence[tuple[Solution, Core]]) -> Choice:
     """Take in what else a log asks for, and give up what it then does not ask for.
 
     Args:
         problem: What is minimised.
-        cores: Optima of what every drive has, the likeliest first. Another is asked where what comes
-            of the first leaves more than noise, and counts where it leaves less.
-        forced: Whether a force is logged.
+        cores: Optima where a search begins, with what all structures that come of them have, the
+            likeliest first. Another is asked where what comes of the first leaves more than noise.
     """
-    first, *others = cores
-    choice = _grown(problem, first, forced=forced)
-    for core in others:
+    choice = _grown(problem, *cores[0])
+    for solution, core in cores[1:]:
         if _is_white(problem.residuals(choice.best.parameters)):
             break
-        other = _grown(problem, core, forced=forced)
-        choice = other if leaves_less(other.best, choice.best) else choice
+        other = _grown(problem, solution, core)
+        if leaves_less(other.best, choice.best):
+            choice = other
     return choice
 
 
@@ -98,77 +70,57 @@ def _is_white(rest: FloatArray) -> bool:
     return abs(float(rest[1:] @ rest[:-1])) < _WHITE * float(rest @ rest)
 
 
-def _grown(problem: Problem, core: Solution, *, forced: bool) -> Choice:
+def _grown(problem: Problem, start: Solution, core: Core) -> Choice:
     """What becomes of a core."""
-    best, rivals = core, list[Solution]()
+    best, known = start, dict[frozenset[str], Solution]()
     while True:
-        tried = _tried(problem, best, forced=forced)
-        better = min(tried, key=lambda solution: solution.cost, default=best)
-        if better is best or not leaves_less(better, best):
-            tried = _exchanged(problem, best, core, forced=forced)
-            better = min(tried, key=lambda solution: solution.cost, default=best)
-            if better is best or not leaves_less(better, best):
-                break
-        rivals = [
-            other
-            for other in tried
-            if other is not better and leaves_less(other, best) and not leaves_less(better, other)
-        ]
+        for promise in promising(problem, best, core):
+            extras = frozenset(promise.extras)
+            if extras not in known:
+                known[extras] = _searched(problem, best, promise, core)
+        better = min(known.values(), key=lambda solution: solution.cost, default=best)
+        if not leaves_less(better, best):
+            break
         best = better
-    rivals += [other for other in tried if not leaves_less(best, other)]
-    return Choice(_without_idle(problem, best, core, forced=forced), tuple(rivals))
+    best = _without_idle(problem, best, core)
+    own = frozenset(core.extras_of(best))
+    larger = {
+        next(iter(extras - own)): other
+        for extras, other in known.items()
+        if own < extras and len(extras - own) == 1
+    }
+    return Choice(best, _rivals(best, list(known.values()), core), larger)
 
 
-def _tried(problem: Problem, best: Solution, *, forced: bool) -> list[Solution]:
-    """Optima with one parameter more."""
-    return [
-        _with(problem, best, name, forced=forced)
-        for name, cost in _promised(problem, best, best).items()
-        if cost < _HOPE * best.cost or name == INTEGRATOR
-    ]
+def _searched(problem: Problem, best: Solution, promise: Promise, core: Core) -> Solution:
+    """The optimum of a structure, from where tangents end or from usual values, whichever is nearer."""
+    free = core.free(promise.extras)
+    usual = dataclasses.replace(best.parameters, **core.unset_where(free))
+    for name in promise.extras:
+        usual = started(usual, name)
+    starts = [promise.start, usual]
+    left = [float(np.sum(problem.residuals(start) ** 2)) for start in starts]
+    nearer = starts[int(np.argmin(left))]
+    return solve(problem, nearer, free, until=ROUGH)
 
 
-def _exchanged(problem: Problem, best: Solution, core: Solution, *, forced: bool) -> list[Solution]:
-    """Optima with another parameter in the place of one that was taken in."""
-    found = []
-    for name in [name for name in best.free if name not in core.free]:
-        less = _without(problem, best, name, core, forced=forced)
-        found += [
-            _with(problem, less, other, forced=forced)
-            for other, cost in _promised(problem, less, best).items()
-            if cost < best.cost / _PLAIN
-        ]
-    return found
+def _rivals(best: Solution, others: Sequence[Solution], core: Core) -> tuple[Solution, ...]:
+    """What the best leaves behind by chance alone, without structures that only add to another."""
+    rivals = [best]
+    for other in sorted(others, key=lambda solution: len(solution.free)):
+        own = set(core.extras_of(other))
+        parts = [rival for rival in rivals if set(core.extras_of(rival)) <= own]
+        if not leaves_less(best, other) and all(leaves_less(other, part) for part in parts):
+            rivals.append(other)
+    return tuple(rivals[1:])
 
 
-def _promised(problem: Problem, less: Solution, best: Solution) -> dict[str, float]:
-    """What an optimum might come to with each parameter that neither it nor another one has."""
-    left = [name for name in EXTRAS if name not in best.free]
-    return promised_costs(problem, less, {name: started(less.parameters, name) for name in left})
-
-
-def _with(problem: Problem, best: Solution, name: str, *, forced: bool) -> Solution:
-    """The optimum with one parameter more."""
-    free = with_integrator(best.free, forced=forced) if name == INTEGRATOR else [*best.free, name]
-    return solve(problem, started(best.parameters, name), free, until=ROUGH)
-
-
-def _without(
-    problem: Problem, best: Solution, name: str, core: Solution, *, forced: bool
-) -> Solution:
-    """The optimum without a parameter that was taken in; what the integrator hid is told again."""
-    kept = [other for other in best.free if other != name]
-    if name == INTEGRATOR and not forced:
-        kept.append("constant_force")
-    stays = dataclasses.replace(best.parameters, **{name: getattr(core.parameters, name)})
-    return solve(problem, stays, kept, until=ROUGH)
-
-
-def _without_idle(problem: Problem, best: Solution, core: Solution, *, forced: bool) -> Solution:
-    """Give up what was taken in first and does nothing beside what came later."""
-    for name in [name for name in best.free if name not in core.free]:
-        if name in best.free:
-            less = _without(problem, best, name, core, forced=forced)
-            if not leaves_less(best, less):
-                best = less
+def _without_idle(problem: Problem, best: Solution, core: Core) -> Solution:
+    """Give up what was taken in and does nothing beside the rest."""
+    for name in core.extras_of(best):
+        free = core.free([other for other in core.extras_of(best) if other != name])
+        stays = dataclasses.replace(best.parameters, **core.unset_where(free))
+        less = solve(problem, stays, free, until=ROUGH)
+        if not leaves_less(best, less):
+            best = less
     return best
