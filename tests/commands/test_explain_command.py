@@ -10,6 +10,7 @@ import pytest
 
 import twin.commands.explain
 from twin.commands.explain import codes, explain, overview
+from twin.cutting.forces.materials import materials
 from twin.errors import UsageError
 from twin.job.job_file import ToleranceTable
 from twin.machine.watching.alarms import AlarmCode
@@ -65,3 +66,10 @@ def test_an_unknown_code_names_the_nearest():
 def test_the_overview_names_every_code_once():
     names = [line.split()[0] for line in overview().splitlines() if line.startswith("  ")]
     assert sorted(names) == sorted((*findings(), *codes()))
+
+
+@pytest.mark.parametrize("name", sorted(materials()))
+def test_a_material_is_told_with_its_source(name: str):
+    text = explain(name)
+    assert materials()[name].source
+    assert f"Source: {materials()[name].source}" in text

@@ -1,6 +1,7 @@
 """The twin under a control's commands: the answer is the machine's, and can be played back."""
 
 import os
+import socket
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from tests.machine.machine_fixtures import PERIOD, line, shipped_machine
 from tests.motion.motion_programs import Program
 from twin.columns import join
 from twin.link.lockstep import SETTLING_S, LockstepMotion
+from twin.link.packet import JOINTS, MAGIC, REQUEST_LAYOUT, REQUEST_STATES, VERSION
 from twin.link.place import Places
 from twin.machine.description.config import Machine
 from twin.machine.model.model import build_spec
@@ -102,6 +104,29 @@ def test_noise_is_not_answered():
     samples, control, motion = driven(shipped_machine(), commanded(50.0, 0.1), *noise)
     assert motion.answered == len(control.answers)
     assert len(samples) > len(commanded(50.0, 0.1))
+
+
+def test_nobody_else_drives_the_machine_meanwhile():
+    positions = commanded(50.0, 0.8)
+    alone, _, _ = driven(shipped_machine(), positions)
+    farewell = (MAGIC, VERSION, 10**6, REQUEST_STATES["leaving"], 0, 0, 0, *[0.0] * (2 * JOINTS))
+    chunks = []
+    with (
+        motion_of(shipped_machine()) as motion,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger,
+    ):
+        control = FakeControl(motion)
+        control.start(positions)
+        for chunk in motion:
+            stranger.sendto(REQUEST_LAYOUT.pack(*farewell), ("127.0.0.1", motion.port))
+            chunks.append(chunk)
+        control.finish()
+        stranger.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            stranger.recv(1)
+    assert len(chunks) > 1
+    assert motion.missed == 0
+    assert np.array_equal(join(chunks).joint_position, alone.joint_position)
 
 
 def test_a_control_that_was_killed_is_noticed():

@@ -17,7 +17,7 @@ def dialects(
 
 def explain(
     code: Annotated[
-        str | None, typer.Argument(help="Code of a message.", show_default=False)
+        str | None, typer.Argument(help="Code of a message, or a material.", show_default=False)
     ] = None,
 ) -> None:
     """Explain the code of an error, a warning or an alarm; without a code list them all."""

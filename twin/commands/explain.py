@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from twin.cutting.forces.materials import materials
 from twin.errors import UsageError
 from twin.nc.text.explain import Finding, findings
 
@@ -58,7 +59,7 @@ def _first(text: str) -> str:
 
 
 def explain(code: str) -> str:
-    """Text for a person about one code.
+    """Text for a person about one code, or about a material of a job.
 
     Raises:
         UsageError: There is no such code; the message names the nearest.
@@ -69,7 +70,14 @@ def explain(code: str) -> str:
         return _program_text(code, finding)
     if other is not None:
         return f"{code} ({other.group})\n\n{other.text}\n{other.remedy}"
-    known = (*findings(), *codes())
+    material = materials().get(code)
+    if material is not None:
+        return (
+            f"{code} (stock.material)\n\nA chip of 1 mm by 1 mm takes {material.kc:g} N/mm²; the specific "
+            f"force falls with its thickness to the power of {material.mc:g} (Kienzle). "
+            f"{material.density:g} g/cm³.\nSource: {material.source}"
+        )
+    known = (*findings(), *codes(), *materials())
     near = difflib.get_close_matches(code, known, n=3)
     hint = f"did you mean {', '.join(near)}?" if near else "'twin explain' lists all codes"
     raise UsageError(f"no code '{code}': {hint}")

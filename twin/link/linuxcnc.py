@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -20,6 +21,8 @@ _MESSAGES = Path("/usr/share/linuxcnc/linuxcnc.nml")
 LOG_NAME = "linuxcnc.log"
 OPERATOR = Path(__file__).with_name("headless_screen.py")
 _UNPRIVILEGED = "nobody"
+_NOT_PLAIN = re.compile(r"[^\w/.+-]")
+"""What splits or ends a word of LinuxCNC's files and of the shell that starts it."""
 _LEAVING_TIMEOUT_S = 30.0
 """How long LinuxCNC may take from its component's farewell to its end [s]."""
 _END_TIMEOUT_S = 10.0
@@ -90,6 +93,24 @@ def require_linuxcnc() -> Path:
             f"a LinuxCNC runs on this computer, or was killed: end it, say halrun -U and remove {LOCK}"
         )
     return Path(found)
+
+
+def require_plain(folder: Path) -> None:
+    """Refuse a folder that LinuxCNC's files cannot name.
+
+    Args:
+        folder: Where its configuration is to lie, absolute.
+
+    Raises:
+        UsageError: Its path holds a blank or a sign that INI and HAL files read otherwise.
+    """
+    strange = sorted(set(_NOT_PLAIN.findall(str(folder))))
+    if strange:
+        shown = ", ".join("a blank" if sign == " " else repr(sign) for sign in strange)
+        raise UsageError(
+            f"LinuxCNC cannot read its files from '{folder}', whose path holds {shown}: give --out a "
+            "folder with letters, digits and -_.+ in its path"
+        )
 
 
 @contextlib.contextmanager

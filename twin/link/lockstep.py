@@ -128,7 +128,7 @@ class LockstepMotion:
         """Yield chunks of samples until the control has left."""
         question, answer = bytearray(REQUEST_LAYOUT.size + 1), bytearray(ANSWER_LAYOUT.size)
         view = memoryview(question)
-        silent_s = 0.0
+        silent_s, control = 0.0, None
         while not self._left:
             try:
                 size, sender = self._socket.recvfrom_into(question)
@@ -137,10 +137,11 @@ class LockstepMotion:
                 if not self.goes_on() or (self.answered and silent_s > LONGEST_SILENCE_S):
                     break
                 continue
-            silent_s = 0.0
             request = read_request(view[:size])
-            if request is None:
+            if request is None or sender != (control or sender):
                 continue
+            silent_s = 0.0
+            control = sender  # The first that asks is the control; nobody else drives the machine.
             self._hear(request)
             write_answer(self._answer(), request.sequence, answer)
             self._socket.sendto(answer, sender)

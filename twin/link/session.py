@@ -14,6 +14,7 @@ from twin.link.linuxcnc import (
     LinuxCnc,
     operator_log,
     require_linuxcnc,
+    require_plain,
     running,
 )
 from twin.link.linuxcnc_program import linuxcnc_program
@@ -79,6 +80,7 @@ def run_on_twin(
     preparation = run.preparation
     axes = preparation.machine.axes
     own = folder.resolve() / FOLDER_NAME
+    require_plain(own)
     own.mkdir(exist_ok=True)
     install(own, module_folder(start))
     tool, position = preparation.job.file.tools[0], preparation.start + run.part_zero
