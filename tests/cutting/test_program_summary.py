@@ -39,6 +39,9 @@ def test_tools_change_between_moves(dialect: str) -> None:
     numbers = [found.tools.at(move).number for move in range(-1, 5)]
     assert numbers == [1, 1, 1, 1, 4, 1]
     assert found.tools.longer(found.tools.at(3)) == 15.0
+    assert [(move, line, tool.number) for move, line, tool in found.tools.changes] == [
+        (3, 5, 4), (4, 7, 1),
+    ]  # fmt: skip
     assert found.is_rapid(np.array([-1, 0, 1, 2, 3, 4, 5])).tolist() == [
         False, True, False, False, False, True, False,
     ]  # fmt: skip

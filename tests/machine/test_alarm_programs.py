@@ -22,6 +22,7 @@ EXPECTED = {
     "collision_faceplate": ("collision", 5, "the cutter meets the faceplate"),
     "collision_vise": ("collision", 6, "the holder's nut meets the fixed jaw"),
     "collision_second_tool": ("collision", 9, "the holder's nut meets the "),
+    "collision_tool_change": ("collision", 6, "the cutter meets the fixed jaw (20.00 mm deep)"),
     "collision_drill": ("collision", 4, "the cutter meets the faceplate"),
     "collision_flank": ("collision", 5, "the cutter meets the jaw"),
     "collision_holder": ("collision", 11, "the holder of tool 1 meets the part (8.00 mm deep)"),
@@ -66,12 +67,12 @@ def test_a_near_miss_is_told_and_stops_nothing(twin: Twin, tmp_path: Path):
 
 @pytest.mark.parametrize(
     ("spindle", "code"),
-    [("", 0), ("M03", 0), ("M13", 3), ("S500", 4), ("M04 S500", 0), ("S0 M03", 4), ("M19", 4)],
+    [("", 0), ("M03", 4), ("M13", 3), ("S500", 4), ("M04 S500", 0), ("S0 M03", 4), ("M19", 4)],
 )
 def test_a_program_that_speaks_of_the_spindle_is_held_to_it(
     tmp_path: Path, spindle: str, code: int
 ):
-    """One that never does runs with it turning; a speed alone starts nothing."""
+    """One that never does runs with it turning; neither a speed alone nor M3 alone starts it."""
     text = f"%A\nG90 G17 T1 {spindle}\nG00 X-60 Y0 Z20\nG01 Z-3 F1000\nG01 X60\nM30\n"
     (tmp_path / "a.nc").write_text(text)
     job = (FOLDER / "spindle_off.toml").read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from twin.cutting.tools import EMPTY_SPINDLE, ToolPlan
+from twin.cutting.tools import EMPTY_SPINDLE, ToolChange, ToolPlan
 from twin.errors import ConfigError
 from twin.job.job_file import JobFile, ToolTable
 from twin.nc.canonical import Chunk, FloatArray, Function, IntArray, Motion
@@ -93,6 +93,7 @@ class SummaryBuilder:
         self._state = spindle or SpindleState(tool_speed=self._tool.speed)
         self._speaks = False
         self._plan: list[tuple[int, ToolTable]] = [(0, self._tool)]
+        self._changes: list[ToolChange] = []
         self._spindle: list[tuple[float, float | None]] = [(0.0, self._tool.speed)]
         self._shown: list[tuple[int, FloatArray]] = []
         self._rapid = bytearray()
@@ -125,7 +126,7 @@ class SummaryBuilder:
         if self._speaks:
             self._spindle[0] = (0.0, 0.0)
         return ProgramSummary(
-            tools=ToolPlan(tools, first_move),
+            tools=ToolPlan(tools, first_move, tuple(self._changes)),
             rapid=np.frombuffer(bytes(self._rapid), np.bool_),
             spindle=_steps(self._spindle),
             shown=shown,
@@ -152,6 +153,7 @@ class SummaryBuilder:
             )
         if tool is not None:
             self._tool = tool
+            self._changes.append(ToolChange(move, line, tool))
             state = dataclasses.replace(self._state, tool_speed=tool.speed)
             if self._speaks:
                 self._turn(state, move)

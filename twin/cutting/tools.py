@@ -5,6 +5,7 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,6 +64,20 @@ def _cone_slope(angle: float) -> float:
     return 1.0 / math.tan(math.radians(0.5 * angle))
 
 
+class ToolChange(NamedTuple):
+    """A tool that comes into the spindle.
+
+    Attributes:
+        move: Number of the next move.
+        line: Source line of the change.
+        tool: The tool that comes.
+    """
+
+    move: int
+    line: int
+    tool: ToolTable
+
+
 @dataclasses.dataclass(frozen=True, slots=True)
 class ToolPlan:
     """Which tool is in the spindle during which moves of a program.
@@ -71,10 +86,12 @@ class ToolPlan:
         tools: In the order in which they come into the spindle; the first is in it at the start.
             A tool whose speed changes stands there once for each speed.
         first_move: Number of the first move that each is in the spindle for, never falling from 0.
+        changes: Those of the program, also where no move follows.
     """
 
     tools: tuple[ToolTable, ...]
     first_move: tuple[int, ...] = (0,)
+    changes: tuple[ToolChange, ...] = ()
 
     def at(self, move: int) -> ToolTable:
         """The tool in the spindle during a move."""

@@ -251,6 +251,7 @@ def test_what_is_typed_counts_though_its_sheet_is_drawn_anew(room, context):
         page.type(length, "625")
         page.press(length, "ArrowLeft")
         before = page.wait_for_selector(length)
+        assert before is not None
         room.driver.ask({"do": "set_tool", "number": 1, "radius": other}, "trainer", 0)
         player.until(lambda want=other: float(page.input_value(radius)) == want, "the other value")
         assert not before.evaluate("(one) => one.isConnected")

@@ -82,8 +82,32 @@ class ToolShape(Protocol):
         ...
 
 
+class ToolChange(Protocol):
+    """A tool that comes into the spindle."""
+
+    @property
+    def move(self) -> int:
+        """Number of the next move."""
+        ...
+
+    @property
+    def line(self) -> int:
+        """Source line of the change."""
+        ...
+
+    @property
+    def tool(self) -> ToolShape:
+        """The tool that comes."""
+        ...
+
+
 class ToolSchedule(Protocol):
     """Which tool is in the spindle when; the cutting room's plan fits."""
+
+    @property
+    def changes(self) -> Sequence[ToolChange]:
+        """The changes of the program in their order."""
+        ...
 
     def runs(self, move: IntArray) -> Sequence[tuple[slice, ToolShape]]:
         """Split samples where the tool changes, by their move numbers."""

@@ -73,8 +73,11 @@ class Simulation:
                 yield samples
                 continue
             end = int(np.searchsorted(samples.setpoint.time, self.alarm.time_s, side="right"))
-            yield samples[:end]
+            if end:
+                yield samples[:end]
             return
+        if isinstance(self._clearance, ToolClearances):
+            self.alarm = self._clearance.finish()
 
     def _look(self, samples: Samples) -> Alarm | None:
         process, clearance = self._servo.process, self._clearance

@@ -1,5 +1,7 @@
 """Collisions and near misses of whichever tool is in the spindle."""
 
+import dataclasses
+
 from twin.machine.description.config import Machine
 from twin.machine.model.model import build_spec, clearance_model
 from twin.machine.model.tool_shape import ToolSchedule, ToolShape, tool_cylinders
@@ -16,6 +18,9 @@ class ToolClearances:
         self._tools = tools
         self._built: dict[object, Clearance] = {}
         self._current: Clearance | None = None
+        self._changes = iter(tools.changes)
+        self._next = next(self._changes, None)
+        self._last: Samples | None = None
 
     @property
     def near_miss(self) -> NearMiss | None:
@@ -26,14 +31,39 @@ class ToolClearances:
     def look(self, samples: Samples) -> Alarm | None:
         """Return the alarm of the first sample of the chunk at which two things meet."""
         for run, tool in self._tools.runs(samples.setpoint.move):
-            clearance = self._of(tool)
-            if clearance is not self._current:
-                clearance.begin()
-                self._current = clearance
-            alarm = clearance.look(samples[run])
+            part = samples[run]
+            alarm = self._look_at_changes(int(part.setpoint.move[0])) or self._with(tool).look(part)
             if alarm is not None:
                 return alarm
+            self._last = part[-1:]
         return None
+
+    def finish(self) -> Alarm | None:
+        """Return the alarm of a tool that comes behind the last move, where the axes stand then."""
+        return self._look_at_changes(None)
+
+    def _look_at_changes(self, move: int | None) -> Alarm | None:
+        """Hold the tools that come before a move against what is around them where the axes stand.
+
+        Args:
+            move: Its number; None: the program has ended.
+        """
+        while self._next is not None and (move is None or self._next.move <= move):
+            change, self._next = self._next, next(self._changes, None)
+            if self._last is None:
+                continue
+            alarm = self._with(change.tool).look(self._last)
+            if alarm is not None:
+                return dataclasses.replace(alarm, line=change.line)
+        return None
+
+    def _with(self, tool: ToolShape) -> Clearance:
+        """The clearance of a tool; a tool that was not in the spindle is looked at anew."""
+        clearance = self._of(tool)
+        if clearance is not self._current:
+            clearance.begin()
+            self._current = clearance
+        return clearance
 
     def _of(self, tool: ToolShape) -> Clearance:
         """Tools of one shape share their clearance, at whatever speed they turn."""

@@ -204,7 +204,7 @@ class Clearance:
             close = near.tolist()
             met = [(found, pair) for pair in close if (found := self._along(pair, way, block))]
             if met:
-                (row, depth), pair = min(met)
+                (row, depth), pair = min(met, key=lambda each: (each[0][0], -each[0][1]))
                 return self._alarm(way, row, depth, pair)
         return None
 
