@@ -100,11 +100,11 @@ def with_faults() -> Machine:
 
 def test_the_simulated_machine_s_own_circle_gives_it_back(twin: Twin, tmp_path: Path) -> None:
     machine = with_faults()
-    test = circular_test(machine, 100.0, 1000.0)
+    test = circular_test(machine, 40.0, 1000.0)
     turns = {COUNTER_CLOCKWISE: test.counter_clockwise_um, CLOCKWISE: test.clockwise_um}
-    log = BallBarLog("c", "XY", 100.0, 50.0, np.deg2rad(test.angle_deg), turns)
+    log = BallBarLog("c", "XY", 40.0, 50.0, np.deg2rad(test.angle_deg), turns)
     bar = written(tmp_path / "bar.csv", log, 1.0)
-    (tmp_path / "map.toml").write_text(MAP.replace("150", "100").replace("3000", "1000"))
+    (tmp_path / "map.toml").write_text(MAP.replace("150", "40").replace("3000", "1000"))
     out, figures, report = (tmp_path / name for name in ("mine.toml", "fit.json", "fit.html"))
     done = twin(
         "calibrate", "--ball-bar", bar, "--columns", tmp_path / "map.toml", "--out", out,

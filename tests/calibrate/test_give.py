@@ -83,7 +83,7 @@ def test_without_a_second_encoder_they_are_named_as_undetermined(log: MachineLog
 
 
 def test_a_gap_that_may_be_none_is_named_as_undetermined() -> None:
-    fit = calibrate(mill(), [without(two_masses(gap=0.0), "force")]).axes["X"].fit
+    fit = calibrate(mill(), [without(two_masses(gap=0.0, seconds=2.0), "force")]).axes["X"].fit
     assert "backlash" not in fit.fitted
     assert "anything up to" in fit.undetermined["backlash"]
 

@@ -4,10 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from machine_logs import mill, with_axis
+from machine_logs import mill
 from other_drive import KV, Logger, log_of
 
 from twin.calibrate.calibrate import calibrate
+from twin.calibrate.fit.solve import Interval
+from twin.calibrate.health import look_at_axis, look_at_clock, look_at_fit, look_at_motion
 from twin.calibrate.result import Calibration
 from twin.logs.machine_log import MachineLog
 
@@ -16,6 +18,11 @@ def found(log: MachineLog) -> tuple[Calibration, dict[str, str]]:
     """The calibration, and the findings about the log by their code."""
     result = calibrate(mill(), [log])
     return result, {one.code: one.message for one in result.findings[log.name]}
+
+
+def told_of_clock(log: MachineLog) -> dict[str, str]:
+    """The findings about the clock of a log by their code."""
+    return {one.code: one.message for one in look_at_clock(log).findings}
 
 
 def holds_the_truth(result: Calibration) -> bool:
@@ -79,18 +86,43 @@ def test_a_clock_that_stands_is_a_jump_too() -> None:
     log = log_of(Logger())
     time = log.time.copy()
     time[2000:] -= 0.001
-    assert "stands or jumps back" in found(dataclasses.replace(log, time=time))[1]["clock-jump"]
+    assert (
+        "stands or jumps back" in told_of_clock(dataclasses.replace(log, time=time))["clock-jump"]
+    )
 
 
 def test_uneven_samples_are_told() -> None:
     log = log_of(Logger())
     shaken = 0.0004 * np.random.default_rng(1).uniform(-1.0, 1.0, len(log.time))
-    assert "unevenly" in found(dataclasses.replace(log, time=log.time + shaken))[1]["jitter"]
+    assert "unevenly" in told_of_clock(dataclasses.replace(log, time=log.time + shaken))["jitter"]
 
 
 def test_a_command_that_is_held_over_samples_is_told() -> None:
     log = log_of(Logger())
     axis = log.axes["X"]
     held = np.repeat(axis.command[::8], 8)[: len(axis.command)]
-    _, findings = found(with_axis(log, dataclasses.replace(axis, command=held)))
-    assert "every 8 ms only" in findings["held"]
+    (finding,) = look_at_axis("X", dataclasses.replace(axis, command=held), look_at_clock(log))
+    assert finding.code == "held"
+    assert "every 8 ms only" in finding.message
+
+
+def test_positions_of_another_scale_or_another_zero_are_told() -> None:
+    log = log_of(Logger())
+    axis = log.axes["X"]
+    for actual, code, told in (
+        (axis.actual, None, ""),
+        (axis.actual * 1.05, "scale", "actual moves 1.048 times as far"),
+        (axis.actual + 5.0, "offset", "actual stands 5 mm off it"),
+    ):
+        wrong = dataclasses.replace(axis, actual=actual)
+        findings = {one.code: one.message for one in look_at_motion("X", wrong, 0.001)}
+        assert code is None or told in findings[code]
+        assert code is not None or not findings
+
+
+def test_a_mass_far_from_the_base_s_is_told_as_another_unit() -> None:
+    fitted = {"mass": Interval(26416.0, 26400.0, 26430.0)}
+    (finding,) = look_at_fit("X", fitted, 1040.0, filtered=False)
+    assert finding.code == "unit"
+    assert "25.4 times the base's" in finding.message
+    assert not look_at_fit("X", fitted, 20000.0, filtered=False)

@@ -11,8 +11,10 @@ from machine_logs import logged, mill, strokes, with_axis, without_force, write_
 
 from twin.calibrate.calibrate import calibrate
 from twin.calibrate.health import resolution
+from twin.calibrate.refusal import straight_law
 from twin.errors import UsageError
 from twin.logs.machine_log import AxisLog, MachineLog
+from twin.nc.canonical import FloatArray
 
 
 @pytest.fixture(scope="module")
@@ -39,6 +41,12 @@ def of_another_axis(axis: AxisLog) -> AxisLog:
     return dataclasses.replace(axis, actual=30.0 * np.sin(time / 211.0))
 
 
+def dropped(axis: AxisLog) -> AxisLog:
+    actual = axis.actual.copy()
+    actual[1200:1203] = -5000.0
+    return dataclasses.replace(axis, actual=actual)
+
+
 def pushing_back(axis: AxisLog) -> AxisLog:
     return dataclasses.replace(axis, more={"force": -axis.more["force"]})
 
@@ -54,6 +62,8 @@ def pushing_back(axis: AxisLog) -> AxisLog:
         (both_scaled(1e-6), "the unit is another one"),
         (of_another_axis, "position of another axis"),
         (pushing_back, "scale of the other sign"),
+        (dropped, "jumps by .* between samples 1200 and 1201"),
+        (lambda axis: dataclasses.replace(axis, actual=axis.command), "the same quantity"),
         (lambda axis: dataclasses.replace(axis, kind="rotary"), "rotary axis, the base's X"),
         (lambda axis: dataclasses.replace(axis, command=axis.command * 0), "does not move"),
     ],
@@ -70,6 +80,55 @@ def test_an_axis_that_the_base_lacks_is_refused(log: MachineLog) -> None:
         calibrate(mill(), [dataclasses.replace(log, axes={"U": log.axes["X"]})])
     with pytest.raises(UsageError, match="no log has axis Y"):
         calibrate(mill(), [log], axes=["Y"])
+
+
+@pytest.mark.parametrize(
+    ("rows", "clock", "told"),
+    [
+        (slice(0, 10), 1.0, "has 10 samples; a fit needs 50"),
+        (slice(None), 0.0, "clock stands or runs back at 3999 of 4000 samples"),
+        (slice(None), -1.0, "give the map a 'period' in place of 'time'"),
+        (slice(None), np.where(np.arange(4000) % 40, 1.0, 2.0), "without a gap"),
+    ],
+)
+def test_a_clock_that_leaves_nothing_to_fit_is_refused_with_the_reason(
+    log: MachineLog, rows: slice, clock: float | FloatArray, told: str
+) -> None:
+    time = np.cumsum(np.full(4000, 0.001) * clock, dtype=np.float64)[rows]
+    axis = log.axes["X"]
+    less = dataclasses.replace(
+        axis, command=axis.command[rows], actual=axis.actual[rows],
+        more={role: values[rows] for role, values in axis.more.items()},
+    )  # fmt: skip
+    with pytest.raises(UsageError, match=told):
+        calibrate(mill(), [MachineLog("own.csv", time, {"X": less}, log.line[rows])])
+
+
+def test_a_log_may_rest_before_its_first_gap(log: MachineLog) -> None:
+    still = 100
+    axis = log.axes["X"]
+    command = np.concatenate([np.full(still, axis.command[0]), axis.command])
+    actual = np.concatenate([np.full(still, axis.actual[0]), axis.actual])
+    time = np.concatenate([np.arange(still) * 0.001 - 0.5, log.time])
+    rested = MachineLog(
+        "own.csv", time,
+        {"X": dataclasses.replace(axis, command=command, actual=actual * 1000.0, more={})},
+        np.zeros(len(time), np.int64),
+    )  # fmt: skip
+    with pytest.raises(UsageError, match="micrometres"):
+        calibrate(mill(), [rested])
+
+
+def test_the_scale_of_a_circle_is_told(log: MachineLog) -> None:
+    """On a circle acceleration is a multiple of position: no law may divide motion among them."""
+    phase = np.arange(0.0, 6.0, 0.001)
+    circle = dataclasses.replace(
+        log.axes["X"], command=50.0 * np.cos(phase), actual=50.0 * np.cos(phase - 0.008), more={}
+    )
+    ratio, lead, left = straight_law(circle, 0.001)
+    assert ratio == pytest.approx(1.0, abs=1e-3)
+    assert lead == pytest.approx(-0.008, rel=1e-3)
+    assert left < 1e-3
 
 
 def test_a_slow_log_is_fitted_as_far_as_it_tells(log: MachineLog) -> None:
@@ -116,11 +175,9 @@ def test_the_step_of_quantised_values_is_found() -> None:
     assert resolution(values) == 0.0
 
 
-def test_require_turns_a_share_into_an_exit_code(
-    twin: Twin, tmp_path: Path, log: MachineLog
-) -> None:
-    first = write_log(tmp_path / "first.csv", log)
-    other = write_log(tmp_path / "other.csv", logged(mill(kv=5.0), strokes(3.0)))
+def test_require_turns_a_share_into_an_exit_code(twin: Twin, tmp_path: Path) -> None:
+    first = write_log(tmp_path / "first.csv", logged(mill(), strokes(2.0)))
+    other = write_log(tmp_path / "other.csv", logged(mill(kv=5.0), strokes(1.5)))
     for held, code in ((first, 0), (other, 1)):
         done = twin("calibrate", first, "--hold-out", held, "--require", "0.1")
         assert done.code == code, done.stderr

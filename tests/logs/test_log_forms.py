@@ -206,6 +206,8 @@ def test_a_map_that_does_not_fit_its_log_is_refused(
         ("a.csv", "[key]; [value]\nFlags; 32\n", "without a recorded variable"),
         ("a.csv", "Name;A\nSymbolName;B\n", "rows of properties|no time column"),
         ("a.csv", "a\0b", "no text"),
+        ("a.csv", "a,b\n0,1,2,5\n0,2,2,6\n", "row 1 of the values has 4: are its decimals written"),
+        ("a.csv", "a,b\n1,2\n3\n", "each with 2 values; row 2 of the values has 1"),
     ],
 )
 def test_what_is_no_log_is_refused_with_the_reason(tmp_path: Path, name: str, text: str, told: str):

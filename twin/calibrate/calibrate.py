@@ -21,6 +21,8 @@ from twin.calibrate.health import (
     look_at_axis,
     look_at_clock,
     look_at_fit,
+    look_at_motion,
+    refuse_broken_clock,
 )
 from twin.calibrate.limits import Limits, planner_limits
 from twin.calibrate.refusal import refuse_wrong_force, refuse_wrong_log
@@ -93,7 +95,7 @@ def calibrate(
             masses[name], machine.file.servo_period_s,
         )  # fmt: skip
         for item in (item for item in own if item.health.period_s <= SLOW_S):
-            told = look_at_fit(name, fit.fitted, filtered=_is_filtered(item, name))
+            told = look_at_fit(name, fit.fitted, masses[name], filtered=_is_filtered(item, name))
             findings[item.log.name] += tuple(told)
         figures += [
             _figures(item, name, fit.parameters) for item in fitted + held if name in item.log.axes
@@ -105,10 +107,7 @@ def calibrate(
 
 def _prepared(log: MachineLog, role: str) -> _Log:
     health = look_at_clock(log)
-    if not health.stretches:
-        raise UsageError(
-            f"{log.name}: has no stretch of 50 samples in a row without a gap: nothing can be fitted"
-        )
+    refuse_broken_clock(log, health)
     times = round(_FASTEST_S / health.period_s)
     if times > 1:
         log = _averaged(log, health, times)
@@ -164,15 +163,16 @@ def _axis_findings(machine: Machine, item: _Log, names: Sequence[str]) -> tuple[
         if name not in item.log.axes:
             continue
         axis, place = item.log.axes[name], f"{item.log.name}: axis {name}"
-        for begin, end in item.health.stretches[:1]:
-            part = slice(begin, end)
-            piece = dataclasses.replace(axis, command=axis.command[part], actual=axis.actual[part])
-            refuse_wrong_log(item.log.name, name, piece, machine.axis(name), item.health.period_s)
-            if "force" in axis.more and item.health.period_s <= SLOW_S:
-                speed = np.gradient(piece.actual, item.health.period_s)
-                window = np.ones(9) / 9
-                smooth = np.convolve(np.gradient(speed, item.health.period_s), window, "same")
-                refuse_wrong_force(place, axis.more["force"][part], smooth)
+        pieces = [_rows(axis, begin, end) for begin, end in item.health.stretches]
+        piece = max(pieces, key=lambda one: float(np.ptp(one.command)))
+        period = item.health.period_s
+        refuse_wrong_log(item.log.name, name, piece, machine.axis(name), period)
+        if period <= SLOW_S:
+            if "force" in axis.more:
+                speed = np.gradient(piece.actual, period)
+                smooth = np.convolve(np.gradient(speed, period), np.ones(9) / 9, "same")
+                refuse_wrong_force(place, piece.more["force"], smooth)
+            found += look_at_motion(name, piece, period)
         found += look_at_axis(name, axis, item.health)
     return tuple(found)
 

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from twin.calibrate.fit.solve import Interval
+from twin.calibrate.refusal import straight_law
+from twin.errors import UsageError
 from twin.logs.machine_log import AxisLog, MachineLog
 from twin.nc.canonical import FloatArray
 
@@ -26,8 +28,16 @@ _FALLS = 3.0
 """The power of filtered noise falls by more, from the first of these bands to the last."""
 _STEEP = 15.0
 """And by less, from the first to the second: what falls by more is motion."""
+_SCALED = 0.02
+"""Actual may move by this share more or less than command."""
+_EXPLAINED = 5.0
+"""Times what the law leaves that a ratio must be off by."""
+_OFFSET = 0.2
+"""Share of the range of the lag that an actual position at rest may be off."""
+_OTHER_MASS = 20.0
+"""Times the base's mass, or a part of it, that rather is another unit."""
 _SPECTRUM = 1000
-"""Samples without which noise has no colour to speak of."""
+"""Samples without which noise has no colour, and motion no scale, to speak of."""
 _HELD = 0.5
 """Share of samples that repeat the one before while the command moves, above which it is held."""
 
@@ -38,7 +48,7 @@ class Finding:
 
     Attributes:
         code: ``gap``, ``clock-jump``, ``slow``, ``coarse``, ``held``, ``jitter``, ``skew``,
-            ``filtered``.
+            ``filtered``, ``scale``, ``offset``, ``unit``.
         message: In words, with what can still be fitted.
     """
 
@@ -106,6 +116,34 @@ def look_at_clock(log: MachineLog) -> Health:
             )
         )
     return Health(period, tuple(long), tuple(findings))
+
+
+def refuse_broken_clock(log: MachineLog, health: Health) -> None:
+    """Refuse a log without a single stretch that is long enough to be fitted.
+
+    Args:
+        log: The log.
+        health: Of its clock.
+
+    Raises:
+        UsageError: With what is wrong with the clock, and what would make it right.
+    """
+    if health.stretches:
+        return
+    count = len(log.time)
+    if count < SHORTEST:
+        raise UsageError(
+            f"{log.name}: has {count} samples; a fit needs {SHORTEST} in a row: log for longer"
+        )
+    standing = int(np.count_nonzero(np.diff(log.time) <= 0))
+    if standing:
+        raise UsageError(
+            f"{log.name}: its clock stands or runs back at {standing} of {count} samples: where they "
+            "are even, give the map a 'period' in place of 'time'; else log time with more digits"
+        )
+    raise UsageError(
+        f"{log.name}: has no stretch of {SHORTEST} samples in a row without a gap: nothing can be fitted"
+    )
 
 
 def resolution(values: FloatArray) -> float:
@@ -178,12 +216,45 @@ def look_at_axis(name: str, axis: AxisLog, health: Health) -> list[Finding]:
     return findings
 
 
-def look_at_fit(name: str, fitted: Mapping[str, Interval], *, filtered: bool) -> list[Finding]:
-    """What a fit shows or explains: columns that were taken at different times, or behind a filter.
+def look_at_motion(name: str, axis: AxisLog, period_s: float) -> list[Finding]:
+    """What does not fit between commanded and actual positions of one even stretch."""
+    findings = []
+    ratio, _, left = straight_law(axis, period_s)
+    enough = len(axis.command) >= _SPECTRUM
+    if enough and abs(ratio - 1.0) > max(_SCALED, _EXPLAINED * left):
+        findings.append(
+            Finding(
+                "scale",
+                f"{name}: actual moves {ratio:.4g} times as far as command: no drive does; give one of "
+                "them a scale in the map, or what is fitted takes it up",
+            )
+        )
+    lag = axis.command - axis.actual
+    rests = np.gradient(axis.command) == 0.0
+    if np.count_nonzero(rests) >= SHORTEST:
+        offset = float(np.median(lag[rests]))
+        if abs(offset) > _OFFSET * float(np.ptp(lag)) > 0.0:
+            unit = "mm" if axis.kind == "linear" else "deg"
+            findings.append(
+                Finding(
+                    "offset",
+                    f"{name}: where the command rests, actual stands {-offset:.4g} {unit} off it: if the "
+                    "two count from different zeros, give one of them an offset in the map; else it "
+                    "is the work of a constant force",
+                )
+            )
+    return findings
+
+
+def look_at_fit(
+    name: str, fitted: Mapping[str, Interval], base_mass: float, *, filtered: bool
+) -> list[Finding]:
+    """What a fit shows or explains: columns taken at different times, filtered, in other units.
 
     Args:
         name: Of the axis.
         fitted: What its logs determine.
+        base_mass: What the motor of the base moves [kg or kg m²].
         filtered: Whether the noise of its positions is that of a filtered column.
     """
     findings = []
@@ -201,6 +272,16 @@ def look_at_fit(name: str, fitted: Mapping[str, Interval], *, filtered: bool) ->
                     "lag can still be fitted",
                 )
             )
+    mass = fitted.get("mass")
+    if mass is not None and not 1.0 / _OTHER_MASS < mass.value / base_mass < _OTHER_MASS:
+        findings.append(
+            Finding(
+                "unit",
+                f"{name}: the mass comes to {mass.value / base_mass:.3g} times the base's: unless the "
+                "base is another kind of machine, force or positions are in another unit (inches, "
+                "kilonewtons?)",
+            )
+        )
     smooth = fitted.get("measuring_filter")
     if filtered or (smooth is not None and smooth.low > 0.0):
         seen = (

@@ -18,6 +18,8 @@ _OVER_S = 0.02
 """Speeds are taken over this time [s]."""
 _LEADS_S = 5e-4
 """An actual position that leads by more is not one [s]."""
+_JUMPS = 5.0
+"""Times what the command moves in ``_OVER_S`` that no actual position moves between two samples."""
 _KNOWN_RATIOS = {
     25.4: "inches", 1 / 25.4: "inches", 1e3: "micrometres or metres", 1e-3: "micrometres or metres",
     57.29578: "radians", 1 / 57.29578: "radians", 10.0: "centimetres", 0.1: "centimetres",
@@ -49,21 +51,23 @@ def refuse_wrong_log(
     travelled = float(np.ptp(axis.command))
     if travelled <= 0.0:
         raise UsageError(f"{place}: the command does not move; there is nothing to fit")
+    if np.array_equal(axis.command, axis.actual):
+        raise UsageError(
+            f"{place}: actual equals command in every sample: both are the same quantity; give the "
+            "column of the actual position in the map"
+        )
     _refuse_speed(place, axis, base, period_s, unit)
-    speed = np.gradient(axis.command, period_s)
-    change = np.gradient(speed, period_s)
-    ratio, lead = _ratio_and_lead(axis, speed, change)
+    ratio, lead, left = straight_law(axis, period_s)
     if abs(ratio - 1.0) > _RIGHT:
         told = next(
             (what for known, what in _KNOWN_RATIOS.items() if abs(ratio / known - 1.0) < 0.03), None
         )
-        left = _left(axis, speed, change)
         if told is not None and left < _FOLLOWS:
             raise UsageError(
                 f"{place}: actual moves {ratio:.4g} times as far as command: one of them is in {told}; "
                 "give it its own unit or scale in the map"
             )
-    left = _left(axis, speed, change)
+    _refuse_jumps(place, axis, period_s, abs(ratio), unit)
     if left > _FOLLOWS or abs(ratio - 1.0) > 10 * _RIGHT:
         raise UsageError(
             f"{place}: actual does not follow command ({100 * left:.0f} % of the motion is left "
@@ -96,18 +100,44 @@ def _refuse_speed(place: str, axis: AxisLog, base: AxisTable, period_s: float, u
         )
 
 
-def _ratio_and_lead(axis: AxisLog, speed: FloatArray, change: FloatArray) -> tuple[float, float]:
-    """How far actual moves per command, and how early it is [s]."""
-    columns = np.column_stack([axis.command, speed, change, np.ones(len(speed))])
-    found, *_ = np.linalg.lstsq(columns, axis.actual, rcond=None)
-    return float(found[0]), float(found[1])
+def _refuse_jumps(place: str, axis: AxisLog, period_s: float, ratio: float, unit: str) -> None:
+    """Refuse dropped samples: values between two others that no axis comes to in a sample."""
+    apart = min(max(1, round(_OVER_S / period_s)), len(axis.command) - 1)
+    commanded = float(np.abs(axis.command[apart:] - axis.command[:-apart]).max())
+    steps = np.abs(np.diff(axis.actual))
+    worst = int(np.argmax(steps))
+    if float(steps[worst]) > _JUMPS * max(ratio, 1.0) * commanded:
+        raise UsageError(
+            f"{place}: actual jumps by {float(steps[worst]):.4g} {unit} between samples {worst + 1} "
+            f"and {worst + 2}, where the command moves by no more than {commanded:.4g} {unit} in "
+            f"{apart * period_s * 1e3:.3g} ms: samples were dropped, or the encoder was set anew; "
+            "leave them out of the log"
+        )
 
 
-def _left(axis: AxisLog, speed: FloatArray, change: FloatArray) -> float:
-    columns = np.column_stack([axis.command, speed, change, np.ones(len(speed))])
-    found, *_ = np.linalg.lstsq(columns, axis.actual, rcond=None)
-    rest = axis.actual - columns @ found
-    return float(np.std(rest) / max(np.std(axis.actual), 1e-12))
+def straight_law(axis: AxisLog, period_s: float) -> tuple[float, float, float]:
+    """How actual follows command by a straight law of position, speed and acceleration.
+
+    On a circle an axis's acceleration is a multiple of its position; a law without it is solved as
+    well, and the one whose ratio is nearer to 1 counts.
+
+    Args:
+        axis: Its columns.
+        period_s: Between samples [s].
+
+    Returns:
+        How far actual moves per command, how early it is [s], and what the law leaves as a share
+        of the motion.
+    """
+    speed = np.gradient(axis.command, period_s)
+    law = [axis.command, speed, np.ones(len(speed))]
+    found = []
+    for columns in (law, [*law, np.gradient(speed, period_s)]):
+        table = np.column_stack(columns)
+        parts, *_ = np.linalg.lstsq(table, axis.actual, rcond=None)
+        left = float(np.std(axis.actual - table @ parts) / max(np.std(axis.actual), 1e-12))
+        found.append((float(parts[0]), float(parts[1]), left))
+    return min(found, key=lambda one: abs(one[0] - 1.0))
 
 
 def refuse_wrong_force(place: str, force: FloatArray, acceleration: FloatArray) -> None:

@@ -26,6 +26,7 @@ _TICKS = 1e12
 """A time above this is in ticks of 100 ns since 1601, not in milliseconds since the start."""
 _TICK_S, _MILLISECOND_S = 1e-7, 1e-3
 _END = "EOF"
+_COMMAS = ": are its decimals written with commas? Then its cells need ';' or tabs between them"
 
 
 def read_delimited(path: Path, text: str) -> RawLog:
@@ -51,8 +52,15 @@ def read_delimited(path: Path, text: str) -> RawLog:
             f"{path}: is empty; a log has a heading such as time_s,X_commanded,X_actual"
         )
     body = rows[start:]
-    if len(body) < 2 or any(len(row) != len(heading) for row in body):
+    if len(body) < 2:
         raise UsageError(f"{path}: needs two rows or more, each with {len(heading)} values")
+    wrong = next((index for index, row in enumerate(body) if len(row) != len(heading)), None)
+    if wrong is not None:
+        width = len(body[wrong])
+        raise UsageError(
+            f"{path}: needs two rows or more, each with {len(heading)} values; row {wrong + 1} of the "
+            f"values has {width}" + (_COMMAS if width > len(heading) and "," in text else "")
+        )
     columns = list(zip(*body, strict=True))
     return RawLog(
         path,
