@@ -94,7 +94,7 @@ def test_an_axis_that_the_base_lacks_is_refused(log: MachineLog) -> None:
 def test_a_clock_that_leaves_nothing_to_fit_is_refused_with_the_reason(
     log: MachineLog, rows: slice, clock: float | FloatArray, told: str
 ) -> None:
-    time = np.cumsum(np.full(4000, 0.001) * clock, dtype=np.float64)[rows]
+    time = np.cumsum(0.001 * clock * np.ones(4000)).astype(np.float64)[rows]
     axis = log.axes["X"]
     less = dataclasses.replace(
         axis, command=axis.command[rows], actual=axis.actual[rows],

@@ -218,5 +218,6 @@ def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) 
     if not open_ones:
         return f"{sentence}; nothing is undetermined."
     first = open_ones[0]
-    rest = f", and so are {', '.join(open_ones[1:])}" if open_ones[1:] else ""
+    more = open_ones[1:]
+    rest = f", and so {'are' if more[1:] else 'is'} {', '.join(more)}" if more else ""
     return f"{sentence}; {first} is undetermined ({axis.fit.undetermined[first]}){rest}."

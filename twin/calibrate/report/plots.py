@@ -29,7 +29,7 @@ def lag_plot(figures: LogFigures) -> str:
         time, thin = _thinned(course.time, values * scale)
         axes.plot(time, thin, color=color, linewidth=width, label=label, linestyle=line,
                   marker=mark, markersize=4)  # fmt: skip
-    what = "lag of velocity [per s]" if course.slow else f"following error [{unit}]"
+    what = f"lag of velocity [{_speed(figures)}]" if course.slow else f"following error [{unit}]"
     axes.set_ylabel(what)
     axes.set_xlabel("time [s]")
     axes.legend(loc="upper right", frameon=False, ncols=2)
@@ -45,7 +45,7 @@ def left_plot(figures: LogFigures) -> str:
     time, thin = _thinned(course.time, (course.logged - course.predicted) * scale)
     style = {"linestyle": "none", "marker": "o", "markersize": 4} if course.slow else {}
     axes.plot(time, thin, color=BLUE, linewidth=0.8, **style)
-    axes.set_ylabel("left" if course.slow else f"left [{_small(figures)}]")
+    axes.set_ylabel(f"left [{_speed(figures) if course.slow else _small(figures)}]")
     axes.set_xlabel("time [s]")
     return _drawn(figure)
 
@@ -83,7 +83,9 @@ def force_plot(figures: LogFigures) -> str:
             time, thin = _thinned(course.time, values)
             axes.plot(time, thin, color=color, linewidth=width, label=label)
     amperes = figures.current_correlation is not None
-    axes.set_ylabel("as shown [A]" if amperes else "force [N or N m]")
+    axes.set_ylabel(
+        "as shown [A]" if amperes else f"force [{'N' if figures.kind == 'linear' else 'N m'}]"
+    )
     axes.set_xlabel("sample that moves" if course.slow else "time [s]")
     axes.legend(loc="upper right", frameon=False, ncols=2)
     return _drawn(figure)
@@ -117,6 +119,10 @@ def has_spectrum(course: Course) -> bool:
 
 def _small(figures: LogFigures) -> str:
     return "µm" if figures.kind == "linear" else "mdeg"
+
+
+def _speed(figures: LogFigures) -> str:
+    return "mm/s" if figures.kind == "linear" else "deg/s"
 
 
 def _drawn(figure: Figure) -> str:
