@@ -1,10 +1,10 @@
 """The force of the cut: how much faster than in reality a slot in steel is simulated, and teeth beside mean."""
 
-import dataclasses
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
-from benches.row import Row, median_cpu_seconds
+from benches.row import Row, cpu_seconds_in_turns, median_cpu_seconds
 
 from twin.columns import join
 from twin.coupling.operations import OperatorOperation, cutting_process
@@ -15,7 +15,7 @@ from twin.machine.description.config import read_machine
 from twin.machine.model.model import build_spec, physics_model
 from twin.machine.simulation.simulate import simulate
 from twin.run.outcome import Outcome
-from twin.run.preparation import Preparation, prepare_job
+from twin.run.preparation import prepare_job
 from twin.run.progress import no_progress
 from twin.run.run import Run
 from twin.training.scene.scene_file import read_scene, scene_path
@@ -25,6 +25,12 @@ DEPTH_MM = 3.0
 TOOL = ToolTable(number=1, diameter=10.0, teeth=4)
 JOB = "fagor_full_circle"
 """A scene whose job cuts a groove in aluminium: it names a material, and its program the spindle's speed."""
+TEETH = "tooth by tooth"
+WAYS: dict[str, dict[str, str | bool]] = {
+    TEETH: {"cutting_force": "teeth"},
+    "mean force": {"cutting_force": "mean"},
+    "mean force, cutting_load": {"cutting_force": "mean", "cutting_load": True},
+}
 
 
 def rows() -> Iterator[Row]:
@@ -67,52 +73,38 @@ def rows() -> Iterator[Row]:
     yield from _teeth_beside_mean()
 
 
-@dataclasses.dataclass(frozen=True, slots=True)
-class _Way:
-    """What a run comes to with one ``cutting_force``."""
-
-    contour_um: float
-    bend_um: float
-    force_n: float
-    removed_mm3: float
-    seconds: float
-
-
 def _teeth_beside_mean() -> Iterator[Row]:
     """One job with the force of every tooth, beside the mean force told, and fed to the axes ahead."""
-    teeth = _way({"cutting_force": "teeth"})
-    yield Row("coupling", f"{JOB}, teeth: greatest deflection of the tool", teeth.bend_um, "µm")
-    for peer, load in (("mean force", False), ("mean force, cutting_load", True)):
-        mean = _way({"cutting_force": "mean", "cutting_load": load})
-        for task, unit, figure in (
-            ("worst contour error", "µm", "contour_um"),
-            ("greatest force told", "N", "force_n"),
-            ("material removed", "mm³", "removed_mm3"),
-            ("processor time of the run", "s", "seconds"),
-        ):
-            ours, theirs = getattr(teeth, figure), getattr(mean, figure)
-            yield Row("coupling", f"{JOB}, teeth: {task}", ours, unit, peer, theirs)
+    outcomes: dict[str, Outcome] = {}
+
+    def run(way: str) -> None:
+        outcomes[way] = _outcome(WAYS[way])
+
+    seconds = cpu_seconds_in_turns(*(partial(run, way) for way in WAYS))
+    teeth, *means = [_told(outcomes[way], each) for way, each in zip(WAYS, seconds, strict=True)]
+    bend_um = outcomes[TEETH].loads.greatest["deflection_um"].value
+    yield Row("coupling", f"{JOB}, teeth: greatest deflection of the tool", bend_um, "µm")
+    for peer, mean in zip([way for way in WAYS if way != TEETH], means, strict=True):
+        for (task, unit), figure in teeth.items():
+            beside = mean[task, unit]
+            yield Row("coupling", f"{JOB}, teeth: {task}", figure, unit, peer, beside)
 
 
-def _way(changes: dict[str, str | bool]) -> _Way:
+def _outcome(changes: dict[str, str | bool]) -> Outcome:
     job = read_scene(scene_path(JOB)).preparation.job
-    prepared = prepare_job(Job(job.folder, job.file.model_copy(update=changes)))
-    outcomes: list[Outcome] = []
-    seconds = median_cpu_seconds(lambda: outcomes.append(_outcome(prepared)))
-    outcome = outcomes[-1]
+    run = Run(prepare_job(Job(job.folder, job.file.model_copy(update=changes))))
+    return run.execute(run.dry_run(), None, no_progress)
+
+
+def _told(outcome: Outcome, seconds: float) -> dict[tuple[str, str], float]:
+    """The figures of a run, by name and unit."""
     assert outcome.cut is not None
     assert outcome.cut.force_n is not None
     assert not outcome.alarms
-    felt = {name: each.value for name, each in outcome.loads.greatest.items()}
-    return _Way(
-        outcome.figures.contour.max,
-        felt.get("deflection_um", 0.0),
-        felt.get("force_n", outcome.cut.force_n),
-        outcome.cut.removed_mm3,
-        seconds,
-    )
-
-
-def _outcome(prepared: Preparation) -> Outcome:
-    run = Run(prepared)
-    return run.execute(run.dry_run(), None, no_progress)
+    felt = outcome.loads.greatest.get("force_n")
+    return {
+        ("worst contour error", "µm"): outcome.figures.contour.max,
+        ("greatest force told", "N"): outcome.cut.force_n if felt is None else felt.value,
+        ("material removed", "mm³"): outcome.cut.removed_mm3,
+        ("processor time of the run", "s"): seconds,
+    }
