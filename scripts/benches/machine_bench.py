@@ -1,13 +1,11 @@
 """The machine room beside the raw ``mujoco.rollout`` of the same model and the same controls."""
 
 import dataclasses
-import statistics
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import mujoco
 import numpy as np
-from benches.row import REPEATS, Row, median_cpu_seconds
+from benches.row import REPEATS, Row, cpu_seconds_in_turns, median_cpu_seconds
 from mujoco.rollout import Rollout
 
 from twin.columns import join
@@ -73,7 +71,7 @@ def _beside_rollout(name: str) -> Row:
     points = _circle(name)
     model = physics_model(machine, build_spec(machine))
     chunks = [points[i : i + CHUNK] for i in range(0, len(points), CHUNK)]
-    ours, raw = _paired(
+    ours, raw = cpu_seconds_in_turns(
         lambda: [len(samples) for samples in simulate(machine, model, chunks)],
         lambda: _roll(model, name, chunks),
     )
@@ -107,7 +105,7 @@ def _watching() -> Iterator[Row]:
             clearance.begin()
             assert not any(clearance.look(chunk) for chunk in samples)
 
-        watched, bare = _paired(
+        watched, bare = cpu_seconds_in_turns(
             watch,
             lambda chunks=chunks: [len(samples) for samples in simulate(machine, model, chunks)],
         )
@@ -146,16 +144,3 @@ def _roll(model: mujoco.MjModel, name: str, chunks: list[Setpoints]) -> None:
         with Rollout(nthread=0) as rollout:
             states, _ = rollout.rollout(model, data, state, controls)
         state = states[:, -1].copy()
-
-
-def _paired(
-    ours: Callable[[], object], theirs: Callable[[], object], repeats: int = REPEATS
-) -> tuple[float, float]:
-    """Median seconds of two tasks taken in turns, so that a busy computer slows down both."""
-    times: tuple[list[float], list[float]] = ([], [])
-    for _ in range(repeats + 1):
-        for task, kept in zip((ours, theirs), times, strict=True):
-            start = time.process_time()
-            task()
-            kept.append(time.process_time() - start)
-    return statistics.median(times[0][1:]), statistics.median(times[1][1:])

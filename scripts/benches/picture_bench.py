@@ -9,7 +9,7 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
-from benches.row import REPEATS, Row, median_cpu_seconds, median_seconds
+from benches.row import REPEATS, Row, median_cpu_seconds
 
 from twin.cutting.cut import Cutter
 from twin.cutting.height_map import blank
@@ -118,7 +118,7 @@ def straight_moves_per_second(cell: float) -> float:
     def cut() -> None:
         Cutter(PLATE.model_copy(update={"cell": cell}), TOOL, FRAME, np.zeros(4)).add(samples, feed)
 
-    return len(samples) / median_seconds(cut)
+    return len(samples) / median_cpu_seconds(cut)
 
 
 def ring(cell: float) -> float:

@@ -42,13 +42,18 @@ def median_cpu_seconds(task: Callable[[], object], repeats: int = REPEATS) -> fl
 
     For work on one core it is the time that passes on a machine that does nothing else.
     """
-    task()
-    times: list[float] = []
-    for _ in range(repeats):
-        start = processor_seconds()
-        task()
-        times.append(processor_seconds() - start)
-    return statistics.median(times)
+    return cpu_seconds_in_turns(task, repeats=repeats)[0]
+
+
+def cpu_seconds_in_turns(*tasks: Callable[[], object], repeats: int = REPEATS) -> list[float]:
+    """As ``median_cpu_seconds``, of tasks taken in turns: a busy computer slows down all of them."""
+    times: list[list[float]] = [[] for _ in tasks]
+    for _ in range(repeats + 1):
+        for task, kept in zip(tasks, times, strict=True):
+            start = processor_seconds()
+            task()
+            kept.append(processor_seconds() - start)
+    return [statistics.median(kept[1:]) for kept in times]
 
 
 def median_seconds(task: Callable[[], object], repeats: int = REPEATS) -> float:

@@ -292,11 +292,14 @@ class JobFile(Table):
     fixtures: tuple[FixtureTable, ...] = ()
     """What holds the part, beside what the machine file puts on its table."""
     cutting_load: bool = False
-    """The cutting force pushes the axes; the stock's material and a spindle speed must be known."""
+    """The cutting force pushes the axes; the stock's material and a spindle speed must be known. With
+    ``cutting_force = "teeth"`` it does so without this key."""
     cutting_force: Literal["teeth", "mean", "none"] = "teeth"
     """Of a stock whose material is known: ``teeth``, the force of every tooth acts while it is cut, the tool
-    bends and may break; ``mean``, the mean force is told, and with ``cutting_load`` reckoned ahead, which
-    is quicker; ``none``, neither."""
+    bends and may break; ``mean``, the mean force is told, and with ``cutting_load`` reckoned ahead, but it
+    bends and breaks no tool: contour errors come out several times too small where a tool gives way, and the
+    part does not show it; ``none``, the mean force is told alone. The page of ``twin/coupling`` has one
+    job both ways."""
     offsets: dict[str, dict[str, float]] = Field(default_factory=dict)
     """Work offsets by name (``G54``), each by axis, from part zero [mm or deg]."""
     variables: dict[str, float] = Field(default_factory=dict)
@@ -322,6 +325,12 @@ class JobFile(Table):
     def _nominal_needs_stock(self) -> "JobFile":
         if self.nominal is not None and self.stock is None:
             raise ValueError("a nominal part needs a [stock] that it is cut from")
+        return self
+
+    @pydantic.model_validator(mode="after")
+    def _load_needs_force(self) -> "JobFile":
+        if self.cutting_load and self.cutting_force == "none":
+            raise ValueError('cutting_load needs a force: cutting_force "mean" or "teeth"')
         return self
 
     @pydantic.field_validator("tools")

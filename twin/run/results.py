@@ -8,6 +8,8 @@ from typing import Any
 
 from twin.compare.report.report import Report, write_report
 from twin.compare.result import RunSummary, result, write_result
+from twin.cutting.forces.materials import kienzle
+from twin.job.job_file import StockTable
 from twin.run.outcome import Outcome
 from twin.run.run import Run
 
@@ -97,18 +99,21 @@ def _summary(run: Run, outcome: Outcome) -> RunSummary:
         wall_s=run.clock.wall_s,
         stages={f"{name}_s": seconds for name, seconds in run.clock.seconds.items()},
         near_miss=None if outcome.near_miss is None else dataclasses.asdict(outcome.near_miss),
-        cut=_cut(outcome),
+        cut=_cut(outcome, preparation.job.file.stock),
         commanded=named(outcome.final_commanded),
         simulated=named(outcome.final_simulated),
     )
 
 
-def _cut(outcome: Outcome) -> dict[str, Any] | None:
+def _cut(outcome: Outcome, stock: StockTable | None) -> dict[str, Any] | None:
     """The object ``cut`` of ``result.json``."""
     if outcome.cut is None:
         return None
     gouge = None if outcome.gouge is None else outcome.gouge.as_json()
     cut = {**outcome.cut.as_json(), "nominal_gouge": gouge, "force_simulated": False, "loads": []}
+    material = None if stock is None or outcome.cut.force_n is None else kienzle(stock)
+    if stock is not None and material is not None:
+        cut["material"] = {"name": stock.material, **dataclasses.asdict(material)}
     greatest = {name: each.value for name, each in outcome.loads.greatest.items()}
     if greatest:
         cut |= greatest | {"force_simulated": True, "loads": outcome.loads.as_json()}

@@ -38,7 +38,7 @@ _SMALLEST_SHARE = 0.05
 _TABLE_ROWS = 100
 """A table shows so many arcs or events; all of them are in result.json."""
 _MEDIA = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
-_CUT_FIGURES: tuple[tuple[str, str, Callable[[float], str]], ...] = (
+_CUT_FIGURES: tuple[tuple[str, str, Callable[[Any], str]], ...] = (
     ("removed_mm3", "Material removed", lambda v: f"{v / 1000.0:,.2f} cm³"),
     ("air_share", "Share of the feed path in air", lambda v: f"{v:.1%}"),
     ("force_n", "Greatest cutting force", lambda v: f"{v:,.0f} N"),
@@ -46,6 +46,11 @@ _CUT_FIGURES: tuple[tuple[str, str, Callable[[float], str]], ...] = (
     ("deflection_um", "Greatest deflection of the tool", lambda v: f"{v:,.0f} µm"),
     ("chip_mm", "Thickest chip", lambda v: f"{v:.3f} mm"),
     ("spindle_load", "Greatest load of the spindle", lambda v: f"{v:.0%}"),
+    (
+        "material",
+        "Forces and power by Kienzle's constants of",
+        lambda v: f"{v['name']}: kc1.1 {v['kc']:g} N/mm², mc {v['mc']:g} ({v['source']})",
+    ),
     ("force_simulated", "Force of the cut simulated", lambda v: "yes" if v else "no"),
     ("cell_mm", "Grid of the height map", lambda v: f"{v:g} mm"),
 )
