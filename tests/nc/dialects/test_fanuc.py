@@ -102,6 +102,13 @@ def test_blocks_are_skipped_by_their_number() -> None:
     assert outcome.position == pytest.approx({**ZERO, "Y": 1.0, "C": 0.0})
 
 
+def test_a_block_is_skipped_behind_its_number_which_stays_a_target() -> None:
+    text = "O1\nGOTO 7\nG0 X9.\nN7/X5.\nN8 /2 Y1.\nG0 Z1.\nM30"
+    assert good(text, "fanuc").position == pytest.approx({"X": 5.0, "Y": 1.0, "Z": 1.0, "C": 0.0})
+    skipped = good(text, "fanuc", block_skip_levels=frozenset({2})).position
+    assert skipped == pytest.approx({"X": 5.0, "Y": 0.0, "Z": 1.0, "C": 0.0})
+
+
 # --- offsets and reference points
 
 
@@ -166,6 +173,12 @@ def test_mirror_then_scale_then_rotation() -> None:
 def test_the_centre_of_a_rotation_is_scaled_too() -> None:
     # (10, 0) is the centre (20, 0) once doubled; the point (12, 0) lies at (24, 0), turned (20, 4)
     assert ends("G51 X0 Y0 P2.\nG68 X10. Y0 R90.\nG0 X12. Y0.")[-1] == (20.0, 4.0, 0.0)
+
+
+def test_a_second_rotation_turns_about_where_the_tool_stands() -> None:
+    # turned by 30 degrees, X10 lies at (8.660254, 5): about it, 2 mm along X turned by 90 degrees
+    made = ends("G0 X0 Y0\nG68 R30.\nX10.\nG68 R90.\nG91 X2.")
+    assert made[-1] == (8.660254, 7.0, 0.0)
 
 
 def test_polar_coordinates_count_from_the_origin_or_from_the_tool() -> None:

@@ -98,3 +98,8 @@ def test_no_program_is_taken_for_another_dialects(path: Path) -> None:
 def test_words_of_a_family_ask_which_of_it() -> None:
     with pytest.raises(UsageError, match=r"could be fanuc or haas \(O1000"):
         recognise(source_from_text("%\nO1234 (PART)\nG0 X1.\nM30\n%"))
+
+
+@pytest.mark.parametrize("line", ["G12 G2 X10 Y0 I5 J0", "G13 X10 I5", "G12.1 X10. I5."])
+def test_a_mirror_with_an_arc_is_no_round_pocket_of_a_haas(line: str) -> None:
+    assert not marks_found(source_from_text(line))["haas"]

@@ -153,7 +153,8 @@ class LineReader:
         self._fail("open-comment", message, at, hint="close it on its own line")
 
     def _block_skip(self) -> bool:
-        if self._line[self._at] != "/" or self._words or self._number != NO_BLOCK_NUMBER:
+        numbered = self._number != NO_BLOCK_NUMBER and not self._syntax.skip_levels
+        if self._line[self._at] != "/" or self._words or numbered:
             return False
         self._skippable = True
         self._at += 1

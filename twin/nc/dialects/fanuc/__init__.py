@@ -181,7 +181,7 @@ HAAS = dataclasses.replace(
         Mark(r"\bG154[ \t]*P|\bG1(?:1[0-9]|2[0-9])\b", "G154 P, G110 to G129"),
         Mark(r"\bG187\b|\bG103[ \t]*P", "G187, G103 P"),
         Mark(r"\bM97[ \t]*P", "M97 P"),
-        Mark(r"\bG1[23]\b.*\bI[ \t]*[.0-9]", "G12 or G13 with I"),
+        Mark(r"\bG1[23](?![.0-9])[^GXY]*\bI[ \t]*[.0-9]", "G12 or G13 with I"),
     ),
     memory=_haas_memory,
 )

@@ -84,17 +84,18 @@ def rotate(control: Control) -> None:
     if angle is None:
         control.fail("rotation-angle", "G68 needs its angle R", None, "G68 X0 Y0 R45.")
     plane = control.modal.plane
-    center = list(control.programmed)
+    memory = memory_of(control)
+    turned, turned_shift = _transformation(control)
+    x, y, z = control.programmed[:3]
+    place = applied(turned, (x, y, z))
+    center = [at + by for at, by in zip(place, turned_shift, strict=True)]
+    matrix, shift = _before_rotation(control)
     for index, word in control.take_axis_words():
         if index == plane.axes[2] or index > 2:
             message = f"{word.address} does not lie in the plane {plane.name} that G68 turns"
             control.fail("rotation-angle", message, word, "turning in space is not simulated")
-        center[index] = control.axis_value(index, word)
-    memory = memory_of(control)
-    matrix, shift = _before_rotation(control)
-    x, y, z = applied(matrix, (center[0], center[1], center[2]))
-    moved = (x + shift[0], y + shift[1], z + shift[2])
-    middle = plane.local(moved)
+        center[index] = matrix[index][index] * control.axis_value(index, word) + shift[index]
+    middle = plane.local((center[0], center[1], center[2]))
     memory.rotation = (control.number(angle), (middle.abscissa, middle.ordinate))
     _update(control)
 
@@ -147,17 +148,23 @@ def _before_rotation(control: Control) -> tuple[Matrix, Vector]:
     return matrix, (shift[0], shift[1], shift[2])
 
 
+def _transformation(control: Control) -> tuple[Matrix, Vector]:
+    """Mirror, scale and rotation in force: matrix, and the shift that comes after it."""
+    rotation: tuple[float, Point] | None = memory_of(control).rotation
+    matrix, shift = _before_rotation(control)
+    if rotation is None:
+        return matrix, shift
+    axes = control.modal.plane.directions
+    turning, behind = rotated(IDENTITY, axes, *rotation)
+    x, y, z = applied(turning, shift)
+    matrix, _ = rotated(matrix, axes, *rotation)
+    return matrix, (x + behind[0], y + behind[1], z + behind[2])
+
+
 def _update(control: Control) -> None:
     if control.path.compensating:
         refuse(control, TRANSFORM_COMPENSATED)
-    rotation: tuple[float, Point] | None = memory_of(control).rotation
-    matrix, shift = _before_rotation(control)
-    if rotation is not None:
-        axes = control.modal.plane.directions
-        turning, behind = rotated(IDENTITY, axes, *rotation)
-        x, y, z = applied(turning, shift)
-        matrix, _ = rotated(matrix, axes, *rotation)
-        shift = (x + behind[0], y + behind[1], z + behind[2])
+    matrix, shift = _transformation(control)
     control.frame.set_matrix(matrix)
     others = [0.0] * (len(control.settings.axes) - 3)
     control.frame.set_shift("rotation", [*shift, *others])
