@@ -105,11 +105,12 @@ def test_a_clock_that_leaves_nothing_to_fit_is_refused_with_the_reason(
 
 
 def test_a_log_may_rest_before_its_first_gap(log: MachineLog) -> None:
-    still = 100
     axis = log.axes["X"]
+    still = 100
     command = np.concatenate([np.full(still, axis.command[0]), axis.command])
     actual = np.concatenate([np.full(still, axis.actual[0]), axis.actual])
-    time = np.concatenate([np.arange(still) * 0.001 - 0.5, log.time])
+    before: FloatArray = np.linspace(-0.5, -0.401, still)
+    time = np.concatenate([before, log.time])
     rested = MachineLog(
         "own.csv", time,
         {"X": dataclasses.replace(axis, command=command, actual=actual * 1000.0, more={})},

@@ -208,7 +208,7 @@ def verdict_sentence(name: str, axis: AxisResult, logs: tuple[LogFigures, ...]) 
         told = ", ".join(axis.fit.fitted) or "nothing"
         return f"{name}: of a ball-bar alone, which tells {told}."
     shares = max((figures.share for figures in judged), default=math.inf)
-    seen = "of a log that it has not seen" if unseen else "of the log that it was fitted to"
+    seen = "of a log that it has not seen" if unseen else "of the fitted log"
     sentence = f"{name}: predicts the {what} {seen} to {100 * shares:.2g} %"
     open_ones = [
         told
