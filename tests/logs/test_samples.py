@@ -45,7 +45,7 @@ def test_calibrate_reads_what_is_no_plain_table(twin: Twin, tmp_path: Path, name
     out = tmp_path / "mine.toml"
     done = twin("calibrate", SAMPLES / name, "--columns", SAMPLES / MAPS[name], "--out", out)
     assert done.code == 0, done.stderr
-    assert "X: predicts the lag of the log that it was fitted to" in done.stdout
+    assert "X: predicts the lag of the fitted log" in done.stdout
     assert "[axes.X]\nkv = 5." in out.read_text(encoding="utf-8")
 
 
