@@ -100,11 +100,17 @@ export function field(attributes, send) {
   return made;
 }
 
+/** What is selected in a field: a whole text stays selected whole, though the text drawn anew is longer. */
+function selection(one) {
+  const whole = one.selectionStart === 0 && one.selectionEnd === one.value.length && one.value !== "";
+  return whole ? [0, Number.MAX_SAFE_INTEGER] : [one.selectionStart, one.selectionEnd];
+}
+
 /** What stands in the fields of a part of the page, of which hand, and where the hand is: to be put back when it has been drawn anew. */
 export function typing(part) {
   const fields = [...part.querySelectorAll("input:not([type=checkbox]):not([data-hand=shown]):not([data-hand=sent]), select")];
   const here = part.contains(document.activeElement) ? document.activeElement : null;
-  const found = { values: fields.map((one) => [one.dataset.key, one.value, one.dataset.hand]), focus: here?.dataset.key, caret: here?.type === "text" ? [here.selectionStart, here.selectionEnd] : null };
+  const found = { values: fields.map((one) => [one.dataset.key, one.value, one.dataset.hand]), focus: here?.dataset.key, caret: here?.type === "text" ? selection(here) : null };
   // They are taken away, which is no leaving of a field.
   for (const one of fields) delete one.dataset.hand;
   return found;
