@@ -12,7 +12,9 @@ from twin.nc.bytecode.token_kinds import UNSUPPORTED
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.kernels.tokenizer import read_words
 from twin.nc.dialects import dialect_named
+from twin.nc.text.comments import OPEN_COMMENT
 from twin.nc.text.diagnostics import ProgramError
+from twin.nc.text.grammar import Grammar
 from twin.nc.text.lexer import Lexer
 from twin.nc.text.plain_word import NUMBER, SIGNED_NUMBER, SIGNED_POINTED_NUMBER
 from twin.nc.text.reporter import Reporter
@@ -39,6 +41,25 @@ def test_what_the_tokenizer_reads_the_reader_reads_as_well(line: str):
         assert blocks is not None
         assert values[:count].tolist() == [word.value for word in words]
         assert kinds[:count].tolist() == [TABLES.token_kinds[word.address] for word in words]
+
+
+def test_blanks_within_numbers_are_closed_up_and_those_of_comments_are_not():
+    report = Reporter(source_from_text(""), strict=False)
+    (block,) = Lexer(dialect_named("linuxcnc"), report).blocks("X1 2 (3 4; 5) Y6 7 ;(8 9", 1)
+    assert [(word.address, word.value) for word in block.words] == [("X", 12.0), ("Y", 67.0)]
+
+
+@given(st.text("( *)/;%1 X", max_size=12))
+def test_comments_do_not_overlap_and_outside_of_them_alone_text_is_replaced(line: str):
+    grammar = Grammar(DIALECT)
+    closed = [each for each in grammar.comments_of(line) if each[1] != OPEN_COMMENT]
+    assert [place for each in closed for place in each] == sorted(
+        place for each in closed for place in each
+    )
+    replaced = grammar.outside_comments(re.compile("."), lambda _: "_", line)
+    for at, character in enumerate(line):
+        inside = any(begin <= at < end for begin, end in closed)
+        assert replaced[at] == (character if inside else "_")
 
 
 @given(st.text("0159.+-", max_size=6))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compilation.compilable import compilable
+from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.bytecode import Instruction
 from twin.nc.bytecode.coordinates import directions, reframe, to_part, transform
@@ -178,7 +178,7 @@ def _report_effect(
     return top
 
 
-@compilable
+@inlined
 def report_act(act: int, amount: float, block: BlockPlace, on: Affected) -> None:
     """What happens at a hole and is no move: a dwell [s], or the spindle with its speed."""
     kind, value = FUNCTION_WITH_SPEED, on.state.registers[SPINDLE]

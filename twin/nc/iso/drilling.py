@@ -24,6 +24,7 @@ from twin.nc.path.drilling_cycle import (
     begin,
     hole_of,
     most_acts,
+    next_place,
     no_values,
     remember,
     write_acts,
@@ -191,13 +192,12 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
     axis = control.modal.plane.axes[2]
     room = most_acts(hole.stops)
     acts, amounts = [0.0] * room, [0.0] * room
-    for number in range(write_acts(hole, control.programmed[axis], acts, amounts)):
-        act, amount = Act(int(acts[number])), amounts[number]
-        if act in (Act.RAPID, Act.FEED, Act.ACROSS):
-            over = target if act is Act.ACROSS else None
-            there = list(control.programmed if over is None else over)
-            there[axis] = amount
-            control.line_to(there, rapid=act is not Act.FEED)
+    goal = list(control.programmed)
+    over = goal if target is None else target
+    for number in range(write_acts(hole, goal[axis], acts, amounts)):
+        act, amount = int(acts[number]), amounts[number]
+        if next_place(act, amount, over, goal, axis):
+            control.line_to(list(goal), rapid=act != Act.FEED)
         else:
             place = BlockPlace(control.block.line, 0, control.path.compensating)
             report_act(act, amount, place, control.begin_effect())

@@ -320,6 +320,26 @@ def most_acts(stops: int) -> int:
 
 
 @compilable
+def next_place(act: float, amount: float, over: Values, goal: Values, axis: int) -> bool:
+    """Whether an act is a move; the goal, where the tool stands before, becomes its end.
+
+    Args:
+        act: An ``Act``.
+        amount: Its height [mm].
+        over: The hole's place, shape (k,).
+        goal: Shape (k,).
+        axis: The axis across the plane.
+    """
+    if act not in (_UP, _DOWN, _ACROSS):
+        return False
+    if act == _ACROSS:
+        for other in range(len(goal)):
+            goal[other] = over[other]
+    goal[axis] = amount
+    return True
+
+
+@compilable
 def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
     """Write what happens at a hole; how many acts there are.
 

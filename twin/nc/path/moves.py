@@ -82,6 +82,12 @@ def only_turns(start: Position, end: Position, linear: Sequence[bool] | NDArray[
 
 
 @inlined
+def rapid_feed(own: float, feed: float) -> float:
+    """Feed of rapids that the program paces [mm/min]: their own per second, where that is 0 F; or NaN."""
+    return (own if own != 0.0 else feed) * 60.0
+
+
+@inlined
 def feed_per_minute(
     feed: float, turning: bool, unit: float, factor: float, otherwise: tuple[float, float]
 ) -> float:

@@ -1,17 +1,18 @@
 """Where comments begin and end, for both tiers."""
 
+import functools
+import re
 from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from twin.compilation.compilable import compilable
+from twin.compilation.compilable import compilable, compilable_as
 from twin.nc.text.plain_word import IS_BLANK
 from twin.nc.text.syntax import Comment
 
-Characters: TypeAlias = "Sequence[int] | npt.NDArray[np.uint8]"
-"""Bytes of UTF-8, or code points."""
+Characters: TypeAlias = "bytes | npt.NDArray[np.uint8]"
 Marks: TypeAlias = "Sequence[Sequence[int]] | npt.NDArray[np.uint8]"
 NO_COMMENT, OPEN_COMMENT = -1, -2
 """None begins there; it is not closed, or holds what no line may hold."""
@@ -62,7 +63,7 @@ def comment_end(line: Characters, begin: int, at: int, end: int, marks: CommentM
     """The place behind the comment that begins at a place.
 
     Args:
-        line: Holds the line.
+        line: Holds the line, a byte for each character or as UTF-8: what marks comments is ASCII.
         begin: Where it begins.
         at: The place.
         end: Behind its last character.
@@ -76,16 +77,37 @@ def comment_end(line: Characters, begin: int, at: int, end: int, marks: CommentM
         if behind == NO_COMMENT or (marks.whole_line[kind] and not _is_blank(line, begin, at)):
             continue
         closing = marks.closings[kind]
-        for place in range(behind, end):
-            character = line[place]
-            if character < _CONTROL and is_control(character):
+        place = _find_stop(line, behind, end, closing[0])
+        while place < end:
+            if is_control(line[place]):
                 return OPEN_COMMENT
-            if character == closing[0]:
-                closed = _behind(line, place, end, closing)
-                if closed != NO_COMMENT:
-                    return closed
+            closed = _behind(line, place, end, closing)
+            if closed != NO_COMMENT:
+                return closed
+            place = _find_stop(line, place + 1, end, closing[0])
         return end if closing[0] == 0 else OPEN_COMMENT
     return NO_COMMENT
+
+
+def _find_stop_one_by_one(line: Characters, begin: int, end: int, closing: int) -> int:
+    for place in range(begin, end):
+        character = line[place]
+        if character == closing or (character < _CONTROL and is_control(character)):
+            return place
+    return end
+
+
+@compilable_as(_find_stop_one_by_one)
+def _find_stop(line: Characters, begin: int, end: int, closing: int) -> int:
+    """The first place that holds a character, or one that no line may hold; ``end`` where none does."""
+    found = _stops(int(closing)).search(bytes(line[begin:end]))
+    return end if found is None else begin + found.start()
+
+
+@functools.cache
+def _stops(closing: int) -> re.Pattern[bytes]:
+    characters = bytes([closing, *filter(is_control, range(_CONTROL))])
+    return re.compile(b"[" + re.escape(characters) + b"]")
 
 
 @compilable

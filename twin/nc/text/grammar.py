@@ -1,9 +1,9 @@
 """A dialect's syntax as compiled patterns."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
-from twin.nc.text.comments import comment_marks
+from twin.nc.text.comments import NO_COMMENT, OPEN_COMMENT, comment_end, comment_marks
 from twin.nc.text.expression_reader import ExpressionReader, operator_pattern
 from twin.nc.text.expressions import ExpressionSyntax
 from twin.nc.text.plain_word import BLANKS, BLANKS_BETWEEN, SIGNED_NUMBER
@@ -16,7 +16,6 @@ class Grammar:
     Attributes:
         language: Whose syntax it is.
         syntax: Its declaration.
-        comments: How comments are marked.
         comment_openings: The characters that they may begin with.
         word: An address with a plain number and, where the dialect has it, the incremental suffix.
         address: An address alone.
@@ -40,12 +39,7 @@ class Grammar:
         self.word = _compiled(
             rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}({SIGNED_NUMBER})(?!{continues}){suffix}"
         )
-        kinds = [
-            re.escape(each.opening) + ".*?" + (re.escape(each.closing) or "$")
-            for each in syntax.comments
-        ]
-        self._comment = re.compile(f"({'|'.join(kinds)})")
-        self.comments = comment_marks(syntax.comments)
+        self._comments = comment_marks(syntax.comments)
         self.comment_openings = {comment.opening[0] for comment in syntax.comments}
         self.address = _compiled(rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}")
         self.suffix = _compiled(suffix)
@@ -53,13 +47,31 @@ class Grammar:
             _compiled(rf"{BLANKS}({syntax.statement})") if syntax.statement is not None else None
         )
 
+    def comment_end(self, line: str, at: int) -> int:
+        """The place behind a line's comment that begins at a place, or as ``comments.comment_end``."""
+        return comment_end(line.encode("ascii", "replace"), 0, at, len(line), self._comments)
+
+    def comments_of(self, line: str) -> Iterator[tuple[int, int]]:
+        """Where the comments of a line begin, and what ``comment_end`` says of each."""
+        behind = 0
+        for at, character in enumerate(line):
+            if at >= behind and character in self.comment_openings:
+                end = self.comment_end(line, at)
+                if end != NO_COMMENT:
+                    yield at, end
+                behind = max(behind, end)
+
     def outside_comments(
         self, pattern: re.Pattern[str], new: Callable[[re.Match[str]], str], line: str
     ) -> str:
         """A line with what matches a pattern outside its comments replaced."""
-        pieces = self._comment.split(line)
-        pieces[::2] = [pattern.sub(new, piece) for piece in pieces[::2]]
-        return "".join(pieces)
+        pieces: list[str] = []
+        at = 0
+        for begin, end in self.comments_of(line):
+            if end != OPEN_COMMENT:
+                pieces += [pattern.sub(new, line[at:begin]), line[begin:end]]
+                at = end
+        return "".join([*pieces, pattern.sub(new, line[at:])])
 
     def name(self, address: str) -> str:
         """An address in upper case, without the = of ``X1=``, as the dialect calls it."""

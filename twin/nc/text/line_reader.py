@@ -8,7 +8,7 @@ from typing import NoReturn
 from twin.nc.canonical import NO_BLOCK_NUMBER
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
-from twin.nc.text.comments import NO_COMMENT, OPEN_COMMENT, comment_end
+from twin.nc.text.comments import NO_COMMENT, OPEN_COMMENT
 from twin.nc.text.expressions import (
     LARGEST_NUMBER,
     ExpressionError,
@@ -133,10 +133,9 @@ class LineReader:
 
     def _comment(self) -> bool:
         """Pass over a comment; False where none begins."""
-        line, at = list(map(ord, self._line)), self._at
-        end = comment_end(line, 0, at, len(line), self._grammar.comments)
+        end = self._grammar.comment_end(self._line, self._at)
         if end == OPEN_COMMENT:
-            self._refuse_open_comment(self._line[at:], at)
+            self._refuse_open_comment(self._line[self._at :], self._at)
         if end == NO_COMMENT:
             return False
         self._at = end
@@ -217,13 +216,10 @@ class LineReader:
 
     def _without_comments(self, text: str, start: int) -> str:
         """A statement's text with blanks in place of its comments in brackets."""
-        for comment in self._syntax.comments:
-            while comment.closing and (opening := text.find(comment.opening)) >= 0:
-                end = text.find(comment.closing, opening + len(comment.opening))
-                if end < 0:
-                    self._refuse_open_comment(text[opening:], start + opening)
-                end += len(comment.closing)
-                text = text[:opening] + " " * (end - opening) + text[end:]
+        for begin, end in self._grammar.comments_of(text):
+            if end == OPEN_COMMENT:
+                self._refuse_open_comment(text[begin:], start + begin)
+            text = text[:begin] + " " * (end - begin) + text[end:]
         return text
 
     def _wants_value(self, text: str, opening: str) -> bool:

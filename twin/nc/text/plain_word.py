@@ -19,17 +19,18 @@ _CHARACTERS: Mapping[int, str] = {
     _SIGN: "+-",
 }
 
-BEGIN, ADDRESS, _SIGNED, WHOLE, _LONE_POINT, FRACTION = range(6)
+BEGIN, ADDRESS, SIGNED, WHOLE, _LONE_POINT, FRACTION, END = range(7)
 """How far a word has been read: blanks alone; its address; a sign; digits; a point without digits
-before it; digits with a point."""
+before it; digits with a point. Or it has ended before."""
 _NUMBER = {_DIGIT: WHOLE, _POINT: _LONE_POINT}
 _STEPS: Mapping[int, Mapping[int, int]] = {
     BEGIN: {_BLANK: BEGIN, _LETTER: ADDRESS},
-    ADDRESS: {_BLANK: ADDRESS, **_NUMBER, _SIGN: _SIGNED},
-    _SIGNED: _NUMBER,
+    ADDRESS: {_BLANK: ADDRESS, **_NUMBER, _SIGN: SIGNED},
+    SIGNED: _NUMBER,
     WHOLE: {_DIGIT: WHOLE, _POINT: FRACTION},
     _LONE_POINT: {_DIGIT: FRACTION},
     FRACTION: {_DIGIT: FRACTION},
+    END: {},
 }
 """Where each kind of character leads; any other one ends the word."""
 _ENDS = (WHOLE, FRACTION)
@@ -60,13 +61,10 @@ def _onward(stage: int, ends: Collection[int]) -> str:
 
 BLANKS, BLANKS_BETWEEN = _repeated(BEGIN), _repeated(ADDRESS)
 """What may stand before an address, and behind it; as all others, for regular expressions."""
-NUMBER, SIGNED_NUMBER = _onward(_SIGNED, _ENDS), _onward(ADDRESS, _ENDS)
+NUMBER, SIGNED_NUMBER = _onward(SIGNED, _ENDS), _onward(ADDRESS, _ENDS)
 """A number without a sign, and a word's, which may have one."""
 SIGNED_POINTED_NUMBER = _onward(ADDRESS, (FRACTION,))
 """That of a word, with a decimal point."""
-
-END = 255
-"""A byte ends the word."""
 
 
 def _walk() -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
@@ -78,8 +76,10 @@ def _walk() -> np.ndarray[tuple[int], np.dtype[np.uint8]]:
 
 
 WALK = _walk()
-"""The stage that a byte of UTF-8 leads to, or ``END``: 256 for each stage, shape (1536,)."""
+"""The stage that a byte of UTF-8 leads to: 256 for each stage, shape (1792,)."""
 IS_BLANK = WALK[:256] == BEGIN
 """Whether a byte is a blank, shape (256,)."""
+IS_DIGIT = WALK[FRACTION << 8 : (FRACTION + 1) << 8] == FRACTION
+"""Whether a byte is a digit, shape (256,)."""
 IS_WORD = np.isin(np.arange(len(_STEPS)), _ENDS)
-"""Whether what has come to a stage is a whole word, shape (6,)."""
+"""Whether what has come to a stage is a whole word, shape (7,)."""

@@ -39,7 +39,7 @@ NO_ROOM = -2
 """The rows are full."""
 _WORDS = len(Cycle._fields)
 _REPEATS_ONLY = Cycle._fields.index("repeats_only")
-_UP, _DOWN, _ACROSS = int(Act.RAPID), int(Act.FEED), int(Act.ACROSS)
+_DOWN = int(Act.FEED)
 
 
 @compilable
@@ -166,18 +166,15 @@ def _emit_hole(
     copy(state.programmed, goal)
     acts, amounts, after = constants.hole[2], constants.hole[3], row
     for step in range(drilling_cycle.write_acts(hole, here[axis], acts, amounts)):
-        act = int(acts[step])
-        if act in (_UP, _DOWN, _ACROSS):
-            if act == _ACROSS:
-                copy(constants.over, goal)
-            goal[axis] = amounts[step]
+        act, amount = int(acts[step]), amounts[step]
+        if drilling_cycle.next_place(act, amount, constants.over, goal, axis):
             travel = feeding if act == _DOWN else rapidly
             after = _go(goal, travel, block, constants, state, rows, after)
             if after == UNSUPPORTED:
                 return UNSUPPORTED
         else:
             place = BlockPlace(block.line, after, False)
-            report_act(act, amounts[step], place, Affected(constants, state, rows))
+            report_act(act, amount, place, Affected(constants, state, rows))
     copy(here, constants.over)
     copy(part, state.target)
     return after

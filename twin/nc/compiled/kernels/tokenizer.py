@@ -8,7 +8,7 @@ wrong, is left to that reader: it alone makes diagnostics.
 
 import numpy as np
 
-from twin.compilation.compilable import compilable
+from twin.compilation.compilable import compilable, inlined
 from twin.nc.bytecode.registers import MOST_WORDS
 from twin.nc.bytecode.token_kinds import NUMBER, OTHER, UNSUPPORTED, ByteArray, LineTables
 from twin.nc.canonical import FloatArray, IntArray
@@ -18,9 +18,10 @@ from twin.nc.text.plain_word import (
     BEGIN,
     END,
     FRACTION,
+    IS_DIGIT,
     IS_WORD,
+    SIGNED,
     WALK,
-    WHOLE,
 )
 
 _MINUS, _POINT, _DIGIT_0 = ord("-"), ord("."), ord("0")
@@ -93,29 +94,47 @@ def read_words(
 def _read_word(data: ByteArray, at: int, end: int) -> tuple[int, int, float, int]:
     """A word: the stage that it has come to, its letter from 0, its number, and the place behind it.
 
-    That place is ``UNSUPPORTED`` where the word has no number or a very long one.
+    That place is ``UNSUPPORTED`` where the word has no number or a very long one. A number's stages
+    follow from its digits and its point: a loop that went by them from byte to byte would wait for each.
     """
-    stage, letter, negative = BEGIN, 0, False
-    mantissa, decimals = 0, 0
+    at = _stay(data, at, end, BEGIN)
+    if at == end or WALK[BEGIN << 8 | int(data[at])] == END:
+        return BEGIN, 0, 0.0, at
+    letter = (int(data[at]) & _TO_UPPER) - _LETTER_A
+    at = _stay(data, at + 1, end, ADDRESS)
+    signed = at < end and WALK[ADDRESS << 8 | int(data[at])] == SIGNED
+    negative = at < end and data[at] == _MINUS
+    stage = SIGNED if signed else ADDRESS
+    at += signed
+    mantissa, digits, decimals, pointed = 0, 0, 0, False
     while at < end:
         byte = int(data[at])
-        following = WALK[stage << 8 | byte]
-        if following == END:
-            break
-        stage = int(following)
-        if stage >= WHOLE and byte != _POINT:
+        if IS_DIGIT[byte]:
             if mantissa > _EXACT_MANTISSA:
                 return stage, letter, 0.0, UNSUPPORTED
             mantissa = 10 * mantissa + byte - _DIGIT_0
-            decimals += stage == FRACTION
-        elif stage == ADDRESS and byte >= _LETTER_A:
-            letter = (byte & _TO_UPPER) - _LETTER_A
-        elif byte == _MINUS:
-            negative = True
+            digits += 1
+            decimals += pointed
+        elif byte == _POINT and not pointed:
+            pointed = True
+        else:
+            break
         at += 1
-    if stage == BEGIN:
-        return stage, letter, 0.0, at
+    if digits > decimals:  # further digits stay at the stage of the first
+        stage = int(WALK[stage << 8 | _DIGIT_0])
+    if pointed:
+        stage = int(WALK[stage << 8 | _POINT])
+    if decimals > 0:
+        stage = int(WALK[stage << 8 | _DIGIT_0])
     if not IS_WORD[stage] or decimals >= len(_POWERS):
         return stage, letter, 0.0, UNSUPPORTED
     value = mantissa / _POWERS[decimals]
     return stage, letter, (-value if negative else value), at
+
+
+@inlined
+def _stay(data: ByteArray, at: int, end: int, stage: int) -> int:
+    """The first place from ``at`` on whose byte leads on from a stage, or ``end``."""
+    while at < end and WALK[stage << 8 | int(data[at])] == stage:
+        at += 1
+    return at

@@ -46,7 +46,13 @@ from twin.nc.compiled.kernels.move_row import Travel, put_move, put_positions
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
 from twin.nc.functions import turns_behind
 from twin.nc.path.event_columns import FUNCTION_ALONE
-from twin.nc.path.moves import LARGEST_COORDINATE, feed_per_minute, line_length, only_turns
+from twin.nc.path.moves import (
+    LARGEST_COORDINATE,
+    feed_per_minute,
+    line_length,
+    only_turns,
+    rapid_feed,
+)
 from twin.nc.path.rows import copy
 from twin.nc.text.arithmetic import is_whole
 from twin.nc.text.line_reader import LARGEST_LABEL
@@ -237,7 +243,7 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     pace = constants.rapid_feed
     own = constants.own_rapid_feed
     if kind == RAPID_LINE and not np.isnan(own):
-        pace = (own if own != 0.0 else block.feed) * 60.0
+        pace = rapid_feed(own, block.feed)
     elif kind != RAPID_LINE:
         turning = not is_arc and only_turns(position[0], position[1], constants.linear)
         otherwise = (constants.default_feed, constants.default_rotary_feed)

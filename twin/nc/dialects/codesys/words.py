@@ -2,10 +2,12 @@
 
 import math
 
+from twin.nc.bytecode.registers import PROGRAMMED_FEED
 from twin.nc.control.codes import WordAction
 from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.actions import lead_into_length
 from twin.nc.dialects.codesys.program import variables
+from twin.nc.path.moves import rapid_feed
 from twin.nc.text.blocks import Word
 
 LARGEST_SWITCH = 32_767
@@ -50,8 +52,8 @@ def own_rapid_feed(control: Control) -> float:
 def before_motion(control: Control, rapid: bool) -> None:
     """What holds for every motion block: the pace of G0, and the shortest way of modulo axes."""
     if rapid:
-        feed = own_rapid_feed(control) or control.feed
-        control.rapid_feed = math.nan if feed is None else feed * 60.0
+        feed = control.registers[PROGRAMMED_FEED]
+        control.rapid_feed = rapid_feed(own_rapid_feed(control), feed)
     _refuse_slopes(control)
     take_shortest_way(control)
     if any(variables(control).length_ramp):
