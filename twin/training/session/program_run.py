@@ -21,6 +21,7 @@ from twin.machine.description.config import Machine
 from twin.machine.description.motion_limits import motion_limits
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.motion.live.live_motion import LiveMotion
+from twin.motion.profile.windows import LOOK_AHEAD
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Event, FloatArray, Function, Motion, Moves
 from twin.nc.control.dialect import Dialect
@@ -48,12 +49,15 @@ from twin.training.session.block_walk import BlockWalk, ModalState
 
 MOVES_AT_ONCE = 256
 """Moves that are interpreted before the planner hears of them."""
-CHUNKS_AHEAD = 4
-"""Groups of so many moves that are interpreted ahead of the planner."""
+CHUNKS_AHEAD = 2 * math.ceil(LOOK_AHEAD / MOVES_AT_ONCE)
+"""Groups of so many moves that are interpreted ahead of the planner: as much as it looks ahead, so that
+it ends no part where the program goes on."""
 BLOCKS_AT_REST, BLOCKS_IN_MOTION = 200, 50
 """Blocks that are interpreted in one slice of time, before the axes move and while they do."""
 BLOCKS_FOR_PLANNER = 400
 """Blocks more that are interpreted in one slice where the planner has caught up."""
+MOVES_KEPT_BEHIND = 2
+"""Moves behind the axes that are remembered: a stop at a block's end may count as the next one's beginning."""
 SLICES_AT_REST = 100
 """Slices after which the axes begin with what moves there are."""
 
@@ -164,6 +168,8 @@ class ProgramRun:
         self._collected: dict[str, Function] = {}
         if options.inherited is not None:
             self._inherit(options.inherited)
+        self._active: tuple[float, ...] = ()
+        self._codes: tuple[str, ...] = ()
         self.dropped = False
         self.optional = False
         self.ending: Ending | None = None
@@ -272,9 +278,17 @@ class ProgramRun:
             self._driven = True
             self._begin_singly()
         setpoints = motion.advance(count)
+        if len(setpoints):
+            self._forget_behind(int(setpoints.move[0]))
         if single and not self.dropped and not self._walk.paused:
             self._stop_behind_block(motion, setpoints)
         return setpoints
+
+    def _forget_behind(self, move: int) -> None:
+        """Drop what nobody asks for once the axes are past it: a program may be endless."""
+        while len(self._firsts) > 1 and self._firsts[1] < move - MOVES_KEPT_BEHIND:
+            del self._firsts[0], self._moves[0]
+        self._walk.forget(move - MOVES_KEPT_BEHIND)
 
     def _begin_singly(self) -> None:
         """The first block of a part: it may move nothing, or wait for start."""
@@ -365,9 +379,11 @@ class ProgramRun:
         if self.ending is None and len(self._waiting) < CHUNKS_AHEAD:
             self._interpret(most)
         self._looks += 1
-        if self._motion is None and self._looks > SLICES_AT_REST and len(self._control.path):
+        long_enough = self._looks > SLICES_AT_REST
+        if self._motion is None and long_enough and len(self._control.path):
             self._finish_chunk(self._control.path.take())
-        if self._motion is None and self._waiting:
+        enough = long_enough or self.ending is not None or len(self._waiting) >= CHUNKS_AHEAD
+        if self._motion is None and self._waiting and enough:
             start, zero = self._begin
             self._motion = LiveMotion(
                 self._chunks(),
@@ -469,9 +485,11 @@ class ProgramRun:
 
     def _note(self, block: Block, mark: int) -> None:
         control = self._control
-        codes = tuple(f"G{number:g}" for number in control.active.values())
+        active = tuple(control.active.values())
+        if active != self._active:
+            self._active, self._codes = active, tuple(f"G{number:g}" for number in active)
         factor = FEED_FACTORS.get(control.modal.feed_mode)
-        state = ModalState(block.line, codes, control.feed, control.tools.spindle, factor)
+        state = ModalState(block.line, self._codes, control.feed, control.tools.spindle, factor)
         self._walk.note(mark, state)
 
     def _look_for_stop(self, block: Block) -> None:
@@ -572,7 +590,7 @@ class ProgramRun:
         return None if found is None else (found[0].end[found[1]], found[0].display[found[1]])
 
     def _find(self, move: int) -> tuple[Moves, int] | None:
-        if move < 0 or move >= self._count:
+        if not self._firsts or not self._firsts[0] <= move < self._count:
             return None
         chunk = bisect.bisect_right(self._firsts, move) - 1
         return self._moves[chunk], move - self._firsts[chunk]
