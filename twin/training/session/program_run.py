@@ -50,8 +50,8 @@ from twin.training.session.block_walk import BlockWalk, ModalState
 MOVES_AT_ONCE = 256
 """Moves that are interpreted before the planner hears of them."""
 CHUNKS_AHEAD = 2 * math.ceil(LOOK_AHEAD / MOVES_AT_ONCE)
-"""Groups of so many moves that are interpreted ahead of the planner: as much as it looks ahead, so that
-it ends no part where the program goes on."""
+"""Groups of so many moves that are interpreted ahead of the planner, to begin with: where it makes one
+block of several moves, it looks ahead to more of them."""
 BLOCKS_AT_REST, BLOCKS_IN_MOTION = 200, 50
 """Blocks that are interpreted in one slice of time, before the axes move and while they do."""
 BLOCKS_FOR_PLANNER = 400
@@ -72,6 +72,11 @@ NO_COMPENSATION = 40
 
 PASSED = 0.5
 """A stop at the end of a block is given as the end of its move or as the beginning of the next."""
+
+
+class _TooFewMovesError(Exception):
+    """The planner cannot begin yet without ending the part where the program goes on."""
+
 
 Ending = Literal["end", "stop", "tool", "wait", "soft-limit", "program"]
 
@@ -229,8 +234,10 @@ class ProgramRun:
 
     def _prepare_part(self, start: FloatArray, zero: FloatArray, spindle: SpindleState) -> None:
         self._forget()
-        tool = self._control.tools.spindle or 0
-        self._waits = Waits(self._machine.file.spindle, {}, tool, spindle)
+        tools = self._control.tools
+        self._waits = Waits(
+            self._machine.file.spindle, {}, tools.spindle or 0, spindle, tools.selected
+        )
         self._begin = start, zero
         self.ending = None
 
@@ -376,27 +383,37 @@ class ProgramRun:
         """Interpret some blocks more; the axes can go once there are moves."""
         most = BLOCKS_AT_REST if self._motion is None else BLOCKS_IN_MOTION
         self._left = BLOCKS_FOR_PLANNER
-        if self.ending is None and len(self._waiting) < CHUNKS_AHEAD:
+        if self.ending is None and len(self._waiting) < self._ahead:
             self._interpret(most)
         self._looks += 1
         long_enough = self._looks > SLICES_AT_REST
         if self._motion is None and long_enough and len(self._control.path):
             self._finish_chunk(self._control.path.take())
-        enough = long_enough or self.ending is not None or len(self._waiting) >= CHUNKS_AHEAD
+        enough = long_enough or self.ending is not None or len(self._waiting) >= self._ahead
         if self._motion is None and self._waiting and enough:
-            start, zero = self._begin
+            self._begin_to_plan(at_any_rate=long_enough)
+
+    def _begin_to_plan(self, *, at_any_rate: bool) -> None:
+        """Let the planner begin; if it looks ahead to more moves than there are, they come first."""
+        start, zero = self._begin
+        pulled: list[Chunk] = []
+        try:
             self._motion = LiveMotion(
-                self._chunks(),
+                self._chunks(pulled, at_any_rate=at_any_rate),
                 self._limits,
                 period_s=self._machine.file.servo_period_s,
                 part_zero=zero,
                 start=start,
                 largest_override=LARGEST_OVERRIDE,
             )
+        except _TooFewMovesError:
+            self._waiting.extendleft(reversed(pulled))
+            self._ahead = 2 * len(pulled)
 
     def _forget(self) -> None:
         self._motion: LiveMotion | None = None
         self._looks = self._left = 0
+        self._ahead = CHUNKS_AHEAD
         self._waiting: deque[Chunk] = deque()
         self._count = 0
         self._walk = BlockWalk()
@@ -405,9 +422,17 @@ class ProgramRun:
         self._moves: list[Moves] = []
         self._firsts: list[int] = []
 
-    def _chunks(self) -> Iterator[Chunk]:
-        """What the planner pulls; where it is quicker than the interpreter, the part ends there."""
+    def _chunks(self, pulled: list[Chunk], *, at_any_rate: bool) -> Iterator[Chunk]:
+        """What the planner pulls; where it is quicker than the interpreter, the part ends there.
+
+        Args:
+            pulled: Is given what the planner begins with.
+            at_any_rate: Whether it begins with what there is.
+        """
         while True:
+            begun = at_any_rate or self._motion is not None
+            if not self._waiting and self.ending is None and not begun:
+                raise _TooFewMovesError
             if not self._waiting and self.ending is None:
                 self._interpret(min(BLOCKS_IN_MOTION, self._left))
                 self._left -= BLOCKS_IN_MOTION
@@ -417,6 +442,8 @@ class ProgramRun:
                     self.ending = "wait"
             if not self._waiting:
                 return
+            if self._motion is None:
+                pulled.append(self._waiting[0])
             yield self._waiting.popleft()
 
     def _interpret(self, most: int) -> None:
