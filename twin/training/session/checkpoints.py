@@ -12,14 +12,13 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from twin.cutting.height_map import HeightMap
-from twin.cutting.kernels.walls import WallArray
 from twin.cutting.outline import Outline
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.watching.relative_motion import RelativeMotion
-from twin.nc.canonical import FloatArray
 from twin.nc.text.source import Source
 from twin.training.scene.scene_file import Scene
 from twin.training.session.inspection import Inspection
@@ -53,7 +52,7 @@ _SHARED = (
 """What never changes and need not be copied."""
 
 
-Cells = FloatArray | WallArray
+Cells = npt.NDArray[np.float64 | np.float32]
 """What is kept of every cell of the stock."""
 
 
