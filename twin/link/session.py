@@ -1,5 +1,6 @@
 """LinuxCNC and the twin together: a program, or a session at LinuxCNC's screen."""
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -12,8 +13,8 @@ from twin.link.linuxcnc import (
     LOG_NAME,
     OPERATOR,
     LinuxCnc,
+    claimed_linuxcnc,
     operator_log,
-    require_linuxcnc,
     require_plain,
     running,
 )
@@ -59,7 +60,7 @@ def run_on_twin(
     wish: Wish,
     say: Callable[[str], None],
 ) -> tuple[Outcome, dict[str, float]]:
-    """Let LinuxCNC work the twin.
+    """Let LinuxCNC work the twin; there can be one of both on a computer.
 
     Args:
         run: The prepared job.
@@ -76,7 +77,19 @@ def run_on_twin(
     Raises:
         UsageError: LinuxCNC or its component is not installed, or cannot drive this machine.
     """
-    start = require_linuxcnc()
+    with claimed_linuxcnc() as start:
+        return _run(start, run, dry_run, folder, progress, wish, say)
+
+
+def _run(
+    start: Path,
+    run: Run,
+    dry_run: DryRun,
+    folder: Path,
+    progress: Progress,
+    wish: Wish,
+    say: Callable[[str], None],
+) -> tuple[Outcome, dict[str, float]]:
     preparation = run.preparation
     axes = preparation.machine.axes
     own = folder.resolve() / FOLDER_NAME
@@ -90,7 +103,7 @@ def run_on_twin(
     with LockstepMotion(live, places, run.part_zero, session=session) as motion:
         display = wish.display or (
             f"{_executable_operator(own)} --program {own / PROGRAM_NAME} --joints {len(axes)} "
-            f"--log {operator_log(own)}"
+            f"--twin {os.getpid()} --log {operator_log(own)}"
         )
         settings = Settings(
             display=display,
