@@ -19,7 +19,10 @@ from tests.serve.schema_check import Schemas
 
 ROOT = Path(__file__).resolve().parents[1]
 GOOD = ROOT / "programs" / "codesys" / "semicircle_by_radius.toml"
-LEAVES_TRAVEL = 'program = "part.nc"\ndialect = "gost"\n[part_zero]\nX = 395.0\n', "G1 X20 F600\nM30\n"
+LEAVES_TRAVEL = (
+    'program = "part.nc"\ndialect = "gost"\n[part_zero]\nX = 395.0\n',
+    "G1 X20 F600\nM30\n",
+)
 """A job whose program goes over the end of X."""
 WATCHED_S = 15.0
 """Longer than a part and its alarm take."""

@@ -21,6 +21,7 @@ from twin.link.linuxcnc import (
 from twin.link.linuxcnc_program import linuxcnc_program
 from twin.link.lockstep import LockstepMotion
 from twin.link.place import Places
+from twin.link.rehearsal import rehearse
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.nc.canonical import concatenate
@@ -97,6 +98,7 @@ def _run(
     own.mkdir(exist_ok=True)
     install(own, module_folder(start))
     tool, position = preparation.job.file.tools[0], preparation.start + run.part_zero
+    rehearse(run, dry_run, tool, position)
     live = LiveMachine(run.machine, tool, position)
     places = _write_program(preparation, own / PROGRAM_NAME, wish.own_program)
     session = wish.display is not None

@@ -130,14 +130,18 @@ class Agent:
         """
         interval = None
         if "at" in parameters and "interval" in parameters:
-            raise RequestError("INVALID_REQUEST", "'at' is a moment, and 'interval' a stream: give one")
+            raise RequestError(
+                "INVALID_REQUEST", "'at' is a moment, and 'interval' a stream: give one"
+            )
         if "interval" in parameters:
             asked = _number(parameters, "interval", 0, LONGEST_PAUSE_MS)
             interval = max(asked or 0, LEAST_INTERVAL_MS)
         heartbeat = _number(parameters, "heartbeat", 1, LONGEST_PAUSE_MS)
         count = _number(parameters, "count")
         if interval is not None and count is not None and count < 0:
-            raise RequestError("INVALID_REQUEST", "a stream ('interval') goes on: 'count' is above 0")
+            raise RequestError(
+                "INVALID_REQUEST", "a stream ('interval') goes on: 'count' is above 0"
+            )
         return Query(
             request=request,
             wanted=self._wanted(parameters.get("path")),

@@ -98,12 +98,20 @@ def _admit(agent: Agent, request: Request, *, local: bool) -> None:
         RequestError: He is refused.
     """
     host = request.headers.get("host", "")
-    if local and host and urllib.parse.urlsplit(f"//{host}").hostname not in LOCAL_NAMES:
+    if local and host and _name(host) not in LOCAL_NAMES:
         names = ", ".join(LOCAL_NAMES)
         raise RequestError("UNAUTHORIZED", f"this agent is known as {names} alone", 403)
     device = request.path_params.get("device")
     if device is not None:
         agent.require_device(device)
+
+
+def _name(host: str) -> str:
+    """A host without its port; empty where it is none."""
+    try:
+        return urllib.parse.urlsplit(f"//{host}").hostname or ""
+    except ValueError:
+        return ""
 
 
 def _form(request: Request) -> Form:
