@@ -14,8 +14,9 @@ LENGTH_BEFORE_CHANGE = "position_after_a_tool_change"
 CLARITY = "refused_for_clarity"
 ENDLESS = "main_program_repeats"
 CENTER = "arc_centre_moved_to_fit"
+LAST_PECK = "last_peck"
 _KNOWN = {each.example for each in DECISIONS}
-assert {BREAK, LENGTH_BEFORE_CHANGE, CLARITY, ENDLESS, CENTER, "tool_of_m61"} <= _KNOWN
+assert {BREAK, LENGTH_BEFORE_CHANGE, CLARITY, ENDLESS, CENTER, LAST_PECK, "tool_of_m61"} <= _KNOWN
 
 _REFUSED = re.compile(
     r"two codes of the block want its axis words|has no counterpart|a NURBS is ended by G5\.3"
@@ -29,6 +30,11 @@ _BREAK = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*break", re.IGNORECASE)
 _ENDWHILE = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*endwhile\s*$", re.IGNORECASE)
 _FIRST_LABEL = 700_000
 _MOST_SLIPS = 6
+Slip = tuple[float, float, float]
+"""How far a place lies beside another one along X, Y and Z [mm]."""
+NO_SLIP: Slip = (0.0, 0.0, 0.0)
+Slips = list[list[float]]
+"""How far it may lie beside it along each of these axes [mm]."""
 _SPINDLE = re.compile(r"M0*[345](?![0-9.])")
 _LOAD = re.compile(r"^\s*M\s*61\s*Q\s*(\d+)\s*$", re.IGNORECASE)
 
@@ -74,13 +80,16 @@ def is_decided_refusal(said: str) -> bool:
     return _REFUSED.search(said) is not None
 
 
-def slips_of(forgotten: list[float]) -> list[float]:
-    """How far along Z the moves of ``rs274`` may lie beside those of the control [mm].
+def slips_of(forgotten: list[Slip]) -> Slips:
+    """How far the moves of ``rs274`` may lie beside those of the control, axis by axis [mm].
 
     After a tool change its model of the machine stands where the last move ended as it was
     programmed, without the lengths that have come into force since; each change may add its own.
     """
-    slips = {0.0}
-    for each in forgotten[:_MOST_SLIPS]:
-        slips |= {slip + each for slip in slips}
-    return sorted(slips, key=abs)
+    axes: list[list[float]] = []
+    for axis in range(3):
+        sums = {0.0}
+        for each in forgotten[:_MOST_SLIPS]:
+            sums |= {value + each[axis] for value in sums}
+        axes.append(sorted(sums, key=abs))
+    return axes

@@ -18,7 +18,11 @@ from tests.nc.linuxcnc.decided import (
     CENTER,
     CLARITY,
     ENDLESS,
+    LAST_PECK,
     LENGTH_BEFORE_CHANGE,
+    NO_SLIP,
+    Slip,
+    Slips,
     for_rs274,
     is_decided_refusal,
     slips_of,
@@ -43,6 +47,8 @@ ORACLE_SETTINGS = dataclasses.replace(
 _INCH = 25.4
 _PRINTED = 2e-7
 """What the distance from a centre may lose where the oracle prints nine decimals [mm]."""
+_MOST_RAPIDS_OF_A_PECK = 2
+_DIGITS = 5
 _LONGEST = 10
 """Seconds that ``rs274`` may take: an endless program prints gigabytes."""
 _CALL = re.compile(r"^ *\d+ N\S* +([A-Z0-9_]+)\((.*)\)$")
@@ -78,7 +84,7 @@ class Answer(NamedTuple):
 
     moves: list[Made]
     error: str
-    forgotten: list[float]
+    forgotten: list[Slip]
 
 
 class Compared(NamedTuple):
@@ -154,8 +160,8 @@ class _Reader:
         }
         self.here = [0.0] * 4
         self.made: list[Made] = []
-        self.forgotten: list[float] = []
-        self._moved_with, self._changed = 0.0, False
+        self.forgotten: list[Slip] = []
+        self._moved_with, self._changed = NO_SLIP, False
 
     def moves_of(self, text: str) -> list[Made]:
         for line in text.splitlines():
@@ -192,9 +198,14 @@ class _Reader:
 
     def _forget(self) -> None:
         """A length that came into force between the last move and a tool change, or in its block."""
-        forgotten = self.shifts["USE_TOOL_LENGTH_OFFSET"][2] - self._moved_with
-        if self._changed and forgotten:
+        x, y, z = (a - b for a, b in zip(self._length(), self._moved_with, strict=True))
+        forgotten = (x, y, z)
+        if self._changed and any(forgotten):
             self.forgotten.append(forgotten)
+
+    def _length(self) -> Slip:
+        x, y, z, _ = self.shifts["USE_TOOL_LENGTH_OFFSET"]
+        return x, y, z
 
     def _lengths(self, values: list[float]) -> list[float]:
         return [*(value * self.unit for value in values[:3]), values[5]]
@@ -222,13 +233,13 @@ class _Reader:
         return [x / self.unit, y / self.unit, z / self.unit, 0.0, 0.0, c]
 
     def _go(self, kind: str, end: list[float]) -> None:
-        self._moved_with, self._changed = self.shifts["USE_TOOL_LENGTH_OFFSET"][2], False
+        self._moved_with, self._changed = self._length(), False
         if math.dist(end, self.here) > SAME:
             self.made.append(Made(kind, end, [], 0))
         self.here = end
 
     def _arc(self, v: list[float]) -> None:
-        self._moved_with, self._changed = self.shifts["USE_TOOL_LENGTH_OFFSET"][2], False
+        self._moved_with, self._changed = self._length(), False
         first, second, across = _PLANES[self.plane]
         values, center = [0.0] * 6, self._programmed_here()
         values[5] = center[5] = v[8]
@@ -282,31 +293,76 @@ def compared(text: str) -> Compared:
 
 def compared_answers(twin: Answer, control: Answer) -> Compared:
     """Hold the twin's answer against that of ``rs274``."""
-    decisions: set[str] = set()
     if bool(twin.error) != bool(control.error):
         if is_decided_refusal(twin.error):
             return Compared("", frozenset({CLARITY}))
         return Compared(f"twin: {twin.error or 'accepts'}\nrs274: {control.error or 'accepts'}")
     if twin.error:
         return Compared("")
-    slips, start = slips_of(control.forgotten), [0.0] * 4
-    for number, (ours, theirs) in enumerate(zip(twin.moves, control.moves, strict=False)):
-        slip = next((each for each in slips if _agree(ours, theirs, each)), None)
+    compared = _compared_moves(twin.moves, control.moves, slips_of(control.forgotten))
+    if not compared.said:
+        return compared
+    settled = _compared_moves(_settled(twin.moves), _settled(control.moves), slips_of([]))
+    if not settled.said and len(twin.moves) != len(control.moves):
+        return Compared("", settled.decisions | {LAST_PECK})
+    other_lifts = len(twin.moves) != len(control.moves)
+    if other_lifts and control.forgotten and _beside_z(twin.moves) == _beside_z(control.moves):
+        return Compared("", frozenset({LENGTH_BEFORE_CHANGE}))
+    return compared
+
+
+def _compared_moves(twin: list[Made], control: list[Made], slips: Slips) -> Compared:
+    """Hold moves against each other; those of ``rs274`` may lie beside the twin's by a slip."""
+    decisions: set[str] = set()
+    start = [0.0] * 4
+    for number, (ours, theirs) in enumerate(zip(twin, control, strict=False)):
+        slip = _slip_between(ours, theirs, slips)
         if slip is None and _center_fits(ours, theirs, start):
-            slip, _ = 0.0, decisions.add(CENTER)
+            slip, _ = NO_SLIP, decisions.add(CENTER)
         if slip is None:
             return Compared(f"move {number}: twin {ours}\n        rs274 {theirs}")
-        if slip:
+        if slip != NO_SLIP:
             decisions.add(LENGTH_BEFORE_CHANGE)
         start = theirs.end
-    if len(twin.moves) != len(control.moves):
-        return Compared(f"twin makes {len(twin.moves)} moves, rs274 {len(control.moves)}")
+    if len(twin) != len(control):
+        return Compared(f"twin makes {len(twin)} moves, rs274 {len(control)}")
     return Compared("", frozenset(decisions))
+
+
+def _settled(moves: list[Made]) -> list[Made]:
+    """Moves without those pecks that drill nothing, since the one before ended at the bottom but for rounding."""
+    kept: list[Made] = []
+    for move in moves:
+        drills = next((at for at in range(len(kept) - 1, -1, -1) if kept[at].kind != "rapid"), None)
+        if (
+            move.kind == "feed"
+            and drills is not None
+            and 1 <= len(kept) - 1 - drills <= _MOST_RAPIDS_OF_A_PECK
+            and kept[drills].kind == "feed"
+            and math.dist(kept[drills].end, move.end) <= SAME
+        ):
+            del kept[drills + 1 :]
+        else:
+            kept.append(move)
+    return kept
+
+
+def _beside_z(moves: list[Made]) -> list[tuple[float, float, float]]:
+    """Where the moves lead but for their heights [mm, mm, deg], each place once."""
+    places: list[tuple[float, float, float]] = []
+    for move in moves:
+        x, y, _, c = (round(each, _DIGITS) + 0.0 for each in move.end)
+        if not places or places[-1] != (x, y, c):
+            places.append((x, y, c))
+    return places
 
 
 def _center_fits(ours: Made, theirs: Made, start: list[float]) -> bool:
     """Whether an arc's centre was moved to lie as far from its start as from its end."""
-    if not _agree(ours._replace(center=[]), theirs._replace(center=[]), 0.0) or ours.kind != "arc":
+    if (
+        not _agree(ours._replace(center=[]), theirs._replace(center=[]), NO_SLIP)
+        or ours.kind != "arc"
+    ):
         return False
     for first, second, _ in _PLANES.values():
         begin, end, given, fitted = (
@@ -325,12 +381,24 @@ def _are_different(one: Answer, other: Answer) -> bool:
     return (one.moves, bool(one.error)) != (other.moves, bool(other.error))
 
 
-def _agree(ours: Made, theirs: Made, slip: float) -> bool:
-    """Whether two moves are the same, but for so much along Z."""
+def _slip_between(ours: Made, theirs: Made, slips: Slips) -> Slip | None:
+    """By which slip two moves are the same; None: by none."""
+    slip = [
+        next((each for each in axis if abs(a + each - b) <= SAME), None)
+        for a, b, axis in zip(ours.end, theirs.end, slips, strict=False)
+    ]
+    x, y, z = slip
+    if x is None or y is None or z is None or not _agree(ours, theirs, (x, y, z)):
+        return None
+    return x, y, z
+
+
+def _agree(ours: Made, theirs: Made, slip: Slip) -> bool:
+    """Whether two moves are the same, but for a slip."""
     if ours.kind != theirs.kind or ours.turns != theirs.turns:
         return False
-    ends = [*ours.end[:2], ours.end[2] + slip, ours.end[3]]
+    ends = [a + b for a, b in zip(ours.end, (*slip, 0.0), strict=True)]
     if any(abs(a - b) > SAME for a, b in zip(ends, theirs.end, strict=True)):
         return False
-    apart = [abs(a - b) for a, b in zip(ours.center, theirs.center, strict=True)]
-    return all(min(each, abs(each - abs(slip))) <= 2.0 * SAME for each in apart)
+    apart = zip(ours.center, theirs.center, slip, strict=False)
+    return all(min(abs(a - b), abs(a + c - b), abs(a - c - b)) <= 2.0 * SAME for a, b, c in apart)

@@ -47,6 +47,8 @@ LENGTHS = (
 """Those whose words count in the unit in force, as bits."""
 CHIP_CLEARANCE = 0.5
 """Deep drilling stops its rapid return this far above where it was [mm]."""
+LEAST_REST = 1e-6
+"""What a peck leaves of the way to the bottom at least: less is rounding [mm]."""
 MOST_PECKS = 10_000
 """Pecks of one hole: more is a slip of the pen."""
 
@@ -306,7 +308,7 @@ def either(value: float, default: float) -> float:
 def count_stops(surface: float, bottom: float, peck: float, factor: float, least: float) -> int:
     """How often deep drilling stops above the bottom; more than ``MOST_PECKS`` are not counted."""
     depth, stops = surface, 0
-    while depth - peck > bottom and stops <= MOST_PECKS:
+    while depth - peck > bottom + LEAST_REST and stops <= MOST_PECKS:
         depth -= peck
         peck = max(peck * factor, least)
         stops += 1

@@ -51,6 +51,13 @@ DECISIONS = (
         example="short_pecks",
     ),
     Decision(
+        "Which peck is the last (G73, G83)?",
+        "The one that ends less than a millionth of a millimetre above Z.",
+        "Rounding alone must not add one that drills nothing; the control counts in the program's unit and "
+        "adds one now and then.",
+        example="last_peck",
+    ),
+    Decision(
         "May the plane change while a canned cycle is in force?",
         "No: end it by G80 first.",
         "The control takes Z words for those of another axis.",

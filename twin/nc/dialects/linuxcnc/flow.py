@@ -102,8 +102,13 @@ def _construct_of(control: Control, statement: Statement, word: OWord) -> Constr
     for line in memory_of(control).garbled:
         if construct.begin < line < construct.end:
             control.report.line = line + 1
+            control.program_counter.lexer.blocks(control.program_counter.lines[line], line + 1)
             message, width = "no O-word of the control", len(control.program_counter.lines[line])
             control.report.fail("o-word", message, 0, width, ", ".join(KEYWORDS).lower())
+    if construct.keyword in ("SUB", "DO"):  # read even where break or return lead past it
+        end, last = _line_of(control, construct.end)
+        values_of(control, last, end)
+        control.report.line = control.block.line
     return construct
 
 

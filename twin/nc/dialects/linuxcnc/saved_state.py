@@ -3,7 +3,7 @@
 import dataclasses
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of
+from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of, written_feed
 from twin.nc.dialects.linuxcnc.offsets import reframe
 
 _KEPT_FIELDS = ("interpolation", "cycle")
@@ -12,7 +12,7 @@ _KEPT_GROUPS = ("motion", "not modal", "length")
 
 
 def _state(control: Control) -> SavedState:
-    return SavedState(control.saved_modal(), control.feed, control.spindle)
+    return SavedState(control.saved_modal(), written_feed(control), control.spindle)
 
 
 def save(control: Control) -> None:
@@ -56,7 +56,9 @@ def _put_back(control: Control, state: SavedState) -> None:
     )
     kept = {group: active[group] for group in _KEPT_GROUPS if group in active}
     control.restore_modal(state.modal._replace(modal=modal, active={**state.modal.active, **kept}))
-    control.feed, control.spindle = state.feed, state.spindle
+    control.spindle = state.spindle
+    if state.feed != written_feed(control):  # else nothing is written anew (``rs274``)
+        control.feed, memory_of(control).converted_feed = state.feed, None
     system = f"G{control.active.get('offset', 54)}"
     memory_of(control).system = SYSTEMS.index(system) + 1
     reframe(control)
