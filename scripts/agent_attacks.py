@@ -17,7 +17,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from datetime import datetime
 from itertools import pairwise
 from pathlib import Path
@@ -45,9 +45,12 @@ STREAMS = "{urn:mtconnect.org:MTConnectStreams:2.0}"
 NONSENSE = (
     b"\x00\xff\x16\x03\x01 hello", b"GET /current", b"GET /sample?path=//%5B HTTP/1.1\r\n\r\n",
     b"GET /" + b"x" * 70_000 + b" HTTP/1.1\r\n\r\n", b"POST /current HTTP/1.1\r\nContent-Length: 9\r\n\r\n",
-    b"GET /sample?from=-1&count=99999999999999999999 HTTP/1.1\r\nHost: a\r\n\r\n",
-    b"GET /current?at=1 HTTP/1.1\r\nHost: a\r\nAccept: application/json;q=zero\r\n\r\n",
-    b"GET /sample?interval=0&heartbeat=1 HTTP/1.1\r\nHost: a\r\n\r\n",
+    b"GET /sample?from=-1&count=99999999999999999999 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    b"GET /current?at=1 HTTP/1.1\r\nHost: localhost\r\nAccept: application/json;q=zero\r\n\r\n",
+    b"GET /sample?interval=0&heartbeat=1 HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    b"HEAD /sample?interval=10 HTTP/1.1\r\nHost: localhost\r\n\r\n" * 9,
+    b"GET /current HTTP/1.1\r\nHost: elsewhere.example\r\n\r\n", b"GET /probe HTTP/1.0\r\n\r\n",
+    b"GET /current HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n",
 )  # fmt: skip
 
 
@@ -136,27 +139,22 @@ def wait_until_full(served: Served) -> None:
 @contextlib.contextmanager
 def crowd(served: Served) -> Iterator[None]:
     """Clients that stream everything, and read it."""
-    request = f"GET {EVERYTHING} HTTP/1.1\r\nHost: a\r\n\r\n".encode()
-    selector, over = selectors.DefaultSelector(), threading.Event()
+    request = f"GET {EVERYTHING} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode()
+    selector = selectors.DefaultSelector()
     lines = [served.said(request) for _ in range(CROWD)]
     for line in lines:
         selector.register(line, selectors.EVENT_READ)
 
     def read() -> None:
-        while not over.is_set():
-            for key, _ in selector.select(0.2):
-                assert isinstance(key.fileobj, socket.socket)
-                if not key.fileobj.recv(1 << 20):
-                    selector.unregister(key.fileobj)
-            time.sleep(0.02)
+        for key, _ in selector.select(0.2):
+            assert isinstance(key.fileobj, socket.socket)
+            if not key.fileobj.recv(1 << 20):
+                selector.unregister(key.fileobj)
 
-    reader = threading.Thread(target=read)
-    reader.start()
     try:
-        yield
+        with repeating(read, every_s=0.02):
+            yield
     finally:
-        over.set()
-        reader.join()
         left = CROWD - len(selector.get_map())
         print(f"  {left} of {CROWD} streams were ended by the agent")
         for line in lines:
@@ -166,7 +164,7 @@ def crowd(served: Served) -> Iterator[None]:
 @contextlib.contextmanager
 def never_reading(served: Served) -> Iterator[None]:
     """A client that asks for everything there is, again and again, and never reads."""
-    with served.said(f"GET {EVERYTHING} HTTP/1.1\r\nHost: a\r\n\r\n".encode()) as line:
+    with served.said(f"GET {EVERYTHING} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode()) as line:
         line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         yield
 
@@ -175,39 +173,22 @@ def never_reading(served: Served) -> Iterator[None]:
 def sampled_memory(served: Served) -> Iterator[list[float]]:
     """Its memory, once a second [MB]."""
     memory: list[float] = []
-    over = threading.Event()
-
-    def sample() -> None:
-        while not over.wait(1.0):
-            memory.append(served.memory_mb())
-
-    sampler = threading.Thread(target=sample)
-    sampler.start()
-    try:
+    with repeating(lambda: memory.append(served.memory_mb()), every_s=1.0):
         yield memory
-    finally:
-        over.set()
-        sampler.join()
 
 
 @contextlib.contextmanager
 def nonsense(served: Served) -> Iterator[None]:
     """Requests that are none, twenty a second."""
-    over, chance = threading.Event(), random.Random(1)  # noqa: S311 (no cryptography)
+    chance = random.Random(1)  # noqa: S311 (no cryptography)
 
     def send() -> None:
-        while not over.wait(0.05):
-            with contextlib.suppress(OSError), served.said(chance.choice(NONSENSE)) as line:
-                line.settimeout(0.05)
-                line.recv(4096)
+        with contextlib.suppress(OSError), served.said(chance.choice(NONSENSE)) as line:
+            line.settimeout(0.05)
+            line.recv(4096)
 
-    sender = threading.Thread(target=send)
-    sender.start()
-    try:
+    with repeating(send, every_s=0.05):
         yield
-    finally:
-        over.set()
-        sender.join()
 
 
 @contextlib.contextmanager
@@ -216,25 +197,42 @@ def independent_client(served: Served) -> Iterator[list[str]]:
     from pymtconnect import mtconnect_client
 
     states: list[str] = []
-    begin, over = newest(served), threading.Event()
+    stream = mtconnect_client.stream_sample(
+        f"http://{served.host}:{served.port}", interval=200, from_seq=newest(served), count=5000
+    )
 
     def read() -> None:
-        stream = mtconnect_client.stream_sample(
-            f"http://{served.host}:{served.port}", interval=200, from_seq=begin, count=5000
-        )
-        for _, events, _ in stream:
-            states.extend(event.result for event in events if event.type == "Execution")
-            if over.is_set():
-                return
+        _, events, _ = next(stream)
+        states.extend(event.result for event in events if event.type == "Execution")
 
-    reader = threading.Thread(target=read)
-    reader.start()
     try:
-        yield states
+        with repeating(read):
+            yield states
+    finally:
+        print(f"  the independent client saw {' '.join(states)}")
+
+
+@contextlib.contextmanager
+def repeating(act: Callable[[], object], every_s: float = 0.0) -> Iterator[None]:
+    """Do something again and again on a thread of its own while the block runs.
+
+    Args:
+        act: What is done; it ends soon by itself.
+        every_s: Pause before each time [s].
+    """
+    over = threading.Event()
+
+    def repeat() -> None:
+        while not over.wait(every_s):
+            act()
+
+    thread = threading.Thread(target=repeat)
+    thread.start()
+    try:
+        yield
     finally:
         over.set()
-        reader.join()
-        print(f"  the independent client saw {' '.join(states)}")
+        thread.join()
 
 
 def followed(served: Served, seconds: float) -> Iterator[str]:

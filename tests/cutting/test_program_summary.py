@@ -59,8 +59,15 @@ def test_the_spindle_as_the_program_speaks_of_it() -> None:
     found = summary(
         "G0 X1\nS900 M3\nG1 X2 F100\nS1200\nG1 X3\nM5\nG0 X4\nM4\nG1 X5\nT4 M6\nG1 X6\nM30\n"
     )
-    assert [found.spindle.at(move) for move in range(6)] == [0, 900, 1200, 0, -1200, -1200]
-    assert [found.tools.at(move).speed for move in range(6)] == [None, 900, 1200, None, 1200, 1200]
+    assert [found.spindle.at(move) for move in range(6)] == [0, 900, 1200, 0, -1200, 0]
+    assert [found.tools.at(move).speed for move in range(6)] == [None, 900, 1200, None, 1200, None]
+
+
+@pytest.mark.parametrize("change", ["T4 M6", "T1 M6", "M6", "T9 M6"])
+def test_the_spindle_stands_behind_every_change_of_tool_until_it_is_started(change: str) -> None:
+    any_tool = JobFile(program="p.nc", stock=JOB.stock)
+    found = summary(f"S900 M3\nG1 X2 F100\n{change}\nG1 X3\nM4\nG1 X4\nM30\n", any_tool)
+    assert [found.spindle.at(move) for move in range(3)] == [900, 0, -900]
 
 
 def test_a_program_that_never_speaks_of_the_spindle_has_the_jobs_speed() -> None:
@@ -103,7 +110,7 @@ def test_a_speed_behind_m3_turns_the_spindle() -> None:
 
 
 def test_a_start_without_s_stands_where_the_control_has_a_word_for_it_and_the_job_says_nothing():
-    found = summary("M3\nG1 X1 F100\nT4 M6\nG1 X2\nM30\n", spindle=SpindleState(has_word=True))
+    found = summary("M3\nG1 X1 F100\nT4 M6\nM3\nG1 X2\nM30\n", spindle=SpindleState(has_word=True))
     assert [found.spindle.at(move) for move in range(2)] == [0, 500]
     found = summary("M3\nG1 X1 F100\nS9000\nG1 X2\nM30\n", spindle=SpindleState(fastest=8000.0))
     assert [found.spindle.at(move) for move in range(2)] == [None, 8000]

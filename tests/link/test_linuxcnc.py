@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 from command_line import Finished, Twin
 
+from tests.machine.machine_fixtures import three_axis_machine
 from twin.columns import join
 from twin.files.shipped import machine_file
 from twin.link.component import is_installed, module_folder
@@ -80,13 +81,20 @@ def folder() -> Iterator[Path]:
     ):
         Path(name).chmod(0o755)
         fcntl.flock(lock, fcntl.LOCK_EX)
+        before = shared_memory()
         yield Path(name)
         left = processes_at_home(Path(name) / "out" / "linuxcnc")
         for number in left:
             os.kill(number, signal.SIGKILL)
-        locked = LOCK.exists()
+        locked, shared = LOCK.exists(), shared_memory()
         LOCK.unlink(missing_ok=True)
-        assert (left, locked) == ([], False)
+        assert (left, locked, shared) == ([], False, before)
+
+
+def shared_memory() -> set[str]:
+    """Keys of the shared memory on this computer that is LinuxCNC's user's."""
+    rows = subprocess.run(["ipcs", "-m"], capture_output=True, text=True, check=True).stdout
+    return {row.split()[0] for row in rows.splitlines() if row.startswith("0x")}
 
 
 def linked(twin: Twin, folder: Path, program: str, *options: object) -> Finished:
@@ -212,6 +220,68 @@ def until(done: Callable[[], bool], seconds: float) -> None:
 
 
 @takes_minutes
+@pytest.mark.parametrize("period_us", [500, 2000])
+def test_another_servo_period_is_that_of_both(folder: Path, twin: Twin, period_us: int):
+    ran = linked(twin, folder, SQUARE, "--machine", "mill4", "--period-us", period_us)
+    told = result(folder)
+    assert ran.code in (0, 1), ran.stderr
+    assert told["alarms"] == []
+    assert told["link"]["f_error_difference"] < 1e-6
+    with open_recording(folder / "out" / "recording.h5") as recording:
+        assert recording.header.period_s == pytest.approx(period_us * 1e-6)
+
+
+@takes_minutes
+def test_a_machine_without_rotary_axes_is_driven_too(folder: Path, twin: Twin):
+    three_axis_machine(folder)
+    program = SQUARE.replace("G1 C10 F3600\n", "")
+    ran = linked(twin, folder, program, "--machine", folder / "three.toml")
+    assert ran.code in (0, 1), ran.stderr
+    assert result(folder)["alarms"] == []
+
+
+@takes_minutes
+def test_the_first_run_of_an_installation_compiles_before_linuxcnc_waits(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(folder / "cache"))
+    monkeypatch.setenv("HOME", str(folder))
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    path = folder / "part.ngc"
+    path.write_text(SQUARE)
+    ran = subprocess.run(
+        [sys.executable, "-m", "twin", "link", "linuxcnc", "--machine", "mill4",
+         "--out", str(folder / "out"), "--headless", str(path)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert ran.returncode in (0, 1), ran.stderr
+    assert "compiling kernels" in ran.stderr
+    assert result(folder)["alarms"] == []
+
+
+@takes_minutes
+def test_a_second_twin_is_refused_and_leaves_the_first_alone(folder: Path, twin: Twin):
+    with running_link(folder) as process:
+        path = folder / "other.ngc"
+        path.write_text(RAPID)
+        ran = twin("link", "linuxcnc", "--out", folder / "other", "--headless", path)
+        assert ran.code == 2
+        assert "another twin works LinuxCNC" in ran.stderr
+        assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=60) == 130
+
+
+@takes_minutes
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_leaves_no_linuxcnc(folder: Path, number: int):
+    with running_link(folder) as process:
+        process.send_signal(number)
+        assert process.wait(timeout=60) == 130
+    assert processes_at_home(folder / "out" / "linuxcnc") == []
+
+
+@takes_minutes
 def test_a_killed_twin_is_a_fault_and_linuxcnc_ends_by_itself(folder: Path):
     with running_link(folder) as process:
         process.kill()
@@ -219,7 +289,7 @@ def test_a_killed_twin_is_a_fault_and_linuxcnc_ends_by_itself(folder: Path):
         log = folder / "out" / "linuxcnc" / "operator.jsonl"
         until(lambda: "failed" in log.read_text(), 120.0)
         until(lambda: not LOCK.exists(), 120.0)
-    assert "amplifier fault" in log.read_text()
+    assert "amplifier fault" in log.read_text() or "the twin has gone" in log.read_text()
     assert "the twin does not answer" in (folder / "out" / "linuxcnc.log").read_text()
     assert not (folder / "out" / "result.json").exists()
 

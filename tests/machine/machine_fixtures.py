@@ -1,5 +1,6 @@
 """Setpoints and machines that the tests of this room share."""
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -7,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from twin.files.shipped import machine_file, resource_root
-from twin.machine.description.config import Machine, MachineFile
+from twin.machine.description.config import Machine, MachineFile, read_machine
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import FloatArray
 
@@ -78,3 +79,18 @@ def write_machine(folder: Path, text: str) -> Path:
     path = folder / "machine.toml"
     path.write_text(text.replace('model = "', f'model = "{resource_root("models")}/mill4/'))
     return path
+
+
+def three_axis_machine(folder: Path) -> Machine:
+    """``mill4`` without its rotary table's axis, written into a folder."""
+    folder_of_mill4 = machine_file("mill4").parent
+    model = (folder_of_mill4 / "mill4.xml").read_text(encoding="utf-8")
+    model = re.sub(r'<(joint|intvelocity|jointpos) name="C".*', "", model)
+    model = model.replace('meshdir="assets"', f'meshdir="{folder_of_mill4 / "assets"}"')
+    model = model.replace('qpos="0 0 0 0"', 'qpos="0 0 0"')
+    (folder / "three.xml").write_text(model, encoding="utf-8")
+    text = machine_file("mill4").read_text(encoding="utf-8")
+    text = re.sub(r"\[(axes\.C|table)\]\n(.+\n)*", "", text)
+    text = text.replace('"mill4"', '"three"').replace("scene.xml", "three.xml")
+    (folder / "three.toml").write_text(text, encoding="utf-8")
+    return read_machine(folder / "three.toml")

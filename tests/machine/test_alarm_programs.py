@@ -96,6 +96,7 @@ def test_the_alarm_is_raised_at_its_line_and_the_recording_up_to_it_is_kept(
     assert "Traceback" not in done.stderr
     result = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))
     assert result["verdict"] == "alarm"
+    assert [reason["what"] for reason in result["reasons"]] == [code], "nothing else is wrong"
     (alarm,) = result["alarms"]
     assert (alarm["code"], alarm["line"]) == (code, line)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -31,6 +31,7 @@ def said(word: str, speed: float | None = None) -> Function:
         ([said("M3", 900.0), said("S", 0.0)], SpindleState(started=True, speed=0.0), False),
         ([said("M3", 900.0), said("M19")], SpindleState(speed=900.0), False),
         ([said("M3", 900.0), said("M30")], SpindleState(speed=900.0), False),
+        ([said("M3", 900.0), said("M6")], SpindleState(speed=900.0), False),
         ([said("M8")], SpindleState(), False),
     ],
 )

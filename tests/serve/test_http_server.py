@@ -2,12 +2,13 @@
 
 import contextlib
 import http.client
+import logging
 import re
 import socket
 import threading
 import time
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import count, pairwise
 
 import pytest
@@ -20,7 +21,10 @@ from twin.serve.device import device_of
 from twin.serve.playback import Tick, feed
 
 uvicorn = pytest.importorskip("uvicorn", reason="the web server of the extra 'serve' is missing")
-from twin.serve.http_server import application  # noqa: E402 (it needs that web server)
+from twin.serve.http_server import (  # noqa: E402 (it needs that web server)
+    application,
+    without_broken_requests,
+)
 
 AXES = Axes(("X", "Y", "Z", "C"), ("linear", "linear", "linear", "rotary"))
 STREAMS = "{urn:mtconnect.org:MTConnectStreams:2.0}"
@@ -163,12 +167,21 @@ def positions(root: ET.Element) -> list[float]:
         ("/sample?interval=soon", 400, "INVALID_REQUEST"),
         ("/sample?heartbeat=0", 404, "OUT_OF_RANGE"),
         ("/current?at=999999", 404, "OUT_OF_RANGE"),
+        ("/current?at=30&interval=100", 400, "INVALID_REQUEST"),
+        ("/sample?count=-5&interval=100", 400, "INVALID_REQUEST"),
+        ("/sample?interval=1000000000", 404, "OUT_OF_RANGE"),
+        ("/sample?from=", 400, "INVALID_REQUEST"),
+        ("/current?path=//*%5B@id='x'%20or%20'1'='1'%5D", 400, "INVALID_XPATH"),
+        ("/current?path=document('/etc/passwd')", 400, "INVALID_XPATH"),
+        ("/current?path=//../..", 400, "INVALID_XPATH"),
+        ("/current?path=//Linear%5B0%5D", 400, "INVALID_XPATH"),
         ("/current?path=//%5B", 400, "INVALID_XPATH"),
         ("/current?path=//Nothing", 400, "INVALID_XPATH"),
         ("/current?path=" + "/" * 2000, 400, "INVALID_XPATH"),
         ("/current?path=", 400, "INVALID_XPATH"),
         ("/lathe/current", 404, "NO_DEVICE"),
         ("/assets", 404, "INVALID_URI"),
+        ("/probe/", 404, "INVALID_URI"),
         ("/%00%ff/probe", 404, "NO_DEVICE"),
     ],
 )
@@ -178,6 +191,75 @@ def test_what_cannot_be_answered_is_an_error_document(
     found, root = ask(port, target)
     (error,) = root.iter(f"{ERROR}Error")
     assert (found, error.attrib["errorCode"]) == (status, code)
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/MTConnectDevices/Devices/Device//Linear[@name='X']", "//Linear[1]", "Devices//Linear[1]"],
+)
+def test_a_path_begins_at_the_document_or_anywhere(port: int, path: str) -> None:
+    status, root = ask(port, f"/current?path={path}")
+    assert status == 200
+    items = {each.attrib["dataItemId"] for each in root.iter() if "dataItemId" in each.attrib}
+    assert items == {"X_position", "X_position_commanded", "X_load"}
+
+
+def said(port: int, words: bytes, until: bytes) -> bytes:
+    """What comes on a line on which something was said, up to an answer's end."""
+    heard = b""
+    with socket.create_connection(("127.0.0.1", port), timeout=20) as line:
+        line.sendall(words)
+        while until not in heard and (more := line.recv(1 << 16)):
+            heard += more
+    return heard
+
+
+@pytest.mark.parametrize("host", [b"elsewhere.example", b"localhost.elsewhere.example:5000", b"["])
+def test_a_browser_that_was_sent_here_by_another_name_is_refused(port: int, host: bytes) -> None:
+    heard = said(
+        port, b"GET /current HTTP/1.1\r\nHost: " + host + b"\r\n\r\n", b"</MTConnectError>"
+    )
+    assert heard.startswith(b"HTTP/1.1 403 ")
+    assert b'errorCode="UNAUTHORIZED"' in heard
+
+
+def test_the_names_of_this_computer_and_none_are_served(port: int) -> None:
+    for host in (b"Host: localhost:5000\r\n", b"Host: [::1]:5000\r\n", b"Host: 127.0.0.1\r\n"):
+        heard = said(port, b"GET /probe HTTP/1.1\r\n" + host + b"\r\n", b"</MTConnectDevices>")
+        assert heard.startswith(b"HTTP/1.1 200 ")
+    heard = said(port, b"GET /probe HTTP/1.0\r\n\r\n", b"</MTConnectDevices>")
+    assert heard.startswith(b"HTTP/1.1 200 ")
+
+
+def test_requests_on_one_line_are_answered_in_their_order(port: int) -> None:
+    head = b" HTTP/1.1\r\nHost: localhost\r\n\r\n"
+    asked = b"".join(
+        method + head for method in (b"HEAD /sample?interval=10", b"GET /probe", b"GET /nothing")
+    )
+    heard = said(port, asked, b"</MTConnectError>")
+    kinds = (b"multipart/x-mixed-replace", b"<MTConnectDevices", b"INVALID_URI")
+    places = [heard.find(kind) for kind in kinds]
+    assert -1 not in places
+    assert places == sorted(places)
+
+
+@pytest.mark.parametrize(("filters", "told"), [([without_broken_requests], False), ([], True)])
+def test_a_request_that_breaks_off_is_no_error_of_the_agent(
+    port: int,
+    filters: list[Callable[[logging.LogRecord], bool]],
+    told: bool,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    logger = logging.getLogger("uvicorn.error")
+    monkeypatch.setattr(logger, "filters", filters)
+    monkeypatch.setattr(logger, "handlers", [caplog.handler])
+    chunked = (
+        b"GET /current HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\nzz\r\n"
+    )
+    assert b" 400 " in said(port, chunked, b"never")
+    assert ask(port, "/probe")[0] == 200
+    assert any(record.exc_info for record in caplog.records) == told
 
 
 def test_nobody_can_write(port: int) -> None:

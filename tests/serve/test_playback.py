@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -68,6 +69,16 @@ def test_each_part_is_made_by_the_recorded_motion(production: Production):
         joint = recording.column("joint/position")[::every]
     told = [[tick.values[f"{axis}_position"] for axis in "XYZC"] for tick in first]
     assert np.array(told, np.float64) == pytest.approx(joint, abs=1e-6)
+
+
+def test_the_recording_is_opened_once(production: Production, tmp_path: Path):
+    """Clients may have taken all the files that the process may open."""
+    assert production.recording is not None
+    copy = shutil.copy(production.recording, tmp_path / "copy.h5")
+    machine = ticks(production._replace(recording=copy))
+    first = one_part(machine)
+    copy.unlink()
+    assert len(one_part(machine)) == len(first)
 
 
 def test_feed_and_block_are_those_of_the_program(production: Production):

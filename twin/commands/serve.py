@@ -118,7 +118,7 @@ def serve_scene(name: str, source: Source) -> ExitCode:
         description = f"The machine of the training scene {scene.name}"
         agent = Agent(device, Clock(), description, source.buffer)
         observer = RoomObserver(scene.preparation.source.name)
-        with open_room(scene, out=Path("out") / "training") as room:
+        with open_room(scene, out=Path("out") / "training", promptly=True) as room:
             stop = threading.Event()
 
             def leave() -> None:
@@ -190,7 +190,8 @@ def _served(
     """
     import uvicorn
 
-    from twin.serve.http_server import application
+    from twin.serve.http_server import application, without_broken_requests
+    from twin.web.guard import LOCAL_NAMES
 
     failures: list[Exception] = []
 
@@ -204,10 +205,12 @@ def _served(
             stop.set()
             failed()
 
+    local = listener.getsockname()[0] in LOCAL_NAMES
     config = uvicorn.Config(
-        application(agent, observed), log_level="error", timeout_graceful_shutdown=1
+        application(agent, observed, local=local), log_level="error", timeout_graceful_shutdown=1
     )
     server = uvicorn.Server(config)
+    logging.getLogger("uvicorn.error").addFilter(without_broken_requests)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
     thread.start()
     try:

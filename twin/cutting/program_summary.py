@@ -26,6 +26,8 @@ ValueT = TypeVar("ValueT")
 
 _OF_SPINDLE = SPINDLE_STARTS | SPINDLE_STOPS | {SPINDLE_SPEED}
 """Words of a program that speaks of the spindle."""
+_ENDS_SPINDLE = PROGRAM_ENDS | {TOOL_CHANGE}
+"""Words that stop a spindle that was spoken of."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -137,29 +139,29 @@ class SummaryBuilder:
         if word[:1] == "T" and word[1:].isdigit():
             self._selected = int(word[1:])
         elif word == TOOL_CHANGE and self._selected is not None:
-            self._change_tool(self._selected, event.line, move)
-        elif word in _OF_SPINDLE or (word in PROGRAM_ENDS and self._speaks):
-            # The end of a program that never spoke of the spindle says nothing about it.
+            self._change_tool(self._selected, event, move)
+        elif word in _OF_SPINDLE or (word in _ENDS_SPINDLE and self._speaks):
+            # In a program that never spoke of the spindle they say nothing about it.
             self._speaks = True
             self._turn(self._state.after(event), move, event.at)
 
-    def _change_tool(self, number: int, line: int, move: int) -> None:
+    def _change_tool(self, number: int, event: Function, move: int) -> None:
         tool = self._tools.get(number, EMPTY_SPINDLE if number == 0 else None)
         if tool is None and not self._any_tool and self._cuts:
             known = ", ".join(str(number) for number in self._tools)
             raise ConfigError(
-                f"line {line} of the program brings tool {number}, but the job lists {known}: "
+                f"line {event.line} of the program brings tool {number}, but the job lists {known}: "
                 f"add a [[tools]] table with number = {number}"
             )
+        state = self._state.after(event)
         if tool is not None:
-            self._tool = tool
-            self._changes.append(ToolChange(move, line, tool))
-            state = dataclasses.replace(self._state, tool_speed=tool.speed)
-            if self._speaks:
-                self._turn(state, move)
-            else:
-                self._state = state
-                self._plan.append((move, tool))
+            self._tool, state = tool, dataclasses.replace(state, tool_speed=tool.speed)
+            self._changes.append(ToolChange(move, event.line, tool))
+        if self._speaks:
+            self._turn(state, move)
+        else:
+            self._state = state
+            self._plan.append((move, self._tool))
 
     def _turn(self, state: SpindleState, move: int, at: float = 0.0) -> None:
         """The spindle goes on otherwise; the tool is at the speed that it turns at then."""

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import re
+import shutil
 import subprocess
 from functools import cache
 from pathlib import Path
@@ -102,6 +103,11 @@ def install(folder: Path, modules: Path) -> None:
     write_text(path, source(stamp()))
     if is_installed(modules):
         return
+    if shutil.which(COMPILER) is None:
+        raise UsageError(
+            f"LinuxCNC has no component of the twin yet, and {COMPILER}, which builds it, is missing: "
+            f"install Debian's package {COMPILER_PACKAGE}"
+        )
     if not os.access(modules, os.W_OK):
         raise UsageError(
             f"LinuxCNC loads realtime components only from {modules}: as root, once, say\n"
@@ -112,10 +118,6 @@ def install(folder: Path, modules: Path) -> None:
             [COMPILER, "--install", path.name],
             cwd=folder, capture_output=True, text=True, timeout=_BUILD_TIMEOUT_S, check=False,
         )  # fmt: skip
-    except FileNotFoundError as error:
-        raise UsageError(
-            f"{COMPILER} is missing: install Debian's package {COMPILER_PACKAGE}"
-        ) from error
     except subprocess.TimeoutExpired as error:
         raise UsageError(f"{COMPILER} took longer than {_BUILD_TIMEOUT_S} s") from error
     if built.returncode or not is_installed(modules):

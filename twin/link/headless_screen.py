@@ -4,11 +4,12 @@
 LinuxCNC starts it, with the Python that LinuxCNC's modules are installed for, not with the twin's;
 so it imports nothing of the twin. What happened it writes as JSON, line by line.
 
-Usage: ``headless_screen.py -ini INI --program PROGRAM --joints N --log FILE``.
+Usage: ``headless_screen.py -ini INI --program PROGRAM --joints N --twin PID --log FILE``.
 """
 
 import argparse
 import json
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -27,9 +28,10 @@ class FailedError(Exception):
 class Operator:
     """Works LinuxCNC through its own Python module."""
 
-    def __init__(self, linuxcnc: Any, log: TextIO) -> None:
+    def __init__(self, linuxcnc: Any, log: TextIO, twin: int) -> None:
         self._linuxcnc = linuxcnc
         self._log = log
+        self._twin = twin
         self._command, self._status = linuxcnc.command(), linuxcnc.stat()
         self._errors = linuxcnc.error_channel()
 
@@ -87,14 +89,29 @@ class Operator:
         raise FailedError(f"LinuxCNC does not {what}")
 
     def _look(self) -> bool:
-        """Log what LinuxCNC says; returns whether it told of an error."""
+        """Log what LinuxCNC says; returns whether it told of an error.
+
+        Raises:
+            FailedError: The twin has gone, and nobody will answer LinuxCNC any more.
+        """
         failed = False
         while (told := self._errors.poll()) is not None:
             kind, text = told
             wrong = kind in (self._linuxcnc.NML_ERROR, self._linuxcnc.OPERATOR_ERROR)
             self.tell("error" if wrong else "message", text.strip())
             failed = failed or wrong
+        if not self._any_twin():
+            raise FailedError("the twin has gone")
         return failed
+
+    def _any_twin(self) -> bool:
+        try:
+            os.kill(self._twin, 0)
+        except ProcessLookupError:
+            return False
+        except PermissionError:
+            return True  # It is somebody else's, and there.
+        return True
 
 
 def main() -> int:
@@ -105,10 +122,11 @@ def main() -> int:
     parser.add_argument("-ini")
     parser.add_argument("--program", required=True)
     parser.add_argument("--joints", type=int, required=True)
+    parser.add_argument("--twin", type=int, required=True)
     parser.add_argument("--log", type=Path, required=True)
     given = parser.parse_args()
     with given.log.open("w", encoding="utf-8") as log:
-        operator = Operator(linuxcnc, log)
+        operator = Operator(linuxcnc, log, given.twin)
         try:
             operator.switch_on(given.joints)
             operator.run(given.program)

@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import signal
+import socket
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,8 +17,12 @@ from twin.errors import UsageError
 LOCK = Path("/tmp/linuxcnc.lock")  # noqa: S108 - LinuxCNC's own
 """Stands while a LinuxCNC runs on this computer; there can be one."""
 PACKAGE = "linuxcnc-uspace"
+_CLAIM = b"\0mill-twin-linuxcnc"
+"""A name that the kernel gives to one process at a time, and takes back however that process ends."""
 _MESSAGES = Path("/usr/share/linuxcnc/linuxcnc.nml")
 """Which shared memory LinuxCNC's parts speak through."""
+_MOTION_KEY = "100"
+"""Of the shared memory of its motion controller (``DEFAULT_SHMEM_KEY``)."""
 LOG_NAME = "linuxcnc.log"
 OPERATOR = Path(__file__).with_name("headless_screen.py")
 _UNPRIVILEGED = "nobody"
@@ -79,8 +84,12 @@ class LinuxCnc:
                 os.kill(number, signal.SIGKILL)
 
 
-def require_linuxcnc() -> Path:
-    """LinuxCNC's start script.
+@contextlib.contextmanager
+def claimed_linuxcnc() -> Iterator[Path]:
+    """LinuxCNC for this process alone, by its start script, until the block ends.
+
+    LinuxCNC's own lock stands only once it runs, and its remains are taken away afterwards: a second
+    twin that began meanwhile would take away the first one's.
 
     Raises:
         UsageError: It is not installed, or one runs already.
@@ -88,11 +97,19 @@ def require_linuxcnc() -> Path:
     found = shutil.which("linuxcnc")
     if found is None:
         raise UsageError(f"LinuxCNC is not installed: Debian has it as {PACKAGE}")
-    if LOCK.exists():
-        raise UsageError(
-            f"a LinuxCNC runs on this computer, or was killed: end it, say halrun -U and remove {LOCK}"
-        )
-    return Path(found)
+    with socket.socket(socket.AF_UNIX) as claim:
+        try:
+            claim.bind(_CLAIM)
+        except OSError as error:
+            raise UsageError(
+                "another twin works LinuxCNC on this computer, where there can be one: wait for its end"
+            ) from error
+        if LOCK.exists():
+            raise UsageError(
+                "a LinuxCNC runs on this computer, or was killed: end it, say halrun -U and remove "
+                f"{LOCK}"
+            )
+        yield Path(found)
 
 
 def require_plain(folder: Path) -> None:
@@ -183,10 +200,10 @@ def _tidy_up(at_home: list[str]) -> None:
 def _forget_messages(at_home: list[str]) -> None:
     """Remove the shared memory of LinuxCNC's messages: the next one would answer old ones."""
     rows = _MESSAGES.read_text(encoding="utf-8").splitlines() if _MESSAGES.is_file() else []
-    for row in rows:
-        words = row.split()
-        if words[:1] == ["B"] and words[2:3] == ["SHMEM"]:
-            _try([*at_home, "ipcrm", "-M", words[9]])
+    buffers = [words for words in map(str.split, rows) if words[:1] == ["B"]]
+    keys = [words[9] for words in buffers if words[2:3] == ["SHMEM"]]
+    for key in (_MOTION_KEY, *keys):
+        _try([*at_home, "ipcrm", "-M", key])
 
 
 def _try(command: list[str]) -> None:

@@ -1,5 +1,6 @@
 """LinuxCNC and the twin together: a program, or a session at LinuxCNC's screen."""
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -12,14 +13,15 @@ from twin.link.linuxcnc import (
     LOG_NAME,
     OPERATOR,
     LinuxCnc,
+    claimed_linuxcnc,
     operator_log,
-    require_linuxcnc,
     require_plain,
     running,
 )
 from twin.link.linuxcnc_program import linuxcnc_program
 from twin.link.lockstep import LockstepMotion
 from twin.link.place import Places
+from twin.link.rehearsal import rehearse
 from twin.machine.simulation.live import LiveMachine
 from twin.machine.watching.alarms import Alarm, AlarmCode
 from twin.nc.canonical import concatenate
@@ -59,7 +61,7 @@ def run_on_twin(
     wish: Wish,
     say: Callable[[str], None],
 ) -> tuple[Outcome, dict[str, float]]:
-    """Let LinuxCNC work the twin.
+    """Let LinuxCNC work the twin; there can be one of both on a computer.
 
     Args:
         run: The prepared job.
@@ -76,7 +78,19 @@ def run_on_twin(
     Raises:
         UsageError: LinuxCNC or its component is not installed, or cannot drive this machine.
     """
-    start = require_linuxcnc()
+    with claimed_linuxcnc() as start:
+        return _run(start, run, dry_run, folder, progress, wish, say)
+
+
+def _run(
+    start: Path,
+    run: Run,
+    dry_run: DryRun,
+    folder: Path,
+    progress: Progress,
+    wish: Wish,
+    say: Callable[[str], None],
+) -> tuple[Outcome, dict[str, float]]:
     preparation = run.preparation
     axes = preparation.machine.axes
     own = folder.resolve() / FOLDER_NAME
@@ -84,13 +98,14 @@ def run_on_twin(
     own.mkdir(exist_ok=True)
     install(own, module_folder(start))
     tool, position = preparation.job.file.tools[0], preparation.start + run.part_zero
+    rehearse(run, dry_run, tool, position)
     live = LiveMachine(run.machine, tool, position)
     places = _write_program(preparation, own / PROGRAM_NAME, wish.own_program)
     session = wish.display is not None
     with LockstepMotion(live, places, run.part_zero, session=session) as motion:
         display = wish.display or (
             f"{_executable_operator(own)} --program {own / PROGRAM_NAME} --joints {len(axes)} "
-            f"--log {operator_log(own)}"
+            f"--twin {os.getpid()} --log {operator_log(own)}"
         )
         settings = Settings(
             display=display,

@@ -23,6 +23,9 @@ PROGRAM_STOPS = frozenset({"M0", OPTIONAL_STOP})
 """The operator starts the program again."""
 PROGRAM_ENDS = frozenset({"M2", "M30"})
 """The spindle and the coolant end with the program."""
+_SPINDLE_ENDS = SPINDLE_STOPS | PROGRAM_ENDS | {TOOL_CHANGE}
+"""Behind these the spindle stands until it is started anew, whichever tool a change has brought
+(LinuxCNC, "M6 Tool Change": when the change is complete the spindle is stopped)."""
 
 
 @compilable
@@ -33,7 +36,7 @@ def turns_behind(function: int, turned: float) -> float:
     """
     if function in (3, 4):
         return 1.0
-    return 0.0 if function == 5 else turned
+    return 0.0 if function in (5, 6) else turned
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,10 +90,10 @@ class SpindleState:
         started, sense, speed = self.started, self.counter_clockwise, self.speed
         if function.word in SPINDLE_STARTS | {SPINDLE_SPEED}:
             speed = function.arguments.get("S", speed)
-        if function.word in SPINDLE_STARTS | SPINDLE_STOPS | PROGRAM_ENDS:
-            started = function.word in SPINDLE_STARTS
         if function.word in SPINDLE_STARTS:
-            sense = function.word == SPINDLE_COUNTER_CLOCKWISE
+            started, sense = True, function.word == SPINDLE_COUNTER_CLOCKWISE
+        elif function.word in _SPINDLE_ENDS:
+            started = False
         return dataclasses.replace(self, started=started, counter_clockwise=sense, speed=speed)
 
     def stopped(self) -> "SpindleState":

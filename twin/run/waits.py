@@ -14,11 +14,11 @@ def with_waits(
 ) -> Iterator[Chunk]:
     """A program with a dwell behind every function that a machine takes time for.
 
-    A tool change takes ``tool_change_s`` and stops the spindle first; one that brings the tool that
-    is in the spindle takes no time. Whatever changes the spindle's speed takes the change over
+    A tool change takes ``tool_change_s`` behind the spindle's stop; one that brings the tool that
+    is in the spindle takes only the stop. Whatever changes the spindle's speed takes the change over
     ``acceleration``, if the machine ``waits`` for it; a speed that neither program nor job says
-    takes none. The program's end is
-    not waited for, nor is what happens in the middle of a path that goes on.
+    takes none. The program's end is not waited for, nor is what happens in the middle of a path that
+    goes on.
 
     Args:
         chunks: The program.
@@ -44,6 +44,7 @@ class Waits:
         speeds: Mapping[int, float | None],
         tool: int,
         state: SpindleState,
+        selected: int | None = None,
     ) -> None:
         """Begin with what is in the spindle.
 
@@ -52,10 +53,12 @@ class Waits:
             speeds: Of the tools, for programs that say none [1/min].
             tool: Number of the tool in the spindle.
             state: What the spindle has been told.
+            selected: Number of the tool that the next change brings; None: the one in the spindle.
         """
         self._spindle = spindle
         self._speeds = speeds
-        self._tool = self._selected = tool
+        self._tool = tool
+        self._selected = tool if selected is None else selected
         self._state = state
         self._turns = state.turning or 0.0
 
@@ -73,15 +76,13 @@ class Waits:
         word = event.word
         if word[:1] == "T" and word[1:].isdigit():
             self._selected = int(word[1:])
-        if word == TOOL_CHANGE:
-            if self._selected == self._tool:
-                return 0.0
-            self._tool, stopped = self._selected, self._state.stopped()
-            self._state = dataclasses.replace(stopped, tool_speed=self._speeds.get(self._tool))
-            return self._spindle.tool_change_s + self._turn(0.0)
         if word not in PROGRAM_ENDS:
             self._state = self._state.after(event)
-        return self._turn(self._state.turning or 0.0)
+        change = 0.0
+        if word == TOOL_CHANGE and self._selected != self._tool:
+            self._tool, change = self._selected, self._spindle.tool_change_s
+            self._state = dataclasses.replace(self._state, tool_speed=self._speeds.get(self._tool))
+        return change + self._turn(self._state.turning or 0.0)
 
     def _turn(self, turns: float) -> float:
         """How long the spindle takes to another speed [s], negative counter-clockwise [1/min]."""

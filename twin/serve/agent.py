@@ -93,6 +93,7 @@ class Agent:
         self.buffer = ObservationBuffer(items, clock.at(0.0), size)
         self._uuid = str(uuid.uuid5(uuid.NAMESPACE_DNS, f"{device.name}.mill-twin"))
         self._instance = int(time.time())
+        self._began = clock.at(0.0)
         self._element = device_element(device, self._uuid, description)
 
     def observe(self, elapsed_s: float, values: Mapping[str, Value]) -> None:
@@ -128,11 +129,19 @@ class Agent:
             RequestError: One is wrong; the message says what would have worked.
         """
         interval = None
+        if "at" in parameters and "interval" in parameters:
+            raise RequestError(
+                "INVALID_REQUEST", "'at' is a moment, and 'interval' a stream: give one"
+            )
         if "interval" in parameters:
             asked = _number(parameters, "interval", 0, LONGEST_PAUSE_MS)
             interval = max(asked or 0, LEAST_INTERVAL_MS)
         heartbeat = _number(parameters, "heartbeat", 1, LONGEST_PAUSE_MS)
         count = _number(parameters, "count")
+        if interval is not None and count is not None and count < 0:
+            raise RequestError(
+                "INVALID_REQUEST", "a stream ('interval') goes on: 'count' is above 0"
+            )
         return Query(
             request=request,
             wanted=self._wanted(parameters.get("path")),
@@ -176,6 +185,7 @@ class Agent:
         return Header(
             time=self.clock.now(),
             instance=self._instance,
+            device_changed=self._began,
             buffer_size=self.buffer.size,
             sender=sender_name(),
         )
@@ -185,13 +195,16 @@ class Agent:
             return frozenset(item_ids([self._element]))
         if len(path) > _LONGEST_PATH:
             raise RequestError("INVALID_XPATH", f"'path' is longer than {_LONGEST_PATH} letters")
-        devices = ET.Element("MTConnectDevices")
-        ET.SubElement(devices, "Devices").append(self._element)
+        document = ET.Element("document")
+        root = ET.SubElement(document, "MTConnectDevices")
+        ET.SubElement(root, "Devices").append(self._element)
         found: set[str] = set()
         for part in path.split("|"):
             search = part.strip()
+            absolute = search[:1] == "/"
+            within, search = (document, f".{search}") if absolute else (root, search)
             try:
-                found |= item_ids(devices.iterfind(f".{search}" if search[:1] == "/" else search))
+                found |= item_ids(within.iterfind(search))
             except (SyntaxError, KeyError, ValueError, TypeError, IndexError) as error:
                 message = f"'path' cannot be read at '{search}': //Axes//DataItem[@type='LOAD'] can"
                 raise RequestError("INVALID_XPATH", message) from error

@@ -21,17 +21,19 @@ class Header:
     Attributes:
         time: When the document was made, by the twin's clock, ISO 8601.
         instance: Number of this start of the agent; sequence numbers of another mean nothing here.
+        device_changed: When the description of the device last changed, ISO 8601.
         buffer_size: How many observations are remembered.
         sender: Who answers.
     """
 
     time: str
     instance: int
+    device_changed: str
     buffer_size: int
     sender: str
 
     def attributes(self) -> dict[str, str]:
-        """As attributes; ``testIndicator`` says that no real machine stands behind them."""
+        """As attributes of every document; ``testIndicator`` says that no real machine stands behind it."""
         return {
             "creationTime": self.time,
             "sender": self.sender,
@@ -40,6 +42,10 @@ class Header:
             "bufferSize": str(self.buffer_size),
             "testIndicator": "true",
         }
+
+    def of_device(self) -> dict[str, str]:
+        """As attributes of a document that tells of the device."""
+        return self.attributes() | {"deviceModelChangeTime": self.device_changed}
 
 
 def device_element(device: Component, uuid: str, description: str) -> ET.Element:
@@ -82,8 +88,8 @@ def _item_attributes(item: DataItem) -> dict[str, str]:
 def devices_document(header: Header, device: ET.Element) -> ET.Element:
     """The answer to ``probe``."""
     root = _root("Devices")
-    counts = {"assetBufferSize": "1", "assetCount": "0", "deviceModelChangeTime": header.time}
-    ET.SubElement(root, "Header", header.attributes() | counts)
+    counts = {"assetBufferSize": "1", "assetCount": "0"}
+    ET.SubElement(root, "Header", header.of_device() | counts)
     ET.SubElement(root, "Devices").append(device)
     return root
 
@@ -108,7 +114,7 @@ def streams_document(
     root = _root("Streams")
     first, last, following = (str(number) for number in sequences)
     numbers = {"firstSequence": first, "lastSequence": last, "nextSequence": following}
-    ET.SubElement(root, "Header", header.attributes() | numbers)
+    ET.SubElement(root, "Header", header.of_device() | numbers)
     stream = ET.SubElement(ET.SubElement(root, "Streams"), "DeviceStream")
     stream.attrib |= {"name": device.name, "uuid": uuid}
     wanted = {observation.item for observation in observations}

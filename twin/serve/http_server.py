@@ -3,11 +3,14 @@
 import asyncio
 import contextlib
 import dataclasses
+import logging
 import secrets
+import urllib.parse
 import xml.etree.ElementTree as ET  # only a type here
 from collections.abc import AsyncIterator, Callable, Coroutine
 from typing import Any, NamedTuple
 
+from h11 import LocalProtocolError
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
@@ -16,17 +19,22 @@ from starlette.routing import Route
 
 from twin.serve.agent import LEAST_INTERVAL_MS, REQUESTS, Agent, Query, RequestError
 from twin.serve.forms import Form, accepted_form
+from twin.web.guard import LOCAL_NAMES
 
 _CODES = {404: "INVALID_URI", 405: "UNSUPPORTED"}
 MS_PER_S = 1000.0
 
 
-def application(agent: Agent, feed: Callable[[], Coroutine[Any, Any, None]]) -> Starlette:
+def application(
+    agent: Agent, feed: Callable[[], Coroutine[Any, Any, None]], *, local: bool = True
+) -> Starlette:
     """The HTTP side of an agent.
 
     Args:
         agent: What answers.
         feed: Observes the machine until it is cancelled; runs as long as the server does.
+        local: Whether it listens to this computer alone. A browser that was sent here by another
+            name, by the page of a stranger, is then refused.
     """
 
     @contextlib.asynccontextmanager
@@ -40,20 +48,22 @@ def application(agent: Agent, feed: Callable[[], Coroutine[Any, Any, None]]) -> 
                 await feeding
 
     async def probe(request: Request) -> Response:
-        _require_device(agent, request)
+        _admit(agent, request, local=local)
         return _response(request, agent.probe())
 
     async def observations(request: Request) -> Response:
-        _require_device(agent, request)
+        _admit(agent, request, local=local)
         query = agent.query(request.url.path.rpartition("/")[2], dict(request.query_params))
         document, following, _ = agent.answer(query)
         if query.interval_ms is None:
             return _response(request, document)
         boundary = secrets.token_hex(16)
-        return StreamingResponse(
-            _parts(agent, query, _Writer(_form(request), boundary), document, following),
-            media_type=f"multipart/x-mixed-replace;boundary={boundary}",
-        )
+        kind = f"multipart/x-mixed-replace;boundary={boundary}"
+        if request.method == "HEAD":
+            return Response(media_type=kind)  # A stream would go on, though nobody is told of it.
+        writer = _Writer(_form(request), boundary)
+        parts = _parts(agent, query, writer, document, following)
+        return StreamingResponse(parts, media_type=kind)
 
     async def refuse(request: Request, error: Exception) -> Response:
         if isinstance(error, HTTPException):
@@ -71,13 +81,37 @@ def application(agent: Agent, feed: Callable[[], Coroutine[Any, Any, None]]) -> 
             Route(f"/{{device}}/{name}", endpoint, methods=["GET"]),
         ]
     handlers = {RequestError: refuse, HTTPException: refuse}
-    return Starlette(routes=routes, exception_handlers=handlers, lifespan=lifespan)
+    app = Starlette(routes=routes, exception_handlers=handlers, lifespan=lifespan)
+    app.router.redirect_slashes = False
+    return app
 
 
-def _require_device(agent: Agent, request: Request) -> None:
-    name = request.path_params.get("device")
-    if name is not None:
-        agent.require_device(name)
+def without_broken_requests(record: logging.LogRecord) -> bool:
+    """A filter of the server's log: a request that breaks off is the client's fault, and no error here."""
+    return record.exc_info is None or not isinstance(record.exc_info[1], LocalProtocolError)
+
+
+def _admit(agent: Agent, request: Request, *, local: bool) -> None:
+    """Refuse who comes by another name than this computer's, or asks for another device.
+
+    Raises:
+        RequestError: He is refused.
+    """
+    host = request.headers.get("host", "")
+    if local and host and _name(host) not in LOCAL_NAMES:
+        names = ", ".join(LOCAL_NAMES)
+        raise RequestError("UNAUTHORIZED", f"this agent is known as {names} alone", 403)
+    device = request.path_params.get("device")
+    if device is not None:
+        agent.require_device(device)
+
+
+def _name(host: str) -> str:
+    """A host without its port; empty where it is none."""
+    try:
+        return urllib.parse.urlsplit(f"//{host}").hostname or ""
+    except ValueError:
+        return ""
 
 
 def _form(request: Request) -> Form:

@@ -16,7 +16,7 @@ from twin.machine.description.config import Machine
 from twin.machine.watching.alarms import Alarm
 from twin.nc.canonical import FloatArray
 from twin.recording.form import Samples
-from twin.recording.reader import open_recording
+from twin.recording.reader import Recording, open_recording
 from twin.serve.agent import Agent
 from twin.serve.buffer import NORMAL, Condition, Value
 from twin.toolpath.part_frame import PartFrame
@@ -64,6 +64,15 @@ class Tick(NamedTuple):
 
 def ticks(production: Production) -> Iterator[Tick]:
     """The machine, part after part, without an end."""
+    if production.recording is None:
+        yield from _parts(production, None)
+        return
+    # It stays open: clients may have taken all the files that a process may open.
+    with open_recording(production.recording) as recording:
+        yield from _parts(production, recording)
+
+
+def _parts(production: Production, recording: Recording | None) -> Iterator[Tick]:
     now, parts = 0.0, 0
     yield Tick(
         now,
@@ -81,7 +90,7 @@ def ticks(production: Production) -> Iterator[Tick]:
         now += BEFORE_START_S
         yield Tick(now, {"execution": "ACTIVE"})
         began = now
-        for tick in _motion(production):
+        for tick in _motion(production, recording):
             now = began + tick.elapsed_s
             yield Tick(now, tick.values)
         if production.alarms:
@@ -97,18 +106,17 @@ def ticks(production: Production) -> Iterator[Tick]:
             now += TICK_S
 
 
-def _motion(production: Production) -> Iterator[Tick]:
-    if production.recording is None:
+def _motion(production: Production, recording: Recording | None) -> Iterator[Tick]:
+    if recording is None:
         return
-    with open_recording(production.recording) as recording:
-        every = max(1, round(TICK_S / recording.header.period_s))
-        frame, before, seen = recording.header.part_frame, None, 0
-        for samples in recording.chunks():
-            thin = samples[slice(-seen % every, None, every)]
-            seen += len(samples)
-            if len(thin):
-                yield from _ticks_of(production, thin, frame, before)
-                before = thin[slice(-1, None)]
+    every = max(1, round(TICK_S / recording.header.period_s))
+    frame, before, seen = recording.header.part_frame, None, 0
+    for samples in recording.chunks():
+        thin = samples[slice(-seen % every, None, every)]
+        seen += len(samples)
+        if len(thin):
+            yield from _ticks_of(production, thin, frame, before)
+            before = thin[slice(-1, None)]
 
 
 def _ticks_of(

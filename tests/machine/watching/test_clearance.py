@@ -1,6 +1,7 @@
 """Who may not meet whom, how finely that is seen, and at what speed."""
 
 import itertools
+from pathlib import Path
 
 import hypothesis
 import hypothesis.strategies as st
@@ -8,7 +9,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from tests.machine.machine_fixtures import setpoints, shipped_machine
+from tests.machine.machine_fixtures import setpoints, shipped_machine, three_axis_machine
 from twin.job.fixture import FixtureTable
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import Machine
@@ -215,3 +216,12 @@ def test_the_nearest_of_holder_and_head_is_told_but_not_that_of_the_cutter() -> 
     assert clearance.near_miss is not None
     assert clearance.near_miss.between == ("holder's nut", "jaw")
     assert clearance.near_miss.clearance_mm == pytest.approx(3.0, abs=0.05)
+
+
+def test_a_machine_without_rotary_axes_is_watched_too(tmp_path: Path) -> None:
+    machine = three_axis_machine(tmp_path)
+    spec = build_spec(machine, TOOL)
+    clearance = Clearance(machine, clearance_model(machine, spec))
+    down = np.zeros((400, 3))
+    down[:, 2] = np.linspace(0.0, -550.0, 400)
+    assert "the cutter meets the faceplate" in watch(clearance, down)

@@ -74,9 +74,9 @@ def test_a_jump_on_the_way_is_travelled() -> None:
 
 def test_the_machine_stands_where_the_path_begins(tmp_path: Path) -> None:
     program = tmp_path / "begin.nc"
-    program.write_text("N10 G92 X20 Z5 N20 G1 X30 F10 E5\n")
+    program.write_text("N10 G92 X20 Z5 N20 G1 X30 F10 E5 E-5\n")
     assert prepare(program).start.tolist() == [20.0, 0.0, 5.0, 0.0]
-    program.write_text("N10 G1 X30 F10 E5\n")
+    program.write_text("N10 G1 X30 F10 E5 E-5\n")
     assert prepare(program).start.tolist() == [0.0] * 4
 
 

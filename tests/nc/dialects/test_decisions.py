@@ -174,6 +174,12 @@ def test_feed_per_revolution() -> None:
     assert good("G95 S200 M3 G1 X1 F0.5", "gost").moves.feed.tolist() == [100.0]
 
 
+def test_a_feed_per_revolution_behind_a_tool_change_needs_the_spindle_started_anew() -> None:
+    turning = "G95 S200 M3 F0.5\nT1 M6\n"
+    assert bad(f"{turning}G1 X1", "gost").code == "feed-per-revolution"
+    assert good(f"{turning}M3 G1 X1", "gost").moves.feed.tolist() == [100.0]
+
+
 def test_default_feeds_warn_once_and_strict_refuses() -> None:
     outcome = good("G1 X1\nC5\nX2", "gost", default_feed=700.0, default_rotary_feed=90.0)
     assert outcome.moves.feed.tolist() == [700.0, 90.0, 700.0]

@@ -14,21 +14,38 @@ LENGTH_BEFORE_CHANGE = "position_after_a_tool_change"
 CLARITY = "refused_for_clarity"
 ENDLESS = "main_program_repeats"
 CENTER = "arc_centre_moved_to_fit"
+LAST_PECK = "last_peck"
+PASSED_OVER = "values_passed_over"
 _KNOWN = {each.example for each in DECISIONS}
-assert {BREAK, LENGTH_BEFORE_CHANGE, CLARITY, ENDLESS, CENTER, "tool_of_m61"} <= _KNOWN
+assert {
+    BREAK,
+    LENGTH_BEFORE_CHANGE,
+    CLARITY,
+    ENDLESS,
+    CENTER,
+    LAST_PECK,
+    PASSED_OVER,
+    "tool_of_m61",
+} <= _KNOWN
 
 _REFUSED = re.compile(
     r"two codes of the block want its axis words|has no counterpart|a NURBS is ended by G5\.3"
     r"|has changed the unit since a tool length|cannot be turned while G92|tools have a length along Z"
-    r"|#<<|it belongs to lathes|no O-word of the control|error line-too-long|in square brackets.*\n.*elseif",
+    r"|#<<|it belongs to lathes|no O-word of the control|O needs a label|beside M72 are lost|too much for two points so near each other|error line-too-long|in square brackets.*\n.*elseif",
     re.IGNORECASE,
 )
 """What the twin says where it refuses for clarity's sake and ``rs274`` does not."""
 
 _BREAK = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*break", re.IGNORECASE)
 _ENDWHILE = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*endwhile\s*$", re.IGNORECASE)
+_PASSED_OVER = re.compile(r"^\s*o\s*(?:\d+|<[^>]*>)\s*(?:return|endsub|while)\b", re.IGNORECASE)
 _FIRST_LABEL = 700_000
 _MOST_SLIPS = 6
+Slip = tuple[float, float, float]
+"""How far a place lies beside another one along X, Y and Z [mm]."""
+NO_SLIP: Slip = (0.0, 0.0, 0.0)
+Slips = list[list[float]]
+"""How far it may lie beside it along each of these axes [mm]."""
 _SPINDLE = re.compile(r"M0*[345](?![0-9.])")
 _LOAD = re.compile(r"^\s*M\s*61\s*Q\s*(\d+)\s*$", re.IGNORECASE)
 
@@ -74,13 +91,22 @@ def is_decided_refusal(said: str) -> bool:
     return _REFUSED.search(said) is not None
 
 
-def slips_of(forgotten: list[float]) -> list[float]:
-    """How far along Z the moves of ``rs274`` may lie beside those of the control [mm].
+def is_computed_too_early(said: str) -> bool:
+    """Whether ``rs274`` refuses what it computes in a line that a definition or a break passes over."""
+    error, _, line = said.partition("\n")
+    return _PASSED_OVER.match(line) is not None and not error.startswith(("Unclosed", "Unknown"))
+
+
+def slips_of(forgotten: list[Slip]) -> Slips:
+    """How far the moves of ``rs274`` may lie beside those of the control, axis by axis [mm].
 
     After a tool change its model of the machine stands where the last move ended as it was
     programmed, without the lengths that have come into force since; each change may add its own.
     """
-    slips = {0.0}
-    for each in forgotten[:_MOST_SLIPS]:
-        slips |= {slip + each for slip in slips}
-    return sorted(slips, key=abs)
+    axes: list[list[float]] = []
+    for axis in range(3):
+        sums = {0.0}
+        for each in forgotten[:_MOST_SLIPS]:
+            sums |= {value + each[axis] for value in sums}
+        axes.append(sorted(sums, key=abs))
+    return axes

@@ -29,7 +29,7 @@ DECIDED = (60014, 60519, 60213)
 """Seeds whose programs differ, but only as it was decided."""
 
 
-@pytest.mark.parametrize("seed", [*range(60), 60117, *DECIDED])
+@pytest.mark.parametrize("seed", [*range(60), 60117, 217058, 227504, 227636, 401181, *DECIDED])
 def test_random_programs(seed: int) -> None:
     assert not difference(program(seed)), program(seed)
 
@@ -52,7 +52,7 @@ def test_a_decided_difference_is_named(seed: int) -> None:
 def test_a_difference_beside_a_decided_one_is_shown() -> None:
     def answer(*heights: float, forgotten: float = 0.0) -> Answer:
         moves = [Made("rapid", [1.0, 0.0, height, 0.0], [], 0) for height in heights]
-        return Answer(moves, "", [forgotten] if forgotten else [])
+        return Answer(moves, "", [(0.0, 0.0, forgotten)] if forgotten else [])
 
     twin = answer(5.0, 6.0)
     assert compared_answers(twin, answer(15.0, 16.0, forgotten=10.0)).decisions
@@ -60,7 +60,9 @@ def test_a_difference_beside_a_decided_one_is_shown() -> None:
     assert compared_answers(twin, answer(15.0, 16.0)).said
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize(
+    "seed", [*range(25), 208509, 500522, 500565, 400059, 400622, 403449, 405757]
+)
 def test_wider_random_programs(seed: int) -> None:
     assert not difference(wide(seed)), wide(seed)
 

@@ -115,7 +115,7 @@ class RelativeMotion:
             np.array(
                 [[axis if axis in seen.turning else -1 for axis in rotary] for seen in self.seen],
                 np.int64,
-            ).reshape(-1, len(rotary)),
+            ).reshape(len(self.seen), len(rotary)),
         )
 
     def _carriers(self, scale: FloatArray) -> Chain:

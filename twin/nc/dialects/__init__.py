@@ -96,7 +96,8 @@ def marks_found(source: Source) -> dict[str, list[str]]:
 _BRACKETS = re.compile(r"\([^()]*\)")
 """A comment in every dialect: what it says decides nothing."""
 _VALUES = re.compile(
-    r"(?<=[XYZABCIJKRUVWN])[-+]?(?=[.]?[0-9])[0-9.]+(?![0-9.]|[ \t]*=)", re.IGNORECASE
+    r"(?<=[XYZABCIJKRUVWN])(?!360(?![0-9.]))[-+]?(?=[.]?[0-9])[0-9.]+(?![0-9.]|[ \t]*=)",
+    re.IGNORECASE,
 )
 """Values of words that no mark looks at: without them most lines of long programs are the same."""
 _MOST_SHAPES = 10_000

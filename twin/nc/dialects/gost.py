@@ -11,7 +11,7 @@ from twin.nc.canonical import Corner
 from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision, Dialect
-from twin.nc.iso import base, fixed_cycles, shared_decisions
+from twin.nc.iso import base, fixed_cycles, shared_decisions, shared_marks
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 RESOLUTION = 9
@@ -204,7 +204,8 @@ GOST = Dialect(
     units="mm, degrees; F in mm/min, for rotary axes alone in deg/min",
     decisions=DECISIONS,
     marks=(
-        Mark(r"\bG102[ \t]*[A-Z]", "G102 with an axis"),
+        Mark(r"\bG102[ \t]*[ABC][ \t]*360(?![.\d])", "G102 C360"),
+        shared_marks.G102,
         Mark(r"^[^$;\"]*(?:\$\w+\$[^$;\"]*)*\$(?=\s|$|[А-Яа-я])", "$ before a comment"),
     ),
     memory=Periods,

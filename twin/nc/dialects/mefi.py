@@ -12,7 +12,7 @@ from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision, Dialect
 from twin.nc.geometry.arcs import sweep_between
-from twin.nc.iso import base, shared_decisions
+from twin.nc.iso import base, shared_decisions, shared_marks
 from twin.nc.iso.circular import arc_rule, iso_arc_center, start_and_end
 from twin.nc.text.blocks import Block, Location, Word
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
@@ -264,7 +264,8 @@ MEFI = Dialect(
     marks=(
         Mark(r'^[^;$#]*"', 'a comment after "'),
         Mark(r"\bG73\b.*\bL[ \t]*\d|\bL[ \t]*\d+.*\bG73\b", "G73 with L"),
-        Mark(r"\bG0?9[ \t]*G0?[23]\b", "G09 with G02 or G03"),
+        shared_marks.EXACT_STOP_ARC,
+        shared_marks.G73_WITH_Q,
     ),
     memory=Dragging,
     compile_block=compile_block,

@@ -54,9 +54,22 @@ def describe(dialect: Dialect) -> str:
         f"Each is shown by a program of `tests/golden/{dialect.name}/decisions`.",
         _decisions(dialect),
         "## Told apart by",
-        "\n".join(f"- {mark.shown}" for mark in dialect.marks),
+        _marks(dialect),
     ]
     return "\n\n".join(section for section in sections if section) + "\n"
+
+
+def _marks(dialect: Dialect) -> str:
+    """What tells its programs from others, with the controls that know it too."""
+    lines: list[str] = []
+    for mark in dialect.marks:
+        others = [
+            each.name
+            for each in OWN.values()
+            if each.name != dialect.name and mark.shown in {other.shown for other in each.marks}
+        ]
+        lines.append(f"- {mark.shown}" + (f"; known to {', '.join(others)} too" if others else ""))
+    return "\n".join(lines)
 
 
 def _comments(dialect: Dialect) -> str:

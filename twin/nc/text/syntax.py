@@ -99,7 +99,7 @@ class Language(Protocol):
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Mark:
-    """Something that only this dialect's programs hold.
+    """Something that programs of this dialect hold, and of few others.
 
     Attributes:
         pattern: Regular expression, searched line by line without regard to case.

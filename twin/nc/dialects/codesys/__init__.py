@@ -8,7 +8,7 @@ from twin.nc.dialects.codesys import actions, program, subprograms, words
 from twin.nc.dialects.codesys.actions import ADDITIONAL
 from twin.nc.dialects.codesys.codes import CODES, INSTEAD
 from twin.nc.dialects.codesys.decisions import DECISIONS
-from twin.nc.iso import base
+from twin.nc.iso import base, shared_marks
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 CODESYS = Dialect(
@@ -112,16 +112,20 @@ CODESYS = Dialect(
     decisions=DECISIONS,
     marks=(
         Mark(r"^[^\"$;\[]*\bN[ \t]*\d+\b[^\"$;\[]*\bN[ \t]*\d+\b", "several N blocks on one line"),
-        Mark(r"\bG0?[23]\b.*[IJK].*\bT[ \t]*\d", "an arc with the opening angle T"),
+        shared_marks.ARC_WITH_T,
+        Mark(
+            r"\bG0?[23]\b.*[IJK].*\bT[ \t]*(?:-|\d*\.\d)",
+            "an arc with an opening angle T below 0 or with a point",
+        ),
         Mark(r"\bG0?4[ \t]*T", "G4 T"),
-        Mark(r"^(?!.*\bG5(?:1[ \t]*A|01)).*\bE[ \t]*[-+]?\d", "E, the acceleration"),
+        Mark(r"\bE[ \t]*\+?\d.*\bE[ \t]*-[ \t]*\d", "E20 E-30 (acceleration and deceleration)"),
         Mark(r"\$[A-Z_]\w*\$", "$variable$"),
         Mark(r"\bLET[ \t]+#|\bSUBPROGRAM\b", "LET, SUBPROGRAM"),
         Mark(r"\bG20[ \t]+L|\bL[?!][ \t]*\d", "G20 L, L?, L!"),
-        Mark(r"\bG5[12][ \t]*D|\bG16[ \t]*[IJK]|\bG3[67]\b.*\bD", "G51 D, G52 D, G16 I J K, G36 D"),
+        Mark(r"\bG5[12][ \t]*D|\bG16[ \t]*[IJK]|\bG36\b.*\bD", "G51 D, G52 D, G16 I J K, G36 D"),
         Mark(r"\b(?:FF|P[ABC])[ \t]*\d", "FF, PA, PB, PC"),
         Mark(r"\bG0?[89]\b(?!.*\bG[ \t]*\d).*\bI.*\bK.*\bR[ \t]*-?[.\d]", "an ellipse: G8 I K R"),
-        Mark(r"\bG7[01][ \t]+L[ \t]*\d", "G71 L6"),
+        Mark(r"\bG7[01][ \t]+L[ \t]*\d(?!.*[IJK])", "G71 L6"),
         Mark(r"\bH[ \t]*-?\d+[ \t]*[OL][ \t]*-?[\d.]", "a switch point H with O or L"),
         Mark(
             r"[XYZ](?:[^ \t;$\"]*\b)?(?:SIN|COS|SQRT|PI)\b(?!\[)", "functions with round brackets"

@@ -23,7 +23,7 @@ from twin.nc.dialects.fagor8070.control_variables import LiveVariables
 from twin.nc.dialects.fagor8070.decisions import DECISIONS
 from twin.nc.dialects.fagor8070.library import with_globals
 from twin.nc.dialects.fagor8070.memory import FagorMemory, acts_on_plain_blocks
-from twin.nc.iso import base
+from twin.nc.iso import base, shared_marks
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
 
@@ -134,20 +134,16 @@ FAGOR8070 = Dialect(
     decisions=DECISIONS,
     marks=(
         Mark(
-            r"^(?!.*\b(?:G0*8\d|[XY][ \t]*[-+.\d]))[^\"$;]*\bR[ \t]*[\d.]+.*\bQ[ \t]*-?[\d.]+",
+            r"^(?!.*\b(?:G0*(?:8\d|7[346]|10|6[56])\b|[XY][ \t]*[-+.\d]))"
+            r"(?=.*\bG0*[0-3]\b|(?!.*\bZ))[^\"$;]*\bR[ \t]*[\d.]+.*\bQ[ \t]*-?[\d.]+",
             "polar coordinates R and Q without X and Y",
         ),
-        Mark(
-            r"\bG0*30[ \t]*[IJ]|\bG0*26[1-5]\b|\bG0*31\b.*\bQ",
-            "G30 with I or J, G31 with Q, G261 to G265",
-        ),
-        Mark(r"\bG0*8[1-8]\b.*\bI[ \t]*-?[\d.]", "a cycle with its depth in I"),
-        Mark(r"\bG0*3[69][ \t]*I", "G36 or G39 with I"),
-        Mark(r"\bG(?:13[6-9]|15[89]|10[89]|19[37])\b", "G136 to G139, G158, G159, G108, G193"),
-        Mark(r"\bG0*72[ \t]*S|\bG0*73[ \t]*Q", "G72 S, G73 Q"),
+        Mark(r"\bG0*30[ \t]*[IJ]|\bG0*26[1-5]\b", "G30 with I or J, G261 to G265"),
+        Mark(r"\bG0*8[124568]\b.*\bI[ \t]*-?[\d.]", "a cycle with its depth in I"),
+        Mark(r"\bG(?:13[7-9]|15[89]|10[89]|19[37])\b", "G137 to G139, G158, G159, G108, G193"),
+        Mark(r"\bG0*72[ \t]*S", "G72 S"),
         Mark(r"^[ \t]*%[ \t]*L[ \t]+\w|^[ \t]*LL[ \t]+[A-Z]", "%L, LL (a local subroutine)"),
         Mark(r"\bNR[ \t]*\d", "NR (a repeated block)"),
-        Mark(r"^[^\"$]*;", "a comment after ;"),
         Mark(r"\$(?:IF|ELSE|ENDIF|WHILE|DO|ENDDO|FOR|SWITCH|GOTO)\b(?!\$)", "$IF, $WHILE, $GOTO"),
         Mark(
             r"#(?:RPT|TIME|CALL|PCALL|MCALL|RET|COMMENT|MCS|MSG|HSC|RTCP|CS|KIN|DGWZ|FLUSH|ROUNDPAR)\b",
@@ -158,6 +154,18 @@ FAGOR8070 = Dialect(
         Mark(r"\bP\d+[ \t]*=", "P1= (a parameter)"),
         Mark(r"\b[XYZC]-?[\d.]+I(?![\d-])", "X20I (one word incremental)"),
         Mark(r"\b[XYZ]1[ \t]*=", "X1="),
+        shared_marks.SEMICOLON,
+        shared_marks.PECKS_WITH_I,
+        shared_marks.BACK_BORING_WITH_I,
+        shared_marks.G31_WITH_Q,
+        shared_marks.G36_WITH_I,
+        shared_marks.CORNER_ARC,
+        shared_marks.G73_WITH_Q,
+        shared_marks.G102,
+        shared_marks.G103_WITH_P,
+        shared_marks.ADDITIONAL_OFFSET,
+        shared_marks.G136,
+        shared_marks.BUILDERS_CODE,
     ),
     start_state={"square_corners": True},
     memory=FagorMemory,

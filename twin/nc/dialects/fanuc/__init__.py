@@ -23,7 +23,7 @@ from twin.nc.dialects.fanuc.decisions import DECISIONS
 from twin.nc.dialects.fanuc.memory import FANUC as FANUC_VARIANT
 from twin.nc.dialects.fanuc.memory import HAAS as HAAS_VARIANT
 from twin.nc.dialects.fanuc.memory import FanucMemory, acts_on_plain_blocks, holds_any, memory_of
-from twin.nc.iso import base
+from twin.nc.iso import base, shared_marks
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 
@@ -62,11 +62,15 @@ def after_motion(control: Control) -> None:
 
 
 _FAMILY = (
-    Mark(r"^[ \t]*O[ \t]*[0-9]{1,8}[ \t;]*$", "O1000 (a program's number)"),
+    shared_marks.PROGRAM_NUMBER,
+    Mark(r"^[ \t]*:[ \t]*[0-9]{1,8}[ \t;]*$", ":1000 (a program's number)"),
+    shared_marks.SEMICOLON,
+    shared_marks.ARC_WITH_T,
+    shared_marks.EXACT_STOP_ARC,
     Mark(r"\bIF[ \t]*\[.*\][ \t]*(?:GOTO|THEN)(?![A-Z])", "IF [...] GOTO, IF [...] THEN"),
     Mark(r"\bWHILE[ \t]*\[.*\][ \t]*DO[ \t]*[1-3]\b", "WHILE [...] DO1"),
     Mark(r"\bG6[56][ \t]*P[ \t]*[0-9]", "G65 P, G66 P (a macro call)"),
-    Mark(r"#300[06][ \t]*=", "#3000=1 (an alarm)"),
+    shared_marks.NUMBERED_PARAMETER_3000,
     Mark(r"[0-9.][ \t]*,[ \t]*[RC][ \t]*[.0-9]", "X10. ,R5."),
 )
 """What the controls of the family have in common: alone it tells none of them."""
@@ -81,7 +85,7 @@ FANUC = Dialect(
     title="Fanuc 0i-MF, 30i (milling)",
     code_page="cp1252",
     syntax=Syntax(
-        address=r",[CR]|[A-Z]",
+        address=r",[CR]|[A-Z]|:",
         comments=(Comment("(", ")"), HEADING),
         skip_levels=True,
         block_end=";",
@@ -98,6 +102,7 @@ FANUC = Dialect(
     m=codes.M_CODES,
     words={
         "O": programs.heading,
+        ":": programs.heading,
         "F": base.set_feed,
         "S": WordEffect(base.spindle_speed),
         "T": WordEffect(base.next_tool),
@@ -108,6 +113,7 @@ FANUC = Dialect(
     last_of_group_counts=True,
     word_meanings={
         "O": "number of the program",
+        ":": "number of the program, as a tape of the ISO code has it",
         "N": "block number",
         "G": "preparatory code",
         **dict.fromkeys("XYZABCUVW", "axis"),
@@ -131,12 +137,18 @@ FANUC = Dialect(
     decisions=DECISIONS,
     marks=(
         *_FAMILY,
-        Mark(r"\bG54\.1[ \t]*P|\bG54[ \t]*P[ \t]*[0-9]", "G54.1 P"),
-        Mark(r"\bG0?5\.1[ \t]*Q|\bG0?8[ \t]*P[01]\b", "G5.1 Q, G8 P1"),
+        Mark(r"\bG54\.1[ \t]*P", "G54.1 P"),
+        Mark(r"\bG0?5\.1[ \t]*Q|\bG0?5[ \t]*P10000\b", "G5.1 Q, G5 P10000"),
         Mark(r"\bG5[01]\.1\b", "G50.1, G51.1 (mirror)"),
         Mark(r"\bM98[ \t]*P[ \t]*[0-9]{6,}", "M98 P00021000"),
-        Mark(r"\bG(?:107|0?7\.1)[ \t]*C", "G107 C, G7.1 C"),
+        Mark(r"\bG0?7\.1[ \t]*C", "G7.1 C"),
         Mark(r"\bG43\.4\b|\bG68\.2\b", "G43.4, G68.2"),
+        shared_marks.CYLINDER,
+        shared_marks.POINT_CODES,
+        shared_marks.BACK_BORING_WITH_I,
+        shared_marks.CORNER_ARC,
+        shared_marks.G31_WITH_Q,
+        shared_marks.ADDITIONAL_OFFSET,
     ),
     start_state={"square_corners": True},
     memory=FanucMemory,
@@ -167,8 +179,9 @@ HAAS = dataclasses.replace(
     m=haas.HAAS_M_CODES,
     word_meanings={
         **FANUC.word_meanings,
-        "I": "centre along X, from the start of the arc; first radius of G12 and G13",
-        "K": "centre along Z; last radius of G12 and G13",
+        "I": "centre along X, from the start of the arc; first radius of G12 and G13; first peck (G73, G83)",
+        "J": "centre along Y; less depth of each peck (G73, G83); how fast a tap comes back (G74, G84)",
+        "K": "centre along Z; last radius of G12 and G13; least peck (G73, G83)",
         "L": "how often a subprogram runs; holes that a cycle's block drills; kind of data of G10",
         "P": "dwell, seconds with a point, else milliseconds; program or block; work offset of G154",
         "Q": "depth of a peck; how much each circle of G12 and G13 is larger",
@@ -178,10 +191,17 @@ HAAS = dataclasses.replace(
     decisions=haas.DECISIONS,
     marks=(
         *_FAMILY,
-        Mark(r"\bG154[ \t]*P|\bG1(?:1[0-9]|2[0-9])\b", "G154 P, G110 to G129"),
-        Mark(r"\bG187\b|\bG103[ \t]*P", "G187, G103 P"),
+        Mark(r"\bG154[ \t]*P", "G154 P"),
         Mark(r"\bM97[ \t]*P", "M97 P"),
         Mark(r"\bG1[23](?![.0-9])[^GXY]*\bI[ \t]*[.0-9]", "G12 or G13 with I"),
+        shared_marks.ADDITIONAL_OFFSET,
+        shared_marks.BUILDERS_CODE,
+        shared_marks.G103_WITH_P,
+        shared_marks.PECKS_WITH_I,
+        shared_marks.G36_WITH_I,
+        shared_marks.G102,
+        shared_marks.G136,
+        shared_marks.CYLINDER,
     ),
     memory=_haas_memory,
 )

@@ -17,7 +17,7 @@ from twin.nc.dialects.linuxcnc.decisions import DECISIONS
 from twin.nc.dialects.linuxcnc.expressions import EXPRESSIONS
 from twin.nc.dialects.linuxcnc.library import with_files
 from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
-from twin.nc.iso import base
+from twin.nc.iso import base, shared_marks
 from twin.nc.path.drilling_cycle import START as CALL_HEIGHT
 from twin.nc.text.syntax import Comment, Mark, Syntax
 
@@ -146,11 +146,17 @@ LINUXCNC = Dialect(
         ),
         Mark(r"#<\w+>", "#<name> (a named parameter)"),
         Mark(
-            r"\bG(?:28\.1|30\.1|33\.1|38\.[2-5]|4[12]\.1|43\.[12]|61\.1|9[01]\.1|92\.[23]|59\.[123]|5\.[23])(?!\d)",
-            "G61.1, G91.1, G43.1, G59.3 and others with a point",
+            r"\bG(?:28\.1|33\.1|38\.[2-5]|43\.2|61\.1|90\.1|92\.[23]|59\.[123]|5\.[23])(?!\d)",
+            "G61.1, G90.1, G43.2, G59.3 and others with a point",
         ),
-        Mark(r"\bG0*64[ \t]*P[\d.]+", "G64 P0.01"),
+        Mark(r"\bG0*64[ \t]*P0*\.\d", "G64 P0.01 (a tolerance)"),
         Mark(r"[@^][ \t]*-?[\d.]+", "@ and ^ (polar coordinates)"),
+        shared_marks.PROGRAM_NUMBER,
+        shared_marks.ARC_WITH_T,
+        shared_marks.SEMICOLON,
+        shared_marks.POINT_CODES,
+        shared_marks.BACK_BORING_WITH_I,
+        shared_marks.NUMBERED_PARAMETER_3000,
     ),
     start_state={"corner": Corner.CONTINUOUS},
     memory=LinuxcncMemory,

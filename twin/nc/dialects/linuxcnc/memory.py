@@ -31,7 +31,7 @@ class SavedState:
 
     Attributes:
         modal: Codes in force.
-        feed: F, or None.
+        feed: F as it was written, or None.
         spindle: S, or None [1/min].
     """
 
@@ -57,7 +57,7 @@ class LinuxcncMemory:
         labels: Lines, from 0, of the O-words that have been run, by scope and name.
         saved: What M70 and M73 have put aside, by how deep the call is, and whether its end puts it back.
         subroutines: Lines, from 0, of the definitions of subroutines by name, in the order of the text.
-        garbled: Lines, from 0, that begin as one with an O-word and are none.
+        garbled: Lines, from 0, that begin as one with an O-word and are none, or hold an open comment.
         tells_calls: The program reads what calls give, or puts aside what is in force; None: not looked.
         called: Names of those that have been called.
         returned: Value of the last subroutine, and whether it gave one.
@@ -113,3 +113,8 @@ def memory_of(control: Control) -> LinuxcncMemory:
     """The dialect's memory."""
     assert isinstance(control.memory, LinuxcncMemory)
     return control.memory
+
+
+def written_feed(control: Control) -> float | None:
+    """F as it was written: a change of the unit leaves its number as it is (``rs274``)."""
+    return memory_of(control).converted_feed or control.feed

@@ -125,6 +125,10 @@ def in_machine_coordinates(control: Control) -> None:
         )
     words = control.take_axis_words()
     if not words:
+        codes = [word.value for word in control.block.words if word.address == "G"]
+        if 0.0 not in codes and 1.0 not in codes:
+            message = "G53 needs G0 or G1 in its block, or words of axes"
+            control.fail("machine-coordinates", message, hint="write G53 G0 Z0")
         return
     assert mode is not None
     check_feed(control, mode.rapid)
@@ -135,7 +139,11 @@ def in_machine_coordinates(control: Control) -> None:
 
 
 def go_home(place: int) -> Action:
-    """G28, G30: by the words of the block, if any, to the stored position."""
+    """G28, G30: by the words of the block, if any, to the stored position.
+
+    Axes that the block does not name keep their programmed coordinates: in a turned system the stored
+    position is turned back first, and X alone moves along the turned X (``rs274``).
+    """
 
     def action(control: Control) -> None:
         refuse_in_compensation(control)
@@ -145,10 +153,14 @@ def go_home(place: int) -> Action:
         axes = [axis for axis in named if axis is not None]
         if axes:
             control.line_to(target(control), rapid=True)
-        goal, stored = list(control.part), memory_of(control).homes[place]
+        stored, names = memory_of(control).homes[place], control.settings.axes.names
+        home = control.frame.to_programmed(
+            [at + zero.get(name, 0.0) for at, name in zip(stored, names, strict=True)]
+        )
+        goal = list(control.programmed)
         for axis in axes or range(len(goal)):
-            goal[axis] = stored[axis] + zero.get(control.settings.axes.names[axis], 0.0)
-        control.line_to(control.frame.to_programmed(goal), rapid=True)
+            goal[axis] = home[axis]
+        control.line_to(goal, rapid=True)
 
     return action
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode
-from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_of
+from twin.nc.dialects.linuxcnc.memory import SYSTEMS, CoordinateSystem, memory_of, written_feed
 from twin.nc.dialects.linuxcnc.offsets import reframe
 from twin.nc.iso.offsets import machine_zero
 from twin.nc.text.blocks import Assignment
@@ -249,8 +249,7 @@ def _motion(control: Control) -> float:
 
 
 def _feed(control: Control) -> float:
-    """F as it was written: a change of the unit leaves it as it is (``rs274``)."""
-    return memory_of(control).converted_feed or control.feed or 0.0
+    return written_feed(control) or 0.0
 
 
 def _system_code(control: Control) -> float:

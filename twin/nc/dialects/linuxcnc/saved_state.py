@@ -3,16 +3,17 @@
 import dataclasses
 
 from twin.nc.control.control import Control
-from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of
+from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of, written_feed
 from twin.nc.dialects.linuxcnc.offsets import reframe
 
 _KEPT_FIELDS = ("interpolation", "cycle")
+_AXES = (*"XYZABCUVW", "@", "^")
 _KEPT_GROUPS = ("motion", "not modal", "length")
 """What neither M72 nor the end of a subroutine puts back."""
 
 
 def _state(control: Control) -> SavedState:
-    return SavedState(control.saved_modal(), control.feed, control.spindle)
+    return SavedState(control.saved_modal(), written_feed(control), control.spindle)
 
 
 def save(control: Control) -> None:
@@ -34,11 +35,15 @@ def restore(control: Control) -> None:
     """M72.
 
     Raises:
-        ProgramError: Nothing was put aside here.
+        ProgramError: Nothing was put aside here, or the block would move.
     """
     saved = memory_of(control).saved.get(control.program_counter.depth)
     if saved is None:
         control.fail("code-words", "M72 puts back what M70 or M73 has put aside, and none has")
+    axis = next((word for letter, word in control.words.items() if letter in _AXES), None)
+    if axis is not None:
+        hint = "write them in the next block"
+        control.fail("code-words", "words of axes beside M72 are lost in the control", axis, hint)
     _put_back(control, saved[0])
 
 
@@ -56,7 +61,9 @@ def _put_back(control: Control, state: SavedState) -> None:
     )
     kept = {group: active[group] for group in _KEPT_GROUPS if group in active}
     control.restore_modal(state.modal._replace(modal=modal, active={**state.modal.active, **kept}))
-    control.feed, control.spindle = state.feed, state.spindle
+    control.spindle = state.spindle
+    if state.feed != written_feed(control):  # else nothing is written anew (``rs274``)
+        control.feed, memory_of(control).converted_feed = state.feed, None
     system = f"G{control.active.get('offset', 54)}"
     memory_of(control).system = SYSTEMS.index(system) + 1
     reframe(control)

@@ -23,6 +23,7 @@ _BEGIN = re.compile(r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O", re.IGNORECASE)
 _COMPUTED = re.compile(r"[ \t]*[#\[]")
 _WORD = re.compile(rf"[ \t]*({_LABEL}|#[^\[ \t]*|\[[^\]]*\])[ \t]*([A-Z]*)[ \t]*", re.IGNORECASE)
 _COMMENT = re.compile(r"\([^()]*\)")
+_OPEN_COMMENT = re.compile(r"(?:[^(;]|\([^()]*\))*\([^()]*(?:\(|$)")
 _ENDS = {"ENDSUB": "SUB", "ENDIF": "IF", "ENDWHILE": "WHILE", "ENDREPEAT": "REPEAT"}
 LOOPS = ("WHILE", "DO", "REPEAT")
 
@@ -60,7 +61,9 @@ def o_word(statement: Statement) -> OWord | None:
 
 
 def is_garbled(text: str) -> bool:
-    """Whether a line begins as one with an O-word and is none."""
+    """Whether a line holds an open comment, or begins as one with an O-word and is none."""
+    if "(" in text and _OPEN_COMMENT.match(text):
+        return True
     begin = _BEGIN.match(text)
     if begin is None or _COMPUTED.match(text, begin.end()):
         return False
@@ -77,7 +80,8 @@ class OWords(NamedTuple):
     Attributes:
         structure: Which belong together; what has no counterpart stays open.
         subroutines: Lines, from 0, of the definitions of subroutines by name.
-        garbled: Lines, from 0, within a condition, a loop or a subroutine that begin with O and say nothing.
+        garbled: Lines, from 0, within a condition, a loop or a subroutine that begin with O and say nothing,
+            or hold an open comment.
     """
 
     structure: Structure
@@ -92,10 +96,10 @@ def structure_of(lines: Iterable[str]) -> OWords:
     for line, text in enumerate(lines):
         if text.startswith(FILE):
             open_ones = []
-        if "O" not in text.upper():
-            continue
         if open_ones and is_garbled(text):
             garbled.append(line)
+        if "O" not in text.upper():
+            continue
         if (match := _LINE.match(text)) is None:
             continue
         name, keyword = name_of_label(match[1]), match[2].upper()
@@ -134,6 +138,15 @@ def structure(control: Control) -> Structure:
         found = structure_of(control.program_counter.lines)
         memory.structure, memory.subroutines, memory.garbled = found
     return memory.structure
+
+
+def lines_of_label(control: Control, construct: Construct) -> list[int]:
+    """Lines, from 0, within a construct and at its end whose O-word has its label."""
+    assert construct.end is not None
+    lines = control.program_counter.lines
+    inner = range(construct.begin + 1, construct.end + 1)
+    found = ((line, _LINE.match(lines[line])) for line in inner)
+    return [line for line, match in found if match and name_of_label(match[1]) == construct.name]
 
 
 def scope(control: Control, line: int) -> str:
