@@ -12,11 +12,11 @@ from twin.cutting.kernels.sweep import ALL_ROWS, Marks, sweep
 from twin.cutting.kernels.tooth_forces import (
     CutterForm,
     ForceLaw,
-    Material,
     ToothBench,
     add_force_between,
     tooth_forces,
 )
+from twin.cutting.kernels.walls import Material, leave_walls, lose_trace
 from twin.machine.simulation.drive_kernels import Drives, hold_push
 from twin.machine.simulation.process import Physics
 from twin.machine.simulation.stepping import pass_state, step_machine
@@ -84,6 +84,7 @@ class Memory(NamedTuple):
         numbers: See ``ANGLE`` and those after it.
         rigid: Where the tip would be, were the tool rigid, part's frame, shape (3,) [mm].
         swept: Where the material was cut up to, shape (2, 3); the second row is the later [mm].
+        trace: Where it has left walls up to, of ``leave_walls``.
         speed: Speed of the tip in the mean of a tooth, shape (3,) [mm/s].
         looked: Feed per tooth when the material was looked at, shape (3,) [mm].
         bend: Deflection of the tip in the part's frame, shape (3,) [mm].
@@ -98,6 +99,7 @@ class Memory(NamedTuple):
     numbers: FloatArray
     rigid: FloatArray
     swept: FloatArray
+    trace: FloatArray
     speed: FloatArray
     looked: FloatArray
     bend: FloatArray
@@ -181,6 +183,7 @@ def _go_to(physics: Physics, state: FloatArray, cut: Cut, memory: Memory) -> tup
     for k in range(3):
         if numbers[FRESH] > 0.0:
             numbers[STOOD] = 0.0
+            lose_trace(memory.trace)
             memory.speed[k] = 0.0
             memory.swept[0, k] = memory.swept[1, k] = tip[k]
         else:
@@ -266,6 +269,7 @@ def _look(period: float, cut: Cut, memory: Memory) -> None:
         looked[k] = feed[k]
     if min(swept[0, 2], swept[1, 2]) >= cut.material.grid.top:
         numbers[MET] = 0.0
+        lose_trace(memory.trace)
         return
     material = cut.material
     sweep(
@@ -273,6 +277,7 @@ def _look(period: float, cut: Cut, memory: Memory) -> None:
         memory.tally, memory.marks, numbers[STOOD] > 0.0, ALL_ROWS,
     )  # fmt: skip
     numbers[STOOD] = 1.0
+    leave_walls(material, memory.trace, swept[1], cut.cutter.profile[0], cut.cutter.side_from)
     sense = 1.0 if numbers[SPEED] >= 0.0 else -1.0
     met = tooth_forces(material, swept[1], feed, cut.cutter, cut.law, sense, memory.bench)
     numbers[MET] = 1.0 if met else 0.0

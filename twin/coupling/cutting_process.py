@@ -27,7 +27,8 @@ from twin.cutting.forces.materials import Kienzle
 from twin.cutting.forces.tool_strength import ToolStrength, tool_strength
 from twin.cutting.height_map import HeightMap
 from twin.cutting.kernels.sweep import Marks
-from twin.cutting.kernels.tooth_forces import Material, tooth_bench
+from twin.cutting.kernels.tooth_forces import tooth_bench
+from twin.cutting.kernels.walls import Material, no_trace, no_walls
 from twin.job.job_file import ToolTable
 from twin.machine.description.config import SpindleTable
 from twin.machine.simulation.process import Physics
@@ -101,6 +102,7 @@ class CuttingProcess:
         breaks: The tools that broke, in order.
         alarm: The spindle's alarm of the last ``follow``.
         material: The height map as cut so far.
+        walls: Those that tools have left in it, of ``twin.cutting.kernels.walls``.
     """
 
     def __init__(
@@ -123,6 +125,7 @@ class CuttingProcess:
         self.breaks: list[ToolBreak] = []
         self.alarm: Alarm | None = None
         self.material = material
+        self.walls = no_walls(material.heights)
         self._resists = resists
         self._operation = operation
         self._frame = part_frame
@@ -192,7 +195,7 @@ class CuttingProcess:
         tool, frame = turning.tool, self._frame
         rotary = -1 if frame.rotary is None else frame.rotary
         return Cut(
-            Material(self.material.heights, self.material.grid),
+            Material(self.material.heights, self.material.grid, self.walls),
             cutter_form(tool),
             force_law(tool, self._resists),
             tool_strength(tool),
@@ -263,7 +266,7 @@ def _memory(axes: int) -> Memory:
     numbers[FRESH] = 1.0
     three = np.zeros((6, 3))
     return Memory(
-        numbers, three[0].copy(), np.zeros((2, 3)), three[1].copy(), three[2].copy(),
+        numbers, three[0].copy(), np.zeros((2, 3)), no_trace(), three[1].copy(), three[2].copy(),
         three[3].copy(), np.zeros(axes), tooth_bench(), three[4].copy(), three[5].copy(),
         np.zeros((1, 2, 4)), Marks(np.zeros((0, 0)), np.zeros(1)),
     )  # fmt: skip

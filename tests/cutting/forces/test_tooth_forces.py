@@ -1,6 +1,7 @@
 """The forces of teeth against hand integration of the mechanistic model, on ideal engagements."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -10,12 +11,12 @@ from twin.cutting.forces.materials import materials
 from twin.cutting.height_map import HeightMap, blank
 from twin.cutting.kernels.tooth_forces import (
     BINS,
-    Material,
     ToothBench,
     add_force_between,
     tooth_bench,
     tooth_forces,
 )
+from twin.cutting.kernels.walls import Material, WallArray, leave_walls, no_trace, no_walls
 from twin.cutting.sweeping import sweep_lines
 from twin.cutting.tools import profile
 from twin.job.job_file import StockTable, ToolTable
@@ -28,25 +29,38 @@ QUADRANTS = [30.0, 120.0, 210.0, 300.0]
 """Directions of feed, one in each quadrant and none along the grid [deg]."""
 
 
-def plate() -> HeightMap:
-    stock = StockTable(shape="box", size=(60.0, 60.0, 30.0), position=(0.0, 0.0, 0.0), cell=0.1)
-    return blank(stock, np.zeros(3), 0.1)
+class Plate(NamedTuple):
+    """A height map and the walls in it."""
+
+    map: HeightMap
+    walls: WallArray
+
+    @property
+    def material(self) -> Material:
+        return Material(self.map.heights, self.map.grid, self.walls)
 
 
-def cut(part: HeightMap, tool: ToolTable, points: FloatArray) -> None:
-    sweep_lines(part, points, profile(tool))
+def plate(cell: float = 0.1) -> Plate:
+    stock = StockTable(shape="box", size=(60.0, 60.0, 30.0), position=(0.0, 0.0, 0.0), cell=cell)
+    part = blank(stock, np.zeros(3), cell)
+    return Plate(part, no_walls(part.heights))
 
 
-def forces(part: HeightMap, tool: ToolTable, points: FloatArray, sense: float = 1.0) -> ToothBench:
+def cut(part: Plate, tool: ToolTable, points: FloatArray) -> None:
+    edge, trace = profile(tool), no_trace()
+    sweep_lines(part.map, points, edge)
+    for tip in points:
+        leave_walls(part.material, trace, tip, edge.radius, cutter_form(tool).side_from)
+
+
+def forces(part: Plate, tool: ToolTable, points: FloatArray, sense: float = 1.0) -> ToothBench:
     """What the teeth feel at the end of a way that was cut."""
     cut(part, tool, points)
     bench = tooth_bench()
     ahead = points[-1] - points[0]
     feed = FEED * ahead / np.linalg.norm(ahead)
     law = force_law(tool, STEEL)
-    tooth_forces(
-        Material(part.heights, part.grid), points[-1], feed, cutter_form(tool), law, sense, bench
-    )
+    tooth_forces(part.material, points[-1], feed, cutter_form(tool), law, sense, bench)
     return bench
 
 
@@ -200,9 +214,9 @@ def test_a_ball_on_a_slope(direction: float, slope: float) -> None:
     normal = -math.sin(steep) * level + [0.0, 0.0, math.cos(steep)]
     part, depth, radius = plate(), 2.0, 5.0
     # A plane through the origin, of which the ball's lowest point along the normal is ``depth`` below.
-    x, y = np.meshgrid(part.x, part.y)
+    x, y = np.meshgrid(part.map.x, part.map.y)
     plane = -(normal[0] * x + normal[1] * y) / normal[2] - 10.0
-    part.heights[:] = np.minimum(plane, part.top)
+    part.map.heights[:] = np.minimum(plane, part.map.top)
     center = (radius - depth) * normal - [0.0, 0.0, 10.0]
     tip = center - [0.0, 0.0, radius]
     bench = forces(part, tool, tip + np.linspace(-20.0, 0.0, 201)[:, None] * ahead)
@@ -241,3 +255,31 @@ def test_in_the_air_there_is_none() -> None:
     bench = forces(part, tool, along(30.0, -1.0))
     assert not bench.mean.any()
     assert not bench.figures.any()
+
+
+@pytest.mark.parametrize("direction", [0.0, 17.0])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize("width", [0.1, 0.2, 1.0])
+def test_a_cut_narrower_than_a_cell_is_what_hand_integration_gives(
+    direction: float, side: float, width: float
+) -> None:
+    # Cells of half a millimetre: two of these widths lie within one.
+    tool, clearing = ToolTable(number=1, diameter=10.0, teeth=4), ToolTable(number=2, diameter=40.0)
+    part = plate(cell=0.5)
+    way = along(direction, 6.0, -side * (15.0 + width))
+    cut(part, clearing, np.concatenate([way, way[-1:] + 40.0 * (way[-1] - way[0]) / 50.0]))
+    bench = forces(part, tool, along(direction, 3.0)[-120:])
+    bound = math.asin(1.0 - width / 5.0)
+    bounds = (bound, 0.5 * math.pi) if side > 0 else (-0.5 * math.pi, -bound)
+    assert_like(bench, direction, by_hand(tool, 3.0, *bounds))
+
+
+def test_the_greatest_force_of_straight_edges_is_that_of_the_thickest_chip() -> None:
+    tool, part = ToolTable(number=1, diameter=10.0, teeth=4, helix=0.0), plate(cell=0.5)
+    way = along(17.0, 6.0, -15.2)
+    cut(part, ToolTable(number=2, diameter=40.0), np.concatenate([way, way + (way[-1] - way[0])]))
+    bench = forces(part, tool, along(17.0, 3.0)[-120:])
+    law, chip = force_law(tool, STEEL), FEED * math.sqrt(1.0 - 0.96**2)
+    push = law.kc * chip ** (1.0 - law.mc) * 3.0
+    assert bench.figures[0] == pytest.approx(push * math.hypot(1.0, law.radial), rel=0.02)
+    assert bench.figures[2] == pytest.approx(chip, rel=0.02)

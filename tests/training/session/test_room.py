@@ -321,6 +321,7 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
     heights = room.work.map.heights.copy()
     assert room.cut.process is not None
     felt_from = room.cut.process.material.heights.copy()
+    walls = room.cut.process.walls.copy()
     later = []
     for _ in range(2):
         session.advance(80)
@@ -335,6 +336,7 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
         assert np.array_equal(back.work.map.heights, heights)
         assert back.cut.process is not None
         assert np.array_equal(back.cut.process.material.heights, felt_from)
+        assert np.array_equal(back.cut.process.walls, walls)
     assert np.array_equal(later[0], later[1])
     assert len(session.log) == 4
 
@@ -342,24 +344,24 @@ def test_going_back_from_a_copy_is_the_same_to_the_last_bit(session, monkeypatch
 def test_a_copy_holds_no_map_of_its_own(session):
     session.advance(500)
     before = checkpoints.checkpoint(session.room, 0, ())
-    after = checkpoints.checkpoint(session.room, 0, before.heights)
-    assert len(after.heights) == 2
-    for old, new in zip(before.heights, after.heights, strict=True):
+    after = checkpoints.checkpoint(session.room, 0, before.maps)
+    assert len(after.maps) == 3
+    for old, new in zip(before.maps, after.maps, strict=True):
         assert all(a is b for a, b in zip(old.tiles, new.tiles, strict=True))
     work, process = after.room.work, after.room.cut.process
     assert work is not None
     assert process is not None
-    for kept, stock in zip(after.heights, (work.map, process.material), strict=True):
-        assert stock.heights is kept
+    cut = work.map.heights, process.material.heights, process.walls
+    assert all(a is b for a, b in zip(after.maps, cut, strict=True))
     assert process.material.uncut is session.room.cut.process.material.uncut
 
 
 def test_of_the_stock_a_copy_keeps_only_the_tiles_that_were_cut():
     heights = np.zeros((150, 200))
-    first = checkpoints.KeptHeights(heights, None)
+    first = checkpoints.KeptMap(heights, None)
     heights[140, 10] = -1.0
-    second = checkpoints.KeptHeights(heights, first)
-    other = checkpoints.KeptHeights(np.zeros((10, 200)), second)
+    second = checkpoints.KeptMap(heights, first)
+    other = checkpoints.KeptMap(np.zeros((10, 200)), second)
     assert other.laid_out().shape == (10, 200)
     own = [a is not b for a, b in zip(first.tiles, second.tiles, strict=True)]
     assert own.count(True) == 1

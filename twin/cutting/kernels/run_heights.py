@@ -7,7 +7,7 @@ one shape of tool, without a branch, so that the compiler takes several cells in
 import math
 
 from twin.compilation.kernel import arithmetic_kernel
-from twin.cutting.kernels.tool_height import lowest_height
+from twin.cutting.kernels.tool_height import cone_turning_point, lowest_height
 from twin.nc.canonical import FloatArray
 
 
@@ -44,6 +44,8 @@ def lowest_in_run(
         _level_cone(lowest, place, cell, a, b, profile)
     elif ball:
         _inclined_ball(lowest, place, cell, a, b, radius)
+    elif corner == 0.0 and flat < radius:
+        _inclined_cone(lowest, place, cell, a, b, profile)
     else:
         for k in range(len(lowest)):
             lowest[k] = lowest_height(place[0] + k * cell, place[1], a, b, profile)
@@ -144,3 +146,32 @@ def _inclined_ball(
         squared = offset + length * along * along
         height = center + t * dz - math.sqrt(max(reach - squared, 0.0))
         lowest[k] = height if squared <= reach else math.inf
+
+
+@arithmetic_kernel
+def _inclined_cone(
+    lowest: FloatArray,
+    place: tuple[float, float],
+    cell: float,
+    a: FloatArray,
+    b: FloatArray,
+    profile: tuple[float, float, float, float],
+) -> None:
+    radius, flat, _, slope = profile
+    dx, dy, inverse = _way(a, b)
+    dz = b[2] - a[2]
+    length, reach = dx * dx + dy * dy, radius * radius
+    for k in range(len(lowest)):
+        px, py = place[0] + k * cell - a[0], place[1] - a[1]
+        nearest = (px * dx + py * dy) * inverse
+        aside = px * dy - py * dx
+        offset = aside * aside * inverse
+        # Where it stops falling, but not beyond the cutter's edge.
+        half = math.sqrt(max(reach - offset, 0.0) * inverse)
+        turning = cone_turning_point(length, offset, dz, flat, slope)
+        t = min(max(nearest + min(max(turning, -half), half), 0.0), 1.0)
+        along = t - nearest
+        distance = min(math.sqrt(offset + length * along * along), radius)
+        height = a[2] + t * dz + slope * max(distance - flat, 0.0)
+        met = offset <= reach and nearest - half <= 1.0 and nearest + half >= 0.0
+        lowest[k] = height if met else math.inf

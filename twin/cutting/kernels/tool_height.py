@@ -5,8 +5,11 @@ import math
 from twin.compilation.kernel import array_kernel
 from twin.nc.canonical import FloatArray
 
-_BISECTIONS = 40
-"""Halvings of a sweep in search of its lowest point: 1e-12 of its length."""
+_MOST_STEPS = 60
+"""Steps in search of the lowest point of a sweep at most; it takes some eight."""
+_FOUND = 1e-9
+"""A step of the search that is shorter than this share of the sweep is the last: what the height is off by
+then falls with its square."""
 
 
 @array_kernel
@@ -58,8 +61,10 @@ def lowest_height(
     elif flat == 0.0 and corner > 0.0:
         steepest = math.sqrt(reach / (squared * (squared + dz * dz)))
         t = min(last, max(first, nearest - dz * steepest))
-    else:
+    elif corner > 0.0:
         t = _turning_point(first, last, nearest, squared, offset, dz, profile)
+    else:
+        t = min(last, max(first, nearest + cone_turning_point(squared, offset, dz, flat, slope)))
     along = t - nearest
     distance = math.sqrt(offset + squared * along * along)
     return a[2] + t * dz + profile_height(min(distance, radius), radius, flat, corner, slope)
@@ -79,6 +84,30 @@ def profile_height(
 
 
 @array_kernel
+def cone_turning_point(
+    squared: float, offset: float, dz: float, flat: float, slope: float
+) -> float:
+    """Where the height of a swept cone over a place stops falling.
+
+    Outside of its flat the height rises by slope squared s / sqrt(offset + squared s²) + dz, which
+    is zero at one s, or nowhere if the way is steeper than the cone; a flat ends where it does.
+
+    Args:
+        squared: Level length of the way, squared [mm²].
+        offset: Squared distance of the place from the way's line [mm²].
+        dz: How much the way rises [mm].
+        flat: Radius of the cone's flat [mm].
+        slope: Of the cone.
+
+    Returns:
+        From where the way is nearest to the place, as a share of it; may be infinite.
+    """
+    rest = slope * slope * squared - dz * dz
+    beyond = max(dz * dz * offset / rest if rest > 0.0 else math.inf, flat * flat - offset)
+    return -math.copysign(math.sqrt(max(beyond, 0.0) / squared), dz)
+
+
+@array_kernel
 def _turning_point(
     first: float,
     last: float,
@@ -88,20 +117,54 @@ def _turning_point(
     dz: float,
     profile: tuple[float, float, float, float],
 ) -> float:
-    """Where the height over a cell stops falling, by halving the stretch [share of the line]."""
-    flat = profile[1]
-    for _ in range(_BISECTIONS):
-        t = 0.5 * (first + last)
-        along = t - nearest
-        distance = math.sqrt(offset + squared * along * along)
-        rise = dz
-        if distance > flat:
-            rise += steepness(distance, profile) * squared * along / distance
+    """Where the height over a cell stops falling [share of the line].
+
+    Most cells of a short line lie before or behind all of it, and their lowest height is that of an
+    end. Else it is found by the secant that is halved at the end which stays (Illinois).
+    """
+    below = _rise(first, nearest, squared, offset, dz, profile)
+    if below >= 0.0:
+        return first
+    above = _rise(last, nearest, squared, offset, dz, profile)
+    if above <= 0.0:
+        return last
+    t, stays = first, 0
+    for _ in range(_MOST_STEPS):
+        before = t
+        t = (first * above - last * below) / (above - below)
+        rise = _rise(t, nearest, squared, offset, dz, profile)
+        if abs(t - before) <= _FOUND or rise == 0.0:
+            break
         if rise > 0.0:
-            last = t
+            last, above = t, rise
+            below = 0.5 * below if stays == 1 else below
+            stays = 1
         else:
-            first = t
-    return 0.5 * (first + last)
+            first, below = t, rise
+            above = 0.5 * above if stays == -1 else above
+            stays = -1
+    return t
+
+
+@array_kernel
+def _rise(
+    t: float,
+    nearest: float,
+    squared: float,
+    offset: float,
+    dz: float,
+    profile: tuple[float, float, float, float],
+) -> float:
+    """Has the sign with which the height of a rounded corner over a cell changes, and no pole."""
+    _, flat, corner, _ = profile
+    along = t - nearest
+    distance = math.sqrt(offset + squared * along * along)
+    beyond = distance - flat
+    if beyond <= 0.0:
+        return dz * corner * distance
+    beyond = min(beyond, corner)
+    side = math.sqrt(max(corner * corner - beyond * beyond, 0.0))
+    return dz * distance * side + squared * along * beyond
 
 
 @array_kernel

@@ -14,8 +14,14 @@ from typing import NamedTuple
 import numpy as np
 
 from twin.compilation.kernel import kernel
-from twin.cutting.kernels.sweep import Grid
 from twin.cutting.kernels.tool_height import profile_height
+from twin.cutting.kernels.walls import (
+    Material,
+    cell_number,
+    height_at,
+    height_by_wall,
+    height_of,
+)
 from twin.nc.canonical import FloatArray
 
 THINNEST_CHIP_MM = 1e-3
@@ -24,10 +30,17 @@ BINS = 72
 """Directions about the axis that are looked at: 5 degrees each."""
 _ANGLES = (np.arange(BINS) + 0.5) * (2.0 * np.pi / BINS)
 _COSINE, _SINE = np.cos(_ANGLES), np.sin(_ANGLES)
-_PLACES = 3
+_PLACES = 2
 """Places in each direction at which the depth of the side is looked at."""
-_FINE = (np.arange(BINS * _PLACES) + 0.5) * (2.0 * np.pi / (BINS * _PLACES))
-_FINE_COSINE, _FINE_SINE = np.cos(_FINE), np.sin(_FINE)
+_BORDER_STEP = 2.0 * np.pi / (BINS * _PLACES)
+_BORDER = np.arange(BINS * _PLACES + 1) * _BORDER_STEP
+_BORDER_COSINE, _BORDER_SINE = np.cos(_BORDER), np.sin(_BORDER)
+_HALVINGS = 6
+"""Halvings between two places, in search of where the depth changes."""
+_SLICES = 4
+"""Slices of an edge that comes into the material, or leaves it."""
+_SAME_DEPTH = 1e-6
+"""Depths that differ by less are the same [mm]."""
 _CLEAR = 0.75
 """How far before the cutter the material is looked at, in cells along the normal: beyond the corner
 of a cell whose middle the cutter has passed."""
@@ -81,18 +94,6 @@ class ForceLaw(NamedTuple):
     mc: float
     radial: float
     along: float
-
-
-class Material(NamedTuple):
-    """What is cut.
-
-    Attributes:
-        heights: The height map, cut up to where the tool is, shape (ny, nx) [mm].
-        grid: Where its cells lie.
-    """
-
-    heights: FloatArray
-    grid: Grid
 
 
 class Advance(NamedTuple):
@@ -168,12 +169,10 @@ def tooth_forces(
         return False
     way = (feed[0] / per_tooth, feed[1] / per_tooth, feed[2] / per_tooth)
     advance = Advance(tip, way, per_tooth, sense)
-    met = False
+    met = _meet_side(material, advance, cutter, law, bench)
     for j in range(BINS):
-        bench.depth[j] = 0.0
         for k in range(3):
             bench.tooth[j, k] = 0.0
-        met |= _meet_side(material, advance, cutter, law, j, bench)
         met |= _meet_end(material, advance, cutter, law, j, bench)
     if met:
         _add_up(cutter, sense, bench)
@@ -182,62 +181,186 @@ def tooth_forces(
 
 @kernel
 def _meet_side(
-    material: Material,
+    material: Material, advance: Advance, cutter: CutterForm, law: ForceLaw, bench: ToothBench
+) -> bool:
+    """Depth and force of the side in all directions."""
+    bench.depth[:] = 0.0
+    way = advance.way
+    if math.hypot(way[0], way[1]) <= _LEAST:
+        return False
+    met, edge, begun, deepest = False, 0.0, 0.0, 0.0
+    ahead = math.floor(math.atan2(way[1], way[0]) / (2.0 * math.pi) * BINS)
+    last = 0.0
+    # Behind the cutter there is nothing to meet.
+    for turned in range(ahead - BINS // 4 - 1, ahead + BINS // 4 + 2):
+        j = turned % BINS
+        area, moment, share, begins, ends = 0.0, 0.0, 0.0, 1.0, 0.0
+        for part in range(_PLACES):
+            border = j * _PLACES + part + 1
+            first = last
+            last = _side_depth(
+                material, advance, cutter, _BORDER_COSINE[border], _BORDER_SINE[border]
+            )
+            if first <= 0.0 and last <= 0.0:
+                continue
+            begin, end = part / _PLACES, (part + 1) / _PLACES
+            middle = end
+            if abs(last - first) > _SAME_DEPTH:
+                middle = _step_between(material, advance, cutter, (j, begin, end), (first, last))
+            for low, high, depth in ((begin, middle, first), (middle, end, last)):
+                if depth > 0.0 and high > low:
+                    begins, ends = min(begins, low), max(ends, high)
+                    share += high - low
+                    area += depth * (high - low)
+                    moment += 0.5 * depth * (high - low) * (high + low)
+            if first <= 0.0:
+                begun, deepest = turned + middle, 0.0
+            deepest = max(deepest, first, last)
+            if last <= 0.0:
+                edge = max(
+                    edge, _edge_force(advance, cutter, law, (begun, turned + middle), deepest)
+                )
+        if share > 0.0:
+            engaged = _Engaged(j, share, area / share, moment / area, begins, ends)
+            met |= _enter_side(advance, cutter, law, engaged, bench)
+    bench.figures[0] = edge
+    return met
+
+
+@kernel
+def _edge_force(
     advance: Advance,
     cutter: CutterForm,
     law: ForceLaw,
-    j: int,
-    bench: ToothBench,
+    arc: tuple[float, float],
+    depth: float,
+) -> float:
+    """Greatest level force where a tooth comes into an arc of material, or leaves it [N].
+
+    Told for arcs that only one tooth meets at a time; else 0: more of them sum up.
+
+    Args:
+        advance: How the cutter goes on.
+        cutter: Its form.
+        law: What the material does.
+        arc: Where the material begins and ends [bins].
+        depth: How deep the side is in it [mm].
+    """
+    begin, end = arc
+    lag = depth / cutter.rise
+    if end - begin + lag >= BINS / cutter.teeth:
+        return 0.0
+    within = min(lag, end - begin)
+    height = depth * (within / lag if within < lag else 1.0) / _SLICES
+    greatest, sense = 0.0, advance.sense
+    for first in (begin, end - within):
+        x, y = 0.0, 0.0
+        for number in range(_SLICES):
+            cosine, sine = _direction(first + within * (number + 0.5) / _SLICES)
+            chip = advance.way[0] * cosine + advance.way[1] * sine
+            force = height * _push(law, advance.per_tooth, max(chip, 0.0))
+            x += force * (-sense * sine - law.radial * cosine)
+            y += force * (sense * cosine - law.radial * sine)
+        greatest = max(greatest, math.hypot(x, y))
+    return greatest
+
+
+class _Engaged(NamedTuple):
+    """Where the side meets material in one direction.
+
+    Attributes:
+        bin: Number of the direction.
+        share: Of the bin in which it does.
+        depth: How deep it is there, in the mean [mm].
+        middle: Place within the bin, 0 to 1: in the mean of the material.
+        begin: Where it begins.
+        end: Where it ends.
+    """
+
+    bin: int
+    share: float
+    depth: float
+    middle: float
+    begin: float
+    end: float
+
+
+@kernel
+def _enter_side(
+    advance: Advance, cutter: CutterForm, law: ForceLaw, engaged: _Engaged, bench: ToothBench
 ) -> bool:
-    """Depth and force of the side in one direction."""
-    way, sense = advance.way, advance.sense
+    """Force of the side in one direction."""
+    j, sense = engaged.bin, advance.sense
     cosine, sine = _COSINE[j], _SINE[j]
-    chip = way[0] * cosine + way[1] * sine
+    ends = (_BORDER_COSINE[j * _PLACES], _BORDER_SINE[j * _PLACES])
+    other = (_BORDER_COSINE[(j + 1) * _PLACES], _BORDER_SINE[(j + 1) * _PLACES])
+    if engaged.share < 1.0:
+        cosine, sine = _direction(j + engaged.middle)
+        ends, other = _direction(j + engaged.begin), _direction(j + engaged.end)
+    chip = advance.way[0] * cosine + advance.way[1] * sine
     if chip <= _LEAST:
         return False
-    depth = 0.0
-    for part in range(_PLACES):
-        place = j * _PLACES + part
-        depth += _side_depth(material, advance, cutter, place) / _PLACES
-    if depth <= 0.0:
-        return False
-    thickness = advance.per_tooth * chip
-    force = _push(law, advance.per_tooth, chip)
-    bench.depth[j] = depth
+    thickest = max(
+        advance.way[0] * ends[0] + advance.way[1] * ends[1],
+        advance.way[0] * other[0] + advance.way[1] * other[1],
+        chip,
+    )
+    force = _push(law, advance.per_tooth, chip) * engaged.share
+    bench.depth[j] = engaged.depth
     bench.side[j, 0] = force * (-sense * sine - law.radial * cosine)
     bench.side[j, 1] = force * (sense * cosine - law.radial * sine)
     bench.side[j, 2] = -force * law.along
-    bench.figures[1] += force * depth * cutter.profile[0]
-    bench.figures[2] = max(bench.figures[2], thickness)
+    bench.figures[1] += force * bench.depth[j] * cutter.profile[0]
+    bench.figures[2] = max(bench.figures[2], advance.per_tooth * thickest)
     return True
 
 
 @kernel
-def _side_depth(
+def _direction(place: float) -> tuple[float, float]:
+    """Cosine and sine of a place around the axis [bins]."""
+    at = 2.0 * math.pi / BINS * place
+    return math.cos(at), math.sin(at)
+
+
+@kernel
+def _step_between(
     material: Material,
     advance: Advance,
     cutter: CutterForm,
-    place: int,
+    place: tuple[int, float, float],
+    depths: tuple[float, float],
 ) -> float:
-    """How deep the side is in the material at a place around the axis [mm]."""
-    tip, way, grid = advance.tip, advance.way, material.grid
+    """Where the depth of the side changes from one value to another, within a bin."""
+    j, begin, end = place
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (begin + end)
+        cosine, sine = _direction(j + middle)
+        depth = _side_depth(material, advance, cutter, cosine, sine)
+        if abs(depth - depths[0]) < abs(depth - depths[1]):
+            begin = middle
+        else:
+            end = middle
+    return 0.5 * (begin + end)
+
+
+@kernel
+def _side_depth(
+    material: Material, advance: Advance, cutter: CutterForm, cosine: float, sine: float
+) -> float:
+    """How deep the side is in the material in a direction [mm]."""
+    tip, way, radius = advance.tip, advance.way, cutter.profile[0]
+    clear = _CLEAR * material.grid.cell
     level = math.hypot(way[0], way[1])
-    ux, uy = way[0] / level, way[1] / level
-    across = ux * _FINE_SINE[place] - uy * _FINE_COSINE[place]
-    forwards = ux * _FINE_COSINE[place] + uy * _FINE_SINE[place]
-    if forwards <= 0.0:
+    if way[0] * cosine + way[1] * sine <= 0.0:
         return 0.0
-    radius = cutter.profile[0]
-    # The cell beside the way that the cutter leaves is not before it: stay a cell's corner off.
-    most = max(0.0, radius - _CLEAR * grid.cell)
-    aside = min(max(radius * across, -most), most)
-    ahead = math.sqrt(radius * radius - aside * aside)
-    ahead += grid.cell * min(_CLEAR / forwards, _FARTHEST)
-    x, y = tip[0] + ahead * ux - aside * uy, tip[1] + ahead * uy + aside * ux
-    row = _number(y, grid.origin[1], grid.cell)
-    column = _number(x, grid.origin[0], grid.cell)
-    depth = _height_of(material, row, column) - tip[2] - cutter.side_from
-    return max(0.0, min(depth, cutter.flute - cutter.side_from))
+    x, y = tip[0] + radius * cosine, tip[1] + radius * sine
+    # The walls beside the cutter are its own: they are looked at where it has not come to yet.
+    x_before, y_before = x + clear * way[0] / level, y + clear * way[1] / level
+    lowest = max(tip[2] + cutter.side_from, material.grid.bottom)
+    height = height_by_wall(material, x_before, y_before, lowest)
+    if math.isnan(height):
+        height = height_at(material, x + clear * cosine, y + clear * sine)
+    return max(0.0, min(height - tip[2], cutter.flute) - cutter.side_from)
 
 
 @kernel
@@ -285,11 +408,13 @@ def _ring_share(
     """How much of a ring is in the material in one direction, 0 to 1."""
     tip, way, grid = advance.tip, advance.way, material.grid
     clear = grid.cell * min(_CLEAR / chip, _FARTHEST)
-    row = _number(tip[1] + cutter.radius[i] * _SINE[j] + clear * way[1], grid.origin[1], grid.cell)
-    column = _number(
+    row = cell_number(
+        tip[1] + cutter.radius[i] * _SINE[j] + clear * way[1], grid.origin[1], grid.cell
+    )
+    column = cell_number(
         tip[0] + cutter.radius[i] * _COSINE[j] + clear * way[0], grid.origin[0], grid.cell
     )
-    top = _height_of(material, row, column) - tip[2]
+    top = height_of(material, row, column) - tip[2]
     low, span = cutter.height[i], cutter.span[i]
     if top <= low + min(0.0, clear * way[2]):
         return 0.0
@@ -316,22 +441,6 @@ def _push(law: ForceLaw, per_tooth: float, chip: float) -> float:
     """Tangential force a millimetre of edge, of a chip that is a share of the feed [N/mm]."""
     thickness = per_tooth * chip
     return law.kc * max(thickness, THINNEST_CHIP_MM) ** -law.mc * thickness
-
-
-@kernel
-def _number(place: float, origin: float, cell: float) -> int:
-    """Number of the cell that a place lies in."""
-    return math.floor((place - origin) / cell + 0.5)
-
-
-@kernel
-def _height_of(material: Material, row: int, column: int) -> float:
-    """Height of a cell [mm]; below everything where there is none."""
-    heights = material.heights
-    if row < 0 or column < 0 or row >= heights.shape[0] or column >= heights.shape[1]:
-        return -math.inf
-    height = heights[row, column]
-    return height if height > material.grid.bottom else -math.inf
 
 
 @kernel

@@ -12,13 +12,13 @@ from typing import Any
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from twin.cutting.height_map import HeightMap
 from twin.cutting.outline import Outline
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.watching.relative_motion import RelativeMotion
-from twin.nc.canonical import FloatArray
 from twin.nc.text.source import Source
 from twin.training.scene.scene_file import Scene
 from twin.training.session.inspection import Inspection
@@ -52,48 +52,50 @@ _SHARED = (
 """What never changes and need not be copied."""
 
 
-class KeptHeights:
-    """Heights of the stock as they were: tiles that had not changed are those of the copy before.
+Cells = npt.NDArray[np.float64 | np.float32]
+"""What is kept of every cell of the stock."""
+
+
+class KeptMap:
+    """A map of the stock as it was: tiles that had not changed are those of the copy before.
 
     Attributes:
         tiles: Row by row.
         shape: Of all of them.
     """
 
-    def __init__(self, heights: FloatArray, before: "KeptHeights | None") -> None:
-        """Keep heights.
+    def __init__(self, cells: Cells, before: "KeptMap | None") -> None:
+        """Keep heights or walls.
 
         Args:
-            heights: Shape (ny, nx) [mm].
+            cells: Shape (ny, nx) or (ny, nx, 2).
             before: Of the stock as it was earlier; None, or of another shape: nothing is shared.
         """
-        self.shape = heights.shape
+        self.shape, self._type = cells.shape, cells.dtype
         known = [None] * len(list(self._places()))
-        if before is not None and before.shape == heights.shape:
+        if before is not None and before.shape == cells.shape:
             known = before.tiles
         self.tiles = [
-            old
-            if old is not None and np.array_equal(old, heights[place])
-            else heights[place].copy()
+            old if old is not None and np.array_equal(old, cells[place]) else cells[place].copy()
             for place, old in zip(self._places(), known, strict=True)
         ]
 
     def _places(self) -> Iterator[tuple[slice, slice]]:
-        rows, columns = self.shape
+        rows, columns = self.shape[:2]
         for row in range(0, rows, TILE):
             for column in range(0, columns, TILE):
                 yield slice(row, row + TILE), slice(column, column + TILE)
 
-    def __deepcopy__(self, _memo: dict[int, Any]) -> FloatArray:
-        """In a room that goes on the heights stand in its place."""
+    def __deepcopy__(self, _memo: dict[int, Any]) -> Cells:
+        """In a room that goes on the map stands in its place."""
         return self.laid_out()
 
-    def laid_out(self) -> FloatArray:
-        """The heights, to be cut again, shape (ny, nx) [mm]."""
-        heights = np.zeros(self.shape)
+    def laid_out(self) -> Cells:
+        """The map, to be cut again."""
+        cells = np.zeros(self.shape, self._type)
         for place, tile in zip(self._places(), self.tiles, strict=True):
-            heights[place] = tile
-        return heights
+            cells[place] = tile
+        return cells
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -104,13 +106,14 @@ class Checkpoint:
         tick: Servo periods since the beginning.
         done: How many commands had been given by then.
         room: The copy; its run is planned anew, and its stock laid out, when the copy is used.
-        heights: Of its stock, and of what the force of the cut is felt from, where there are such.
+        maps: Heights of its stock, and heights and walls that the force of the cut is felt from, where
+            there are such.
     """
 
     tick: int
     done: int
     room: Room
-    heights: tuple[KeptHeights, ...]
+    maps: tuple[KeptMap, ...]
 
     def restored(self) -> Room:
         """A room that goes on from there; the copy stays as it is."""
@@ -139,7 +142,7 @@ class Checkpoints:
             done: How many commands have been given to it.
         """
         if room.tick - self._kept[-1].tick >= self._apart:
-            self._kept.append(checkpoint(room, done, self._kept[-1].heights))
+            self._kept.append(checkpoint(room, done, self._kept[-1].maps))
             self._thin_out()
 
     def before(self, tick: int) -> Checkpoint:
@@ -164,7 +167,7 @@ def _made_again(run: ProgramRun | ProgramRunCopy | None) -> ProgramRun | None:
     return run.made_again() if isinstance(run, ProgramRunCopy) else run
 
 
-def checkpoint(room: Room, done: int, before: tuple[KeptHeights, ...]) -> Checkpoint:
+def checkpoint(room: Room, done: int, before: tuple[KeptMap, ...]) -> Checkpoint:
     """A copy of a room.
 
     Args:
@@ -173,11 +176,13 @@ def checkpoint(room: Room, done: int, before: tuple[KeptHeights, ...]) -> Checkp
         before: What the copy before kept of the stock.
     """
     memo: dict[int, Any] = {}
-    kept: list[KeptHeights] = []
-    for stock, earlier in zip_longest(_stocks(room), before):
-        if stock is not None:
-            kept.append(KeptHeights(stock.heights, earlier))
-            memo[id(stock.heights)], memo[id(stock.uncut)] = kept[-1], stock.uncut
+    kept: list[KeptMap] = []
+    for cells, earlier in zip_longest(_maps(room), before):
+        if cells is not None:
+            kept.append(KeptMap(cells, earlier))
+            memo[id(cells)] = kept[-1]
+    for stock in _stocks(room):
+        memo[id(stock.uncut)] = stock.uncut
     return Checkpoint(room.tick, done, _copied(room, memo), tuple(kept))
 
 
@@ -187,6 +192,14 @@ def _stocks(room: Room) -> Iterator[HeightMap]:
         yield room.work.map
     if room.cut.process is not None:
         yield room.cut.process.material
+
+
+def _maps(room: Room) -> Iterator[Cells]:
+    """What cutting changes of them."""
+    for stock in _stocks(room):
+        yield stock.heights
+    if room.cut.process is not None:
+        yield room.cut.process.walls
 
 
 def _copied(room: Room, memo: dict[int, Any]) -> Room:
