@@ -4,6 +4,7 @@ After each of them the room must run in real time, its pages must answer, and it
 """
 
 import contextlib
+import http.client
 import json
 import resource
 import shutil
@@ -11,6 +12,7 @@ import socket
 import tempfile
 import time
 import urllib.request
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -20,6 +22,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from twin.training.scene.scene_file import read_scene, scene_path
 from twin.training.server.launch import OpenRoom
+from twin.web.doorkeeper import GUESSES
 
 SCENE = "mefi_helix_hold"
 WATCHED_S = 2.0
@@ -140,8 +143,20 @@ def vanished_folder(target: Target) -> Iterator[str]:
         yield f"it is not written again: {target.room.driver.look.trouble}"
 
 
+def guesses(target: Target) -> Iterator[str]:
+    """A thousand wrong tokens; whoever is in stays in."""
+    answers: Counter[int] = Counter()
+    for number in range(1000):
+        line = http.client.HTTPConnection("127.0.0.1", target.port, timeout=10)
+        line.request("POST", "/enter/trainer", f"guess{number}", {"Origin": target.origin})
+        answers[line.getresponse().status] += 1
+        line.close()
+    if set(answers) != {401, 429} or answers[401] > GUESSES:
+        yield f"guesses were answered with {dict(answers)}"
+
+
 DAYS: tuple[Callable[[Target], Iterator[str]], ...] = (
-    origins, half_open, flood, nonsense, slow_readers, vanished_folder,
+    origins, half_open, flood, nonsense, slow_readers, vanished_folder, guesses,
 )  # fmt: skip
 
 

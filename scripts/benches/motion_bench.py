@@ -193,7 +193,8 @@ def _arcs() -> Iterator[Row]:
     )  # fmt: skip
     for radius, turns, advance, turned in (
         (0.5, 1, 0.0, 0.0), (0.5, 3, 0.0, 0.0), (5.0, 1, 0.0, 0.0), (5.0, 3, 0.0, 0.0),
-        (50.0, 1, 0.0, 0.0), (5.0, 2, 4.0, 0.0), (20.0, 1, 5.0, 90.0), (5.0, 1, 0.0, 60.0),
+        (50.0, 1, 0.0, 0.0), (0.5, 0.5, 0.0, 0.0), (50.0, 0.5, 0.0, 0.0), (5.0, 0.25, 0.0, 0.0),
+        (5.0, 2, 4.0, 0.0), (20.0, 1, 5.0, 90.0), (5.0, 1, 0.0, 60.0),
     ):  # fmt: skip
         center, normal = (radius, 0.0, 0.0), (0.0, 0.0, 1.0)
         program = programs.Program().arc(
@@ -201,7 +202,7 @@ def _arcs() -> Iterator[Row]:
         )
         path = oracle.helix(radius, turns, advance, turned, ORACLE_PLACES)
         shortest = oracle.shortest_time(path, 4000.0, 5e4)
-        task = f"R{radius:g}, turns {turns}, Z {advance:g} mm, C {turned:g} deg"
+        task = f"R{radius:g}, turns {turns:g}, Z {advance:g} mm, C {turned:g} deg"
         yield Row("motion", task, cycle_s(program.chunks(), machine), "s", "time-optimal", shortest)
 
 

@@ -78,6 +78,7 @@ def _steady_rows(room: RoomProcess, page: "Page") -> Iterator[Row]:
     )
     yield Row("training", "  sent to each page", 1e-3 * statistics.median(sent), "kB/s")
     yield Row("training", "  pictures, drawn by the processor", statistics.median(pictures), "/s")
+    yield Row("training", "  its threads with precedence", room.ask("preceding_threads"), "of 2")
     yield Row("training", "  memory of the room at most", room.ask("memory_mb"), "MB")
 
 

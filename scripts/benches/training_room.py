@@ -5,7 +5,9 @@ Whoever leads the browser works hard while it clicks: in the room's process that
 
 import contextlib
 import multiprocessing
+import os
 import resource
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -39,17 +41,34 @@ class MeasuredRoom:
     def __init__(self, room: OpenRoom) -> None:
         self._room = room
         self._asked = 0.0
-        self._ask = room.driver.ask
-        room.driver.ask = self._note_ask
+        self._ask, self._advance = room.driver.ask, room.session.advance
+        room.driver.ask, room.session.advance = self._note_ask, self._note_advance
+        self._slowest_steady = 0.0
+        self._braked = threading.Event()
+        self._braked_at = 0.0
         room.session.room.feed_override = OVERRIDE
 
     def _note_ask(self, command: Any, who: Who, page: int) -> None:
         self._asked = time.time()
         self._ask(command, who, page)
 
+    def _note_advance(self, slices: int = 1) -> None:
+        """Look at the machine on its own thread: a look from another one would keep it waiting."""
+        self._advance(slices)
+        if not self._braked.is_set() and self._speed() < self._slowest_steady:
+            self._braked_at = time.time()
+            self._braked.set()
+
     def asked(self) -> float:
         """When the last command of a page was heard, by ``time.time`` [s]."""
         return self._asked
+
+    def preceding_threads(self) -> int:
+        """How many of the room's threads the system lets run before other programs."""
+        threads = [thread.native_id or 0 for thread in threading.enumerate()]
+        if sys.platform != "linux":
+            return 0
+        return sum(os.sched_getscheduler(thread) != os.SCHED_OTHER for thread in threads)
 
     def addresses(self) -> dict[str, str]:
         """Of its pages."""
@@ -110,9 +129,11 @@ class MeasuredRoom:
 
     def braked(self) -> float:
         """Wait for the first loss of speed; returns when it was, by ``time.time`` [s]."""
-        steady = self._speed()
-        wait_until(lambda: self._speed() < (1.0 - GONE) * steady)
-        return time.time()
+        self._slowest_steady = (1.0 - GONE) * self._speed()
+        self._braked.clear()
+        if not self._braked.wait(PATIENCE_S):
+            raise TimeoutError("the machine did not brake")
+        return self._braked_at
 
     def _steady(self) -> bool:
         return abs(self._speed() - FEED) < STEADY * FEED
@@ -165,7 +186,7 @@ def room_process() -> Iterator[RoomProcess]:
 
 
 def _live(line: Connection) -> None:
-    with open_room(read_scene(scene_path(SCENE))) as room:
+    with open_room(read_scene(scene_path(SCENE)), promptly=True) as room:
         measured = MeasuredRoom(room)
 
         def answer() -> None:

@@ -73,11 +73,11 @@ def helix(radius: float, turns: float, advance: float, turned: float, places: in
     return Path(x, np.stack([first.T, second.T, third.T]))
 
 
-def shortest_time(path: Path, acceleration: float, jerk: float) -> float:
+def shortest_time(path: Path, acceleration: float, jerk: float, velocity: float = np.inf) -> float:
     """From rest to rest [s].
 
     The limits are those of each axis, of the path along itself, and of its acceleration towards the
-    centre of curvature.
+    centre of curvature; that of the velocity is the path's.
     """
     slope, curvature = _differences(path.x)
     inner = np.eye(len(path.x))[1:-1]
@@ -92,6 +92,7 @@ def shortest_time(path: Path, acceleration: float, jerk: float) -> float:
     # At rest b'' v does not see a step of the acceleration: from there b is that of full jerk at most.
     away = np.minimum(path.x, path.x[-1] - path.x)
     ceiling = (0.5 * jerk) ** 2 * (6.0 * away / jerk) ** (4.0 / 3.0)
+    ceiling = np.minimum(ceiling, velocity**2)
     b *= min(1.0, float(np.min(ceiling[1:-1] / b[1:-1])))
     time = _time(path.x, b)
     for _ in range(MOST_PROGRAMMES):

@@ -118,7 +118,7 @@ def serve_scene(name: str, source: Source) -> ExitCode:
         description = f"The machine of the training scene {scene.name}"
         agent = Agent(device, Clock(), description, source.buffer)
         observer = RoomObserver(scene.preparation.source.name)
-        with open_room(scene, out=Path("out") / "training") as room:
+        with open_room(scene, out=Path("out") / "training", promptly=True) as room:
             stop = threading.Event()
 
             def leave() -> None:

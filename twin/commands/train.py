@@ -118,6 +118,7 @@ def train(
                 certificate=certificate,
                 key=key,
                 out=out or Path("out") / "training",
+                promptly=True,
             )
         )
         interrupted = stack.enter_context(let_interruption_stop(room.stop))

@@ -1,16 +1,11 @@
-"""A program's velocity: pieces, windows, the two passes, and runs of arcs driven faster."""
+"""A program's velocity: its pieces, with the corners that were tried, and their phases."""
 
 from collections.abc import Iterable, Iterator
 
-import numpy as np
-
+from twin.motion.corner_trials import pieces_of_chunks
 from twin.motion.limits import MotionLimits
-from twin.motion.pieces.pieces import pieces_of_chunks
-from twin.motion.profile.backward_pass_kernels import backward_pass
-from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forward_pass
-from twin.motion.profile.phases import Phases, brakes_from, phases_of
-from twin.motion.profile.windows import windows
-from twin.motion.retiming.retiming import PhaseTable, pieces_for_runs, retime
+from twin.motion.phases_of_pieces import phases_of_pieces
+from twin.motion.profile.phases import Phases
 from twin.nc.canonical import Chunk, FloatArray
 
 
@@ -24,23 +19,4 @@ def plan_phases(
         limits: Of the axes and the path.
         start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
     """
-    state = STATE_AT_REST.copy()
-    known = np.zeros((4, 0))
-    machine, gained = limits.arrays(), 0.0
-    for window in windows(pieces_of_chunks(chunks, limits, start)):
-        brakes = backward_pass(window.limits, window.entry, known)
-        stands = Stands(window.overlap, window.pause)
-        rows, segments = forward_pass(
-            window.limits, window.entry, brakes, stands, window.due, np.inf, state
-        )
-        if len(rows) > 0:
-            phases = phases_of(window, rows, segments)
-            pieces = pieces_for_runs(window.parts[0])
-            if pieces is not None or gained > 0.0:
-                table = PhaseTable(phases.rows, phases.rows_pieces)
-                table, _, gained = retime(table, pieces, machine, 1.0, gained)
-                phases = Phases(phases.parts, table.rows, table.rows_pieces)
-            yield phases
-        known = brakes_from(brakes, window.due)
-        state[[0, 5]] -= window.due
-        state[7:] = 0.0
+    return phases_of_pieces(pieces_of_chunks(chunks, limits, start), limits)

@@ -44,6 +44,7 @@ class Waits:
         speeds: Mapping[int, float | None],
         tool: int,
         state: SpindleState,
+        selected: int | None = None,
     ) -> None:
         """Begin with what is in the spindle.
 
@@ -52,10 +53,12 @@ class Waits:
             speeds: Of the tools, for programs that say none [1/min].
             tool: Number of the tool in the spindle.
             state: What the spindle has been told.
+            selected: Number of the tool that the next change brings; None: the one in the spindle.
         """
         self._spindle = spindle
         self._speeds = speeds
-        self._tool = self._selected = tool
+        self._tool = tool
+        self._selected = tool if selected is None else selected
         self._state = state
         self._turns = state.turning or 0.0
 

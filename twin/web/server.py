@@ -15,6 +15,7 @@ from starlette.types import ASGIApp
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from twin.errors import UsageError
+from twin.processor import take_precedence
 from twin.web.guard import ASSETS, LOCAL_NAMES
 
 THREE = ASSETS / "three"
@@ -121,8 +122,13 @@ class WebServer:
         name = f"[{self.host}]" if ":" in self.host else self.host
         return f"{scheme}://{name}:{self.port}"
 
-    def start(self, app: ASGIApp) -> None:
-        """Serve an application until ``stop``."""
+    def start(self, app: ASGIApp, *, promptly: bool = False) -> None:
+        """Serve an application until ``stop``.
+
+        Args:
+            app: What answers.
+            promptly: Whether to ask the system for precedence, as what is told must not wait.
+        """
         config = uvicorn.Config(
             app,
             http=BoundedProtocol,
@@ -143,11 +149,15 @@ class WebServer:
         # What a stranger sends is nothing that the terminal need hear of.
         logging.getLogger("uvicorn.error").setLevel(logging.CRITICAL)
         self._server = uvicorn.Server(config)
-        self._thread = threading.Thread(target=self._serve, daemon=True, name="web")
+        self._thread = threading.Thread(
+            target=self._serve, args=(promptly,), daemon=True, name="web"
+        )
         self._thread.start()
 
-    def _serve(self) -> None:
+    def _serve(self, promptly: bool) -> None:
         assert self._server is not None
+        if promptly:
+            take_precedence()
         with asyncio.Runner() as runner, contextlib.suppress(asyncio.CancelledError):
             runner.get_loop().set_exception_handler(_ignore_lost_lines)
             runner.run(self._server.serve(sockets=[self._socket]))

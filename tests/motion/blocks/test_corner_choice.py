@@ -22,7 +22,7 @@ def square(corner: Corner, feed: float, side: float = 50.0) -> Program:
     return program
 
 
-@pytest.mark.parametrize("seed", [*range(24), 202, 886])
+@pytest.mark.parametrize("seed", [*range(24), 202, 659, 886, 2670])
 def test_continuous_is_never_slower_than_stops(seed: int) -> None:
     times = []
     for corner in (Corner.CONTINUOUS, Corner.EXACT_STOP):
@@ -55,7 +55,7 @@ def test_a_chain_of_arcs_is_not_stopped_where_each_alone_would_be() -> None:
     """A stop at one corner of a chain pays only if its neighbours stop too: the chain goes on."""
     machine = mill(jerk=np.full(4, 4e4), corner_tolerance=0.05)
     flowing = duration(wave(Corner.CONTINUOUS, 40), machine)
-    assert flowing < 0.8 * duration(wave(Corner.EXACT_STOP, 40), machine)
+    assert flowing < 0.85 * duration(wave(Corner.EXACT_STOP, 40), machine)
 
 
 def test_what_is_chosen_depends_only_on_what_lies_near() -> None:

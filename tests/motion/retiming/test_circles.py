@@ -9,6 +9,7 @@ from motion_checks import assert_within_limits
 from motion_programs import PERIOD, Program, circles, duration, mill, run
 
 from twin.motion.limits import MotionLimits
+from twin.motion.phase_planner import plan_phases
 from twin.nc.canonical import Corner
 
 PLACES = 240
@@ -54,8 +55,21 @@ def test_the_oracle_knows_a_straight_line() -> None:
     assert 0.97 < ratio < 1.0
 
 
-@pytest.mark.parametrize(("radius", "turns"), [(0.5, 1), (0.5, 3), (5.0, 1), (50.0, 1)])
-def test_circles_beside_the_shortest_time(radius: float, turns: int) -> None:
+@pytest.mark.parametrize(
+    ("radius", "turns"),
+    [
+        (0.5, 1),
+        (0.5, 3),
+        (5.0, 1),
+        (50.0, 1),
+        (0.5, 0.5),
+        (50.0, 0.5),
+        (5.0, 0.25),
+        (50.0, 0.125),
+        (5.0, 0.03),
+    ],
+)
+def test_circles_beside_the_shortest_time(radius: float, turns: float) -> None:
     """No faster than can be, and no more than 3 % slower."""
     shortest = shortest_time(circle(radius, turns, PLACES), 4000.0, 5e4)
     assert 1.0 < duration(circles(radius, turns), even_mill()) / shortest < 1.03
@@ -87,8 +101,16 @@ def test_helices_with_a_table_beside_the_shortest_time(
     assert_within_limits(run(program, even_mill()), even_mill(), PERIOD)
 
 
-def test_a_run_that_the_feed_bounds_stays_as_it_was_planned() -> None:
-    """Its ramps are those of the bounds: the rest of it is as fast as it is asked for."""
-    slow = circles(20.0, 1, feed=600.0)
-    seconds = duration(slow, even_mill())
-    assert seconds == pytest.approx(math.tau * 20.0 / 10.0, rel=0.01)
+@pytest.mark.parametrize(("turns", "feed"), [(0.5, 3000.0), (1.0, 3000.0), (0.25, 4500.0)])
+def test_ramps_of_arcs_that_reach_their_feed(turns: float, feed: float) -> None:
+    shortest = shortest_time(circle(5.0, turns, PLACES), 4000.0, 5e4, feed / 60.0)
+    program = circles(5.0, turns, feed=feed)
+    assert 1.0 < duration(program, even_mill()) / shortest < 1.03
+    assert_within_limits(run(program, even_mill()), even_mill(), PERIOD)
+
+
+def test_of_a_long_way_at_the_feed_only_the_ramps_are_planned_anew() -> None:
+    (phases,) = plan_phases(circles(20.0, 1, feed=600.0).chunks(), even_mill(), start=np.zeros(4))
+    holds = phases.rows[phases.rows[:, 3] >= 10.0 * (1.0 - 1e-12)]
+    assert holds[:, 1].sum() > 0.9 * phases.end_time
+    assert len(phases.rows) < 200

@@ -239,3 +239,40 @@ def test_the_log_keeps_what_was_taken_back_and_names_who(driver):
         ("operator", "cycle_start"),
         ("trainer", "rewind"),
     ]
+
+
+def test_what_is_asked_interrupts_catching_up(driver):
+    room = driver.session.room
+    advance, slices = driver.session.advance, []
+
+    def noted(count=1):
+        slices.append(count)
+        advance(count)
+        if len(slices) == 2:
+            driver.ask({"do": "cycle_start"}, "operator", PAGE)
+
+    driver.session.advance = noted
+    driver._step(CAUGHT_UP_AT_ONCE_S)
+    assert slices == [1, 1]
+    driver._step(0.0)
+    assert room.running == "program"
+    run_for(driver, 0.0)
+    assert room.time_s == pytest.approx(CAUGHT_UP_AT_ONCE_S)
+    assert driver.lost_s == 0.0
+
+
+def test_a_machine_that_loses_time_gives_its_precedence_back(driver, monkeypatch):
+    given = []
+    monkeypatch.setattr("twin.training.server.driver.take_precedence", lambda: True)
+    monkeypatch.setattr("twin.training.server.driver.give_way", lambda: given.append(driver.lost_s))
+    turns = iter(range(100))
+
+    def step(_passed):
+        turn = next(turns)
+        driver.lost_s = 0.5 if turn >= 3 else 0.0
+        if turn == 5:
+            driver.stop()
+
+    monkeypatch.setattr(driver, "_step", step)
+    driver.serve(promptly=True)
+    assert given == [0.5]

@@ -54,16 +54,33 @@ def seconds(session: Session, text: str) -> float:
     return session.room.time_s - began
 
 
-def test_a_tool_change_takes_the_time_that_the_machine_file_says(session):
-    """As in a run: twin.run.waits; a tool that is there already takes none."""
+def second_tool(session: Session) -> float:
+    """Give the scene a second tool; how long its change takes [s]."""
     session.room.tables.tools[2] = session.room.tables.tool.model_copy(update={"number": 2})
     session.room.tables.lengths[2], session.room.tables.radii[2] = 60.0, 4.0
     change_s = session.room.machine.machine.file.spindle.tool_change_s
     assert change_s > 1.0
+    return change_s
+
+
+def test_a_tool_change_takes_the_time_that_the_machine_file_says(session):
+    """As in a run: twin.run.waits; a tool that is there already takes none."""
+    change_s = second_tool(session)
     same = seconds(session, "N10 T1 M6\nN20 G90 G1 F500 X1\nN30 M30")
     other = seconds(session, "N10 T2 M6\nN20 G90 G1 F500 X2\nN30 M30")
     assert session.room.tables.spindle == 2
     assert other - same == pytest.approx(change_s, abs=0.05)
+
+
+def test_a_tool_that_was_selected_before_a_stop_takes_its_time_too(session):
+    change_s = second_tool(session)
+    seconds(session, "N10 T2\nN20 M0\nN30 M6\nN40 M30")
+    assert (session.room.held, session.room.tables.spindle) == (True, 1)
+    do(session, "cycle_start")
+    began = session.room.time_s
+    rest(session)
+    assert session.room.tables.spindle == 2
+    assert session.room.time_s - began == pytest.approx(change_s, abs=0.1)
 
 
 def test_a_tool_that_is_not_there_is_told_at_once(session):

@@ -24,9 +24,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from twin.columns import join
+from twin.motion.corner_trials import pieces_of_chunks
 from twin.motion.limits import MotionLimits
 from twin.motion.live.overridden_plan import OverriddenPlan, Overrides
-from twin.motion.pieces.pieces import pieces_of_chunks
 from twin.motion.planner import WatchedEnd
 from twin.motion.setpoints.sampling import at_end, sample, standing
 from twin.motion.setpoints.setpoints import Setpoints

@@ -23,7 +23,7 @@ from twin.motion.blocks.blocks import (
     blocks_of_chunks,
     with_neighbours,
 )
-from twin.motion.blocks.corners import CONTEXT, find_borders
+from twin.motion.blocks.corners import CONTEXT, Borders
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.bound_kernels import bound_derivatives
 from twin.motion.pieces.cut_kernels import cut_blocks, place_pieces
@@ -84,28 +84,31 @@ class Pieces(Columns):
     geometry: Picked[Geometry]
 
 
-def pieces_of_chunks(
-    chunks: Iterable[Chunk], limits: MotionLimits, start: FloatArray, largest_override: float = 1.0
-) -> Iterator[Pieces]:
-    """Cut a program into pieces, dwells included, in order.
+def blocks_to_cut(chunks: Iterable[Chunk], start: FloatArray) -> Iterator[Surroundings]:
+    """A program's blocks, as many at a time as are cut together.
 
     Args:
         chunks: The program.
-        limits: Of the axes and the path.
         start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
-        largest_override: Of the feed that the limits of a piece must leave room for.
 
     Raises:
         ValueError: A move does not begin where the one before it ended.
     """
-    blocks = blocks_of_chunks(chunks, start)
-    for surroundings in with_neighbours(blocks, BATCH, CONTEXT, MAX_ANGLE):
-        yield _cut(surroundings, limits, largest_override)
+    return with_neighbours(blocks_of_chunks(chunks, start), BATCH, CONTEXT, MAX_ANGLE)
 
 
-def _cut(surroundings: Surroundings, limits: MotionLimits, largest_override: float) -> Pieces:
+def cut(
+    surroundings: Surroundings, borders: Borders, limits: MotionLimits, largest_override: float = 1.0
+) -> Pieces:  # fmt: skip
+    """Cut blocks into pieces, dwells included, in order.
+
+    Args:
+        surroundings: The blocks.
+        borders: Before each of them and of their neighbours.
+        limits: Of the axes and the path.
+        largest_override: Of the feed that the limits of a piece must leave room for.
+    """
     blocks, shapes = surroundings.blocks, surroundings.blocks.geometry
-    borders = find_borders(blocks, limits, largest_override)
     # The neighbours are cut as well: they tell how fast a piece can be reached and left.
     owner, offset, length, rounding = cut_blocks(
         blocks.length, shapes.angle, borders.width, borders.tangent_step, borders.curvature_step

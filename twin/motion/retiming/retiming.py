@@ -12,7 +12,7 @@ import numpy as np
 from twin.motion.limits import MachineLimits
 from twin.motion.pieces.pieces import Pieces
 from twin.motion.retiming.retimed_kernels import excess, retimed_phases
-from twin.motion.retiming.run_kernels import RunEnds, RunPieces, find_runs, run_ends
+from twin.motion.retiming.run_kernels import LONG, RunEnds, RunPieces, find_runs, run_ends
 from twin.motion.retiming.solver_kernels import fastest_rate
 from twin.motion.retiming.table_kernels import cut_run, first_rate, run_table, tightened
 from twin.nc.canonical import FloatArray, IntArray
@@ -20,11 +20,17 @@ from twin.nc.canonical import FloatArray, IntArray
 JERK_SHARE = 0.975
 """Of the jerk limits that a run uses, so that there is always a way out of it."""
 
+SHORT_JERK_SHARE = 0.99
+"""Of the jerk limits that a run of less than ``LEAST_TURN`` uses: its end is near."""
+
 WHOLE_SHARE = 0.999
 """Of the jerk limits that a way out of a run uses: between nodes a little more is used."""
 
 ATTEMPTS = 4
 """At a time law that keeps all limits between the nodes too."""
+
+ROUNDING = 1e-10
+"""By how much a run that begins or ends at the feed seems faster than that."""
 
 SPARE = 1.0005
 """By how much slower the next attempt is to be than it seems to need."""
@@ -114,11 +120,12 @@ def retime(
     if pieces is None:
         return phases.shifted(-gained), found, gained
     runs = find_runs(phases.rows, phases.rows_pieces, pieces, override)
-    for first, last, _ in runs[runs[:, 2] == 1]:
+    for first, last, kind in runs[runs[:, 2] > 0]:
         reference = phases[first:last].shifted(-gained)
         ends = run_ends(reference.rows, reference.rows_pieces)
         begin = float(reference.rows[0, 0])
-        faster = drive_run(ends, pieces, machine, override, begin)
+        share = JERK_SHARE if kind == LONG else SHORT_JERK_SHARE
+        faster = drive_run(ends, pieces, machine, override, begin, share)
         if faster is None or faster.end > reference.end - LEAST_GAIN * (reference.end - begin):
             continue
         parts += [phases[done:first].shifted(-gained), faster]
@@ -132,7 +139,7 @@ def retime(
 
 def drive_run(
     ends: RunEnds, pieces: RunPieces, machine: MachineLimits, override: float, begin: float,
-    share: float = JERK_SHARE,
+    share: float,
 ) -> PhaseTable | None:  # fmt: skip
     """The fastest phases of a run that are found; None if none keep the limits.
 
@@ -155,7 +162,7 @@ def drive_run(
             return None
         rows, rows_pieces = retimed_phases(nodes, pieces, rate, begin)
         found = excess(rows, rows_pieces, pieces, machine, override)
-        if found <= 1.0:
+        if found <= 1.0 + ROUNDING:
             return PhaseTable(rows, rows_pieces)
         if not found < 1.2:
             return None

@@ -13,9 +13,17 @@ from twin.toolpath.geometry_kernels import Curves
 MOST_TURN = 40.0 * math.pi
 """What a run turns by at most [rad]: a longer one is cut, and each part takes its own time to plan."""
 
+LEAST_TURN_FROM_REST = math.radians(10.0)
+"""What a run that begins or ends at rest turns by at least to get a time law of its own [rad]."""
+
+HOLD_TURN = 0.5 * math.pi
+"""What a run turns by at most while it keeps the programmed feed [rad]: there is nothing to gain."""
+
 AT_FEED = 0.999
-"""Share of the programmed feed from which on it is the feed that bounds a phase, not its curve: it is in
-no run."""
+"""Share of the programmed feed from which on it is the feed that bounds a phase, not its curve."""
+
+KEPT, SHORT, LONG = 0, 1, 2
+"""Kinds of runs: not worth a new time law, of less than ``LEAST_TURN``, and the others."""
 
 REST = 1e-9
 """What is slower at a run's end is rounding [mm/s]."""
@@ -48,7 +56,7 @@ class RunPieces(NamedTuple):
 def find_runs(
     phases: FloatArray, phase_pieces: IntArray, pieces: RunPieces, override: float
 ) -> IntArray:
-    """First phase of each run, the one after its last, and whether it is worth a new time law.
+    """First phase of each run, the one after its last, and its kind.
 
     Args:
         phases: Rows begin [s], duration [s], x, v, a, j, shape (p, 6).
@@ -61,27 +69,48 @@ def find_runs(
     """
     found = np.zeros((len(phases), 3), np.int64)
     used = 0
-    first, turned = -1, 0.0
+    first, turned, freely = -1, 0.0, 0.0
+    hold, held = -1, 0.0
     for row in range(len(phases) + 1):
-        turn = 0.0
+        turn, holds = 0.0, False
         if row < len(phases) and phase_pieces[row, 1] < len(pieces.length):
             feed = pieces.feed[phase_pieces[row, 0]] * override
-            if phases[row, 3] <= AT_FEED * feed:
-                turn = _turn_of(phases, phase_pieces, pieces, row)
+            holds = phases[row, 3] > AT_FEED * feed and phases[row, 4] == phases[row, 5] == 0.0
+            turn = _turn_of(phases, phase_pieces, pieces, row)
         inside = turn > 0.0
         joined = inside and first >= 0 and phases[row, 3] > 0.0 and turned < MOST_TURN
         if joined:
             piece = phase_pieces[row, 0]
             if phases[row, 2] <= BARELY * pieces.length[piece]:
                 joined = _goes_on(pieces, piece)
+        ends = row
+        if joined and holds and held + turn > HOLD_TURN:
+            joined = inside = False
+            ends = hold if hold >= 0 else row
         if not joined:
-            if first >= 0:
-                found[used, 0], found[used, 1] = first, row
-                found[used, 2] = turned >= LEAST_TURN * (1.0 - BARELY)
+            if ends > first >= 0:
+                found[used, 0], found[used, 1] = first, ends
+                rests = phases[first, 3] == 0.0 or _end_velocity(phases[ends - 1]) < REST
+                least = LEAST_TURN_FROM_REST if rests else LEAST_TURN
+                if freely >= least * (1.0 - BARELY):
+                    found[used, 2] = LONG if turned >= LEAST_TURN * (1.0 - BARELY) else SHORT
                 used += 1
-            first, turned = row if inside else -1, 0.0
+            inside = inside and not holds
+            first, turned, freely = row if inside else -1, 0.0, 0.0
         turned += turn
+        if holds and joined:
+            hold, held = row if hold < 0 else hold, held + turn
+        else:
+            hold, held = -1, 0.0
+            freely += turn
     return found[:used]
+
+
+@arithmetic_kernel
+def _end_velocity(phase: FloatArray) -> float:
+    """Velocity at a phase's end."""
+    _, t, _, v, a, j = phase
+    return v + (0.5 * j * t + a) * t
 
 
 @arithmetic_kernel

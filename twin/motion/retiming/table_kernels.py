@@ -17,6 +17,9 @@ STEP_ANGLE = math.radians(6.0)
 RAMP_STEPS = 20
 """Intervals of a change of velocity."""
 
+LEAST_RAMP = 0.2
+"""What a change of velocity turns by at twice its mean velocity at least, in runs long enough [rad]."""
+
 LEAST_STEPS = 12
 """Intervals between the changes of velocity at least."""
 
@@ -61,14 +64,15 @@ def _ramp_times(
         acceleration: Highest of the path.
     """
     v0, v1, peak = ends.begin[0], ends.end[0], ends.peak
+    least = min(LEAST_RAMP / turn, 0.5 * ends.distance)
     while True:
         up, down = 0.0, 0.0
         if v0 < SLOW * peak:
             rise = peak - v0
-            up = max(2.4 * math.sqrt(rise / jerk), 1.6 * rise / acceleration, 0.2 / (turn * peak))
+            up = max(2.4 * math.sqrt(rise / jerk), 1.6 * rise / acceleration, least / peak)
         if v1 < SLOW * peak:
             fall = peak - v1
-            down = max(2.4 * math.sqrt(fall / jerk), 1.6 * fall / acceleration, 0.2 / (turn * peak))
+            down = max(2.4 * math.sqrt(fall / jerk), 1.6 * fall / acceleration, least / peak)
         if 0.5 * (peak + v0) * up + 0.5 * (peak + v1) * down <= 0.95 * ends.distance:
             return up, down, peak
         peak *= 0.9
@@ -215,6 +219,9 @@ def run_table(
         here[used, 0], here[used, 1] = a / limit, 0.5 * v / limit
         limit = pieces.path_jerk[piece]
         here[kinds + used, 1], here[kinds + used, 2] = 1.5 * a / limit, 0.5 * v / limit
+        if node in (0, count) and v > 0.0:
+            # The state at an end is given, often at the feed itself.
+            most = math.inf
         highest[at, side] = most
         if 0 < node < count:
             forms[node - 1, 1] = here

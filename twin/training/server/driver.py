@@ -11,6 +11,7 @@ from concurrent.futures import Future
 from typing import Any, TypeVar
 
 from twin.errors import TwinError
+from twin.processor import give_way, take_precedence
 from twin.training.session.log import Who
 from twin.training.session.room import Room
 from twin.training.session.session import Session
@@ -23,7 +24,7 @@ SHORTEST_REST_S = 0.001
 MOST_BEHIND_S = 1.0
 """How far machine time may fall behind the wall's before it is given up, and shown as lost [s]."""
 CAUGHT_UP_AT_ONCE_S = 0.1
-"""Machine time that is caught up between two looks at what was asked for [s]: a press does not wait for more."""
+"""Machine time that is caught up between two looks at the machine [s]; what is asked meanwhile interrupts it."""
 REPLAY_SPEED = 4.0
 """Times faster than it was, a session is shown again."""
 HELD_S = 0.1
@@ -126,16 +127,28 @@ class Driver:
         self._over.set()
         self._wake.set()
 
-    def serve(self) -> None:
-        """Let time go on until the room is stopped."""
+    def serve(self, *, promptly: bool = False) -> None:
+        """Let time go on until the room is stopped.
+
+        Args:
+            promptly: Whether to ask the system for precedence: a press must not wait for what
+                draws on the same cores. A machine that loses time gives it back, so that its
+                pages do not stand still.
+        """
+        precedes = promptly and take_precedence()
         wall = time.perf_counter()
         while not self._over.is_set():
             now = time.perf_counter()
             passed, wall = now - wall, now
             self._step(passed)
+            if precedes and self.lost_s > 0.0:
+                precedes = False
+                give_way()
             due = self.session.room.slice_s - self._owed_s - (time.perf_counter() - now)
             self._wake.wait(max(due / self.speed, SHORTEST_REST_S))
             self._wake.clear()
+        if precedes:
+            give_way()
 
     def _step(self, passed: float) -> None:
         """One turn; whatever goes wrong in it becomes an alarm."""
@@ -211,9 +224,11 @@ class Driver:
         self.lost_s += self._owed_s - kept
         share = kept / self._owed_s if self._owed_s > 0.0 else 1.0
         self._kept_up += 0.02 * (self.speed * share - self._kept_up)
-        slices = int(min(kept, self.speed * CAUGHT_UP_AT_ONCE_S) / slice_s)
-        self._owed_s = kept - slices * slice_s
-        session.advance(slices)
+        gone, most = 0, int(min(kept, self.speed * CAUGHT_UP_AT_ONCE_S) / slice_s)
+        while gone < most and (gone == 0 or self._asked.empty()):
+            session.advance()
+            gone += 1
+        self._owed_s = kept - gone * slice_s
 
 
 def _moves_while_held(command: Any) -> bool:

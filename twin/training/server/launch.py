@@ -25,6 +25,16 @@ TURNS_S = 0.0005
 """How long a thread keeps the interpreter while another waits for it [s]: a press must not wait."""
 
 
+WARMING = (
+    {"do": "cycle_start"},
+    {"do": "override", "dial": "feed", "percent": 50},
+    {"do": "feed_hold"},
+    {"do": "cycle_start"},
+    {"do": "emergency_stop"},
+)
+"""What must not take longer the first time than later."""
+
+
 class OpenRoom:
     """A room that is open.
 
@@ -37,8 +47,15 @@ class OpenRoom:
     """
 
     def __init__(
-        self, driver: Driver, app: RoomApp, addresses: dict[str, str], folder: Path | None
+        self,
+        driver: Driver,
+        app: RoomApp,
+        addresses: dict[str, str],
+        folder: Path | None,
+        *,
+        promptly: bool,
     ) -> None:
+        self._promptly = promptly
         self.session = driver.session
         self.driver = driver
         self.app = app
@@ -47,7 +64,7 @@ class OpenRoom:
 
     def serve(self) -> None:
         """Let time go on until Ctrl+C is pressed or the room is stopped."""
-        self.driver.serve()
+        self.driver.serve(promptly=self._promptly)
 
     def stop(self) -> None:
         """End ``serve``, which runs on another thread, after the slice of time that it is at."""
@@ -64,6 +81,7 @@ def open_room(
     certificate: Path | None = None,
     key: Path | None = None,
     out: Path | None = None,
+    promptly: bool = False,
 ) -> Iterator[OpenRoom]:
     """Open the training room for a scene.
 
@@ -75,6 +93,7 @@ def open_room(
         certificate: For https.
         key: Of the certificate.
         out: Folder for log and score sheet; none: none are written.
+        promptly: Whether to ask the system for precedence over what else runs on this computer.
 
     Raises:
         TwinError: The scene does not fit its machine, the port is taken.
@@ -93,10 +112,10 @@ def open_room(
     addresses = {
         role: f"{server.origin}/{role}/#{token}" for role, token in doorkeeper.tokens.items()
     }
-    server.start(Guard(app.asgi, doorkeeper, local=server.local))
+    server.start(Guard(app.asgi, doorkeeper, local=server.local), promptly=promptly)
     try:
         with _prompt_threads():
-            yield OpenRoom(driver, app, addresses, writer.folder)
+            yield OpenRoom(driver, app, addresses, writer.folder, promptly=promptly)
     finally:
         server.stop()
         writer.close()
@@ -117,7 +136,8 @@ def _prompt_threads() -> Iterator[None]:
 
 
 def warm_up(scene: Scene) -> None:
-    """Run the first moves on a machine that nobody sees, so that nothing is compiled later."""
+    """Run the first moves on a machine that nobody sees, so that nothing is compiled or loaded later."""
     session = Session(scene)
-    session.submit({"do": "cycle_start"})
-    session.advance(20)
+    for command in WARMING:
+        session.submit(command)
+        session.advance(20)

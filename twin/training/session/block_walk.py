@@ -12,6 +12,9 @@ from collections import deque
 
 from twin.nc.canonical import Dwell, Event, Function
 
+FORGOTTEN_AT_ONCE = 256
+"""Blocks behind the axes that are dropped together."""
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class ModalState:
@@ -70,6 +73,18 @@ class BlockWalk:
                 break
         at = event.at if isinstance(event, Function) else 0.0
         self._events.append((moves + event.before + at, self._of_event, event))
+
+    def forget(self, move: int) -> None:
+        """Drop the blocks before the one that a move belongs to: a program may be endless."""
+        gone = self.of_move(move)
+        if self._stepping or self.paused:
+            gone = min(gone, self._current)
+        if gone < FORGOTTEN_AT_ONCE:
+            return
+        del self.blocks[:gone], self._marks[:gone]
+        self._current = max(self._current - gone, -1)
+        self._of_event = max(self._of_event - gone, 0)
+        self._events = deque((at, block - gone, event) for at, block, event in self._events)
 
     def of_move(self, move: int) -> int:
         """Number of the block that a move belongs to, as far as its mark tells; -1: none."""

@@ -5,7 +5,7 @@ from typing import Any
 from twin.errors import ConfigError
 from twin.machine.description.config import AxisTable
 from twin.training.scene.fault_table import FaultTable
-from twin.training.session.observed import Observed
+from twin.training.session.observed import Notice, Observed
 
 
 def inject(room: Observed, fault: FaultTable) -> None:
@@ -16,7 +16,7 @@ def inject(room: Observed, fault: FaultTable) -> None:
     """
     names = room.machine.machine.axes.names
     if fault.kind == "alarm":
-        room.raise_alarm("external", "the machine's own safety circuit has tripped")
+        room.raise_alarm(Notice("external", "the machine's own safety circuit has tripped"))
         return
     if fault.axis not in names:
         raise ConfigError(f"no axis '{fault.axis}': the machine has {', '.join(names)}")

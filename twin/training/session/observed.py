@@ -35,9 +35,9 @@ class Notice:
 
     code: str
     message: str
-    axis: str
-    line: int
-    time_s: float
+    axis: str = ""
+    line: int = 0
+    time_s: float = 0.0
     finding: Diagnostic | None = None
     block: str = ""
 
@@ -93,6 +93,6 @@ class Observed(Protocol):
         """Whether any axis moves."""
         ...
 
-    def raise_alarm(self, code: str, message: str) -> None:
+    def raise_alarm(self, notice: Notice) -> None:
         """The control stops everything and says why."""
         ...

@@ -21,6 +21,7 @@ from twin.machine.description.config import Machine
 from twin.machine.description.motion_limits import motion_limits
 from twin.machine.watching.travel import soft_limit_alarm
 from twin.motion.live.live_motion import LiveMotion
+from twin.motion.profile.windows import LOOK_AHEAD
 from twin.motion.setpoints.setpoints import Setpoints
 from twin.nc.canonical import Chunk, Event, FloatArray, Function, Motion, Moves
 from twin.nc.control.dialect import Dialect
@@ -48,12 +49,15 @@ from twin.training.session.block_walk import BlockWalk, ModalState
 
 MOVES_AT_ONCE = 256
 """Moves that are interpreted before the planner hears of them."""
-CHUNKS_AHEAD = 4
-"""Groups of so many moves that are interpreted ahead of the planner."""
+CHUNKS_AHEAD = 2 * math.ceil(LOOK_AHEAD / MOVES_AT_ONCE)
+"""Groups of so many moves that are interpreted ahead of the planner, to begin with: where it makes one
+block of several moves, it looks ahead to more of them."""
 BLOCKS_AT_REST, BLOCKS_IN_MOTION = 200, 50
 """Blocks that are interpreted in one slice of time, before the axes move and while they do."""
 BLOCKS_FOR_PLANNER = 400
 """Blocks more that are interpreted in one slice where the planner has caught up."""
+MOVES_KEPT_BEHIND = 2
+"""Moves behind the axes that are remembered: a stop at a block's end may count as the next one's beginning."""
 SLICES_AT_REST = 100
 """Slices after which the axes begin with what moves there are."""
 
@@ -68,6 +72,11 @@ NO_COMPENSATION = 40
 
 PASSED = 0.5
 """A stop at the end of a block is given as the end of its move or as the beginning of the next."""
+
+
+class _TooFewMovesError(Exception):
+    """The planner cannot begin yet without ending the part where the program goes on."""
+
 
 Ending = Literal["end", "stop", "tool", "wait", "soft-limit", "program"]
 
@@ -164,6 +173,8 @@ class ProgramRun:
         self._collected: dict[str, Function] = {}
         if options.inherited is not None:
             self._inherit(options.inherited)
+        self._active: tuple[float, ...] = ()
+        self._codes: tuple[str, ...] = ()
         self.dropped = False
         self.optional = False
         self.ending: Ending | None = None
@@ -223,8 +234,10 @@ class ProgramRun:
 
     def _prepare_part(self, start: FloatArray, zero: FloatArray, spindle: SpindleState) -> None:
         self._forget()
-        tool = self._control.tools.spindle or 0
-        self._waits = Waits(self._machine.file.spindle, {}, tool, spindle)
+        tools = self._control.tools
+        self._waits = Waits(
+            self._machine.file.spindle, {}, tools.spindle or 0, spindle, tools.selected
+        )
         self._begin = start, zero
         self.ending = None
 
@@ -272,9 +285,17 @@ class ProgramRun:
             self._driven = True
             self._begin_singly()
         setpoints = motion.advance(count)
+        if len(setpoints):
+            self._forget_behind(int(setpoints.move[0]))
         if single and not self.dropped and not self._walk.paused:
             self._stop_behind_block(motion, setpoints)
         return setpoints
+
+    def _forget_behind(self, move: int) -> None:
+        """Drop what nobody asks for once the axes are past it: a program may be endless."""
+        while len(self._firsts) > 1 and self._firsts[1] < move - MOVES_KEPT_BEHIND:
+            del self._firsts[0], self._moves[0]
+        self._walk.forget(move - MOVES_KEPT_BEHIND)
 
     def _begin_singly(self) -> None:
         """The first block of a part: it may move nothing, or wait for start."""
@@ -362,25 +383,37 @@ class ProgramRun:
         """Interpret some blocks more; the axes can go once there are moves."""
         most = BLOCKS_AT_REST if self._motion is None else BLOCKS_IN_MOTION
         self._left = BLOCKS_FOR_PLANNER
-        if self.ending is None and len(self._waiting) < CHUNKS_AHEAD:
+        if self.ending is None and len(self._waiting) < self._ahead:
             self._interpret(most)
         self._looks += 1
-        if self._motion is None and self._looks > SLICES_AT_REST and len(self._control.path):
+        long_enough = self._looks > SLICES_AT_REST
+        if self._motion is None and long_enough and len(self._control.path):
             self._finish_chunk(self._control.path.take())
-        if self._motion is None and self._waiting:
-            start, zero = self._begin
+        enough = long_enough or self.ending is not None or len(self._waiting) >= self._ahead
+        if self._motion is None and self._waiting and enough:
+            self._begin_to_plan(at_any_rate=long_enough)
+
+    def _begin_to_plan(self, *, at_any_rate: bool) -> None:
+        """Let the planner begin; if it looks ahead to more moves than there are, they come first."""
+        start, zero = self._begin
+        pulled: list[Chunk] = []
+        try:
             self._motion = LiveMotion(
-                self._chunks(),
+                self._chunks(pulled, at_any_rate=at_any_rate),
                 self._limits,
                 period_s=self._machine.file.servo_period_s,
                 part_zero=zero,
                 start=start,
                 largest_override=LARGEST_OVERRIDE,
             )
+        except _TooFewMovesError:
+            self._waiting.extendleft(reversed(pulled))
+            self._ahead = 2 * len(pulled)
 
     def _forget(self) -> None:
         self._motion: LiveMotion | None = None
         self._looks = self._left = 0
+        self._ahead = CHUNKS_AHEAD
         self._waiting: deque[Chunk] = deque()
         self._count = 0
         self._walk = BlockWalk()
@@ -389,9 +422,17 @@ class ProgramRun:
         self._moves: list[Moves] = []
         self._firsts: list[int] = []
 
-    def _chunks(self) -> Iterator[Chunk]:
-        """What the planner pulls; where it is quicker than the interpreter, the part ends there."""
+    def _chunks(self, pulled: list[Chunk], *, at_any_rate: bool) -> Iterator[Chunk]:
+        """What the planner pulls; where it is quicker than the interpreter, the part ends there.
+
+        Args:
+            pulled: Is given what the planner begins with.
+            at_any_rate: Whether it begins with what there is.
+        """
         while True:
+            begun = at_any_rate or self._motion is not None
+            if not self._waiting and self.ending is None and not begun:
+                raise _TooFewMovesError
             if not self._waiting and self.ending is None:
                 self._interpret(min(BLOCKS_IN_MOTION, self._left))
                 self._left -= BLOCKS_IN_MOTION
@@ -401,6 +442,8 @@ class ProgramRun:
                     self.ending = "wait"
             if not self._waiting:
                 return
+            if self._motion is None:
+                pulled.append(self._waiting[0])
             yield self._waiting.popleft()
 
     def _interpret(self, most: int) -> None:
@@ -469,9 +512,11 @@ class ProgramRun:
 
     def _note(self, block: Block, mark: int) -> None:
         control = self._control
-        codes = tuple(f"G{number:g}" for number in control.active.values())
+        active = tuple(control.active.values())
+        if active != self._active:
+            self._active, self._codes = active, tuple(f"G{number:g}" for number in active)
         factor = FEED_FACTORS.get(control.modal.feed_mode)
-        state = ModalState(block.line, codes, control.feed, control.tools.spindle, factor)
+        state = ModalState(block.line, self._codes, control.feed, control.tools.spindle, factor)
         self._walk.note(mark, state)
 
     def _look_for_stop(self, block: Block) -> None:
@@ -572,7 +617,7 @@ class ProgramRun:
         return None if found is None else (found[0].end[found[1]], found[0].display[found[1]])
 
     def _find(self, move: int) -> tuple[Moves, int] | None:
-        if move < 0 or move >= self._count:
+        if not self._firsts or not self._firsts[0] <= move < self._count:
             return None
         chunk = bisect.bisect_right(self._firsts, move) - 1
         return self._moves[chunk], move - self._firsts[chunk]

@@ -30,7 +30,7 @@ from twin.nc.functions import (
     SpindleState,
 )
 from twin.nc.iso.base import jog_block
-from twin.nc.text.diagnostics import Diagnostic, ProgramError
+from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.source import Source, source_from_text
 from twin.recording.reader import Samples
 from twin.run.placement import part_zero, start_position, with_blank
@@ -284,7 +284,7 @@ class Room:
         self._end_of_part()
         self.judge.look(self)
         if self.judge.over and self.handed_in is None:
-            self.handed_in = inspect_part(self, self._moment(Notice("", "", "", 0, self.time_s)))
+            self.handed_in = inspect_part(self, self._moment(Notice("", "", time_s=self.time_s)))
 
     def _setpoints(self, count: int) -> Setpoints:
         if self.run is None or self.waiting:
@@ -349,62 +349,43 @@ class Room:
         """Let the spindle go on otherwise; a speed that is limited is told, and stops nothing."""
         said = state.limit_of(state.speed)
         if said and state.speed != self.spindle.speed:
-            self.alarms.append(self._notice(SPINDLE_LIMITED, said, line=line))
+            self.alarms.append(self._placed(Notice(SPINDLE_LIMITED, said, line=line)))
         self.spindle = state
 
     def _latch(self, alarm: Alarm | None) -> None:
         # An axis that is jogged off its switch may meet the next alarm while the first one stands.
         if alarm is not None and (self.alarm is None or self.run is not None):
-            self.raise_alarm(alarm.code, alarm.message, axis=alarm.axis, line=alarm.line)
+            self.raise_alarm(Notice(alarm.code, alarm.message, alarm.axis, alarm.line))
 
-    def raise_alarm(
-        self,
-        code: str,
-        message: str,
-        *,
-        axis: str = "",
-        line: int = 0,
-        finding: Diagnostic | None = None,
-    ) -> None:
+    def raise_alarm(self, notice: Notice) -> None:
         """The control stops everything and says why; the first alarm counts."""
         if self.alarm is None:
-            self.alarm = self._noted(code, message, axis=axis, line=line, finding=finding)
+            self.alarm = self._noted(notice)
         self.give_up()
         self.spindle = self.spindle.stopped()
         self.coolant = False
 
-    def _noted(
-        self, code: str, message: str, *, axis: str, line: int, finding: Diagnostic | None
-    ) -> Notice:
+    def _noted(self, notice: Notice) -> Notice:
         """Enter what went wrong into the history, for the sheet and the judge too."""
-        notice = self._notice(code, message, axis=axis, line=line, finding=finding)
+        notice = self._placed(notice)
         self.alarms.append(notice)
         self.moments.append(self._moment(notice))
-        self.judge.note_alarm(code)
+        self.judge.note_alarm(notice.code)
         return notice
 
-    def _notice(
-        self,
-        code: str,
-        message: str,
-        *,
-        axis: str = "",
-        line: int = 0,
-        finding: Diagnostic | None = None,
-    ) -> Notice:
-        here = self.running == "program" or (self.running == "" and line > 0)
+    def _placed(self, notice: Notice) -> Notice:
+        """A notice with the time and the block at which it comes."""
+        here = self.running == "program" or (self.running == "" and notice.line > 0)
         dialect = self.scene.preparation.dialect
-        block = block_number(dialect, self.program, line) if here else ""
-        return Notice(code, message, axis, line, self.time_s, finding, block)
+        block = block_number(dialect, self.program, notice.line) if here else ""
+        return dataclasses.replace(notice, time_s=self.time_s, block=block)
 
     def _note_breaks(self) -> None:
         """Tools that have lost their edge: the machine does not feel it, and goes on without."""
         for found in self.cut.new_breaks():
             alarm = found.alarm
             line = alarm.line if self.running == "program" else 0
-            self.broken[found.tool] = self._noted(
-                alarm.code, alarm.message, axis="", line=line, finding=None
-            )
+            self.broken[found.tool] = self._noted(Notice(alarm.code, alarm.message, line=line))
 
     def _moment(self, alarm: Notice) -> Moment:
         """How the tool stands in the part, for the score sheet."""
@@ -445,7 +426,7 @@ class Room:
             self.go_on(paused=self.mode == "single")
         else:
             assert ending is not None
-            self.raise_alarm(ending, run.message, line=run.ending_line, finding=run.finding)
+            self.raise_alarm(Notice(ending, run.message, line=run.ending_line, finding=run.finding))
 
     @property
     def _stops_at_m1(self) -> bool:
@@ -478,9 +459,9 @@ class Room:
         except ProgramError as error:
             found = error.diagnostic
             message = f"{found.code}: {found.message}"
-            self.raise_alarm("program", message, line=found.line, finding=found)
+            self.raise_alarm(Notice("program", message, line=found.line, finding=found))
         except TwinError as error:
-            self.raise_alarm("program", str(error))
+            self.raise_alarm(Notice("program", str(error)))
 
     def path_to_come(self) -> PathToCome:
         """What a start of the program would begin with; nothing of it changes with the room."""
@@ -703,7 +684,7 @@ class Room:
     def fail(self, message: str) -> None:
         """Something went wrong within the program that simulates: the axes brake, nothing ends."""
         self.machine.raise_alarm("emergency-stop", message)
-        self.raise_alarm("internal", message)
+        self.raise_alarm(Notice("internal", message))
 
     def _begin_in_alarm(self, code: str) -> None:
         """Begin as the last shift left the machine."""
@@ -711,7 +692,7 @@ class Room:
         if code == "hard-limit":
             message = "an axis stands on its limit switch"
             self.machine.raise_alarm("hard-limit", message)
-        self.alarm = Notice(code, message, "", 0, 0.0)
+        self.alarm = Notice(code, message)
         self.alarms.append(self.alarm)
 
 

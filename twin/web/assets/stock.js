@@ -65,8 +65,8 @@ const NORMAL = `
 `;
 
 export class Stock {
-  /** grid: origin, cell, rows, columns, bottom, top [mm]; step: cells between two drawn vertices. */
-  constructor(grid, step) {
+  /** grid: origin, cell, rows, columns, bottom, top [mm]; step: cells between two drawn vertices; fine: it gleams. */
+  constructor(grid, step, fine) {
     this.grid = grid;
     const { rows, columns, cell, bottom, top } = grid;
     this.shares = new Float32Array(rows * columns).fill(1);
@@ -76,7 +76,8 @@ export class Stock {
       heights: { value: this.texture }, cells: { value: new THREE.Vector2(columns, rows) },
       cellSize: { value: cell }, blank: { value: top - bottom }, rawColour: { value: RAW }, cutColour: { value: CUT },
     };
-    const material = new THREE.MeshStandardMaterial({ metalness: 0.35, roughness: 0.42, side: THREE.DoubleSide });
+    const material = fine ? new THREE.MeshStandardMaterial({ metalness: 0.35, roughness: 0.42 }) : new THREE.MeshLambertMaterial();
+    material.side = THREE.DoubleSide;
     material.onBeforeCompile = (shader) => {
       Object.assign(shader.uniforms, uniforms);
       shader.vertexShader = shader.vertexShader

@@ -67,7 +67,7 @@ function light() {
   const rim = new THREE.DirectionalLight(0x9ec8ff, 0.9);
   rim.position.set(2.5, 2, 2);
   scene.add(key, key.target, rim);
-  const floor = new THREE.Mesh(new THREE.CircleGeometry(9, 64), new THREE.MeshStandardMaterial({ color: 0x1b2127, roughness: 0.95, metalness: 0 }));
+  const floor = new THREE.Mesh(new THREE.CircleGeometry(9, 64), new THREE.MeshLambertMaterial({ color: 0x1b2127 }));
   floor.receiveShadow = fine;
   scene.add(floor);
 }
@@ -109,8 +109,7 @@ function assemble(described, root) {
   root.traverse((node) => {
     if (node.isMesh) {
       node.castShadow = node.receiveShadow = fine;
-      // Without surroundings to mirror, metal would be black.
-      if (!fine) node.material.metalness *= 0.2;
+      if (!fine) node.material = matt(node.material);
       const hidden = [node.name, node.parent?.name].some((name) => name?.startsWith(collision));
       if (hidden) {
         node.material = new THREE.MeshBasicMaterial({ color: 0xff5544, wireframe: true });
@@ -126,7 +125,7 @@ function assemble(described, root) {
   const tip = frame(described.tip, named);
   const found = { root, joints, part, tip, bodies, cutter: named(described.cutter), radius: described.tool.diameter / 2, stock: null };
   if (described.stock) {
-    found.stock = machine?.stock ?? new Stock(described.stock, by_processor ? 3 : 1);
+    found.stock = machine?.stock ?? new Stock(described.stock, by_processor ? 3 : 1, fine);
     part.add(found.stock.mesh);
   }
   part.add(trail.line);
@@ -137,6 +136,11 @@ function assemble(described, root) {
   tip.add(found.chips.points, found.coolant.points);
   show(found);
   return found;
+}
+
+/** What a processor draws in half the time; without surroundings to mirror, metal would be black anyhow. */
+function matt({ color, map, vertexColors, transparent, opacity, side }) {
+  return new THREE.MeshLambertMaterial({ color, map, vertexColors, transparent, opacity, side });
 }
 
 function frame(place, named) {

@@ -1,0 +1,93 @@
+"""Continuous corners beside arcs, tried: where stops are faster after all, the path stops.
+
+The estimates by which a corner is chosen (``twin.motion.blocks``) know the bounds of an arc, not the
+time law that its run gets. So between two stops the plan is made in both ways, and the faster one
+is kept.
+"""
+
+import dataclasses
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from twin.columns import join
+from twin.motion.blocks.blocks import BoolArray, Surroundings
+from twin.motion.blocks.corners import Borders, find_borders
+from twin.motion.limits import MotionLimits
+from twin.motion.phases_of_pieces import phases_of_pieces
+from twin.motion.pieces.pieces import Pieces, blocks_to_cut, cut
+from twin.motion.retiming.run_kernels import LEAST_TURN_FROM_REST
+from twin.nc.canonical import Chunk, Corner, FloatArray
+
+MOST_BLOCKS = 64
+"""Between two stops: of more, stops do not make up for what passing their corners gains."""
+
+
+def pieces_of_chunks(
+    chunks: Iterable[Chunk], limits: MotionLimits, start: FloatArray, largest_override: float = 1.0
+) -> Iterator[Pieces]:
+    """Cut a program into pieces, dwells included, in order.
+
+    Args:
+        chunks: The program.
+        limits: Of the axes and the path.
+        start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
+        largest_override: Of the feed that the limits of a piece must leave room for.
+
+    Raises:
+        ValueError: A move does not begin where the one before it ended.
+    """
+    for surroundings in blocks_to_cut(chunks, start):
+        borders = find_borders(surroundings.blocks, limits, largest_override)
+        pieces = cut(surroundings, borders, limits, largest_override)
+        yield _with_faster_stops(pieces, surroundings, borders, limits, largest_override)
+
+
+def _with_faster_stops(
+    pieces: Pieces, surroundings: Surroundings, borders: Borders, limits: MotionLimits,
+    largest_override: float,
+) -> Pieces:  # fmt: skip
+    """The pieces, those between two stops by stops at every corner where that is faster."""
+    blocks = surroundings.blocks
+    parts, done = list[Pieces](), 0
+    begins = np.append(np.flatnonzero((pieces.begin == 0.0) | (pieces.length == 0.0)), len(pieces))
+    for first, last in _doubtful(surroundings, borders):
+        begin, end = begins[[first - surroundings.first, last - surroundings.first]]
+        passing = pieces[begin:end]
+        corner = np.full(last - first, Corner.EXACT_STOP, np.uint8)
+        apart = Surroundings(
+            dataclasses.replace(blocks[first:last], corner=corner), 0, last - first, True
+        )
+        stopping = cut(
+            apart, find_borders(apart.blocks, limits, largest_override), limits, largest_override
+        )
+        stopping.overlap[0] = passing.overlap[0]
+        if _seconds(stopping, limits) < _seconds(passing, limits):
+            parts += [pieces[done:begin], stopping]
+            done = int(end)
+    return join([*parts, pieces[done:]]) if parts else pieces
+
+
+def _doubtful(surroundings: Surroundings, borders: Borders) -> list[tuple[int, int]]:
+    """First block and the one after the last, between two stops, with roundings beside arcs."""
+    blocks = surroundings.blocks
+    bent = np.abs(blocks.geometry.angle) >= LEAST_TURN_FROM_REST
+    if not np.any(bent):
+        return []
+    rounded: BoolArray = borders.width > 0.0
+    rounded[1:] &= bent[1:] | bent[:-1]
+    stops = np.flatnonzero((borders.entry == 0.0) & (borders.width == 0.0))
+    if surroundings.to_the_end:
+        stops = np.append(stops, len(blocks))
+    among = np.searchsorted(np.flatnonzero(rounded), stops)
+    return [
+        (int(first), int(last))
+        for first, last, before, behind in zip(stops[:-1], stops[1:], among[:-1], among[1:], strict=True)
+        if behind > before and last - first <= MOST_BLOCKS
+        and surroundings.first <= first and last <= surroundings.last
+    ]  # fmt: skip
+
+
+def _seconds(pieces: Pieces, limits: MotionLimits) -> float:
+    """How long pieces take from rest to rest [s]."""
+    return sum(phases.end_time for phases in phases_of_pieces([pieces], limits))

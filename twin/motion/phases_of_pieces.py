@@ -1,0 +1,42 @@
+"""The velocity along pieces: windows, the two passes, and runs of arcs driven faster."""
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from twin.motion.limits import MotionLimits
+from twin.motion.pieces.pieces import Pieces
+from twin.motion.profile.backward_pass_kernels import backward_pass
+from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forward_pass
+from twin.motion.profile.phases import Phases, brakes_from, phases_of
+from twin.motion.profile.windows import windows
+from twin.motion.retiming.retiming import PhaseTable, pieces_for_runs, retime
+
+
+def phases_of_pieces(parts: Iterable[Pieces], limits: MotionLimits) -> Iterator[Phases]:
+    """Plan the velocity along pieces, from rest.
+
+    Args:
+        parts: Consecutive pieces.
+        limits: Of the axes and the path.
+    """
+    state = STATE_AT_REST.copy()
+    known = np.zeros((4, 0))
+    machine, gained = limits.arrays(), 0.0
+    for window in windows(parts):
+        brakes = backward_pass(window.limits, window.entry, known)
+        stands = Stands(window.overlap, window.pause)
+        rows, segments = forward_pass(
+            window.limits, window.entry, brakes, stands, window.due, np.inf, state
+        )
+        if len(rows) > 0:
+            phases = phases_of(window, rows, segments)
+            pieces = pieces_for_runs(window.parts[0])
+            if pieces is not None or gained > 0.0:
+                table = PhaseTable(phases.rows, phases.rows_pieces)
+                table, _, gained = retime(table, pieces, machine, 1.0, gained)
+                phases = Phases(phases.parts, table.rows, table.rows_pieces)
+            yield phases
+        known = brakes_from(brakes, window.due)
+        state[[0, 5]] -= window.due
+        state[7:] = 0.0
