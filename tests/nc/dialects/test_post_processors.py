@@ -137,6 +137,104 @@ o<hole> call [10] [20] [3]
 o<hole> call [15] [20] [4]
 M2
 """
+HAAS_CONTOUR = """%
+O01001 (BRACKET)
+(T1 D=10. CR=0. - ZMIN=-2. - FLAT END MILL)
+N10 G90 G94 G17
+N15 G21
+N20 G53 G0 Z0.
+N25 T1 M6
+N30 S5000 M3
+N40 G54
+N45 M11
+N50 G0 C0.
+N55 M10
+N60 M8
+N65 G187 P1
+N70 G0 X10. Y-3.
+N75 G43 Z15. H1
+N80 G0 Z5.
+N85 G1 Z1. F300.
+N90 G3 X15. Y2. Z-2. I0. J5. F500.
+N95 G1 X20. Y7.
+N100 G0 Z15.
+N105 G187
+N110 M9
+N115 M5
+N120 G53 G0 Z0.
+N125 G53 G0 X0. Y0.
+N130 M30
+%
+"""
+HAAS_DRILLING = """%
+O03
+T2 M6
+S2000 M3
+G54
+G0 X10. Y10.
+G43 Z25. H2
+G0 Z5.
+G98 G83 X10. Y10. Z-12. R5. I4. J1. K1.5 F150.
+X30.
+G80
+G98 G73 X10. Y10. Z-12. R5. Q3. P500 F150.
+G80
+G98 G84 X10. Y10. Z-12. R5. F1500. J2
+G80
+G0 Z25.
+M5
+G53 G0 Z0.
+M30
+%
+"""
+MASTERCAM = """%
+O0000(MASTERCAM)
+(T2 | 4. FLAT ENDMILL | H2 | XY STOCK TO LEAVE - 0.)
+N100 G21
+N110 G0 G17 G40 G49 G80 G90
+N120 T2 M6
+N130 G0 G90 G54 X0. Y0. C0. S3000 M3
+N140 G43 H2 Z25. M8
+N150 Z5.
+N160 G1 Z-2. F100.
+N170 X20. F300.
+N180 G3 X20. Y10. R5.
+N190 G1 X0.
+N200 G3 Y0. R5.
+N210 G0 Z25.
+N220 M5
+N230 G91 G28 Z0. M9
+N240 G28 X0. Y0. C0.
+N250 M30
+%
+"""
+SOLIDCAM = """%
+O5000 (SOLIDCAM)
+G21
+G0 G40 G80 G49 G17 G54 G90
+G91 G28 Z0
+G90 M01
+N1 M6 T1
+(TOOL -1- MILL DIA 10.0 R0. MM )
+G90 G00 G40 G54
+G43 H1 D31 G0 X-20. Y0. Z50. S1000 M3
+M8
+X-20. Y0. Z10.
+Z2.
+G1 Z-3. F33
+X20. F100
+G0 Z10.
+M98 P2
+M9
+M5
+G91 G28 Z0
+G28 X0 Y0
+M30
+O2
+G90 G0 X5. Y5.
+M99
+%
+"""
 
 PROBES = {
     "fanuc pocket": Probe("fanuc", POCKET, {"X": 0, "Y": 0, "Z": 200}, 5, -5.0),
@@ -199,6 +297,13 @@ PROBES = {
         "haas", "G0 Z5.\nM97 P100 L3\nM30\nN100\nG91 G1 X2. F50.\nM99", {"X": 6}, 3, 5.0
     ),
     "haas pocket": Probe("haas", "G0 Z1.\nG12 I20. D1 Z-2. F200.\nM30", {"Z": -2}, 4, -2.0),
+    "haas drilling as its newer controls": Probe("haas", HAAS_DRILLING, {"X": 10, "Y": 10, "Z": 200}, 26, -2.0),
+    "haas contour with retracts by G53": Probe(
+        "haas", HAAS_CONTOUR, {"X": 0, "Y": 0, "Z": 200, "C": 0}, 3, -2.0
+    ),
+    "haas probing": Probe("haas", "G65 P9832\nM30", refused="unknown-subprogram"),
+    "fanuc from Mastercam": Probe("fanuc", MASTERCAM, {"X": 0, "Y": 0, "Z": 200, "C": 0}, 5, 8.0),
+    "fanuc from SolidCAM": Probe("fanuc", SOLIDCAM, {"X": 0, "Y": 0, "Z": 200}, 2, -3.0),
     "haas work offset": Probe("haas", "G154 P1 G0 X1. Y1.\nM30", {"X": 1, "Y": 8}),
     "haas mirror": Probe("haas", "G101 X0\nG1 X10. F100.\nG100 X0\nM30", {"X": -10}, 1),
     "linuxcnc in inches": Probe("linuxcnc", INCHES, {"X": 25.4, "Z": 6.35}, 2, -2.54),

@@ -31,12 +31,12 @@ OWN = {
         "G54.1 P2", "G5.1 Q1", "G5 P10000", "G51.1 X0", "M98 P00022000", "G7.1 C20.",
         "G43.4 H1", "IF[#1EQ1]GOTO5\nG5.1 Q1", "WHILE[#1LT5]DO1\nG5.1 Q1", "G65 P100\nG41.1",
         "#3000=1\nG5.1 Q1", "X10.,R5.\nG5.1 Q1", "O1\nG107 C20.\nG5.1 Q1", "G65 P1\nG39 I5",
-        "G65 P1\nG31 X5 Q1", "G65 P1\nG87 I1", "G110\nG54.1 P1",
+        "G65 P1\nG31 X5 Q1", "G65 P1\nG87 I1", "G110\nG54.1 P1", ":1000\nG54.1 P1",
     ],
     "haas": [
         "G154 P2", "M97 P100", "G12 I5. D1", "O01000\nG187 P1", "G65 P1\nG103 P1", "G83 Z-5. I2.\nO1",
         "G154 P1\nG110", "G36 I1.\nX5.,C1.", "G102 X1\nG65 P1", "G136\nG65 P1", "G107 C5.\nG83 I1.",
-        "IF[#1EQ1]GOTO5\nG187 P1", "WHILE[#1LT5]DO1\nG187", "#3000=1\nG187",
+        "IF[#1EQ1]GOTO5\nG187 P1", "WHILE[#1LT5]DO1\nG187", "#3000=1\nG187", ":1\nG187",
     ],
     "mefi": ['G00 X1 "pohyb', "N5 X0 G73 L5 Q2", "G09 G02 X0 I100\nG73 Q2", "N5 X0 G73 Q2 L5"],
 }  # fmt: skip
@@ -73,6 +73,7 @@ SHARED = (
     ("#3000=1", ("fanuc", "haas", "linuxcnc")),
     ("O1000", ("fanuc", "haas", "linuxcnc")),
     ("G65 P100", ("fanuc", "haas")),
+    (":1000", ("fanuc", "haas")),
     ("G09 G02 X0 I100", ("fanuc", "haas", "mefi")),
     ("G2 I50 J0 T180", ("codesys", "fanuc", "haas", "linuxcnc")),
     ("G1 X5 ; comment", ("fagor8070", "fanuc", "haas", "linuxcnc")),

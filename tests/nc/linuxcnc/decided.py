@@ -15,19 +15,30 @@ CLARITY = "refused_for_clarity"
 ENDLESS = "main_program_repeats"
 CENTER = "arc_centre_moved_to_fit"
 LAST_PECK = "last_peck"
+PASSED_OVER = "values_passed_over"
 _KNOWN = {each.example for each in DECISIONS}
-assert {BREAK, LENGTH_BEFORE_CHANGE, CLARITY, ENDLESS, CENTER, LAST_PECK, "tool_of_m61"} <= _KNOWN
+assert {
+    BREAK,
+    LENGTH_BEFORE_CHANGE,
+    CLARITY,
+    ENDLESS,
+    CENTER,
+    LAST_PECK,
+    PASSED_OVER,
+    "tool_of_m61",
+} <= _KNOWN
 
 _REFUSED = re.compile(
     r"two codes of the block want its axis words|has no counterpart|a NURBS is ended by G5\.3"
     r"|has changed the unit since a tool length|cannot be turned while G92|tools have a length along Z"
-    r"|#<<|it belongs to lathes|no O-word of the control|error line-too-long|in square brackets.*\n.*elseif",
+    r"|#<<|it belongs to lathes|no O-word of the control|O needs a label|beside M72 are lost|too much for two points so near each other|error line-too-long|in square brackets.*\n.*elseif",
     re.IGNORECASE,
 )
 """What the twin says where it refuses for clarity's sake and ``rs274`` does not."""
 
 _BREAK = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*break", re.IGNORECASE)
 _ENDWHILE = re.compile(r"^\s*(?:N\d+\s*)?o\s*(\d+|<[^>]*>)\s*endwhile\s*$", re.IGNORECASE)
+_PASSED_OVER = re.compile(r"^\s*o\s*(?:\d+|<[^>]*>)\s*(?:return|endsub|while)\b", re.IGNORECASE)
 _FIRST_LABEL = 700_000
 _MOST_SLIPS = 6
 Slip = tuple[float, float, float]
@@ -78,6 +89,12 @@ def _with_tools(lines: list[str]) -> Iterator[str]:
 def is_decided_refusal(said: str) -> bool:
     """Whether the twin refuses for clarity's sake."""
     return _REFUSED.search(said) is not None
+
+
+def is_computed_too_early(said: str) -> bool:
+    """Whether ``rs274`` refuses what it computes in a line that a definition or a break passes over."""
+    error, _, line = said.partition("\n")
+    return _PASSED_OVER.match(line) is not None and not error.startswith(("Unclosed", "Unknown"))
 
 
 def slips_of(forgotten: list[Slip]) -> Slips:

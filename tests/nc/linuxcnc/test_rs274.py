@@ -60,7 +60,9 @@ def test_a_difference_beside_a_decided_one_is_shown() -> None:
     assert compared_answers(twin, answer(15.0, 16.0)).said
 
 
-@pytest.mark.parametrize("seed", [*range(25), 208509, 400059, 400622, 403449, 405757])
+@pytest.mark.parametrize(
+    "seed", [*range(25), 208509, 500522, 500565, 400059, 400622, 403449, 405757]
+)
 def test_wider_random_programs(seed: int) -> None:
     assert not difference(wide(seed)), wide(seed)
 

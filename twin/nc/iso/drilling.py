@@ -169,6 +169,14 @@ def refuse_hole(control: Control, rule: CycleRule, hole: Hole) -> NoReturn:
         control.fail("cycle-depth", message, hint="write deeper pecks")
     if hole.fault == Fault.DWELL:
         control.fail("dwell", f"{name} cannot wait {hole.dwell:g} seconds")
+    if hole.fault == Fault.PECK_WORDS:
+        message = f"{name} needs Q, the depth of each peck, or I, J and K: the first, less each time, the least"
+        control.fail("cycle-word", message, hint="write one or the other, and G80 between both")
+    if hole.fault == Fault.FASTER:
+        message = (
+            f"{name} comes back 1 to 9 times as fast, a whole number, not {hole.faster:g} times"
+        )
+        control.fail("cycle-word", message)
     if hole.fault == Fault.PECKS and FACTOR in addresses:
         above = f"{addresses[PECK]} and {addresses[FACTOR]} above 0"
         others = f"{addresses[LIFT]} not below 0, and {addresses[EVERY]} a count"
@@ -196,9 +204,20 @@ def drill(control: Control, hole: Hole, target: list[float] | None) -> None:
         if act in (Act.RAPID, Act.FEED, Act.ACROSS):
             over = target if act is Act.ACROSS else None
             there = list(control.programmed if over is None else over)
+            upwards = act is Act.FEED and amount > there[axis]
             there[axis] = amount
-            control.line_to(there, rapid=act is not Act.FEED)
+            faster = hole.faster if upwards else 1.0
+            _go(control, there, faster, rapid=act is not Act.FEED)
         else:
             place = BlockPlace(control.block.line, 0, control.path.compensating)
             report_act(act, amount, place, control.begin_effect())
             control.end_effect()
+
+
+def _go(control: Control, there: list[float], faster: float, *, rapid: bool) -> None:
+    """Go straight to a programmed position, so many times as fast as F says."""
+    feed = control.feed
+    if feed is not None:
+        control.feed = feed * faster
+    control.line_to(there, rapid=rapid)
+    control.feed = feed

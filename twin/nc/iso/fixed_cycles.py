@@ -12,7 +12,19 @@ from typing import NamedTuple
 from twin.nc.control.codes import GCode
 from twin.nc.control.interpolation import CycleRule
 from twin.nc.iso.drilling import ONE_HOLE, Holes, cycle_code
-from twin.nc.path.drilling_cycle import BOTTOM, DWELL, PECK, REFERENCE, Cycle, Pecking, Retract
+from twin.nc.path.drilling_cycle import (
+    BOTTOM,
+    DWELL,
+    FASTER,
+    FIRST,
+    LEAST,
+    PECK,
+    REDUCTION,
+    REFERENCE,
+    Cycle,
+    Pecking,
+    Retract,
+)
 
 
 class Drill(NamedTuple):
@@ -24,6 +36,8 @@ class Drill(NamedTuple):
         peck: It goes down by pecks, Q.
         lift: How far it withdraws between them [mm]; 0: to the reference plane.
         retract: How it leaves the hole.
+        reduces: Its pecks may become less deep: I the first, J less each time, K the least, in the place of Q.
+        faster: J says how many times as fast a tap comes back.
     """
 
     meaning: str
@@ -31,6 +45,8 @@ class Drill(NamedTuple):
     peck: bool = False
     lift: float = 0.0
     retract: Retract = Retract.RAPID
+    reduces: bool = False
+    faster: bool = False
 
 
 DRILLS = {
@@ -51,10 +67,14 @@ def drilling_code(number: int, drill: Drill, holes: Holes = ONE_HOLE) -> GCode:
         words["P"] = DWELL
     if drill.peck:
         words["Q"] = PECK
+    if drill.reduces:
+        words |= {"I": FIRST, "J": REDUCTION, "K": LEAST}
+    if drill.faster:
+        words["J"] = FASTER
     cycle = Cycle(
         lasting=True,
         across=BOTTOM,
-        needed=1 << REFERENCE | 1 << BOTTOM | drill.peck << PECK,
+        needed=1 << REFERENCE | 1 << BOTTOM | (drill.peck and not drill.reduces) << PECK,
         pecking=Pecking.TO_BOTTOM if drill.peck else Pecking.NONE,
         dwells=drill.dwell,
         retract=drill.retract,

@@ -28,13 +28,17 @@ Values: TypeAlias = "list[float] | FloatArray | memoryview[float]"
     EVERY,
     COUNT,
     CLEARANCE,
-) = range(14)
+    FIRST,
+    REDUCTION,
+    FASTER,
+) = range(17)
 """What a cycle remembers: the height at which it was called; the axis across its plane; the heights
 of the reference plane and of the bottom; the latter as it was written; seconds at the bottom; how
 far the surface lies below the reference plane; the first peck, the factor of each next one, the
 least; how far the tool lifts, and after how many pecks it clears; how many pecks there are; how far
-above its last height a rapid return ends."""
-VALUES = 14
+above its last height a rapid return ends; the first peck where each next one is less deep, by how much
+it is; how many times as fast a tap comes back."""
+VALUES = 17
 LENGTHS = (
     1 << REFERENCE
     | 1 << BOTTOM
@@ -43,6 +47,8 @@ LENGTHS = (
     | 1 << LEAST
     | 1 << LIFT
     | 1 << CLEARANCE
+    | 1 << FIRST
+    | 1 << REDUCTION
 )
 """Those whose words count in the unit in force, as bits."""
 CHIP_CLEARANCE = 0.5
@@ -104,6 +110,10 @@ class Fault(enum.IntEnum):
     DEPTH = 5
     """It does not go down, or returns from below."""
     DWELL = 6
+    PECK_WORDS = 7
+    """It needs the depth of all pecks, or the first, the reduction and the least."""
+    FASTER = 8
+    """It comes back no faster than so many times, and no slower."""
 
 
 _FEED, _REVERSED, _STOPPED = int(Retract.FEED), int(Retract.REVERSED), int(Retract.STOPPED)
@@ -111,6 +121,9 @@ _REVERSED_LEFT = int(Retract.REVERSED_LEFT)
 _STRAIGHT, _COUNTED = int(Pecking.NONE), int(Pecking.COUNTED)
 _MISSING, _PLANE, _PECKS = int(Fault.MISSING), int(Fault.PLANE), int(Fault.PECKS)
 _MANY_PECKS, _DEPTH, _DWELL = int(Fault.MANY_PECKS), int(Fault.DEPTH), int(Fault.DWELL)
+_PECK_WORDS, _FASTER = int(Fault.PECK_WORDS), int(Fault.FASTER)
+_TO_BOTTOM = int(Pecking.TO_BOTTOM)
+_FASTEST_RETURN = 9.0
 _UP, _DOWN, _WAIT = float(Act.RAPID), float(Act.FEED), float(Act.DWELL)
 _ACROSS = float(Act.ACROSS)
 _M3, _M4, _M5 = float(Act.M3), float(Act.M4), float(Act.M5)
@@ -158,11 +171,13 @@ class Hole(NamedTuple):
         stops: How often it withdraws to break or clear chips.
         peck: Depth of the first peck [mm].
         factor: By which each is deeper than the one before.
+        reduction: By how much each is less deep than that [mm].
         least: No peck is less deep, except the last [mm].
         lift: How far it withdraws [mm].
         full_every: After how many stops it withdraws to the reference plane; 0: after none.
         clearance: It returns with rapid to this far above where it was [mm].
         retract: A ``Retract``.
+        faster: How many times as fast as it went down a tap comes back.
     """
 
     fault: int
@@ -174,11 +189,13 @@ class Hole(NamedTuple):
     stops: int
     peck: float
     factor: float
+    reduction: float
     least: float
     lift: float
     full_every: int
     clearance: float
     retract: int
+    faster: float
 
 
 MOST_STOPS = 500
@@ -259,9 +276,12 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
         fault = _PLANE
     reference, bottom = values[REFERENCE], values[BOTTOM]
     surface = reference - either(values[SURFACE], 0.0)
-    peck, factor = values[PECK], either(values[FACTOR], 1.0)
+    peck, factor = either(values[FIRST], values[PECK]), either(values[FACTOR], 1.0)
+    reduction, faster = either(values[REDUCTION], 0.0), either(values[FASTER], 1.0)
     least, lift = either(values[LEAST], 0.0), either(values[LIFT], cycle.lift)
     every, stops, full_every = either(values[EVERY], 0.0), 0, 1
+    if fault == 0 and cycle.pecking == _TO_BOTTOM and not (cycle.needed >> PECK) & 1:
+        fault = _fault_of_pecks(values)
     if cycle.pecking == _COUNTED:
         peck = abs(values[DEPTH])
         bottom = surface - peck * values[COUNT]
@@ -269,7 +289,7 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
         if peck <= 0.0 or factor <= 0.0 or lift < 0.0 or every < 0.0 or every % 1.0 != 0.0:
             fault = _PECKS
         else:
-            stops = count_stops(surface, bottom, peck, factor, least)
+            stops = count_stops(surface, bottom, peck, (factor, reduction, least))
             full_every = 1 if lift == 0.0 else int(every)
             if stops > MOST_PECKS:
                 fault = _MANY_PECKS
@@ -279,6 +299,8 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
         fault = _DEPTH
     if fault == 0 and dwell < 0.0:
         fault = _DWELL
+    if fault == 0 and not (faster % 1.0 == 0.0 and 1.0 <= faster <= _FASTEST_RETURN):
+        fault = _FASTER
     back = reference if to_reference else max(values[START], reference)
     return Hole(
         fault,
@@ -290,12 +312,26 @@ def hole_of(cycle: Cycle, values: Values, axis: int, to_reference: bool) -> Hole
         stops,
         peck,
         factor,
+        reduction,
         least,
         lift,
         full_every,
         clearance,
         cycle.retract,
+        faster,
     )
+
+
+@compilable
+def _fault_of_pecks(values: Values) -> int:
+    """Whether either the depth of all pecks is there, or the first, the reduction and the least."""
+    every, first = values[PECK] == values[PECK], values[FIRST] == values[FIRST]
+    reduction, least = values[REDUCTION] == values[REDUCTION], values[LEAST] == values[LEAST]
+    if every:
+        return _PECK_WORDS if first or reduction or least else 0
+    if not (first and reduction and least):
+        return _PECK_WORDS
+    return _PECKS if values[REDUCTION] < 0.0 or values[LEAST] <= 0.0 else 0
 
 
 @compilable
@@ -305,12 +341,28 @@ def either(value: float, default: float) -> float:
 
 
 @compilable
-def count_stops(surface: float, bottom: float, peck: float, factor: float, least: float) -> int:
-    """How often deep drilling stops above the bottom; more than ``MOST_PECKS`` are not counted."""
+def next_peck(peck: float, factor: float, reduction: float, least: float) -> float:
+    """Depth of the peck behind one [mm]."""
+    return max(peck * factor - reduction, least)
+
+
+@compilable
+def count_stops(
+    surface: float, bottom: float, peck: float, course: tuple[float, float, float]
+) -> int:
+    """How often deep drilling stops above the bottom; more than ``MOST_PECKS`` are not counted.
+
+    Args:
+        surface: Where the first peck begins [mm].
+        bottom: Where the last one ends [mm].
+        peck: Depth of the first [mm].
+        course: Factor, reduction [mm] and least depth [mm] of the next ones.
+    """
+    factor, reduction, least = course
     depth, stops = surface, 0
     while depth - peck > bottom + LEAST_REST and stops <= MOST_PECKS:
         depth -= peck
-        peck = max(peck * factor, least)
+        peck = next_peck(peck, factor, reduction, least)
         stops += 1
     return stops
 
@@ -338,7 +390,7 @@ def write_acts(hole: Hole, height: float, acts: Values, amounts: Values) -> int:
     depth, peck = hole.surface, hole.peck
     for number in range(1, hole.stops + 1):
         depth -= peck
-        peck = max(peck * hole.factor, hole.least)
+        peck = next_peck(peck, hole.factor, hole.reduction, hole.least)
         full = hole.full_every > 0 and number % hole.full_every == 0
         up = hole.reference if full else min(depth + hole.lift, hole.reference)
         acts[at], amounts[at] = _DOWN, depth

@@ -72,7 +72,7 @@ def drill(
     if repeats_only and (called[0] or block.modal[INCREMENTAL] != 0.0 or not names_place):
         return UNSUPPORTED
     taken, hole = _read_cycle(block, called, tables, constants, state)
-    if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS:
+    if hole.fault != 0 or hole.stops > drilling_cycle.MOST_STOPS or hole.faster != 1.0:
         return UNSUPPORTED
     rest = block.seen & ~taken
     if (rest >> RADIUS) & ((1 << (AXIS - RADIUS)) - 1) or rest & (1 << (AXIS + plane[2])):

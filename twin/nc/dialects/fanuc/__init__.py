@@ -63,6 +63,7 @@ def after_motion(control: Control) -> None:
 
 _FAMILY = (
     shared_marks.PROGRAM_NUMBER,
+    Mark(r"^[ \t]*:[ \t]*[0-9]{1,8}[ \t;]*$", ":1000 (a program's number)"),
     shared_marks.SEMICOLON,
     shared_marks.ARC_WITH_T,
     shared_marks.EXACT_STOP_ARC,
@@ -84,7 +85,7 @@ FANUC = Dialect(
     title="Fanuc 0i-MF, 30i (milling)",
     code_page="cp1252",
     syntax=Syntax(
-        address=r",[CR]|[A-Z]",
+        address=r",[CR]|[A-Z]|:",
         comments=(Comment("(", ")"), HEADING),
         skip_levels=True,
         block_end=";",
@@ -101,6 +102,7 @@ FANUC = Dialect(
     m=codes.M_CODES,
     words={
         "O": programs.heading,
+        ":": programs.heading,
         "F": base.set_feed,
         "S": WordEffect(base.spindle_speed),
         "T": WordEffect(base.next_tool),
@@ -111,6 +113,7 @@ FANUC = Dialect(
     last_of_group_counts=True,
     word_meanings={
         "O": "number of the program",
+        ":": "number of the program, as a tape of the ISO code has it",
         "N": "block number",
         "G": "preparatory code",
         **dict.fromkeys("XYZABCUVW", "axis"),
@@ -176,8 +179,9 @@ HAAS = dataclasses.replace(
     m=haas.HAAS_M_CODES,
     word_meanings={
         **FANUC.word_meanings,
-        "I": "centre along X, from the start of the arc; first radius of G12 and G13",
-        "K": "centre along Z; last radius of G12 and G13",
+        "I": "centre along X, from the start of the arc; first radius of G12 and G13; first peck (G73, G83)",
+        "J": "centre along Y; less depth of each peck (G73, G83); how fast a tap comes back (G74, G84)",
+        "K": "centre along Z; last radius of G12 and G13; least peck (G73, G83)",
         "L": "how often a subprogram runs; holes that a cycle's block drills; kind of data of G10",
         "P": "dwell, seconds with a point, else milliseconds; program or block; work offset of G154",
         "Q": "depth of a peck; how much each circle of G12 and G13 is larger",

@@ -28,6 +28,10 @@ _DRILLS = {
     83: DRILLS[83]._replace(dwell=True),
     86: DRILLS[86]._replace(dwell=True),
 }
+_HAAS_DRILLS = {
+    **{number: _DRILLS[number]._replace(reduces=True) for number in (73, 83)},
+    **{number: _DRILLS[number]._replace(faster=True) for number in (74, 84)},
+}
 
 
 def _unscaled(number: int, code: GCode) -> GCode:
@@ -44,8 +48,9 @@ def _unscaled(number: int, code: GCode) -> GCode:
 
 def cycles(variant: Variant) -> dict[float, GCode]:
     """The cycles of a control of the family."""
+    drills = {**_DRILLS, **(_HAAS_DRILLS if variant.own_cycle_words else {})}
     made = {
-        number: drilling_code(number, drill, holes_of(variant)) for number, drill in _DRILLS.items()
+        number: drilling_code(number, drill, holes_of(variant)) for number, drill in drills.items()
     }
     return {
         **{n: _unscaled(n, code) if _DRILLS[n].peck else code for n, code in made.items()},

@@ -22,6 +22,7 @@ _MILLI = 0.001
 _INCH_INCREMENT = 0.0001
 CYCLES = frozenset({73.0, 74.0, 76.0, 77.0, *map(float, range(81, 90))})
 """Codes of cycles: their P counts milliseconds, their K holes."""
+_TAPS = frozenset({74.0, 84.0})
 _END_CYCLES = frozenset({0.0, 1.0, 2.0, 3.0, 80.0})
 _OWN_P = frozenset({8.0, 10.0, 30.0, 51.0, 54.0, 54.1, 65.0, 66.0, 154.0})
 """Codes with a P that is no time, also while a cycle is in force."""
@@ -76,7 +77,7 @@ def _counted(
         return _time(control, word) if waits else _scale(word, codes)
     if not word.pointless or not isinstance(word.value, float) or word.value == 0.0:
         return word
-    if codes & _UNTOUCHED or (cycles and word.address in "KL"):
+    if codes & _UNTOUCHED or (cycles and _is_number(control, word.address, codes)):
         return word
     factor, unit = _increment(control, word.address, codes)
     if factor == 1.0:
@@ -90,6 +91,13 @@ def _counted(
         hint=f'write {word.text}. for whole units, or decimal_point = "calculator" into the job',
     )
     return word._replace(value=value)
+
+
+def _is_number(control: Control, address: str, codes: set[float | Expression]) -> bool:
+    """Whether a word of a cycle says how often or how many times, not how far."""
+    if memory_of(control).variant.own_cycle_words:
+        return address == "L" or (address == "J" and not codes.isdisjoint(_TAPS))
+    return address in "KL"
 
 
 def is_counted(control: Control, word: Word) -> bool:

@@ -31,6 +31,8 @@ class Variant(NamedTuple):
         seconds_by_point: P of a dwell counts seconds where it has a point.
         repeats_in_p: P of M98 may hold how often the subprogram runs: P21000 is O1000, twice.
         deepest_call: Programs that may call each other.
+        own_cycle_words: I, J and K of G73 and G83 are pecks that become less deep, J of G74 and G84 how fast
+            a tap comes back.
         counting: Address that says how often a cycle's block drills.
         tool_variables: First and last system variable of each column of the offset memory.
         machine_by_motion: G53 moves by the motion code in force, not always rapidly.
@@ -43,6 +45,7 @@ class Variant(NamedTuple):
     seconds_by_point: bool = False
     repeats_in_p: bool = True
     deepest_call: int = 10
+    own_cycle_words: bool = False
     counting: str = "K"
     machine_by_motion: bool = False
     last_code_counts: bool = True
@@ -63,6 +66,7 @@ HAAS = Variant(
     seconds_by_point=True,
     repeats_in_p=False,
     deepest_call=9,
+    own_cycle_words=True,
     counting="L",
     machine_by_motion=True,
     last_code_counts=False,

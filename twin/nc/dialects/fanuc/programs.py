@@ -1,4 +1,4 @@
-"""Programs of a Fanuc control: O numbers, several in one file, M98, M99 and M97.
+"""Programs of a Fanuc control: O numbers (a tape of the ISO code has : for O), several in one file, M98, M99 and M97.
 
 The first program of the file runs first; each ends where the next begins or the file does. A
 subprogram that the file lacks is a file of its own beside it: O2000, O2000.nc or 2000.nc.
@@ -17,8 +17,8 @@ from twin.nc.text.library import named_files, with_called_files
 from twin.nc.text.lines import Lines
 from twin.nc.text.source import HasCodePage, Source
 
-_HEADING = re.compile(r"[ \t]*O[ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE)
-_HEADING_SOMEWHERE = letter_patterns("O", rb"[ \t]*[0-9]")
+_HEADING = re.compile(r"[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE)
+_HEADING_SOMEWHERE = (*letter_patterns("O", rb"[ \t]*[0-9]"), re.compile(rb":[ \t]*[0-9]"))
 _CALL = re.compile(
     r"^[^(]*?(?:M0*98|G0*6[56])(?![0-9.])[^(]*?P[ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE
 )

@@ -40,7 +40,8 @@ DECISIONS = (
     ),
     Decision(
         "How far may start and end of an arc differ in their distance from the centre?",
-        "By 0.0254 mm or 0.1 % of the radius, as the control allows; the centre is then moved to fit.",
+        "By 0.0254 mm or 0.1 % of the radius, as the control allows; the centre is then moved to fit. Where both lie so near each other that it would "
+        "have to move further than that, the arc is refused.",
         "The control draws a spiral between both; the difference is below 0.0254 mm for most arcs.",
         example="arc_centre_moved_to_fit",
     ),
@@ -93,7 +94,7 @@ DECISIONS = (
         "Words behind the condition of an elseif that is false, a structure without its end, a NURBS that "
         "another motion ends, Z in G5.2, G5 without I and J that follows no G5, M6 before the first T, a "
         "motion code beside G43.1 or G43.2, X and Y of a tool in G10 L1, L10 and L11, names of parameters with "
-        "brackets in them, codes of lathes, lines that begin with O and are no O-words.",
+        "brackets in them, codes of lathes, words of axes beside M72, lines that begin with O and are no O-words.",
         "The manual calls each an error or says nothing of it; what was meant is not done.",
         example="refused_for_clarity",
     ),
@@ -103,6 +104,14 @@ DECISIONS = (
         "rs274 of 2.9 remembers the break of a while loop, even of one that is passed over, until the next do "
         "loop, and ends that one after its first round, against the manual.",
         example="break_within_do",
+    ),
+    Decision(
+        "Are values computed that a definition or a break passes over?",
+        "No: return and endsub of a subroutine that is being defined, and the end of a do loop that is left, are "
+        "read, and wrong brackets refused.",
+        "The control computes them too, with what the parameters hold then, and refuses a division by zero there; "
+        "write such a value in a line of its own.",
+        example="values_passed_over",
     ),
     Decision(
         "Where does the tool stand after M6?",

@@ -19,6 +19,7 @@ from twin.nc.dialects.linuxcnc.structure import (
     KEYWORDS,
     LOOPS,
     OWord,
+    lines_of_label,
     name_of_label,
     o_word,
     scope,
@@ -105,11 +106,16 @@ def _construct_of(control: Control, statement: Statement, word: OWord) -> Constr
             control.program_counter.lexer.blocks(control.program_counter.lines[line], line + 1)
             message, width = "no O-word of the control", len(control.program_counter.lines[line])
             control.report.fail("o-word", message, 0, width, ", ".join(KEYWORDS).lower())
-    if construct.keyword in ("SUB", "DO"):  # read even where break or return lead past it
-        end, last = _line_of(control, construct.end)
-        values_of(control, last, end)
-        control.report.line = control.block.line
+    if construct.keyword == "DO":  # read even where break leads past it
+        _read_line(control, construct.end)
     return construct
+
+
+def _read_line(control: Control, line: int) -> None:
+    """Read the values of another line's O-word, from 0, as the control does where it looks for its label."""
+    statement, word = _line_of(control, line)
+    values_of(control, word, statement)
+    control.report.line = control.block.line
 
 
 def _behind(construct: Construct) -> Location:
@@ -318,9 +324,11 @@ def _call(control: Control, statement: Statement, word: OWord, assembler: Assemb
 
 
 def _sub(control: Control, statement: Statement, word: OWord, assembler: Assembler) -> None:
-    """A definition that the program comes to: it goes on behind it."""
+    """A definition that the program comes to: its own lines are read, and it goes on behind it."""
     _declare(control, statement, word, assembler)
     construct = _construct_of(control, statement, word)
+    for line in lines_of_label(control, construct):
+        _read_line(control, line)
 
     def define() -> None:
         if control.program_counter.is_calling:

@@ -125,6 +125,10 @@ def in_machine_coordinates(control: Control) -> None:
         )
     words = control.take_axis_words()
     if not words:
+        codes = [word.value for word in control.block.words if word.address == "G"]
+        if 0.0 not in codes and 1.0 not in codes:
+            message = "G53 needs G0 or G1 in its block, or words of axes"
+            control.fail("machine-coordinates", message, hint="write G53 G0 Z0")
         return
     assert mode is not None
     check_feed(control, mode.rapid)

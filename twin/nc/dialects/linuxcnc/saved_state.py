@@ -7,6 +7,7 @@ from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of, wri
 from twin.nc.dialects.linuxcnc.offsets import reframe
 
 _KEPT_FIELDS = ("interpolation", "cycle")
+_AXES = (*"XYZABCUVW", "@", "^")
 _KEPT_GROUPS = ("motion", "not modal", "length")
 """What neither M72 nor the end of a subroutine puts back."""
 
@@ -34,11 +35,15 @@ def restore(control: Control) -> None:
     """M72.
 
     Raises:
-        ProgramError: Nothing was put aside here.
+        ProgramError: Nothing was put aside here, or the block would move.
     """
     saved = memory_of(control).saved.get(control.program_counter.depth)
     if saved is None:
         control.fail("code-words", "M72 puts back what M70 or M73 has put aside, and none has")
+    axis = next((word for letter, word in control.words.items() if letter in _AXES), None)
+    if axis is not None:
+        hint = "write them in the next block"
+        control.fail("code-words", "words of axes beside M72 are lost in the control", axis, hint)
     _put_back(control, saved[0])
 
 

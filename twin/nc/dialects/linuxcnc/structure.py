@@ -140,6 +140,15 @@ def structure(control: Control) -> Structure:
     return memory.structure
 
 
+def lines_of_label(control: Control, construct: Construct) -> list[int]:
+    """Lines, from 0, within a construct and at its end whose O-word has its label."""
+    assert construct.end is not None
+    lines = control.program_counter.lines
+    inner = range(construct.begin + 1, construct.end + 1)
+    found = ((line, _LINE.match(lines[line])) for line in inner)
+    return [line for line, match in found if match and name_of_label(match[1]) == construct.name]
+
+
 def scope(control: Control, line: int) -> str:
     """The subroutine that a line, from 0, lies in; labels of others are not its own."""
     around = structure(control).around(line)
