@@ -9,6 +9,8 @@ import os
 import resource
 import signal
 import sys
+import threading
+import types
 
 LEAST_ADDRESS_SPACE = 900_000_000
 """In less the libraries of a run cannot be loaded, and some die of it without a word, or never come
@@ -16,6 +18,12 @@ to an end [bytes]."""
 
 COLLECT_AFTER = 100_000
 """New objects between two searches for garbage: what libraries make while they load all stays."""
+
+
+_BOXING_NAME, _BOXING_MODULE = "_numba_unpickle", "namedtuple_"
+"""What Numba calls in Python while compiled code hands its result over: a function, and constructors
+of modules of such names."""
+_SOON_S = 0.005
 
 
 def main() -> None:
@@ -45,10 +53,32 @@ def main() -> None:
         raise
 
 
+def is_handing_over(frame: types.FrameType | None) -> bool:
+    """Whether compiled code is just making Python objects of its result.
+
+    Numba does not look whether that succeeded: an exception that is raised there is lost, or ends the
+    process by a segmentation fault.
+
+    Args:
+        frame: What is being executed.
+    """
+    while frame is not None:
+        module = str(frame.f_globals.get("__name__"))
+        if frame.f_code.co_name == _BOXING_NAME or module.startswith(_BOXING_MODULE):
+            return True
+        frame = frame.f_back
+    return False
+
+
 def _run(stopped: list[int]) -> None:
     """Run the command line; the signals that came are put into the list."""
 
-    def stop(number: int, _: object) -> None:
+    def stop(number: int, frame: types.FrameType | None) -> None:
+        if is_handing_over(frame):
+            again = threading.Timer(_SOON_S, os.kill, (os.getpid(), number))
+            again.daemon = True
+            again.start()
+            return
         stopped.append(number)
         raise KeyboardInterrupt
 

@@ -1,12 +1,41 @@
 """The first Ctrl+C is the regular end, the second an interruption."""
 
 import signal
+import subprocess
+import sys
 
 import pytest
 
 from twin.commands.interruption import let_interruption_stop
 
 NUMBERS = (signal.SIGINT, signal.SIGTERM)
+IN_COMPILED_CODE = """
+import os, signal, sys, threading, time, types
+from typing import NamedTuple
+import numba
+import numpy as np
+from twin import __main__ as program
+
+class Sums(NamedTuple):
+    values: np.ndarray
+    count: int
+
+@numba.njit
+def work(count):
+    total = 0.0
+    for number in range(count):
+        total += np.sin(number)
+    return Sums(np.zeros(2) + total, count)
+
+def command():
+    work(10)
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.{name})).start()
+    work(60_000_000)
+    time.sleep(20.0)
+
+sys.modules["twin.cli"] = types.SimpleNamespace(main=command)
+program.main()
+"""
 
 
 @pytest.mark.parametrize("number", NUMBERS)
@@ -35,3 +64,12 @@ def test_what_interrupted_before_does_so_again() -> None:
         assert all(signal.getsignal(each) != before[each] for each in NUMBERS)
     assert not came
     assert {each: signal.getsignal(each) for each in NUMBERS} == before
+
+
+@pytest.mark.parametrize("number", NUMBERS)
+def test_an_interruption_of_compiled_code_is_one(number: signal.Signals) -> None:
+    script = IN_COMPILED_CODE.format(name=number.name)
+    ran = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert (ran.returncode, ran.stderr) == (130, "interrupted before anything was begun\n")

@@ -177,9 +177,13 @@ class Cutter:
         for run, tool in self.plan.runs(setpoint.move):
             if self.halted is not None:
                 break
-            if tool.number != self.tool.number:
-                self._last = None
+            changed = tool.number != self.tool.number
             self.tool = tool
+            if changed:
+                self._last = None
+                self._note_arrival(way[run].lowered(self.plan.longer(tool)), setpoint.move[run])
+                if self.halted is not None:
+                    break
             for part, edge in _by_edge(samples, run):
                 force = self._cut(way[part].lowered(self.plan.longer(tool)), edge=edge)
                 self.force[part.start : part.start + len(force)] = force
@@ -207,6 +211,22 @@ class Cutter:
             force_n=self._force,
             power_w=self._power,
         )
+
+    def _note_arrival(self, way: "_Way", move: IntArray) -> None:
+        """Note a tool whose edge stands in the material as soon as it is in the spindle."""
+        here = Points(np.repeat(way.points[:1], 2, axis=0), np.repeat(way.turn[:1], 2, axis=0))
+        contact = StockContact(self.tool, profile(self.tool), self._head)
+        met = contact.measure(self.map, here, np.ones(1, np.bool_)).get(EDGE)
+        if met is None:
+            return
+        changes = [change for change in self.plan.changes if change.move <= move[0]]
+        line = np.array([changes[-1].line]) if changes else way.line[:1]
+        removal = Removal(*np.zeros((3, 1)))
+        stretches = Stretches(here.tip, way.time[:1], line, way.rapid[:1], *removal)
+        key = ("arrival", int(line[0]))
+        self._gouges.note(key, "arrival", stretches, 0, float(met.depth[0]))
+        if self._halts:
+            self.halted = self._gouges.event(key)
 
     def _cut(self, way: "_Way", *, edge: bool) -> FloatArray:
         """Cut with one tool from the last point of the run before through all of this one's.

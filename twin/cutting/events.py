@@ -26,8 +26,8 @@ class CutEvent:
         time_s: When it began [s].
         depth_mm: Its greatest depth below the material that was first met [mm].
         position: Tool tip in the part's frame at its beginning [mm].
-        what: ``rapid``; ``standing``, a feed with the spindle off; or which part of the tool
-            gouges: ``flute`` (the cut is deeper than the flutes are long), ``shank``, ``holder``, or
+        what: ``rapid``; ``standing``, a feed with the spindle off; ``arrival``, the edge of a tool that
+            comes into the spindle; or which part of the tool gouges: ``flute`` (the cut is deeper than the flutes are long), ``shank``, ``holder``, or
             by its name what is above it.
     """
 

@@ -120,7 +120,9 @@ def stock_alarm(event: CutEvent, tool: ToolTable) -> Alarm:
     if event.what == "standing":
         message = f"tool {tool.number} feeds {depth} into the stock with the spindle off"
         return Alarm("spindle-off", event.line, event.time_s, "", message)
-    if event.what == "flute":
+    if event.what == "arrival":
+        message = f"tool {tool.number} comes into the spindle {depth} in the part"
+    elif event.what == "flute":
         message = f"the shank of tool {tool.number} meets the part above its flutes ({depth})"
     elif event.what in ("shank", "holder"):
         message = f"the {event.what} of tool {tool.number} meets the part ({depth})"

@@ -1,5 +1,6 @@
 """Who may not meet whom, how finely that is seen, and at what speed."""
 
+import copy
 import itertools
 from pathlib import Path
 
@@ -225,3 +226,14 @@ def test_a_machine_without_rotary_axes_is_watched_too(tmp_path: Path) -> None:
     down = np.zeros((400, 3))
     down[:, 2] = np.linspace(0.0, -550.0, 400)
     assert "the cutter meets the faceplate" in watch(clearance, down)
+
+
+def test_a_copy_watches_for_itself() -> None:
+    clearance, _ = alone(SPEC, MACHINE, "cutter", "holder's nut", "jaw")
+    position = np.tile([0.0, 60.0 - 10.0 - 23.0, -620.0 + 100.0 - 30.0, 0.0], (400, 1))
+    position[:, 2] += np.linspace(30.0, 0.0, 400)
+    copied = copy.deepcopy(clearance)
+    assert watch(copied, position, size=1) == ""
+    assert (clearance.near_miss, copied.near_miss is None) == (None, False)
+    assert watch(clearance, position, size=1) == ""
+    assert clearance.near_miss == copied.near_miss

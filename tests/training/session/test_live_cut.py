@@ -1,11 +1,13 @@
 """The cut in the room: what tool and spindle bear is shown, and a tool that breaks is told of."""
 
+import dataclasses
 import math
 from pathlib import Path
 
 import pytest
 
 from twin.training.scene.scene_file import read_scene, scene_names, scene_path
+from twin.training.server.launch import CELLS_ACROSS
 from twin.training.session.session import Session
 
 SCENE = """
@@ -150,3 +152,14 @@ def test_every_shipped_scene_cuts_a_named_material():
         stock = read_scene(scene_path(name)).preparation.job.file.stock
         assert stock is not None
         assert stock.material, name
+
+
+@pytest.mark.parametrize("cells_across", [0, CELLS_ACROSS])
+def test_the_spindle_stalls_before_the_teeth_break_on_the_pages_fine_grid_too(cells_across):
+    scene = dataclasses.replace(read_scene(scene_path("mefi_stall")), cells_across=cells_across)
+    session = Session(scene)
+    assert session.submit({"do": "cycle_start"})
+    while session.room.running and session.room.alarm is None:
+        session.advance(10)
+    assert session.room.alarm is not None
+    assert session.room.alarm.code == "spindle-stall"

@@ -10,6 +10,7 @@ from twin.nc.control.settings import ToolData
 from twin.nc.dialects.linuxcnc import LINUXCNC
 from twin.nc.text.source import source_from_text
 from twin.training.scene.scene_file import read_scene, scene_path
+from twin.training.session import checkpoints
 from twin.training.session.observed import block_number
 from twin.training.session.program_run import ProgramRun, RunOptions
 from twin.training.session.session import Session
@@ -514,3 +515,126 @@ def test_time_counts_from_the_first_touch():
     assert session.room.judge.verdicts[0].state == "failed"
     session.advance(100)
     assert session.room.judge.over
+
+
+def test_at_a_program_stop_the_axes_can_be_jogged_and_come_back(session):
+    """M0 is where a part is measured (Fagor 8070: tool inspection; SINUMERIK Operate: JOG, REPOS)."""
+    load(session, "N10 G90 G1 F500 X1\nN20 M0\nN30 G1 X3\nN40 M30")
+    do(session, "cycle_start")
+    rest(session)
+    room = session.room
+    assert (room.waiting, room.line, at(session)[0]) == (True, 2, 1.0)
+    assert "reset first" in refused(session, "mode", mode="mdi")
+    do(session, "mode", mode="jog")
+    do(session, "jog", axis="X", direction=1, step=5.0)
+    rest(session)
+    do(session, "mode", mode="auto")
+    assert "off the path" in refused(session, "cycle_start")
+    do(session, "mode", mode="jog")
+    do(session, "return_to_path")
+    rest(session)
+    do(session, "mode", mode="auto")
+    assert room.line == 2
+    do(session, "cycle_start")
+    rest(session)
+    assert at(session)[0] == 3.0
+    assert room.run is None
+
+
+def test_going_back_to_a_program_stop_with_jogged_axes(session, monkeypatch):
+    monkeypatch.setattr(checkpoints, "APART_S", 0.1)
+    session = Session(session.scene)
+    load(session, "N10 G90 G1 F500 X1\nN20 M0\nN30 G1 X3\nN40 M30")
+    do(session, "cycle_start")
+    rest(session)
+    do(session, "mode", mode="jog")
+    session.advance(40)
+    session.rewind(0.3)
+    do(session, "mode", mode="auto")
+    do(session, "cycle_start")
+    rest(session)
+    assert at(session)[0] == 3.0
+
+
+def test_while_a_program_moves_the_spindle_is_stopped_by_hand_and_not_started(session):
+    """AXIS starts it by hand only where nothing runs; its stop key counts always."""
+    load(session, "N10 G90 S2000 M3\nN20 G1 F500 X-10\nN30 M30")
+    do(session, "cycle_start")
+    session.advance(20)
+    assert "hold it" in refused(session, "spindle", on=True, counter_clockwise=True)
+    assert not session.room.spindle.counter_clockwise
+    do(session, "spindle", on=False)
+    assert not session.room.spindle.turns
+    do(session, "feed_hold")
+    rest(session)
+    do(session, "spindle", on=True)
+    assert session.room.spindle.turning == 2000.0
+
+
+def test_what_stood_before_the_axes_at_a_reset_does_not_happen(session):
+    load(session, "N10 G90 G1 F500 X-1\nN20 S2000 M3\nN30 M8\nN40 G1 X-2\nN50 M0\nN60 M30")
+    do(session, "cycle_start")
+    session.advance(5)
+    do(session, "reset")
+    rest(session)
+    assert session.room.run is None
+    assert at(session)[0] > -1.0
+    assert not session.room.spindle.turns
+    assert not session.room.coolant
+
+
+@pytest.mark.parametrize("state", ["standing", "running", "held", "stopped", "jogged"])
+def test_a_reset_stops_spindle_and_coolant_in_every_state(session, state):
+    load(session, "N10 G90 S2000 M3\nN15 M8\nN20 G1 F500 X-3\nN25 M0\nN30 X5\nN40 M30")
+    do(session, "coolant", on=True)
+    if state != "standing":
+        do(session, "cycle_start")
+        session.advance(15)
+    if state in ("held", "jogged"):
+        do(session, "feed_hold")
+        rest(session)
+    if state == "jogged":
+        do(session, "mode", mode="jog")
+        do(session, "jog", axis="X", direction=1)
+        session.advance(5)
+    if state == "stopped":
+        rest(session)
+        assert session.room.waiting
+    do(session, "reset")
+    for _ in range(400):
+        session.advance()
+        if session.room.run is None and not session.room.moving:
+            break
+    room = session.room
+    assert (room.run, room.suspended, room.waiting, room.alarm) == (None, None, False, None)
+    assert not room.spindle.turns
+    assert not room.coolant
+    do(session, "mode", mode="auto")
+    do(session, "cycle_start")
+    assert room.running == "program"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "begins", "ends"),
+    [
+        ("o1 sub\nG1 X2 F900\nG1 Y2\no1 endsub\nG90 G0 X0 Y0\no1 call\nM2", 3, (2, 0), (2, 2)),
+        ("G90 G0 X0 Y0\n#1=0\no2 while [#1 LT 2]\n#1=[#1+1]\nG1 X#1 F900\no2 endwhile\nM2", 5, (0, 0), (2, 0)),
+        ("G90 G0 X0 Y0\nS900 M3\nG98 G81 X1 Y1 Z29 R29.5 F900\nX2\nX3\nG80\nM2", 4, (1, 1), (3, 1)),
+        ("G90 G0 X0 Y0\nG10 L2 P1 R90\nG54\nG1 X2 F900\nX3\nM2", 5, (0, 2), (0, 3)),
+        ("G90 G0 X0 Y0\nG91 G1 X1 F900\nX1\nX1\nM2", 4, (2, 0), (3, 0)),
+    ],
+    ids=["subprogram", "loop", "cycle", "rotated", "incremental"],
+)  # fmt: skip
+def test_a_search_comes_to_where_its_block_begins(text, line, begins, ends):
+    """What stands before the block is computed, its first pass counts (SINUMERIK: block search)."""
+    session = Session(read_scene(scene_path("linuxcnc_round_corners")))
+    load(session, text)
+    do(session, "search", line=line)
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.line == line
+    assert at(session)[:2] == pytest.approx(begins)
+    do(session, "cycle_start")
+    rest(session)
+    assert session.room.run is None
+    assert at(session)[:2] == pytest.approx(ends)

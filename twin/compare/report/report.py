@@ -56,6 +56,7 @@ _CUT_FIGURES: tuple[tuple[str, str, Callable[[Any], str]], ...] = (
 )
 _CUT_EVENTS = {
     "rapid": "rapid into the stock",
+    "arrival": "tool changed in the material",
     "flute": "cut deeper than the flutes are long",
     "shank": "shank in the material",
     "holder": "holder in the material",

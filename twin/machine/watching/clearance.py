@@ -17,6 +17,7 @@ So an overlap of more than ``TOUCH`` is found wherever two samples see it, and a
 between two samples where it is longer than ``SHORTEST_WAY``, whatever the speed.
 """
 
+import copy
 import itertools
 from typing import NamedTuple
 
@@ -38,6 +39,8 @@ from twin.machine.watching.plane_kernels import (
     find_suspects,
     follow_suspects,
     least_clearance,
+    view_columns,
+    watched,
 )
 from twin.machine.watching.relative_motion import RelativeMotion
 from twin.nc.canonical import FloatArray, IntArray
@@ -149,10 +152,22 @@ class Clearance:
             3 + machine.axes.kinds.count("rotary"),
             np.where(cuts, -np.inf, self._worth_reporting),
         )
-        self._near, self._threshold = self._planes.columns.near, self._planes.columns.threshold
-        self._followed = self._motion.followed()
+        self._watched = watched(self._planes.columns, self._motion.chain, self._motion.followed())
+        self._view_columns()
         self._last: FloatArray | None = None
         self._witness = np.zeros(6)
+
+    def _view_columns(self) -> None:
+        """Let the planes be views of what the kernels are handed."""
+        self._planes.columns, _, _ = view_columns(self._watched)
+        self._near, self._threshold = self._planes.columns.near, self._planes.columns.threshold
+
+    def __deepcopy__(self, memo: dict[int, object]) -> "Clearance":
+        """A copy whose views are those of its own columns."""
+        copied = memo[id(self)] = object.__new__(Clearance)
+        copied.__dict__ = copy.deepcopy(self.__dict__, memo)
+        copied._view_columns()
+        return copied
 
     def _follow(self, one: int, two: int) -> tuple[int, int, float]:
         """Follow whichever of the two needs fewer looks: it turns in itself, or reaches less far.
@@ -184,15 +199,13 @@ class Clearance:
 
     def look(self, samples: Samples) -> Alarm | None:
         """Return the alarm of the first sample of the chunk at which two things meet."""
-        if not self._pairs or not len(samples):
-            return None
         position, known = samples.joint_position, 0
+        if not self._pairs or not len(position):
+            return None
         if self._last is not None:
             position, known = np.concatenate([self._last, position]), 1
         self._last = position[-1:].copy()
-        tracks, suspects = follow_suspects(
-            self._planes.columns, self._motion.chain, self._followed, position, known, -TOUCH
-        )
+        tracks, suspects = follow_suspects(self._watched, position, known, -TOUCH)
         if not len(suspects):
             return None
         way = _Way(samples, position, tracks, known)

@@ -133,7 +133,7 @@ class RelativeMotion:
             np.array([_matrix(quaternion) for quaternion in model.body_quat]),
             np.cumsum([0, *map(len, of_body)]),
             np.array(axes, np.int64),
-            np.array([self._hinge[axis] for axis in axes], np.bool_),
+            np.array([self._hinge[axis] for axis in axes], np.int64),
             model.jnt_axis[joints],
             model.jnt_pos[joints],
             model.qpos0[model.jnt_qposadr[joints]],

@@ -4,7 +4,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from twin.compilation.kernel import array_kernel, kernel
 from twin.nc.canonical import FloatArray, IntArray
@@ -20,7 +19,7 @@ class Chain(NamedTuple):
         turn: How it is turned on it, shape (b, 3, 3).
         first: First joint of each body and, last, j; shape (b + 1,).
         axis: Axis of each joint, shape (j,).
-        hinge: Whether it turns, shape (j,).
+        hinge: 1 where it turns, 0 where it slides, shape (j,).
         along: Direction in which it slides or about which it turns, shape (j, 3).
         anchor: A point that stays where it is when it turns, shape (j, 3) [m].
         rest: Where the model says that it stands, shape (j,) [m or rad].
@@ -32,7 +31,7 @@ class Chain(NamedTuple):
     turn: FloatArray
     first: IntArray
     axis: IntArray
-    hinge: npt.NDArray[np.bool_]
+    hinge: IntArray
     along: FloatArray
     anchor: FloatArray
     rest: FloatArray

@@ -29,6 +29,7 @@ from twin.units import MM
 WARNINGS = {
     "rapid": "rapid into stock",
     "standing": "feed with the spindle off",
+    "arrival": "tool changed in the material",
     "flute": "deeper than the flutes",
     "shank": "shank in the material",
     "holder": "holder in the material",

@@ -40,8 +40,8 @@ def carry_out(room: Room, command: c.Command) -> None:
 def _mode(room: Room, command: c.SelectMode) -> None:
     within = {"auto", "single"}
     if room.run is not None and not {room.mode, command.mode} <= within:
-        held = room.running == "program" and room.run.held and not room.moving
-        if command.mode != "jog" or not held or room.waiting:
+        held = room.running == "program" and (room.run.held or room.waiting) and not room.moving
+        if command.mode != "jog" or not held:
             raise UsageError("the mode cannot change while something runs: reset first")
         room.suspend()
     if room.suspended is not None and command.mode == "mdi":
@@ -51,16 +51,14 @@ def _mode(room: Room, command: c.SelectMode) -> None:
 
 def _cycle_start(room: Room, _command: c.CycleStart) -> None:
     _require_no_alarm(room)
+    if room.suspended is not None and room.run is None and room.mode != "jog":
+        room.resume()
     if room.waiting:
         room.go_on()
     elif room.run is not None and room.running != "jog":
         room.run.start()
     elif room.mode == "jog":
         raise UsageError("cycle start does nothing in manual jog")
-    elif room.suspended is not None:
-        room.resume()
-        assert room.run is not None
-        room.run.start()
     elif room.mode == "mdi":
         if not room.entered.strip():
             raise UsageError("the MDI line is empty")
@@ -118,6 +116,8 @@ def _reset(room: Room, _command: c.Reset) -> None:
         room.run.drop()
     room.running_down = room.spindle.turns and room.moving
     room.spindle = room.spindle.stopped()
+    # LinuxCNC closes the coolant with every abort (iocontrol, EMC_TOOL_ABORT).
+    room.coolant = False
 
 
 def _emergency_stop(room: Room, command: c.EmergencyStop) -> None:
@@ -241,6 +241,9 @@ def _spindle(room: Room, command: c.Spindle) -> None:
         state = dataclasses.replace(state, speed=command.speed)
     if command.on:
         _require_no_alarm(room)
+        if room.run is not None and room.running != "jog" and not room.held:
+            # AXIS: the spindle is started by hand only where nothing runs; stopped, always.
+            raise UsageError("a program runs: hold it before the spindle is started by hand")
         if not state.asked:
             raise UsageError("no spindle speed is set: type S first")
         state = dataclasses.replace(state, counter_clockwise=command.counter_clockwise)

@@ -163,7 +163,7 @@ class Reload(Table):
 
 
 class Spindle(Table):
-    """Start or stop the spindle by hand."""
+    """Stop the spindle by hand; or start it, while no program moves the axes."""
 
     do: Literal["spindle"] = "spindle"
     on: bool

@@ -532,8 +532,8 @@ class ProgramRun:
             self.ending_line = block.line
 
     def passed(self, setpoints: Setpoints) -> list[Function]:
-        """The functions that have happened since the last call."""
-        if self._motion is None:
+        """The functions that have happened since the last call; none once the rest is given up."""
+        if self._motion is None or self.dropped:
             return []
         if self.finished:
             return self._walk.due(math.inf, 0)

@@ -87,11 +87,13 @@ class Suspended(NamedTuple):
         run: The program.
         place: Where it was held, machine coordinates, shape (k,) [mm or deg].
         line: Source line of the block that was held.
+        waits: It waits at a program stop, behind that block.
     """
 
     run: ProgramRun
     place: FloatArray
     line: int
+    waits: bool
 
 
 @dataclasses.dataclass(slots=True)
@@ -247,6 +249,8 @@ class Room:
             return self.suspended.line
         if self.running != "program" or self.run is None:
             return 0
+        if self.waiting:
+            return self.run.ending_line
         return self.run.line(int(self.machine.setpoint.line[0]))
 
     @property
@@ -521,12 +525,16 @@ class Room:
         self.legs.clear()
 
     def suspend(self) -> None:
-        """Let the axes be jogged while the program is held."""
+        """Let the axes be jogged while the program is held, or waits at a program stop.
+
+        At M0 a part is measured and chips are cleared (Fagor 8070: tool inspection; SINUMERIK Operate:
+        JOG in an interruption, REPOS).
+        """
         assert self.run is not None
         run = self.run
-        self.suspended = Suspended(run, self.standing_setpoint, self.line)
+        self.suspended = Suspended(run, self.standing_setpoint, self.line, self.waiting)
         self.modal = run.modal(int(self.machine.setpoint.move[0]))
-        self.run, self.running = None, ""
+        self.run, self.running, self.waiting = None, "", False
 
     def resume(self) -> None:
         """Take the held program up again.
@@ -537,7 +545,7 @@ class Room:
         assert self.suspended is not None
         if np.abs(self.standing_setpoint - self.suspended.place).max() > ON_PATH:
             raise UsageError("the axes stand off the path: return to it first")
-        self.run, self.running = self.suspended.run, "program"
+        self.run, self.running, self.waiting = self.suspended.run, "program", self.suspended.waits
         self.suspended = None
 
     def drive_by_hand(self, legs: Iterable[Leg]) -> None:
