@@ -74,7 +74,7 @@ def test_each_part_is_made_by_the_recorded_motion(production: Production):
 def test_the_recording_is_opened_once(production: Production, tmp_path: Path):
     """Clients may have taken all the files that the process may open."""
     assert production.recording is not None
-    copy = shutil.copy(production.recording, tmp_path / "copy.h5")
+    copy = Path(shutil.copy(production.recording, tmp_path / "copy.h5"))
     machine = ticks(production._replace(recording=copy))
     first = one_part(machine)
     copy.unlink()

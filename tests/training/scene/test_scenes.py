@@ -2,7 +2,7 @@
 
 import functools
 import re
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import pytest
 
@@ -10,6 +10,7 @@ from twin.errors import ConfigError
 from twin.training.scene.phrases import translated
 from twin.training.scene.scene_file import Scene, read_scene, scene_names, scene_path
 from twin.training.scene.vocabulary import LANGUAGES
+from twin.training.session.observed import Notice
 from twin.training.session.script import ScriptError, play, rehearse
 from twin.training.session.session import Session
 
@@ -35,9 +36,9 @@ def played(name: str, script: Literal["solution", "mistake"]) -> Played:
     said: list[str] = []
     raise_alarm = session.room.raise_alarm
 
-    def note(code: str, message: str, **about: Any) -> None:
-        said.append(message)
-        raise_alarm(code, message, **about)
+    def note(notice: Notice) -> None:
+        said.append(notice.message)
+        raise_alarm(notice)
 
     session.room.raise_alarm = note
     play(session, getattr(session.scene.file, script))
