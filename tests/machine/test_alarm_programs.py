@@ -91,6 +91,19 @@ def test_a_program_that_speaks_of_the_spindle_is_held_to_it(
     assert ("a.nc:5:1: error spindle-off" in told) == (code == 4)
 
 
+@pytest.mark.parametrize("behind", ["", "N50 T1 M06\nN60 M03\nN65 G01 Z30 F500\n"])
+def test_a_tool_that_leaves_the_part_without_a_move_has_stood_in_it(tmp_path: Path, behind: str):
+    name = "collision_change_in_part"
+    text = (FOLDER / f"{name}.nc").read_text(encoding="utf-8")
+    (tmp_path / "a.nc").write_text(f"{text.partition('N50')[0]}{behind}N70 M30\n")
+    job = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+    job = job.replace(f"{name}.nc", "a.nc").replace('expect = "collision"', "")
+    (tmp_path / "a.toml").write_text(job)
+    done = check_program(tmp_path / "a.toml", CheckSettings())
+    assert done.exit_code == 4
+    assert "a.nc:5:1: error collision" in "\n".join(map(str, done.findings))
+
+
 @pytest.mark.parametrize("name", sorted(EXPECTED))
 def test_the_alarm_is_raised_at_its_line_and_the_recording_up_to_it_is_kept(
     twin: Twin, tmp_path: Path, name: str

@@ -136,6 +136,8 @@ class Cutter:
         self._along = along
         self._part_frame = part_frame
         self._last: tuple[FloatArray, FloatArray, float] | None = None
+        self._changes = 0
+        self._stand: _Way | None = None
         self._removed: dict[int, float] = {}
         self._feed_path = 0.0
         self._air_path = 0.0
@@ -174,20 +176,23 @@ class Cutter:
         lag = np.abs(meant - points).sum(axis=1)
         turn = self._part_frame.direction(joints)
         way = _Way(points, turn, lag, setpoint.time, setpoint.line, rapid, off)
+        self._stand = way[-1:]
         for run, tool in self.plan.runs(setpoint.move):
+            self._change_tools(way[run.start : run.start + 1], int(setpoint.move[run.start]))
             if self.halted is not None:
                 break
-            changed = tool.number != self.tool.number
-            self.tool = tool
-            if changed:
+            if tool.number != self.tool.number:
                 self._last = None
-                self._note_arrival(way[run].lowered(self.plan.longer(tool)), setpoint.move[run])
-                if self.halted is not None:
-                    break
+            self.tool = tool
             for part, edge in _by_edge(samples, run):
                 force = self._cut(way[part].lowered(self.plan.longer(tool)), edge=edge)
                 self.force[part.start : part.start + len(force)] = force
         return sum(self._removed.values()) - before
+
+    def end_program(self) -> None:
+        """Hold the tools that come behind the last move against the material where the axes stand."""
+        if self._stand is not None and self.halted is None:
+            self._change_tools(self._stand, None)
 
     def events(self) -> tuple[CutEvent, ...]:
         """Gouges, rapids into stock and feeds with the spindle off so far."""
@@ -212,21 +217,36 @@ class Cutter:
             power_w=self._power,
         )
 
-    def _note_arrival(self, way: "_Way", move: IntArray) -> None:
-        """Note a tool whose edge stands in the material as soon as it is in the spindle."""
-        here = Points(np.repeat(way.points[:1], 2, axis=0), np.repeat(way.turn[:1], 2, axis=0))
+    def _change_tools(self, stand: "_Way", move: int | None) -> None:
+        """Bring the tools that come before a move into the spindle, one after the other.
+
+        Args:
+            stand: Where the axes are then, one sample.
+            move: Its number; None: the program has ended.
+        """
+        changes = self.plan.changes
+        while self.halted is None and self._changes < len(changes):
+            change = changes[self._changes]
+            if move is not None and change.move > move:
+                return
+            self._changes += 1
+            if change.tool.number != self.tool.number:
+                self.tool, self._last = change.tool, None
+                self._note_arrival(stand.lowered(self.plan.longer(change.tool)), change.line)
+
+    def _note_arrival(self, stand: "_Way", line: int) -> None:
+        """Note that the tool which has just come into the spindle stands in the material."""
+        here = Points(np.repeat(stand.points, 2, axis=0), np.repeat(stand.turn, 2, axis=0))
         contact = StockContact(self.tool, profile(self.tool), self._head)
-        met = contact.measure(self.map, here, np.ones(1, np.bool_)).get(EDGE)
-        if met is None:
+        met = contact.measure(self.map, here, np.ones(1, np.bool_))
+        if not met:
             return
-        changes = [change for change in self.plan.changes if change.move <= move[0]]
-        line = np.array([changes[-1].line]) if changes else way.line[:1]
         removal = Removal(*np.zeros((3, 1)))
-        stretches = Stretches(here.tip, way.time[:1], line, way.rapid[:1], *removal)
-        key = ("arrival", int(line[0]))
-        self._gouges.note(key, "arrival", stretches, 0, float(met.depth[0]))
+        stretches = Stretches(here.tip, stand.time, np.array([line]), stand.rapid, *removal)
+        depth = max(float(overlap.depth[0]) for overlap in met.values())
+        self._gouges.note(("arrival", line), "arrival", stretches, 0, depth)
         if self._halts:
-            self.halted = self._gouges.event(key)
+            self.halted = self._gouges.event(("arrival", line))
 
     def _cut(self, way: "_Way", *, edge: bool) -> FloatArray:
         """Cut with one tool from the last point of the run before through all of this one's.

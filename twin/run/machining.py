@@ -78,11 +78,23 @@ class Machining:
         if found is not None and self._gouge_stops:
             gouge, sample = found
             return samples[: sample + 1], gouge_alarm(gouge, cutter.plan.at(int(move[sample])))
-        if cutter.halted is None:
+        alarm = self._alarm()
+        if alarm is None:
             return samples, None
-        alarm = stock_alarm(cutter.halted, cutter.tool)
         end = int(np.searchsorted(samples.setpoint.time, alarm.time_s, side="right"))
         return samples[:end], alarm
+
+    def end_program(self) -> Alarm | None:
+        """The alarm of a tool that comes behind the last move and stands in the part then."""
+        if self._cutter is not None:
+            self._cutter.end_program()
+        return self._alarm()
+
+    def _alarm(self) -> Alarm | None:
+        cutter = self._cutter
+        if cutter is None or cutter.halted is None:
+            return None
+        return stock_alarm(cutter.halted, cutter.tool)
 
     def finish(self, out: Path | None) -> CutResult | None:
         """What the cut came to; the part is written as ``part.stl`` into a folder, if one is given.

@@ -146,7 +146,10 @@ class Run:
                     progress("simulate", reached.share_of(dry_run.moves))
                     if alarm is not None:
                         break
-                alarm, near_miss = alarm or motion.alarm, motion.near_miss
+                alarm, near_miss = (
+                    alarm or motion.alarm or machining.end_program(),
+                    motion.near_miss,
+                )
                 alarms = (*self._breaks(reached.time_s), *(() if alarm is None else (alarm,)))
                 if alarms and writer is not None:
                     writer.note_alarms([(each.time_s, each.message) for each in alarms])
