@@ -30,6 +30,10 @@ REFUSED = {
     "o1 if [0]\no1 breYak\no1 endif\nM2\n": "o-word",
     "o<> if [0]\nM2\n": "o-word",
     "G43.2 H1 G0 X1\nM2\n": "conflicting-codes",
+    "G10 L1 P1 F3\nM2\n": "code-words",
+    "#-40=0\nM2\n": "parameter-number",
+    "#[0-40]=0\nM2\n": "parameter-number",
+    "G0 X#[0-3]\nM2\n": "parameter-number",
 }
 ENDS = {
     "G80 G0 X3 Y5\nM2\n": [3.0, 5.0, 0.0],

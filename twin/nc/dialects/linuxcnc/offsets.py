@@ -275,10 +275,11 @@ def _write_tool(control: Control, number: Word, kind: int) -> None:
         known = ", ".join(map(str, control.tools.table)) or "none"
         message = f"the job has no tool {which}"
         control.fail("no-such-tool", message, number, f"tools of the job: {known}")
-    for letter in "IJQ":
-        control.take(letter)
+    others = [control.take(letter) for letter in "IJQ"]
     radius, length = control.take("R"), None
     axes = control.take_axis_words()
+    if not axes and radius is None and not any(others):
+        control.fail("code-words", "G10 for a tool needs Z, its length, or R, its radius", number)
     for index, word in axes:
         if index != 2:
             message = "the twin's tools have a length along Z and a radius"

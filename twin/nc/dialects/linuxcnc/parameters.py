@@ -56,8 +56,8 @@ def read_variable(control: Control, name: str, index: float | None) -> float:
     """
     if index is not None:
         name = f"#{_number(index)}"
-    if name[1:].isdigit():
-        number = int(name[1:])
+    number = _numbered(name)
+    if number is not None:
         _check_number(number)
         value = _read_live(control, number) if number >= 5000 else None
         if value is None:
@@ -80,6 +80,11 @@ def _number(index: float) -> int:
     return number
 
 
+def _numbered(name: str) -> int | None:
+    """The number that a parameter has for a name, also where there is none such; None: it has a word."""
+    return int(name[1:]) if name[1:].removeprefix("-").isdigit() else None
+
+
 def _check_number(number: int) -> None:
     if not 1 <= number <= LAST_PARAMETER:
         message = f"there is no parameter #{number}: they are #1 to #{LAST_PARAMETER}"
@@ -98,11 +103,12 @@ def write_variable(
     try:
         if index is not None:
             name = f"#{_number(index)}"
-        if name[1:].isdigit():
-            _check_number(int(name[1:]))
+        number = _numbered(name)
+        if number is not None:
+            _check_number(number)
     except ExpressionError as error:
         control.report.fail(error.code, str(error), *span)
-    number = int(name[1:]) if name[1:].isdigit() else 0
+    number = number or 0
     if number in _READ_ONLY or (name.startswith("#<_") and name[3:-1] in _NAMED):
         message = f"{name} is the control's own and cannot be set"
         control.report.fail("control-variable", message, *span)
