@@ -196,9 +196,12 @@ class _Reader:
             self._arc([float(each) for each in given.split(",")])
         elif name == "RIGID_TAP":
             start = self.here
+            # The model of rs274 stands still meanwhile.
+            stands = self._moved_with, self._changed
             values = [*(float(each) for each in given.split(",")), 0.0, 0.0, 0.0]
             self._go("feed", [*self._place(values)[:3], start[3]])
             self._go("feed", start)
+            self._moved_with, self._changed = stands
 
     def _forget(self) -> None:
         """A length that came into force between the last move and a tool change, or in its block."""
