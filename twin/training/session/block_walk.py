@@ -6,11 +6,14 @@ stopped by the planner; between two of them each further press of start goes one
 """
 
 import bisect
+import copy
 import dataclasses
 import itertools
 from collections import deque
+from typing import Self
 
 from twin.nc.canonical import Dwell, Event, Function
+from twin.training.session.copies import Divided
 
 FORGOTTEN_AT_ONCE = 256
 """Blocks behind the axes that are dropped together."""
@@ -36,7 +39,7 @@ class ModalState:
     per_minute: float | None = 1.0
 
 
-class BlockWalk:
+class BlockWalk(Divided):
     """What single block knows of a part.
 
     Attributes:
@@ -54,6 +57,13 @@ class BlockWalk:
         self._current = -1
         self._of_event = 0
         self._stepping = False
+
+    def divided(self) -> Self:
+        """Another walk through the same blocks."""
+        other = copy.copy(self)
+        for name, value in vars(self).items():
+            setattr(other, name, copy.copy(value))
+        return other
 
     def note(self, mark: int, state: ModalState) -> None:
         """A block has been interpreted.
