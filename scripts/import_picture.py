@@ -45,7 +45,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "jsonl",
     ),
     "twin.motion": (
-        "limits ramp_kernels",
+        "limits ramp_kernels steps",
         "blocks",
         "pieces",
         "profile",
