@@ -109,23 +109,25 @@ def test_points_around_a_circle_are_sorted_by_angle(count: int, seed: int):
     random = np.random.default_rng(seed)
     angle = random.uniform(0.0, 2.0 * np.pi, count)
     deviation = random.normal(0.0, 0.01, count)
-    bins = AngleBins(np.zeros(12, np.int64), *np.zeros((2, 12)), *np.zeros((2, 12, 3)))
+    (angles, deviations), (least, greatest) = np.zeros((2, 12)), np.zeros((2, 12, 3))
+    bins = AngleBins(np.zeros(12, np.int64), angles, deviations, least, greatest)
     points = (25.0 + deviation)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
     for part in (points[: count // 2], points[count // 2 :]):
         collect_by_angle(part, 25.0, bins)
     filled = np.unique((angle * 12 / (2.0 * np.pi)).astype(int))
-    found = ByAngle(*np.zeros((2, len(filled), 2)), np.zeros((2 * len(filled), 2)))
+    mean, place = np.zeros((2, len(filled), 2))
+    found = ByAngle(mean, place, np.zeros((2 * len(filled), 2)))
     look_by_angle(bins, 25.0, found)
     for row, index in enumerate(filled):
         own = (angle * 12 / (2.0 * np.pi)).astype(int) == index
-        mean, away = angle[own].mean(), deviation[own].mean()
-        assert bins.count[index] == own.sum()
-        assert found.mean[row] == pytest.approx([mean, away], abs=1e-12)
-        there = (25.0 + away) * np.array([np.cos(mean), np.sin(mean)])
+        toward, away = angle[own].mean(), deviation[own].mean()
+        assert bins.samples[index] == own.sum()
+        assert found.mean[row] == pytest.approx([toward, away], abs=1e-12)
+        there = (25.0 + away) * np.array([np.cos(toward), np.sin(toward)])
         assert found.place[row] == pytest.approx(there)
         ends = points[own][[deviation[own].argmin(), deviation[own].argmax()]]
         assert found.extremes[2 * row : 2 * row + 2] == pytest.approx(ends)
-    assert bins.count.sum() == count
+    assert bins.samples.sum() == count
 
 
 @checked

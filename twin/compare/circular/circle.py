@@ -93,7 +93,7 @@ class CirclePath:
         """
         if self._by_angle is None:
             bins = self._binned()
-            filled = int(np.count_nonzero(bins.count))
+            filled = int(np.count_nonzero(bins.samples))
             self._by_angle = ByAngle(
                 np.zeros((filled, 2)), np.zeros((filled, 2)), np.zeros((2 * filled, 2))
             )

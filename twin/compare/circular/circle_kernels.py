@@ -11,14 +11,14 @@ class AngleBins(NamedTuple):
     """Points around a circle by angle, in m bins of a turn.
 
     Attributes:
-        count: How many points, shape (m,).
+        samples: How many points, shape (m,).
         angle: Sum of their angles, shape (m,) [rad].
         deviation: Sum of their radial deviations, shape (m,) [mm].
         least: Least radial deviation and its point, shape (m, 3) [mm].
         greatest: Greatest radial deviation and its point, shape (m, 3) [mm].
     """
 
-    count: IntArray
+    samples: IntArray
     angle: FloatArray
     deviation: FloatArray
     least: FloatArray
@@ -49,7 +49,7 @@ def collect_by_angle(points, radius, bins):
         bins: Added to.
     """
     turn = 2.0 * math.pi
-    number = len(bins.count)
+    number = len(bins.samples)
     for i in range(len(points)):
         x, y = points[i]
         angle = math.atan2(y, x)
@@ -58,8 +58,8 @@ def collect_by_angle(points, radius, bins):
         deviation = math.sqrt(x * x + y * y) - radius
         here = min(int(angle * (number / turn)), number - 1)
         least, greatest = bins.least[here], bins.greatest[here]
-        first = bins.count[here] == 0
-        bins.count[here] += 1
+        first = bins.samples[here] == 0
+        bins.samples[here] += 1
         bins.angle[here] += angle
         bins.deviation[here] += deviation
         if first or deviation < least[0]:
@@ -78,8 +78,8 @@ def look_by_angle(bins, radius, found):
         found: Set.
     """
     row = 0
-    for here in range(len(bins.count)):
-        count = bins.count[here]
+    for here in range(len(bins.samples)):
+        count = bins.samples[here]
         if count == 0:
             continue
         angle, deviation = bins.angle[here] / count, bins.deviation[here] / count
