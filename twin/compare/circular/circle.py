@@ -109,7 +109,7 @@ class CirclePath:
     def _widest_gap(self) -> float:
         """Between neighbouring points, or bins with points [deg]; a turn, where it is not known."""
         if self._bins is not None:
-            return widest_gap(self._binned().count) * (360.0 / BINS_PER_TURN)
+            return widest_gap(self._binned().samples) * (360.0 / BINS_PER_TURN)
         points = np.concatenate([np.zeros((0, 2)), *self._points])
         if len(points) < 3:
             return 360.0
