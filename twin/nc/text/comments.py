@@ -14,9 +14,10 @@ from twin.nc.text.syntax import Comment
 Characters: TypeAlias = "bytes | npt.NDArray[np.uint8]"
 Marks: TypeAlias = "Sequence[Sequence[int]] | npt.NDArray[np.uint8]"
 NO_COMMENT, OPEN_COMMENT = -1, -2
-"""None begins there; it is not closed, or holds what no line may hold."""
+"""None begins there; it is not closed, or holds what it may not hold."""
 _CONTROL = 32
 _TAB, _VERTICAL_TAB, _FORM_FEED = 9, 11, 12
+_LINE_END = r"\Z"
 
 
 class CommentMarks(NamedTuple):
@@ -26,11 +27,13 @@ class CommentMarks(NamedTuple):
         openings: What begins each kind, one or two characters, 0 where there is none, shape (c, 2).
         closings: What ends it; 0, 0: the end of the line.
         whole_line: It can only begin its line, shape (c,).
+        holds_opening: Its own opening may stand in it, shape (c,).
     """
 
     openings: Marks
     closings: Marks
     whole_line: "Sequence[bool] | npt.NDArray[np.bool_]"
+    holds_opening: "Sequence[bool] | npt.NDArray[np.bool_]"
 
     @property
     def columns(self) -> "CommentMarks":
@@ -39,6 +42,7 @@ class CommentMarks(NamedTuple):
             np.array(self.openings, np.uint8).reshape(-1, 2),
             np.array(self.closings, np.uint8).reshape(-1, 2),
             np.array(self.whole_line, np.bool_),
+            np.array(self.holds_opening, np.bool_),
         )
 
 
@@ -48,6 +52,7 @@ def comment_marks(comments: Sequence[Comment]) -> CommentMarks:
         [[*comment.opening.encode("ascii"), 0, 0][:2] for comment in comments],
         [[*comment.closing.encode("ascii"), 0, 0][:2] for comment in comments],
         [comment.whole_line for comment in comments],
+        [comment.holds_opening for comment in comments],
     )
 
 
@@ -62,18 +67,22 @@ def closed_comment(marks: CommentMarks) -> str:
 
     Comments that can only begin their line are not among them.
     """
-    controls = "".join(re.escape(chr(each)) for each in range(_CONTROL) if is_control(each))
+    controls = [chr(each) for each in range(_CONTROL) if is_control(each)]
     ways, others = ["(?!)"], ""
-    for opening, closing, whole_line in zip(*marks, strict=True):
-        begin = "".join(re.escape(chr(each)) for each in opening if each)
-        end = [re.escape(chr(each)) for each in closing if each]
-        within = (
-            f"(?:(?!{''.join(end)})[^{controls}])*" if end[1:] else f"[^{controls}{''.join(end)}]*"
-        )
+    for opening, closing, whole_line, holds_opening in zip(*marks, strict=True):
+        begin, end = ([chr(each) for each in mark if each] for mark in (opening, closing))
+        without = [*controls, *end[:1], *([] if holds_opening or not end else begin[:1])]
+        within = f"[^{_escaped(without)}]"
+        if end[1:]:
+            within = f"(?:{within}|(?!{_escaped(end)}){_escaped(end[:1])})"
         if not whole_line:
-            ways.append(others + begin + within + ("".join(end) or r"\Z"))
-        others += f"(?!{begin})"
+            ways.append(f"{others}{_escaped(begin)}{within}*{_escaped(end) or _LINE_END}")
+        others += f"(?!{_escaped(begin)})"
     return f"(?:{'|'.join(ways)})"
+
+
+def _escaped(characters: Sequence[str]) -> str:
+    return re.escape("".join(characters))
 
 
 @compilable
@@ -101,10 +110,18 @@ def comment_end(line: Characters, begin: int, at: int, end: int, marks: CommentM
                 return OPEN_COMMENT
             closed = _behind(line, place, end, closing)
             if closed != NO_COMMENT:
-                return closed
+                return closed if _may_hold(line, behind, place, kind, marks) else OPEN_COMMENT
             place = _find_stop(line, place + 1, end, closing[0])
         return end if closing[0] == 0 else OPEN_COMMENT
     return NO_COMMENT
+
+
+@compilable
+def _may_hold(line: Characters, begin: int, end: int, kind: int, marks: CommentMarks) -> bool:
+    """Whether a comment of a kind may hold what stands between two places."""
+    if marks.holds_opening[kind]:
+        return True
+    return _find_stop(line, begin, end, marks.openings[kind][0]) == end
 
 
 @compilable

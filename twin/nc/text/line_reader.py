@@ -147,12 +147,16 @@ class LineReader:
         return True
 
     def _refuse_open_comment(self, text: str, at: int) -> NoReturn:
-        """A comment that begins a text, at a column, is not closed.
+        """A comment that begins a text, at a column, is not closed, or holds another one.
 
         Raises:
             ProgramError: Always.
         """
         begun = next(each for each in self._syntax.comments if text.startswith(each.opening))
+        again = text.find(begun.opening, len(begun.opening))
+        if not begun.holds_opening and 0 <= again < text.find(begun.closing):
+            message = f"a comment that '{begun.opening}' began holds no further '{begun.opening}'"
+            self._fail("open-comment", message, at + again, hint="close the first comment before")
         message = f"the comment is not closed by '{begun.closing}'"
         self._fail("open-comment", message, at, hint="close it on its own line")
 

@@ -80,7 +80,7 @@ LINUXCNC = Dialect(
     code_page="cp1252",
     syntax=Syntax(
         address=r"[A-Z@^$]",
-        comments=(Comment("(", ")"), Comment(";")),
+        comments=(Comment("(", ")", holds_opening=False), Comment(";")),
         expressions=EXPRESSIONS,
         statement=r"O(?=[ \t]*[0-9<#\[])|%",
         assigned="#",

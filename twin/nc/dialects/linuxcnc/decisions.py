@@ -65,8 +65,8 @@ DECISIONS = (
         example="plane_within_a_cycle",
     ),
     Decision(
-        "What does G95 do while the spindle stands?",
-        "It is refused.",
+        "What do G95, G33 and G33.1 do while the spindle stands, or turns by S0?",
+        "They are refused.",
         "The control would wait without end.",
         example="feed_of_a_standing_spindle",
     ),

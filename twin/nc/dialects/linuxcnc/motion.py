@@ -174,10 +174,13 @@ def _pitch_feed(control: Control, code: str) -> float:
     pitch = control.take("K")
     if pitch is None:
         control.fail("code-words", f"{code} needs K, the way of each turn")
-    if not control.spindle_turns or not control.spindle:
+    if not control.spindle_turns:
         control.fail(
             "spindle-needed", f"{code} follows a spindle that turns", hint="write S and M3 before"
         )
+    if not control.spindle:
+        message = f"{code} follows the spindle, which stands at S0"
+        control.fail("spindle-needed", message, hint="write S above 0 before")
     return abs(control.length(pitch)) * control.spindle
 
 
