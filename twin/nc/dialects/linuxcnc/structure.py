@@ -15,7 +15,8 @@ KEYWORDS = (
     "SUB", "ENDSUB", "CALL", "RETURN", "IF", "ELSEIF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "DO",
     "REPEAT", "ENDREPEAT", "BREAK", "CONTINUE",
 )  # fmt: skip
-_LABEL = r"<[^<>]*>|[0-9](?:[0-9 \t]*[0-9])?"
+_LABEL = r"<[^<>]*>|[0-9](?:[0-9 \t]*[0-9])?(?:[ \t]*\.(?:[0 \t]*0)?)?"
+"""Regular expression of a label that is not computed; a number of its own may end in ``.0``."""
 _LINE = re.compile(
     rf"[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O[ \t]*({_LABEL})[ \t]*([A-Z]*)", re.IGNORECASE
 )
@@ -47,7 +48,13 @@ class OWord(NamedTuple):
 def name_of_label(label: str) -> str:
     """One spelling for all ways to write a label."""
     label = re.sub(r"\s", "", label).lower()
-    return label[1:-1] if label.startswith("<") else str(int(label)) if label.isdigit() else label
+    return label[1:-1] if label.startswith("<") else str(int(label.partition(".")[0]))
+
+
+def named_o_word(line: str) -> tuple[str, str] | None:
+    """Label and keyword, in upper case, of a line's O-word; None where it has none with a label of its own."""
+    match = _LINE.match(line)
+    return None if match is None else (name_of_label(match[1]), match[2].upper())
 
 
 def o_word(statement: Statement) -> OWord | None:
@@ -100,9 +107,9 @@ def structure_of(lines: Iterable[str]) -> OWords:
             garbled.append(line)
         if "O" not in text.upper():
             continue
-        if (match := _LINE.match(text)) is None:
+        if (named := named_o_word(text)) is None:
             continue
-        name, keyword = name_of_label(match[1]), match[2].upper()
+        name, keyword = named
         if keyword in ("SUB", ""):
             subroutines.setdefault(name, []).append(line)
         found = _paired(structure, open_ones, name, keyword, line)
@@ -145,8 +152,8 @@ def lines_of_label(control: Control, construct: Construct) -> list[int]:
     assert construct.end is not None
     lines = control.program_counter.lines
     inner = range(construct.begin + 1, construct.end + 1)
-    found = ((line, _LINE.match(lines[line])) for line in inner)
-    return [line for line, match in found if match and name_of_label(match[1]) == construct.name]
+    named = ((line, named_o_word(lines[line])) for line in inner)
+    return [line for line, word in named if word is not None and word[0] == construct.name]
 
 
 def scope(control: Control, line: int) -> str:
