@@ -18,7 +18,7 @@ from twin.nc.dialects.fanuc import (
     tool_offsets,
     transformations,
 )
-from twin.nc.dialects.fanuc.cycles import cycles
+from twin.nc.dialects.fanuc.cycles.canned_cycles import cycles
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.iso import base, fixed_cycles
 from twin.nc.iso.tool_compensation import (

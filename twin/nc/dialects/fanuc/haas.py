@@ -7,8 +7,8 @@ from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision
 from twin.nc.dialects.fanuc import offsets, programs, transformations
-from twin.nc.dialects.fanuc.bolt_holes import bolt_holes
 from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over, refused
+from twin.nc.dialects.fanuc.cycles.bolt_holes import bolt_holes
 from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
 from twin.nc.dialects.fanuc.memory import HAAS
 from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
