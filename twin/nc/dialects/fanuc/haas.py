@@ -7,12 +7,13 @@ from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision
 from twin.nc.dialects.fanuc import offsets, programs, transformations
-from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over, refused
+from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over
 from twin.nc.dialects.fanuc.cycles.bolt_holes import bolt_holes
 from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
 from twin.nc.dialects.fanuc.memory import HAAS
 from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
 from twin.nc.geometry.planes import XY
+from twin.nc.iso.declared import instead, modal, refused
 
 _LACKING = (5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
 """Codes that the control lacks."""
@@ -86,20 +87,17 @@ def _arc(
 
 
 def _pocket(meaning: str, *, clockwise: bool) -> GCode:
-    return GCode(
-        meaning=f"{meaning}: I K Q Z L D",
-        perform=lambda control: circular_pocket(control, clockwise=clockwise),
+    return instead(
+        f"{meaning}: I K Q Z L D",
+        lambda control: circular_pocket(control, clockwise=clockwise),
+        ground="decision",
     )
 
 
 def _offset(number: int) -> GCode:
     pair = number - 109
-    return GCode(
-        meaning=f"work offset G154 P{pair} of the job",
-        group="offset",
-        action=offsets.numbered_code(number, pair),
-        ground="manual",
-    )
+    action = offsets.numbered_code(number, pair)
+    return modal(f"work offset G154 P{pair} of the job", "offset", action)
 
 
 _FIRST_HOLE = "the manual leaves open whether its first hole is where the tool stands; write the positions one by one"
@@ -112,12 +110,7 @@ _OWN: Mapping[float, GCode] = {
     ),
     101: dataclasses.replace(codes(HAAS)[51.1], meaning="mirror the axes at the places named"),
     103: passed_over("limit of the blocks that are looked ahead", "P"),
-    154: GCode(
-        meaning="work offset P1 to P99 of the job",
-        group="offset",
-        action=offsets.extended_offset,
-        ground="manual",
-    ),
+    154: modal("work offset P1 to P99 of the job", "offset", offsets.extended_offset),
     187: passed_over("smoothness: P roughness, E deviation at corners", "PE"),
     **{number: _offset(number) for number in range(110, 130)},
     **refused("engraving", "the shapes of its letters are the control's own", 47),
