@@ -445,6 +445,36 @@ PROBES = {
         1,
         3.0,
     ),
+    "fanuc tapping in passes": Probe(
+        "fanuc",
+        "S99 M3\nG0 Z5.\nM29 S99\nG98 G84 X0 Y0 Z-10. R2. Q5. F99.\nG91 X10. K2\nG80\nM30",
+        {"X": 20, "Z": 5},
+        18,
+        -10.0,
+    ),
+    "fanuc passes stay in force until G80": Probe(
+        "fanuc",
+        "S99 M3\nG99 G84 Z-9. R1. Q5. F99.\nG84 X9.\nG80\nG84 X0 Z-9. R1. F99.\nG80\nM30",
+        {"X": 0, "Z": 1},
+        10,
+        -9.0,
+    ),
+    "fanuc tapping in passes of nothing": Probe(
+        "fanuc", "S99 M3\nG84 Z-10. R2. Q0 F99.\nM30", refused="cycle-depth"
+    ),
+    "fanuc tapping in passes without R": Probe(
+        "fanuc", "S99 M3\nG84 Z-10. Q5. F99.\nM30", refused="cycle-word"
+    ),
+    "fanuc tapping upwards in passes": Probe(
+        "fanuc", "S99 M3\nG84 Z-10. R-20. Q5. F99.\nM30", refused="cycle-depth"
+    ),
+    "fanuc tapping in too many passes": Probe(
+        "fanuc", "S99 M3\nG84 Z-900. R2. Q.001 F99.\nM30", refused="cycle-depth"
+    ),
+    "fanuc high-precision contour control": Probe(
+        "fanuc", "G05 P10000\nG1 X5. F100.\nG05 P0\nM30", {"X": 5}, 1
+    ),
+    "fanuc other modes of G5": Probe("fanuc", "G05 P2\nM30", refused="unsupported-g"),
     "fanuc skip until a signal": Probe("fanuc", "G31 Z-5. F50.\nM30", refused="unsupported-g"),
     "fanuc inverse time": Probe("fanuc", "G93 G1 X10. F2.\nX20.\nM30", refused="no-feed"),
     "haas pecks": Probe("haas", HAAS_PECKS, {"X": 25, "Z": 200}, 10, -20.0),

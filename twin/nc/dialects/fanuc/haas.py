@@ -15,7 +15,7 @@ from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
 from twin.nc.geometry.planes import XY
 from twin.nc.iso.declared import instead, modal, refused
 
-_LACKING = (5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
+_LACKING = (5, 5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
 """Codes that the control lacks."""
 
 
