@@ -91,7 +91,8 @@ def shortest_time(path: Path, acceleration: float, jerk: float, velocity: float 
     b = _first_profile(path.x, fixed, jerks, acceleration, jerk)
     # At rest b'' v does not see a step of the acceleration: from there b is that of full jerk at most.
     away = np.minimum(path.x, path.x[-1] - path.x)
-    ceiling = (0.5 * jerk) ** 2 * (6.0 * away / jerk) ** (4.0 / 3.0)
+    full = jerk / max(1.0, float(np.abs(path.derivatives[0]).min(axis=0).max()))
+    ceiling = (0.5 * full) ** 2 * (6.0 * away / full) ** (4.0 / 3.0)
     ceiling = np.minimum(ceiling, velocity**2)
     b *= min(1.0, float(np.min(ceiling[1:-1] / b[1:-1])))
     time = _time(path.x, b)

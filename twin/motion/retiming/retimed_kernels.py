@@ -69,11 +69,11 @@ def _state(nodes: RunNodes, coefficients: FloatArray, i: int, end: int) -> tuple
     return math.sqrt(value) * v, value * a + 0.5 * slope * v
 
 
-@arithmetic_kernel
-def excess(
+@array_arithmetic_kernel
+def uses_of_limits(
     phases: FloatArray, phase_pieces: IntArray, pieces: RunPieces, machine: MachineLimits, override: float
-) -> float:  # fmt: skip
-    """By which factor phases would have to be slower for every limit to be kept; 1 or less: all are.
+) -> FloatArray:  # fmt: skip
+    """What intervals use of the limits of velocity, acceleration and jerk, at begin, middle and end of each phase.
 
     Args:
         phases: From ``retimed_phases``.
@@ -81,18 +81,24 @@ def excess(
         pieces: Of the plan.
         machine: Limits of the axes and the path.
         override: Factor of the programmed feed.
+
+    Returns:
+        Shares of the three limits, the largest along each of n intervals, shape (n, 3); infinite where
+        the solver went astray.
     """
-    fast, hard, sudden = 0.0, 0.0, 0.0
+    uses = np.zeros((len(phases) // 2, 3))
     for row in range(len(phases)):
         _, duration, begin, v0, a0, j = phases[row]
+        fast, hard, sudden = uses[row >> 1]
         for part in range(3):
             t = 0.5 * part * duration
             piece = phase_pieces[row, 0]
             x = begin + ((j / 6.0 * t + 0.5 * a0) * t + v0) * t
             v, a = v0 + (0.5 * j * t + a0) * t, a0 + j * t
-            # Not a number where the solver went astray, for which no comparison holds.
+            # No comparison holds of what is not a number.
             if not (v >= -1e-9 and abs(a) < math.inf and abs(j) < math.inf and abs(x) < math.inf):
-                return math.inf
+                fast = math.inf
+                break
             fast = max(fast, v / (pieces.feed[piece] * override))
             hard = max(hard, abs(a) / pieces.path_acceleration[piece])
             sudden = max(sudden, abs(j) / pieces.path_jerk[piece])
@@ -106,4 +112,5 @@ def excess(
                 hard = max(hard, acceleration / machine.acceleration[axis])
                 sudden = max(sudden, jerk / machine.jerk[axis])
             hard = max(hard, v * v * math.sqrt(squares) / machine.path[0])
-    return max(fast, math.sqrt(hard), np.cbrt(sudden))
+        uses[row >> 1, 0], uses[row >> 1, 1], uses[row >> 1, 2] = fast, hard, sudden
+    return uses

@@ -29,6 +29,9 @@ SLOW = 0.6
 ACCELERATION_SHARE = 0.999
 """Of limits of acceleration: between two nodes a little more is used than at them."""
 
+SPARE = 1.001
+"""By how much more than it has been passed by a limit becomes stricter."""
+
 BELOW = 0.97
 """Of the highest squared rate that is known to be slow enough: where the search begins."""
 
@@ -79,7 +82,7 @@ def _ramp_times(
 
 
 @array_arithmetic_kernel
-def cut_run(ends: RunEnds, pieces: RunPieces) -> RunNodes:
+def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNodes:
     """A run with a smooth change of velocity to its peak and another from it, as intervals of time.
 
     The velocity of a change is a cosine's, which begins at rest as a constant jerk does.
@@ -87,12 +90,18 @@ def cut_run(ends: RunEnds, pieces: RunPieces) -> RunNodes:
     Args:
         ends: Of the run.
         pieces: Of the plan.
+        machine: Limits of the axes and the path.
     """
     piece, x, distance, (v0, _), (v1, _), peak = ends
     turn = pieces.fraction_per_length[piece] * abs(pieces.curves.angle[pieces.move[piece]])
-    up, down, peak = _ramp_times(
-        ends, turn, pieces.path_jerk[piece], pieces.path_acceleration[piece]
-    )
+    jerk, acceleration = pieces.path_jerk[piece], pieces.path_acceleration[piece]
+    # What a straight share of the path asks of an axis is the same everywhere.
+    for axis in range(len(machine.jerk)):
+        even = _even_slope(pieces, piece, axis)
+        if even > 0.0:
+            jerk = min(jerk, machine.jerk[axis] / even)
+            acceleration = min(acceleration, machine.acceleration[axis] / even)
+    up, down, peak = _ramp_times(ends, turn, jerk, acceleration)
     hold = (distance - 0.5 * (peak + v0) * up - 0.5 * (peak + v1) * down) / peak
     times = up, hold, down
     counts = (
@@ -146,6 +155,15 @@ def cut_run(ends: RunEnds, pieces: RunPieces) -> RunNodes:
             nodes.path[node, 1], nodes.path[node, 2] = v, a
         place = before
     return nodes
+
+
+@arithmetic_kernel
+def _even_slope(pieces: RunPieces, piece: int, axis: int) -> float:
+    """How fast an axis moves that does not follow the curve, 0 for one that does."""
+    curves, move = pieces.curves, pieces.move[piece]
+    if axis < 3 and (curves.cosine[move, axis] != 0.0 or curves.sine[move, axis] != 0.0):
+        return 0.0
+    return abs(curves.drift[move, axis] * pieces.fraction_per_length[piece])
 
 
 @arithmetic_kernel
@@ -270,11 +288,24 @@ def first_rate(table: RunTable, ends: RunEnds, nodes: RunNodes) -> FloatArray:
 
 
 @array_kernel
-def tightened(table: RunTable, slower: float) -> RunTable:
-    """A run under limits that hold still when it is driven so much faster."""
-    step, forms, highest = table
-    if slower == 1.0:
-        return table
-    forms = forms * (slower * slower)
-    forms[:, :, forms.shape[2] // 2 :] *= slower
-    return RunTable(step, forms, highest / (slower * slower))
+def tightened(table: RunTable, uses: FloatArray) -> RunTable:
+    """A run under limits that are stricter where they have been passed.
+
+    Args:
+        table: Of the run.
+        uses: Of the limits of velocity, acceleration and jerk along each of n intervals, shape (n, 3).
+    """
+    step, forms, highest = table[0], table[1].copy(), table[2].copy()
+    first_jerk = forms.shape[2] // 2
+    for i in range(len(step)):
+        for end in range(2):
+            # Both intervals that meet in a node see the same limits of velocity and acceleration there.
+            other = min(max(0, i + 2 * end - 1), len(step) - 1)
+            fast, hard = max(uses[i, 0], uses[other, 0]), max(uses[i, 1], uses[other, 1])
+            if fast > 1.0:
+                highest[i, end] /= (SPARE * fast) ** 2
+            if hard > 1.0:
+                forms[i, end, :first_jerk] *= SPARE * hard
+            if uses[i, 2] > 1.0:
+                forms[i, end, first_jerk:] *= SPARE * uses[i, 2]
+    return RunTable(step, forms, highest)
