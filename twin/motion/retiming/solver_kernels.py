@@ -23,8 +23,9 @@ from twin.motion.retiming.spline_kernels import basis_at, spline_at
 from twin.nc.canonical import FloatArray
 
 MOST_STEPS = 40
-CENTERING = 0.15
-"""By which the mean complementarity falls with a full step."""
+CENTERING = 0.1
+"""To which share the mean complementarity is to fall with a step after a full one; the shorter the one
+before, the less."""
 KEPT = 0.05
 """Share of a slack that one step leaves."""
 GAP = 5e-4
@@ -97,12 +98,12 @@ def fastest_rate(
     watched = count * (3 * kinds + 1) + kinds + 1
     _begin(table, jerk, c, sides, watched)
     band, right = np.zeros((count + 2, 3)), np.zeros(count + 2)
-    total = np.sum(step)
+    total, gone = np.sum(step), 1.0
     for _ in range(MOST_STEPS):
         gap = np.sum(sides.slack * sides.price)
         if gap < GAP and np.max(sides.loosened) == 0.0:
             break
-        target = CENTERING * gap / watched
+        target = max(CENTERING, (1.0 - gone) ** 2) * gap / watched
         _assemble(table, jerk, c, sides, target, total, band, right)
         for end in range(2):
             if free[end]:
@@ -111,7 +112,7 @@ def fastest_rate(
                 for i in range(2):
                     _fix(band, right, i + end * count)
         _solve(band, right)
-        _advance(table, jerk, c, right, sides, target)
+        gone = _advance(table, jerk, c, right, sides, target)
     return c, np.max(sides.loosened) == 0.0
 
 
@@ -255,8 +256,8 @@ def _solve(band: FloatArray, right: FloatArray) -> None:
 @arithmetic_kernel
 def _advance(
     table: RunTable, jerk: float, c: FloatArray, change: FloatArray, sides: Sides, target: float
-) -> None:
-    """Go as far as slacks and multipliers stay positive."""
+) -> float:
+    """Go as far as slacks and multipliers stay positive; the share of the change that is gone."""
     step, forms, highest = table
     kinds = forms.shape[2]
     steps = 1.0, 1.0
@@ -286,11 +287,12 @@ def _advance(
             for side in range(2 * first, 2 * kinds + int(whole)):
                 room = _room(table, jerk, i, end, z, side)
                 loosened = sides.loosened[i, end, side] * (1.0 - primal)
-                if room > LEAST_SLACK:
+                if room > min(LEAST_SLACK, loosened):
                     loosened = 0.0
                 sides.loosened[i, end, side] = loosened
                 sides.slack[i, end, side] = max(room + loosened, SMALLEST_SLACK)
                 sides.price[i, end, side] += dual * sides.price_change[i, end, side]
+    return primal
 
 
 @arithmetic_kernel

@@ -29,8 +29,8 @@ SLOW = 0.6
 ACCELERATION_SHARE = 0.999
 """Of limits of acceleration: between two nodes a little more is used than at them."""
 
-SPARE = 1.001
-"""By how much more than it has been passed by a limit becomes stricter."""
+SPARE = 1.0005
+"""By how much slower than it seems to need a place becomes whose limit was passed."""
 
 BELOW = 0.97
 """Of the highest squared rate that is known to be slow enough: where the search begins."""
@@ -305,7 +305,7 @@ def tightened(table: RunTable, uses: FloatArray) -> RunTable:
             if fast > 1.0:
                 highest[i, end] /= (SPARE * fast) ** 2
             if hard > 1.0:
-                forms[i, end, :first_jerk] *= SPARE * hard
+                forms[i, end, :first_jerk] *= SPARE**2 * hard
             if uses[i, 2] > 1.0:
-                forms[i, end, first_jerk:] *= SPARE * uses[i, 2]
+                forms[i, end, first_jerk:] *= SPARE**3 * uses[i, 2]
     return RunTable(step, forms, highest)
