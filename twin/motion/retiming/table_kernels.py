@@ -209,7 +209,7 @@ def run_table(
             moving[used] = axis
             used += 1
     kinds = used + 1
-    forms, highest = np.zeros((count, 2, 2 * kinds, 3)), np.zeros((count, 2))
+    forms, highest = np.zeros((count, 2, 2 * kinds, 3)), np.full(count, math.inf)
     for node in range(count + 1):
         piece, (x, v, a) = nodes.piece[node], nodes.path[node]
         # Of both intervals that meet in a node only the jerk differs.
@@ -237,13 +237,10 @@ def run_table(
         here[used, 0], here[used, 1] = a / limit, 0.5 * v / limit
         limit = pieces.path_jerk[piece]
         here[kinds + used, 1], here[kinds + used, 2] = 1.5 * a / limit, 0.5 * v / limit
-        if node in (0, count) and v > 0.0:
-            # The state at an end is given, often at the feed itself.
-            most = math.inf
-        highest[at, side] = most
         if 0 < node < count:
             forms[node - 1, 1] = here
-            highest[node - 1, 1] = most
+            highest[node - 1] = min(highest[node - 1], most)
+        highest[at] = min(highest[at], most)
         for neighbour in range(max(0, node - 1), min(count, node + 1)):
             end = 1 if neighbour < node else 0
             j = nodes.jerk[neighbour, end]
@@ -251,6 +248,11 @@ def run_table(
             for k in range(used):
                 q1, _, _ = derivatives_at(pieces, piece, x, moving[k])
                 forms[neighbour, end, kinds + k, 0] += q1 * j / machine.jerk[moving[k]]
+    # The state at an end is given, often at the feed itself.
+    if nodes.path[0, 1] > 0.0:
+        highest[0] = math.inf
+    if nodes.path[count, 1] > 0.0:
+        highest[count - 1] = math.inf
     return RunTable(nodes.step, forms, highest)
 
 
@@ -267,8 +269,8 @@ def first_rate(table: RunTable, ends: RunEnds, nodes: RunNodes) -> FloatArray:
     count, kinds = len(step), forms.shape[2]
     rate = 1.0
     for i in range(count):
+        rate = min(rate, highest[i])
         for end in range(2):
-            rate = min(rate, highest[i, end])
             for k in range(kinds):
                 value = abs(forms[i, end, k, 0])
                 rate = min(rate, 1.0 / value if 2 * k < kinds else value ** (-2.0 / 3.0))
@@ -297,13 +299,15 @@ def tightened(table: RunTable, uses: FloatArray) -> RunTable:
     """
     step, forms, highest = table[0], table[1].copy(), table[2].copy()
     first_jerk = forms.shape[2] // 2
-    for i in range(len(step)):
+    count = len(step)
+    for i in range(count):
+        # An interval sees the coefficients of both its neighbours.
+        fast = max(uses[max(0, i - 1), 0], uses[i, 0], uses[min(i + 1, count - 1), 0])
+        if fast > 1.0:
+            highest[i] /= (SPARE * fast) ** 2
         for end in range(2):
-            # Both intervals that meet in a node see the same limits of velocity and acceleration there.
-            other = min(max(0, i + 2 * end - 1), len(step) - 1)
-            fast, hard = max(uses[i, 0], uses[other, 0]), max(uses[i, 1], uses[other, 1])
-            if fast > 1.0:
-                highest[i, end] /= (SPARE * fast) ** 2
+            # Both intervals that meet in a node see the same accelerations there.
+            hard = max(uses[i, 1], uses[min(max(0, i + 2 * end - 1), count - 1), 1])
             if hard > 1.0:
                 forms[i, end, :first_jerk] *= SPARE**2 * hard
             if uses[i, 2] > 1.0:
