@@ -209,14 +209,12 @@ def run_table(
             moving[used] = axis
             used += 1
     kinds = used + 1
-    forms, highest = np.zeros((count, 2, 2 * kinds, 3)), np.full(count, math.inf)
+    forms, tops = np.zeros((count, 2, 2 * kinds, 3)), np.full((count + 1, 2), math.inf)
     for node in range(count + 1):
         piece, (x, v, a) = nodes.piece[node], nodes.path[node]
         # Of both intervals that meet in a node only the jerk differs.
         at, side = (node, 0) if node < count else (count - 1, 1)
         here = forms[at, side]
-        top = pieces.feed[piece] * override / v
-        most = top * top
         squares = 0.0
         for k in range(used):
             axis = moving[k]
@@ -224,23 +222,21 @@ def run_table(
             first = q1 * v
             second = q2 * v * v + q1 * a
             third = (q3 * v * v + 3.0 * q2 * a) * v
-            fastest = machine.velocity[axis] / abs(first)
-            most = min(most, fastest * fastest)
+            tops[node, 1] = min(tops[node, 1], (machine.velocity[axis] / first) ** 2)
             squares += q2 * q2 if axis < 3 else 0.0
             limit = ACCELERATION_SHARE * machine.acceleration[axis]
             here[k, 0], here[k, 1] = second / limit, 0.5 * first / limit
             limit = machine.jerk[axis]
             here[kinds + k, 0] = third / limit
             here[kinds + k, 1], here[kinds + k, 2] = 1.5 * second / limit, 0.5 * first / limit
-        most = min(most, ACCELERATION_SHARE * machine.path[0] / (math.sqrt(squares) * v * v))
+        curved = ACCELERATION_SHARE * machine.path[0] / (math.sqrt(squares) * v * v)
+        tops[node, 0] = min((pieces.feed[piece] * override / v) ** 2, curved)
         limit = ACCELERATION_SHARE * pieces.path_acceleration[piece]
         here[used, 0], here[used, 1] = a / limit, 0.5 * v / limit
         limit = pieces.path_jerk[piece]
         here[kinds + used, 1], here[kinds + used, 2] = 1.5 * a / limit, 0.5 * v / limit
         if 0 < node < count:
             forms[node - 1, 1] = here
-            highest[node - 1] = min(highest[node - 1], most)
-        highest[at] = min(highest[at], most)
         for neighbour in range(max(0, node - 1), min(count, node + 1)):
             end = 1 if neighbour < node else 0
             j = nodes.jerk[neighbour, end]
@@ -248,12 +244,36 @@ def run_table(
             for k in range(used):
                 q1, _, _ = derivatives_at(pieces, piece, x, moving[k])
                 forms[neighbour, end, kinds + k, 0] += q1 * j / machine.jerk[moving[k]]
+    highest = _highest_coefficients(tops)
     # The state at an end is given, often at the feed itself.
     if nodes.path[0, 1] > 0.0:
         highest[0] = math.inf
     if nodes.path[count, 1] > 0.0:
         highest[count - 1] = math.inf
     return RunTable(nodes.step, forms, highest)
+
+
+@array_arithmetic_kernel
+def _highest_coefficients(tops: FloatArray) -> FloatArray:
+    """Coefficients of intervals' middles with which the squared rate stays below its highest values.
+
+    Args:
+        tops: Highest values at n + 1 nodes: one that is even along a curve, and one that goes up and
+            down with it, shape (n + 1, 2).
+
+    Returns:
+        Shape (n,).
+    """
+    count = len(tops) - 1
+    highest = np.zeros(count)
+    for i in range(count):
+        even, (here, there) = min(tops[i, 0], tops[i + 1, 0]), tops[i : i + 2, 1]
+        # A parabola's coefficient lies below the mean of its values by a quarter of its second difference.
+        bend = tops[max(0, i - 1), 1] + tops[min(i + 2, count), 1] - here - there
+        wavy = 0.5 * (here + there) - max(0.0, 0.125 * bend)
+        # Not a number where an axis stands.
+        highest[i] = min(even, wavy) if wavy > min(here, there) else min(even, here, there)
+    return highest
 
 
 @array_arithmetic_kernel
