@@ -14,7 +14,6 @@ from twin.motion.retiming.retiming import (
     retime,
 )
 from twin.motion.retiming.run_kernels import RunPieces, find_runs, run_ends
-from twin.nc.canonical import FloatArray
 
 REJOINING_TURNS = (math.pi / 4.0, math.pi / 2.0, math.pi, 2.0 * math.pi)
 """How far ahead a run may come back to its reference, in this order [rad]."""

@@ -18,7 +18,7 @@ from twin.motion.retiming.solver_kernels import fastest_rate
 from twin.motion.retiming.table_kernels import cut_run, first_rate, run_table, tightened
 from twin.nc.canonical import FloatArray, IntArray
 
-JERK_SHARE = 0.975
+JERK_SHARE = 0.98
 """Of the jerk limits that a run uses, so that there is always a way out of it."""
 
 SHORT_JERK_SHARE = 0.99

@@ -15,7 +15,7 @@ STEP_ANGLE = math.radians(6.0)
 """Longest interval of a run where it turns fastest [rad]."""
 
 RAMP_STEPS = 20
-"""Intervals of a change of velocity."""
+"""Intervals of a change of velocity at least."""
 
 LEAST_RAMP = 0.2
 """What a change of velocity turns by at twice its mean velocity at least, in runs long enough [rad]."""
@@ -31,6 +31,9 @@ ACCELERATION_SHARE = 0.999
 
 SPARE = 1.0005
 """By how much slower than it seems to need a place becomes whose limit was passed."""
+
+VELOCITY_SHARE = 0.9995
+"""Of axes' velocities: between two nodes a little more is used than at them."""
 
 BELOW = 0.97
 """Of the highest squared rate that is known to be slow enough: where the search begins."""
@@ -104,10 +107,11 @@ def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNode
     up, down, peak = _ramp_times(ends, turn, jerk, acceleration)
     hold = (distance - 0.5 * (peak + v0) * up - 0.5 * (peak + v1) * down) / peak
     times = up, hold, down
+    rate = peak * turn / STEP_ANGLE
     counts = (
-        RAMP_STEPS if up > 0.0 else 0,
-        max(LEAST_STEPS, math.ceil(hold * peak * turn / STEP_ANGLE)),
-        RAMP_STEPS if down > 0.0 else 0,
+        max(RAMP_STEPS, math.ceil(rate * up)) if up > 0.0 else 0,
+        max(LEAST_STEPS, math.ceil(rate * hold)),
+        max(RAMP_STEPS, math.ceil(rate * down)) if down > 0.0 else 0,
     )
     count = counts[0] + counts[1] + counts[2]
     nodes = RunNodes(
@@ -222,7 +226,9 @@ def run_table(
             first = q1 * v
             second = q2 * v * v + q1 * a
             third = (q3 * v * v + 3.0 * q2 * a) * v
-            tops[node, 1] = min(tops[node, 1], (machine.velocity[axis] / first) ** 2)
+            tops[node, 1] = min(
+                tops[node, 1], (VELOCITY_SHARE * machine.velocity[axis] / first) ** 2
+            )
             squares += q2 * q2 if axis < 3 else 0.0
             limit = ACCELERATION_SHARE * machine.acceleration[axis]
             here[k, 0], here[k, 1] = second / limit, 0.5 * first / limit
