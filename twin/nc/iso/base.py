@@ -2,37 +2,40 @@
 
 import dataclasses
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import Effect, GCode, Interpolation, MCode, WordEffect
+from twin.nc.control.codes import Action, Effect, GCode, Interpolation, MCode, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.interpolation import LineRule
+from twin.nc.control.interpolation import ArcRule, LineRule
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
 from twin.nc.geometry.planes import PLANE_ORDER, XY, YZ, ZX, Plane
-from twin.nc.iso.circular import arc_rule, clockwise_arc, counter_clockwise_arc
+from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
 from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
 from twin.nc.text.blocks import Word
 
 
-def rapid_line(control: Control) -> None:
-    """G0: straight to the target at the machine's own speed."""
-    control.line_to(control.target(), rapid=True)
+def straight(
+    go: Callable[[Control, bool], None], without_words: Action | None = None
+) -> tuple[Interpolation, Interpolation]:
+    """G0, at the machine's own speed, and G1, with the feed.
+
+    Args:
+        go: Takes the words of a block and moves, told whether rapidly.
+        without_words: Of G1, as ``Interpolation`` has it.
+    """
+    return (
+        Interpolation(lambda control: go(control, True), rapid=True, rule=LineRule()),
+        Interpolation(lambda control: go(control, False), without_words, rule=LineRule()),
+    )
 
 
-def feed_line(control: Control) -> None:
-    """G1: straight to the target with the feed."""
-    control.line_to(control.target(), rapid=False)
-
-
-RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
-FEED = Interpolation(feed_line, rule=LineRule())
-CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True))
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=arc_rule(clockwise=False))
+RAPID, FEED = straight(lambda control, rapid: control.line_to(control.target(), rapid=rapid))
+CLOCKWISE, COUNTER_CLOCKWISE = both_senses(iso_arc, ArcRule(bounds=BOUNDS))
 
 
 # Nothing is given back once it is taken (``++``): else dots could be shared out in endless ways.

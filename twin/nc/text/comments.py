@@ -1,6 +1,5 @@
 """Where comments begin and end, for both tiers."""
 
-import functools
 import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeAlias
@@ -8,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from twin.compilation.compilable import compilable, compilable_as
+from twin.compilation.compilable import compilable
 from twin.nc.text.plain_word import IS_BLANK
 from twin.nc.text.syntax import Comment
 
@@ -18,6 +17,7 @@ NO_COMMENT, OPEN_COMMENT = -1, -2
 """None begins there; it is not closed, or holds what it may not hold."""
 _CONTROL = 32
 _TAB, _VERTICAL_TAB, _FORM_FEED = 9, 11, 12
+_LINE_END = r"\Z"
 
 
 class CommentMarks(NamedTuple):
@@ -62,6 +62,29 @@ def is_control(character: int) -> bool:
     return character < _CONTROL and character not in (_TAB, _VERTICAL_TAB, _FORM_FEED)
 
 
+def closed_comment(marks: CommentMarks) -> str:
+    """Regular expression of a comment that is closed, as ``comment_end`` finds it from these marks.
+
+    Comments that can only begin their line are not among them.
+    """
+    controls = [chr(each) for each in range(_CONTROL) if is_control(each)]
+    ways, others = ["(?!)"], ""
+    for opening, closing, whole_line, holds_opening in zip(*marks, strict=True):
+        begin, end = ([chr(each) for each in mark if each] for mark in (opening, closing))
+        without = [*controls, *end[:1], *([] if holds_opening or not end else begin[:1])]
+        within = f"[^{_escaped(without)}]"
+        if end[1:]:
+            within = f"(?:{within}|(?!{_escaped(end)}){_escaped(end[:1])})"
+        if not whole_line:
+            ways.append(f"{others}{_escaped(begin)}{within}*{_escaped(end) or _LINE_END}")
+        others += f"(?!{_escaped(begin)})"
+    return f"(?:{'|'.join(ways)})"
+
+
+def _escaped(characters: Sequence[str]) -> str:
+    return re.escape("".join(characters))
+
+
 @compilable
 def comment_end(line: Characters, begin: int, at: int, end: int, marks: CommentMarks) -> int:
     """The place behind the comment that begins at a place.
@@ -101,25 +124,14 @@ def _may_hold(line: Characters, begin: int, end: int, kind: int, marks: CommentM
     return _find_stop(line, begin, end, marks.openings[kind][0]) == end
 
 
-def _find_stop_one_by_one(line: Characters, begin: int, end: int, closing: int) -> int:
+@compilable
+def _find_stop(line: Characters, begin: int, end: int, closing: int) -> int:
+    """The first place that holds a character, or one that no line may hold; ``end`` where none does."""
     for place in range(begin, end):
         character = line[place]
         if character == closing or (character < _CONTROL and is_control(character)):
             return place
     return end
-
-
-@compilable_as(_find_stop_one_by_one)
-def _find_stop(line: Characters, begin: int, end: int, closing: int) -> int:
-    """The first place that holds a character, or one that no line may hold; ``end`` where none does."""
-    found = _stops(int(closing)).search(bytes(line[begin:end]))
-    return end if found is None else begin + found.start()
-
-
-@functools.cache
-def _stops(closing: int) -> re.Pattern[bytes]:
-    characters = bytes([closing, *filter(is_control, range(_CONTROL))])
-    return re.compile(b"[" + re.escape(characters) + b"]")
 
 
 @compilable

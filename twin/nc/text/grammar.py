@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 from twin.nc.text.comments import (
     OPEN_COMMENT,
+    closed_comment,
     comment_end,
     comment_marks,
     comments_of,
@@ -22,7 +23,8 @@ class Grammar:
     Attributes:
         language: Whose syntax it is.
         syntax: Its declaration.
-        comment_openings: The characters that they may begin with.
+        comment: A comment that is closed, unless it can only begin its line.
+        comment_openings: The characters that comments may begin with.
         word: An address with a plain number and, where the dialect has it, the incremental suffix.
         address: An address alone.
         suffix: The incremental suffix alone.
@@ -46,6 +48,7 @@ class Grammar:
             rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}({SIGNED_NUMBER})(?!{continues}){suffix}"
         )
         self._comments = comment_marks(syntax.comments)
+        self.comment = re.compile(BLANKS + closed_comment(self._comments))
         self.comment_openings = {comment.opening[0] for comment in syntax.comments}
         self.address = _compiled(rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}")
         self.suffix = _compiled(suffix)

@@ -47,20 +47,21 @@ _LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
 class LineReader:
     """Reads one line."""
 
+    _at = 0
+    _number = NO_BLOCK_NUMBER
+    _name = ""
+    _skippable = False
+    _skip_level = 1
+
     def __init__(self, grammar: Grammar, report: Reporter, line: str, number: int) -> None:
         self._grammar = grammar
         self._syntax = grammar.syntax
         self._report = report
         self._line = line
         self._line_number = number
-        self._at = 0
         self._done: list[Block] = []
         self._words: list[Word] = []
         self._assignments: list[Assignment] = []
-        self._number = NO_BLOCK_NUMBER
-        self._name = ""
-        self._skippable = False
-        self._skip_level = 1
 
     def blocks(self) -> tuple[Block, ...]:
         """The line's blocks.
@@ -70,7 +71,7 @@ class LineReader:
         """
         has_statements = self._grammar.statement is not None
         end = len(self._line)
-        while True:
+        while self._at < end:
             if has_statements and not self._words and self._statement():
                 continue
             if self._plain_words():
@@ -105,6 +106,10 @@ class LineReader:
 
     def _something_else(self) -> bool:
         """Read what is no plain word and no statement; False at the end of the line."""
+        comment = self._grammar.comment.match(self._line, self._at)
+        if comment is not None:
+            self._at = comment.end()
+            return True
         blanks = _BLANKS.match(self._line, self._at)
         assert blanks is not None
         self._at = blanks.end()

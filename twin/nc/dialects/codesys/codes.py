@@ -1,7 +1,6 @@
 """G codes of CODESYS SoftMotion."""
 
 from twin.nc.control.codes import Effect, GCode, Interpolation
-from twin.nc.control.interpolation import LineRule
 from twin.nc.dialects.codesys import actions, jumps, program
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
@@ -13,7 +12,6 @@ from twin.nc.dialects.codesys.curves import (
 )
 from twin.nc.geometry.planes import XY, YZ, ZX, Plane
 from twin.nc.iso import base
-from twin.nc.iso.base import rapid_line
 from twin.nc.iso.tool_compensation import (
     END_OF_COMPENSATION,
     LEFT,
@@ -43,13 +41,11 @@ def _plane(meaning: str, plane: Plane) -> GCode:
     )
 
 
-RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
-
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
 
 CODES: dict[float, GCode] = {
-    0: _motion("positioning in a straight line; FF is its feed", RAPID),
+    0: _motion("positioning in a straight line; FF is its feed", base.RAPID),
     1: _motion("straight line", base.FEED, seed=True),
     2: _motion("arc clockwise", CLOCKWISE, seed=True),
     3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
