@@ -119,9 +119,9 @@ CHANGES = (
     Change("text/plain_word", '_POINT: ".",', '_POINT: ",",', "gost/rules/drilling"),
     Change(
         "text/comments",
-        "return end if closing[0] == 0 else OPEN_COMMENT",
-        "return OPEN_COMMENT",
-        "mefi/rules/planes_and_arcs",
+        "comment.opening.encode",
+        "comment.closing.encode",
+        "fanuc/rules/abbreviations",
     ),
     Change("text/arithmetic", "return a + b\n", "return a + b + 1.0\n", "fagor8070/rules/flow"),
     Change(

@@ -48,7 +48,7 @@ RARE = {
     "|G52 Y2|G41.1 D4|G40|G43 H2|G49|G98 G81 Z-9 R8|X3 L2|G80|G1 @3 ^30|G10 L2 P2 X3|T2 M6|G61|G64 P0.1",
     "mefi": '"text|G1 X1 "behind|Z1 G10|M5|S200|G4 P2|T2 M6|G54|G55 X3|G92 X1|G43 H2|G49|M3 S5 M8',
 }
-RARE["haas"] = f"{RARE['fanuc']}|G154 P1|G13 I5. D1"
+RARE["haas"] = f"{RARE['fanuc']}|G154 P1|G13 I5. D1|G91 X2. L3|G70 I5. L3|IF [#1 GT 2] THEN G1 X4."
 """What the interpreter tier must run in between."""
 WRONG = {
     "gost": "(open",

@@ -90,8 +90,8 @@ class Executor(Control):
 
     def follow(self, _word: Word, code: GCode) -> None:
         """What a code does when the block has moved."""
-        if code.after is not None:
-            code.after(self)
+        assert code.after is not None
+        code.after(self)
 
     def _assign(self, assignments: tuple[Assignment, ...]) -> None:
         """Give variables their values, all of them computed before the first is given."""

@@ -125,6 +125,10 @@ class ControlState:
         self.active: dict[str, float] = {}
         self.memory = language.memory()
         self.axis_letters = language.axis_letters
+        self._axis_columns = {
+            name: index for name, index in self.axis_index.items() if name in self.axis_letters
+        }
+        self._axes_that_lack = self.axis_letters - self.axis_index.keys()
         self.programmed = [settings.start.get(name, 0.0) for name in settings.axes.names]
         self.part = list(self.programmed)
         self.state = new_state(self.programmed)

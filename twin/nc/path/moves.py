@@ -75,10 +75,10 @@ def arc_length(
 @inlined
 def only_turns(start: Position, end: Position, linear: Sequence[bool] | NDArray[np.bool_]) -> bool:
     """Whether a straight move moves no linear axis: then F counts degrees."""
-    turning = True
-    for axis in range(len(start)):
-        turning = turning and (end[axis] == start[axis] or not linear[axis])
-    return turning
+    axis, axes = 0, len(start)
+    while axis < axes and (end[axis] == start[axis] or not linear[axis]):
+        axis += 1
+    return axis == axes
 
 
 @inlined

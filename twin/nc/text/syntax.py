@@ -18,11 +18,13 @@ class Comment:
         opening: What begins it.
         closing: What ends it; empty: the end of the line.
         whole_line: It can only begin its line, such as a program's heading.
+        holds_opening: Its own opening may stand in it, as a character like any other.
     """
 
     opening: str
     closing: str = ""
     whole_line: bool = False
+    holds_opening: bool = True
 
 
 HEADING = Comment("%", whole_line=True)

@@ -12,7 +12,7 @@ import dataclasses
 from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import decimal_point
-from twin.nc.dialects.fanuc.boring import boring_code
+from twin.nc.dialects.fanuc.cycles.boring import boring_code
 from twin.nc.dialects.fanuc.memory import Variant, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
