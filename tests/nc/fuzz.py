@@ -140,7 +140,18 @@ def mutated(random_: random.Random, data: bytes) -> bytes:
 
 
 def check(data: bytes, dialect: Dialect) -> str:
-    """Interpret; complain of anything but consistent moves and a diagnostic; the latter's code."""
+    """Interpret; complain of anything but consistent moves and a diagnostic; the latter's code.
+
+    A program that takes too long is interpreted once more: the first one at the compiled tier pays for
+    loading it.
+    """
+    outcome, is_slow = _interpreted(data, dialect)
+    assert not is_slow or not _interpreted(data, dialect)[1], "too slow"
+    return outcome
+
+
+def _interpreted(data: bytes, dialect: Dialect) -> tuple[str, bool]:
+    """Code of a program's diagnostic, and whether it took too long."""
     begin = time.process_time()
     source = source_from_bytes(data, "fuzz.nc", dialect)
     interpretation = Interpretation(source, dialect, FUZZ_SETTINGS)
@@ -155,8 +166,7 @@ def check(data: bytes, dialect: Dialect) -> str:
         line, outcome = 1, RAN
     assert 1 <= line <= max(1, len(source.lines))
     longest = LONGEST_SECONDS + moves * SECONDS_PER_MOVE
-    assert time.process_time() - begin < longest, "too slow"
-    return outcome
+    return outcome, time.process_time() - begin >= longest
 
 
 def check_chunk(chunk: Chunk, before: np.ndarray | None) -> np.ndarray | None:
