@@ -34,10 +34,14 @@ REFUSED = {
     "#-40=0\nM2\n": "parameter-number",
     "#[0-40]=0\nM2\n": "parameter-number",
     "G0 X#[0-3]\nM2\n": "parameter-number",
+    "G0 X1 M98 P100\nM2\nO100\nG0 X5\nM99\n": "code-words",
+    "M98 P100\nM2\nO100\nG0 X5\nM9 M99\n": "code-words",
     "G0 X1 (one (two)\nM2\n": "open-comment",
     "o1.5 sub\no1.5 endsub\nM2\n": "o-word",
 }
 ENDS = {
+    "M98 P100 L2\nM2\nO100\nG91 G0 X1\nM99\n": [2.0, 0.0, 0.0],
+    "#1=3\nM98 P100 L3\nG0 Y#1\nM2\nO100\nG91 G0 X1\n#1=[#1+1]\nM98 P200\nM99\nO200\nG0 Z1\nM99\n": [3.0, 6.0, 3.0],
     "G80 G0 X3 Y5\nM2\n": [3.0, 5.0, 0.0],
     "G0 G80 X3\nM2\n": [3.0, 0.0, 0.0],
     "F100\nG81 X1 Y1 Z-1 R1\nG80 G0 X3\nM2\n": [3.0, 1.0, 1.0],

@@ -13,7 +13,13 @@ from twin.nc.bytecode.token_kinds import UNSUPPORTED
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.kernels.tokenizer import read_words
 from twin.nc.dialects import dialect_named
-from twin.nc.text.comments import OPEN_COMMENT, closed_comment, comment_end, comment_marks
+from twin.nc.text.comments import (
+    OPEN_COMMENT,
+    closed_comment,
+    comment_end,
+    comment_marks,
+    comments_of,
+)
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.lexer import Lexer
@@ -52,8 +58,8 @@ def test_blanks_within_numbers_are_closed_up_and_those_of_comments_are_not():
 
 @given(st.text("( *)/;%1 X", max_size=12))
 def test_comments_do_not_overlap_and_outside_of_them_alone_text_is_replaced(line: str):
-    grammar = Grammar(DIALECT)
-    closed = [each for each in grammar.comments_of(line) if each[1] != OPEN_COMMENT]
+    grammar, marks = Grammar(DIALECT), comment_marks(DIALECT.syntax.comments)
+    closed = [each for each in comments_of(line, marks) if each[1] != OPEN_COMMENT]
     assert [place for each in closed for place in each] == sorted(
         place for each in closed for place in each
     )

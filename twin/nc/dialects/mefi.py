@@ -15,6 +15,7 @@ from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso import base, shared_decisions, shared_marks
 from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, start_and_end
+from twin.nc.iso.declared import instead, modal, motion_code
 from twin.nc.text.blocks import Block, Location, Word
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -214,19 +215,10 @@ MEFI = Dialect(
     groups=(*base.GROUPS, "helix"),
     g={
         **base.CODES,
-        2: GCode(
-            meaning="arc clockwise",
-            group="motion",
-            sets={"interpolation": CLOCKWISE, "cycle": None},
-            ground="seed",
-        ),
-        3: GCode(
-            meaning="arc counter-clockwise",
-            group="motion",
-            sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None},
-        ),
-        9: GCode(meaning="helix on", group="helix", action=switch_on, ground="seed"),
-        10: GCode(meaning="lead of the dragged axis", perform=store_leads, ground="seed"),
+        2: motion_code("arc clockwise", CLOCKWISE, "seed"),
+        3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "decision"),
+        9: modal("helix on", "helix", switch_on, ground="seed"),
+        10: instead("lead of the dragged axis", store_leads, ground="seed"),
         73: GCode(meaning="jump with repeat: L, Q", after=jump_with_repeat, ground="seed"),
         98: GCode(meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"),
     },

@@ -1,7 +1,7 @@
 """Where comments begin and end, for both tiers."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -154,3 +154,31 @@ def _behind(line: Characters, at: int, end: int, mark: Sequence[int]) -> int:
     if at + 1 < end and line[at + 1] == mark[1]:
         return at + 2
     return NO_COMMENT
+
+
+def comments_of(line: str, marks: CommentMarks) -> Iterator[tuple[int, int]]:
+    """Where the comments of a line begin, and what ``comment_end`` says of each."""
+    text, behind = line.encode("ascii", "replace"), 0
+    for opening in re.finditer(_first_characters(marks), text):
+        if (at := opening.start()) >= behind:
+            end = comment_end(text, 0, at, len(text), marks)
+            if end != NO_COMMENT:
+                yield at, end
+            behind = max(behind, end)
+
+
+def without_comments(line: str, marks: CommentMarks) -> tuple[str, int]:
+    """A line with blanks in the place of its comments.
+
+    Returns:
+        The line, and where the comment begins that is wrong; ``NO_COMMENT`` where none is.
+    """
+    for begin, end in comments_of(line, marks):
+        if end == OPEN_COMMENT:
+            return line, begin
+        line = line[:begin] + " " * (end - begin) + line[end:]
+    return line, NO_COMMENT
+
+
+def _first_characters(marks: CommentMarks) -> bytes:
+    return b"[" + re.escape(bytes({int(opening[0]) for opening in marks.openings})) + b"]"

@@ -1,14 +1,15 @@
 """A dialect's syntax as compiled patterns."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 from twin.nc.text.comments import (
-    NO_COMMENT,
     OPEN_COMMENT,
     closed_comment,
     comment_end,
     comment_marks,
+    comments_of,
+    without_comments,
 )
 from twin.nc.text.expression_reader import ExpressionReader, operator_pattern
 from twin.nc.text.expressions import ExpressionSyntax
@@ -59,15 +60,9 @@ class Grammar:
         """The place behind a line's comment that begins at a place, or as ``comments.comment_end``."""
         return comment_end(line.encode("ascii", "replace"), 0, at, len(line), self._comments)
 
-    def comments_of(self, line: str) -> Iterator[tuple[int, int]]:
-        """Where the comments of a line begin, and what ``comment_end`` says of each."""
-        behind = 0
-        for at, character in enumerate(line):
-            if at >= behind and character in self.comment_openings:
-                end = self.comment_end(line, at)
-                if end != NO_COMMENT:
-                    yield at, end
-                behind = max(behind, end)
+    def without_comments(self, line: str) -> tuple[str, int]:
+        """A line with blanks in place of its comments, as ``comments.without_comments``."""
+        return without_comments(line, self._comments)
 
     def outside_comments(
         self, pattern: re.Pattern[str], new: Callable[[re.Match[str]], str], line: str
@@ -75,7 +70,7 @@ class Grammar:
         """A line with what matches a pattern outside its comments replaced."""
         pieces: list[str] = []
         at = 0
-        for begin, end in self.comments_of(line):
+        for begin, end in comments_of(line, self._comments):
             if end != OPEN_COMMENT:
                 pieces += [pattern.sub(new, line[at:begin]), line[begin:end]]
                 at = end

@@ -211,7 +211,10 @@ class LineReader:
             end = label.start()
         text = self._line[start:end]
         if self._syntax.inner_comments:
-            return self._without_comments(text, start)
+            text, wrong = self._grammar.without_comments(text)
+            if wrong != NO_COMMENT:
+                self._refuse_open_comment(text[wrong:], start + wrong)
+            return text
         for comment in self._syntax.comments:
             if comment.closing and text.rstrip().endswith(comment.closing):
                 opening = text.rfind(comment.opening)
@@ -221,14 +224,6 @@ class LineReader:
                     and not self._wants_value(text[:opening], comment.opening)
                 ):
                     return text[:opening] + " " * (len(text) - opening)
-        return text
-
-    def _without_comments(self, text: str, start: int) -> str:
-        """A statement's text with blanks in place of its comments in brackets."""
-        for begin, end in self._grammar.comments_of(text):
-            if end == OPEN_COMMENT:
-                self._refuse_open_comment(text[begin:], start + begin)
-            text = text[:begin] + " " * (end - begin) + text[end:]
         return text
 
     def _wants_value(self, text: str, opening: str) -> bool:

@@ -6,6 +6,8 @@ angle from the last one.
 """
 
 import math
+from collections.abc import Callable
+from typing import TypeVar
 
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
@@ -21,7 +23,11 @@ from twin.nc.iso.circular import (
     plane_center_letters,
     sweep_arc,
 )
-from twin.nc.iso.drilling import Holes
+from twin.nc.iso.drilling import Holes, repeats_of
+
+_Kind = TypeVar("_Kind")
+_CALLS = (97.0, 98.0)
+"""Functions whose L says how often they call."""
 
 
 def target(control: Control) -> list[float]:
@@ -70,6 +76,21 @@ def end_polar(control: Control) -> None:
     memory_of(control).polar = False
 
 
+def _as_often_as_l(move: Callable[[Control, _Kind], None]) -> Callable[[Control, _Kind], None]:
+    """A motion that goes as often as L says, where the control repeats motions (Haas manual, thread milling)."""
+
+    def perform(control: Control, kind: _Kind) -> None:
+        calls = any(word.address == "M" and word.value in _CALLS for word in control.block.words)
+        repeats = memory_of(control).variant.repeats_motion and not calls
+        count = repeats_of(control, "L", 1) if repeats else 1
+        given = dict(control.words)
+        for _ in range(count):
+            control.words = dict(given)
+            move(control, kind)
+
+    return perform
+
+
 def _line(control: Control, rapid: bool) -> None:
     goal = target(control)
     if rapid:
@@ -90,5 +111,5 @@ def _arc(control: Control, rule: ArcRule) -> None:
     sweep_arc(control, goal, arc_center(control, goal, rule), clockwise=rule.clockwise)
 
 
-RAPID, FEED = base.straight(_line)
-CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_arc, ArcRule(bounds=BOUNDS))
+RAPID, FEED = base.straight(_as_often_as_l(_line))
+CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_as_often_as_l(_arc), ArcRule(bounds=BOUNDS))

@@ -8,6 +8,8 @@ from twin.nc.control.constructs import Branch, Construct, Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.text.blocks import Statement
+from twin.nc.text.comments import NO_COMMENT, comment_marks, without_comments
+from twin.nc.text.syntax import Comment
 
 FILE = "%FILE "
 """Begins the line in front of a subroutine's file."""
@@ -23,8 +25,8 @@ _LINE = re.compile(
 _BEGIN = re.compile(r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O", re.IGNORECASE)
 _COMPUTED = re.compile(r"[ \t]*[#\[]")
 _WORD = re.compile(rf"[ \t]*({_LABEL}|#[^\[ \t]*|\[[^\]]*\])[ \t]*([A-Z]*)[ \t]*", re.IGNORECASE)
-_COMMENT = re.compile(r"\([^()]*\)")
-_OPEN_COMMENT = re.compile(r"(?:[^(;]|\([^()]*\))*\([^()]*(?:\(|$)")
+COMMENTS = (Comment("(", ")", holds_opening=False), Comment(";"))
+_MARKS = comment_marks(COMMENTS)
 _ENDS = {"ENDSUB": "SUB", "ENDIF": "IF", "ENDWHILE": "WHILE", "ENDREPEAT": "REPEAT"}
 LOOPS = ("WHILE", "DO", "REPEAT")
 
@@ -59,7 +61,7 @@ def named_o_word(line: str) -> tuple[str, str] | None:
 
 def o_word(statement: Statement) -> OWord | None:
     """Read a statement; None where it is none."""
-    text = _COMMENT.sub(lambda match: " " * len(match[0]), statement.text)
+    text, _ = without_comments(statement.text, _MARKS)
     match = _WORD.match(text)
     if match is None:
         return None
@@ -69,7 +71,8 @@ def o_word(statement: Statement) -> OWord | None:
 
 def is_garbled(text: str) -> bool:
     """Whether a line holds an open comment, or begins as one with an O-word and is none."""
-    if "(" in text and _OPEN_COMMENT.match(text):
+    said, wrong = without_comments(text, _MARKS)
+    if wrong != NO_COMMENT:
         return True
     begin = _BEGIN.match(text)
     if begin is None or _COMPUTED.match(text, begin.end()):
@@ -77,8 +80,7 @@ def is_garbled(text: str) -> bool:
     match = _LINE.match(text)
     if match is None:
         return True
-    rest = _COMMENT.sub("", text[match.end() :]).partition(";")[0].strip()
-    return match[2].upper() not in KEYWORDS if match[2] else rest != ""
+    return match[2].upper() not in KEYWORDS if match[2] else said[match.end() :].strip() != ""
 
 
 class OWords(NamedTuple):
