@@ -13,9 +13,10 @@ from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
 from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
 from twin.nc.path.event_columns import EventRows
-from twin.nc.path.move_columns import EXACT_STOP, FEED, NAN, RAPID, Segment
+from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
 from twin.nc.path.moves import (
     LARGEST_COORDINATE,
+    RAPIDS_END,
     SMALLEST_MOVE,
     arc_length,
     axis_target,
@@ -109,7 +110,7 @@ class Control(ControlWords):
             end,
             target,
             feed,
-            EXACT_STOP if rapid else modal.corner,
+            RAPIDS_END if rapid else modal.corner,
             modal.corner_tolerance,
             acceleration,
             deceleration,

@@ -29,7 +29,6 @@ NAN = math.nan
 
 LINE, ARC = int(Shape.LINE), int(Shape.ARC)
 RAPID, FEED = Motion.RAPID, Motion.FEED
-EXACT_STOP = Corner.EXACT_STOP
 """Members of enumerations by names of their own: CPython 3.11 looks each of them up by a call of Python."""
 
 
