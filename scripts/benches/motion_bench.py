@@ -188,17 +188,18 @@ def _arcs() -> Iterator[Row]:
     except ImportError:
         return
     machine = programs.mill(
-        acceleration=np.full(4, 4000.0), jerk=np.full(4, 5e4),
+        velocity=np.full(4, 1e5), acceleration=np.full(4, 4000.0), jerk=np.full(4, 5e4),
         path_acceleration=4000.0, path_jerk=5e4,
     )  # fmt: skip
     for radius, turns, advance, turned in (
         (0.5, 1, 0.0, 0.0), (0.5, 3, 0.0, 0.0), (5.0, 1, 0.0, 0.0), (5.0, 3, 0.0, 0.0),
         (50.0, 1, 0.0, 0.0), (0.5, 0.5, 0.0, 0.0), (50.0, 0.5, 0.0, 0.0), (5.0, 0.25, 0.0, 0.0),
-        (5.0, 2, 4.0, 0.0), (20.0, 1, 5.0, 90.0), (5.0, 1, 0.0, 60.0),
+        (5.0, 2, 4.0, 0.0), (20.0, 1, 5.0, 90.0), (5.0, 1, 0.0, 60.0), (5.0, 0.75, 0.0, 60.0),
+        (50.0, 0.75, 10.0, 300.0), (50.0, 0.25, 0.0, 360.0), (5.0, 0.5, 0.0, 2000.0),
     ):  # fmt: skip
         center, normal = (radius, 0.0, 0.0), (0.0, 0.0, 1.0)
         program = programs.Program().arc(
-            center, normal, 360.0 * turns, advance=advance, turn=turned, feed=1e6
+            center, normal, 360.0 * turns, advance=advance, turn=turned, feed=1e7
         )
         path = oracle.helix(radius, turns, advance, turned, ORACLE_PLACES)
         shortest = oracle.shortest_time(path, 4000.0, 5e4)

@@ -10,8 +10,11 @@ from hypothesis.extra import numpy as arrays
 
 from tests.compare.paths import line, moves_of
 from twin.compare.circular.circle_kernels import (
+    AngleBins,
+    ByAngle,
     collect_by_angle,
     into_planes,
+    look_by_angle,
     radial_equations,
     radial_range,
     widest_gap,
@@ -106,21 +109,25 @@ def test_points_around_a_circle_are_sorted_by_angle(count: int, seed: int):
     random = np.random.default_rng(seed)
     angle = random.uniform(0.0, 2.0 * np.pi, count)
     deviation = random.normal(0.0, 0.01, count)
-    bins = 12
-    filled, sums = np.zeros(bins, np.int64), np.zeros((2, bins))
-    least, greatest = np.full((bins, 3), np.inf), np.full((bins, 3), -np.inf)
+    (angles, deviations), (least, greatest) = np.zeros((2, 12)), np.zeros((2, 12, 3))
+    bins = AngleBins(np.zeros(12, np.int64), angles, deviations, least, greatest)
     points = (25.0 + deviation)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
-    collect_by_angle(points, 25.0, filled, sums[0], sums[1], least, greatest)
-    for index in range(bins):
-        own = (angle * bins / (2.0 * np.pi)).astype(int) == index
-        assert filled[index] == own.sum()
-        assert sums[0][index] == pytest.approx(angle[own].sum())
-        assert sums[1][index] == pytest.approx(deviation[own].sum(), abs=1e-12)
-        if own.any():
-            low, high = deviation[own].argmin(), deviation[own].argmax()
-            for found, row in ((least, low), (greatest, high)):
-                assert found[index, 0] == pytest.approx(deviation[own][row], abs=1e-12)
-                assert found[index, 1:] == pytest.approx(points[own][row])
+    for part in (points[: count // 2], points[count // 2 :]):
+        collect_by_angle(part, 25.0, bins)
+    filled = np.unique((angle * 12 / (2.0 * np.pi)).astype(int))
+    mean, place = np.zeros((2, len(filled), 2))
+    found = ByAngle(mean, place, np.zeros((2 * len(filled), 2)))
+    look_by_angle(bins, 25.0, found)
+    for row, index in enumerate(filled):
+        own = (angle * 12 / (2.0 * np.pi)).astype(int) == index
+        toward, away = angle[own].mean(), deviation[own].mean()
+        assert bins.samples[index] == own.sum()
+        assert found.mean[row] == pytest.approx([toward, away], abs=1e-12)
+        there = (25.0 + away) * np.array([np.cos(toward), np.sin(toward)])
+        assert found.place[row] == pytest.approx(there)
+        ends = points[own][[deviation[own].argmin(), deviation[own].argmax()]]
+        assert found.extremes[2 * row : 2 * row + 2] == pytest.approx(ends)
+    assert bins.samples.sum() == count
 
 
 @checked

@@ -89,9 +89,11 @@ def shortest_time(path: Path, acceleration: float, jerk: float, velocity: float 
         jerks.append(q3 * inner + 1.5 * q2 * slope + 0.5 * q1 * curvature)
     fixed = np.concatenate(accelerations)
     b = _first_profile(path.x, fixed, jerks, acceleration, jerk)
-    # At rest b'' v does not see a step of the acceleration: from there b is that of full jerk at most.
+    # At rest b'' v does not see a step of the acceleration: from there b is that of full jerk at most,
+    # the path's or that of an axis that moves everywhere.
     away = np.minimum(path.x, path.x[-1] - path.x)
-    ceiling = (0.5 * jerk) ** 2 * (6.0 * away / jerk) ** (4.0 / 3.0)
+    full = jerk / max(1.0, float(np.abs(path.derivatives[0]).min(axis=0).max()))
+    ceiling = (0.5 * full) ** 2 * (6.0 * away / full) ** (4.0 / 3.0)
     ceiling = np.minimum(ceiling, velocity**2)
     b *= min(1.0, float(np.min(ceiling[1:-1] / b[1:-1])))
     time = _time(path.x, b)

@@ -52,7 +52,7 @@ PIECES = {
     "mefi": 'G10 Z1|G09|G98|G73 L1 Q2|G73 L2|L1|Q3|"text|I100',
 }  # fmt: skip
 PIECES["haas"] = (
-    f"{PIECES['fanuc']}|M97 P5|G154 P1|G110|G13 I5. K9. Q2. D1|G12 I5.|G101 X0|G100|G187 P1|L2"
+    f"{PIECES['fanuc']}|M97 P5|G154 P1|G110|G13 I5. K9. Q2. D1|G12 I5.|G101 X0|G100|G187 P1|L2|G70 I5. L3|THEN G1 X2."
 )
 COMMON = (
     "G0|G1|G2|G3|G1|G4 P1|G17|G18|G19|G40|G41|G42|G54|G55|G53|G70|G71|G80|G81 Z-2 R1|G90|G91|G92"
@@ -140,7 +140,18 @@ def mutated(random_: random.Random, data: bytes) -> bytes:
 
 
 def check(data: bytes, dialect: Dialect) -> str:
-    """Interpret; complain of anything but consistent moves and a diagnostic; the latter's code."""
+    """Interpret; complain of anything but consistent moves and a diagnostic; the latter's code.
+
+    A program that takes too long is interpreted once more: the first one at the compiled tier pays for
+    loading it.
+    """
+    outcome, is_slow = _interpreted(data, dialect)
+    assert not is_slow or not _interpreted(data, dialect)[1], "too slow"
+    return outcome
+
+
+def _interpreted(data: bytes, dialect: Dialect) -> tuple[str, bool]:
+    """Code of a program's diagnostic, and whether it took too long."""
     begin = time.process_time()
     source = source_from_bytes(data, "fuzz.nc", dialect)
     interpretation = Interpretation(source, dialect, FUZZ_SETTINGS)
@@ -155,8 +166,7 @@ def check(data: bytes, dialect: Dialect) -> str:
         line, outcome = 1, RAN
     assert 1 <= line <= max(1, len(source.lines))
     longest = LONGEST_SECONDS + moves * SECONDS_PER_MOVE
-    assert time.process_time() - begin < longest, "too slow"
-    return outcome
+    return outcome, time.process_time() - begin >= longest
 
 
 def check_chunk(chunk: Chunk, before: np.ndarray | None) -> np.ndarray | None:

@@ -119,9 +119,9 @@ CHANGES = (
     Change("text/plain_word", '_POINT: ".",', '_POINT: ",",', "gost/rules/drilling"),
     Change(
         "text/comments",
-        "return end if closing[0] == 0 else OPEN_COMMENT",
-        "return OPEN_COMMENT",
-        "mefi/rules/planes_and_arcs",
+        "comment.opening.encode",
+        "comment.closing.encode",
+        "fanuc/rules/abbreviations",
     ),
     Change("text/arithmetic", "return a + b\n", "return a + b + 1.0\n", "fagor8070/rules/flow"),
     Change(
@@ -172,6 +172,7 @@ CHANGES = (
         "memory.local[depth, ~slot] = value + 1.0",
         "fagor8070/rules/flow",
     ),
+    Change("functions", "_STARTS, _STOPS = (3, 4)", "_STARTS, _STOPS = (30, 4)", "gost/codes/G94"),
     Change("bytecode/frames", "if call[AGAIN] > 0:", "if call[AGAIN] > 1:", "fagor8070/rules/flow"),
 )
 

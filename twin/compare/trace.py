@@ -50,6 +50,8 @@ class Trace:
         count = len(samples)
         if not count:
             return
+        while len(self._kept) + (self._open_count + count) // self._group > 2 * POINTS:
+            self._merge()
         head = min((self._group - self._open_count) % self._group, count)
         if head:
             self._put_into_open(self._of(samples, error_um, _greatest_of(error_um[:head])), head)
@@ -64,8 +66,6 @@ class Trace:
             row = tail + _greatest_of(error_um[tail:])
             self._put_into_open(self._of(samples, error_um, row), count - tail)
         self._last = self._of(samples, error_um, np.array([count - 1]))
-        while len(self._kept) > 2 * POINTS:
-            self._merge()
 
     def _put_into_open(self, row: FloatArray, count: int) -> None:
         """Let the worst row of some samples compete for the group that is not full yet."""

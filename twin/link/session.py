@@ -79,58 +79,42 @@ def run_on_twin(
         UsageError: LinuxCNC or its component is not installed, or cannot drive this machine.
     """
     with claimed_linuxcnc() as start:
-        return _run(start, run, dry_run, folder, progress, wish, say)
-
-
-def _run(
-    start: Path,
-    run: Run,
-    dry_run: DryRun,
-    folder: Path,
-    progress: Progress,
-    wish: Wish,
-    say: Callable[[str], None],
-) -> tuple[Outcome, dict[str, float]]:
-    preparation = run.preparation
-    axes = preparation.machine.axes
-    own = folder.resolve() / FOLDER_NAME
-    require_plain(own)
-    own.mkdir(exist_ok=True)
-    install(own, module_folder(start))
-    tool, position = preparation.job.file.tools[0], preparation.start + run.part_zero
-    rehearse(run, dry_run, tool, position)
-    live = LiveMachine(run.machine, tool, position)
-    places = _write_program(preparation, own / PROGRAM_NAME, wish.own_program)
-    session = wish.display is not None
-    with LockstepMotion(live, places, run.part_zero, session=session) as motion:
-        display = wish.display or (
-            f"{_executable_operator(own)} --program {own / PROGRAM_NAME} --joints {len(axes)} "
-            f"--twin {os.getpid()} --log {operator_log(own)}"
-        )
-        settings = Settings(
-            display=display,
-            port=motion.port,
-            programs=(wish.own_program or preparation.job.program).resolve().parent,
-            following_error_limit=wish.following_error_limit,
-            part_zero=run.part_zero,
-            job=preparation.job.file,
-        )
-        ini = write_configuration(own, preparation.machine, settings)
-        with running(start, ini, folder / LOG_NAME) as linuxcnc:
-            motion.goes_on = linuxcnc.goes_on
-            if not session:
-                motion.last_word = _last_word(linuxcnc, axes.names)
-            outcome = run.execute(dry_run, folder, progress, motion)
-            linuxcnc.end_soon()
-            for event in linuxcnc.events():
-                if event.text:
-                    say(f"linuxcnc: {event.text}")
-        figures = {
-            "answered": motion.answered,
-            "missed": motion.missed,
-            "f_error_difference": motion.greatest_disagreement,
-        }
-    return outcome, figures
+        preparation = run.preparation
+        axes = preparation.machine.axes
+        own = folder.resolve() / FOLDER_NAME
+        require_plain(own)
+        own.mkdir(exist_ok=True)
+        install(own, module_folder(start))
+        tool, position = preparation.job.file.tools[0], preparation.start + run.part_zero
+        rehearse(run, dry_run, tool, position)
+        live = LiveMachine(run.machine, tool, position)
+        places = _write_program(preparation, own / PROGRAM_NAME, wish.own_program)
+        session = wish.display is not None
+        with LockstepMotion(live, places, run.part_zero, session=session) as motion:
+            settings = Settings(
+                display=wish.display or _operator_command(own, len(axes)),
+                port=motion.port,
+                programs=(wish.own_program or preparation.job.program).resolve().parent,
+                following_error_limit=wish.following_error_limit,
+                part_zero=run.part_zero,
+                job=preparation.job.file,
+            )
+            ini = write_configuration(own, preparation.machine, settings)
+            with running(start, ini, folder / LOG_NAME) as linuxcnc:
+                motion.goes_on = linuxcnc.goes_on
+                if not session:
+                    motion.last_word = _last_word(linuxcnc, axes.names)
+                outcome = run.execute(dry_run, folder, progress, motion)
+                linuxcnc.end_soon()
+                for event in linuxcnc.events():
+                    if event.text:
+                        say(f"linuxcnc: {event.text}")
+            figures = {
+                "answered": motion.answered,
+                "missed": motion.missed,
+                "f_error_difference": motion.greatest_disagreement,
+            }
+        return outcome, figures
 
 
 def _write_program(preparation: Preparation, path: Path, own_program: Path | None) -> Places:
@@ -146,12 +130,17 @@ def _write_program(preparation: Preparation, path: Path, own_program: Path | Non
     return Places(moves, program.line_of_move)
 
 
-def _executable_operator(folder: Path) -> Path:
-    """LinuxCNC's Python may be another than the twin's, whose folders its user may not enter."""
+def _operator_command(folder: Path, joints: int) -> str:
+    """Command of the screen that runs the program, as LinuxCNC's configuration names it.
+
+    LinuxCNC's Python may be another than the twin's, whose folders its user may not enter, so the
+    operator's file is copied.
+    """
     path = folder / OPERATOR.name
     write_text(path, OPERATOR.read_text(encoding="utf-8"))
     path.chmod(0o755)
-    return path
+    program, log = folder / PROGRAM_NAME, operator_log(folder)
+    return f"{path} --program {program} --joints {joints} --twin {os.getpid()} --log {log}"
 
 
 def _last_word(linuxcnc: LinuxCnc, axes: tuple[str, ...]) -> Callable[[float, int], Alarm | None]:

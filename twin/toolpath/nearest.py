@@ -35,6 +35,7 @@ class PathColumns(NamedTuple):
         sweep: Signed angle of the arc, shape (n,) [rad].
         turn: How far the table has turned the part at the start, shape (n,) [rad].
         turn_rate: How far the table turns during the move, shape (n,) [rad].
+        facing: Cosine and sine of ``turn``, shape (n, 2).
     """
 
     kind: CodeArray
@@ -45,6 +46,7 @@ class PathColumns(NamedTuple):
     sweep: FloatArray
     turn: FloatArray
     turn_rate: FloatArray
+    facing: FloatArray
 
 
 def path_columns(moves: Moves, frame: PartFrame, part_zero: FloatArray) -> PathColumns:
@@ -78,35 +80,18 @@ def path_columns(moves: Moves, frame: PartFrame, part_zero: FloatArray) -> PathC
         sweep=np.where(arc, np.deg2rad(moves.sweep), 0.0),
         turn=turn,
         turn_rate=turn_rate,
+        facing=np.column_stack([np.cos(turn), np.sin(turn)]),
     )
 
 
 def join_paths(before: PathColumns, after: PathColumns) -> PathColumns:
     """Join consecutive paths into one."""
-    return PathColumns(
-        kind=np.concatenate([before.kind, after.kind]),
-        origin=np.concatenate([before.origin, after.origin]),
-        along=np.concatenate([before.along, after.along]),
-        first=np.concatenate([before.first, after.first]),
-        second=np.concatenate([before.second, after.second]),
-        sweep=np.concatenate([before.sweep, after.sweep]),
-        turn=np.concatenate([before.turn, after.turn]),
-        turn_rate=np.concatenate([before.turn_rate, after.turn_rate]),
-    )
+    return PathColumns._make(map(np.concatenate, zip(before, after, strict=True)))
 
 
 def drop_moves(path: PathColumns, count: int) -> PathColumns:
     """The path without its first ``count`` moves; their memory is given back."""
-    return PathColumns(
-        kind=path.kind[count:].copy(),
-        origin=path.origin[count:].copy(),
-        along=path.along[count:].copy(),
-        first=path.first[count:].copy(),
-        second=path.second[count:].copy(),
-        sweep=path.sweep[count:].copy(),
-        turn=path.turn[count:].copy(),
-        turn_rate=path.turn_rate[count:].copy(),
-    )
+    return PathColumns._make(column[count:].copy() for column in path)
 
 
 class PathEnds(NamedTuple):

@@ -7,6 +7,7 @@ helices, and whatever the table turns, by Newton's method kept inside brackets.
 
 import math
 
+from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
 
 _LINE, _CIRCLE = 0, 1
@@ -23,7 +24,7 @@ _ITERATIONS = 80
 """More than bisection alone needs to halve a bracket down to rounding."""
 
 
-@kernel
+@inlined
 def derivatives(path, move, u):
     """Point, first and second derivative by fraction in the part's frame, nine numbers [mm]."""
     sweep = path.sweep[move]
@@ -44,10 +45,7 @@ def derivatives(path, move, u):
     vx, vy = dx - rate * py, dy + rate * px
     wx = ddx - 2.0 * rate * dy - rate * rate * px
     wy = ddy + 2.0 * rate * dx - rate * rate * py
-    turned = path.turn[move] + u * rate
-    c, t = 1.0, 0.0
-    if turned != 0.0:
-        c, t = math.cos(turned), math.sin(turned)
+    c, t = _facing(path, move, u)
     return (
         c * px - t * py, t * px + c * py, pz,
         c * vx - t * vy, t * vx + c * vy, dz,
@@ -55,7 +53,17 @@ def derivatives(path, move, u):
     )  # fmt: skip
 
 
-@kernel
+@inlined
+def _facing(path, move, u):
+    """Cosine and sine of how far the table has turned the part."""
+    rate = path.turn_rate[move]
+    if rate == 0.0:
+        return path.facing[move, 0], path.facing[move, 1]
+    turned = path.turn[move] + u * rate
+    return math.cos(turned), math.sin(turned)
+
+
+@inlined
 def _point_at(path, move, u):
     """The point alone, at a third of the cost of its derivatives [mm]."""
     f, s, o, a = path.first[move], path.second[move], path.origin[move], path.along[move]
@@ -66,26 +74,26 @@ def _point_at(path, move, u):
         px += cosine * f[0] + sine * s[0]
         py += cosine * f[1] + sine * s[1]
         pz += cosine * f[2] + sine * s[2]
-    turned = path.turn[move] + u * path.turn_rate[move]
-    if turned == 0.0:
-        return px, py, pz
-    c, t = math.cos(turned), math.sin(turned)
+    c, t = _facing(path, move, u)
     return c * px - t * py, t * px + c * py, pz
 
 
-@kernel
+@inlined
 def distance_at(path, move, u, x, y, z):
     """Distance from a point to one place of the path [mm]."""
     px, py, pz = _point_at(path, move, u)
     return math.sqrt((px - x) ** 2 + (py - y) ** 2 + (pz - z) ** 2)
 
 
-@kernel
+@inlined
 def speed_at(path, move, u):
     """How fast the place moves with the fraction, seen from the part [mm]."""
     if path.kind[move] == _LINE:
         a = path.along[move]
         return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+    if path.kind[move] == _CIRCLE:
+        f = path.first[move]
+        return abs(path.sweep[move]) * math.sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])
     _, _, _, dx, dy, dz, _, _, _ = derivatives(path, move, u)
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
@@ -117,7 +125,7 @@ def walk(path, move, u, distance):
     return move, u
 
 
-@kernel
+@inlined
 def nearest_on_move(path, move, low, high, guess, x, y, z):
     """Nearest place of one move between two fractions; a good guess of it saves time on curves.
 
@@ -127,9 +135,7 @@ def nearest_on_move(path, move, low, high, guess, x, y, z):
     kind = path.kind[move]
     if kind != _LINE and kind != _CIRCLE:
         return _nearest_on_curve(path, move, low, high, guess, x, y, z)
-    c, t = 1.0, 0.0
-    if path.turn[move] != 0.0:
-        c, t = math.cos(path.turn[move]), math.sin(path.turn[move])
+    c, t = path.facing[move, 0], path.facing[move, 1]
     o = path.origin[move]
     rx, ry, rz = c * x + t * y - o[0], c * y - t * x - o[1], z - o[2]
     if kind == _LINE:
@@ -139,7 +145,7 @@ def nearest_on_move(path, move, low, high, guess, x, y, z):
     return distance_at(path, move, u, x, y, z), u
 
 
-@kernel
+@inlined
 def _project_on_line(along, low, high, rx, ry, rz):
     squared = along[0] ** 2 + along[1] ** 2 + along[2] ** 2
     if squared == 0.0:
@@ -148,7 +154,7 @@ def _project_on_line(along, low, high, rx, ry, rz):
     return min(max(u, low), high)
 
 
-@kernel
+@inlined
 def _project_on_circle(path, move, low, high, rx, ry, rz):
     first, second, sweep = path.first[move], path.second[move], path.sweep[move]
     cosine = rx * first[0] + ry * first[1] + rz * first[2]
@@ -165,7 +171,7 @@ def _project_on_circle(path, move, low, high, rx, ry, rz):
     return high if u + turn - high < low - u else low
 
 
-@kernel
+@inlined
 def _look(path, move, u, x, y, z):
     """From one place: distance, slope and curvature of half its square, and the place's speed."""
     px, py, pz, dx, dy, dz, wx, wy, wz = derivatives(path, move, u)
@@ -211,7 +217,7 @@ def _minimum_between(path, move, piece, u, look, x, y, z):
     return here, u
 
 
-@kernel
+@inlined
 def _bounds(path, move):
     """Largest second and third derivative of a move in the part's frame [mm]."""
     f, o, a = path.first[move], path.origin[move], path.along[move]
@@ -228,7 +234,7 @@ def _bounds(path, move):
     )
 
 
-@kernel
+@inlined
 def _bend(second, third, here, speed, half):
     """How much the curvature of half the squared distance may change within half a piece [mm²]."""
     across = (speed + 0.5 * second * half) * half

@@ -61,7 +61,7 @@ def test_a_path_is_evaluated_alike_point_by_point_and_by_angle(count: int):
     short = path_of(0.012 * np.cos(2.0 * angle), angle, (0.003, 0.0))
     assert short.covers_full_turn() == (count >= 80)
     long = path_of(0.012 * np.cos(2.0 * angle), angle, (0.003, 0.0))
-    long.mean()
+    long.by_angle()
     assert long.covers_full_turn() == short.covers_full_turn()
     assert circle_figures(long).circular_deviation_um == pytest.approx(
         circle_figures(short).circular_deviation_um

@@ -236,6 +236,126 @@ M99
 %
 """
 
+HAAS_BOLT_HOLES = """%
+O60701 (G70 BOLT HOLE CIRCLE) ;
+(G54 X0 Y0 is center of the circle) ;
+T1 M06 (Select tool 1) ;
+G00 G90 G40 G49 G54 (Safe startup) ;
+G00 G54 X0 Y0 ;
+S1000 M03 ;
+G43 H01 Z2. ;
+M08 ;
+G81 G98 Z-10. R1. F150. L0 (Begin G81) ;
+G70 I50. J15. L12 (Begin G70) ;
+G80 ;
+G00 Z2. M09 ;
+G53 G49 Z0 M05 ;
+M30 ;
+%
+"""
+HAAS_THREAD = """T2 M6
+G91 G01 Z-5. F100.
+G41 X10. Y-10. D02
+G03 X10. Y10. I0 J10. Z0.2
+I-20. J0 Z1. L5
+X-10. Y10. I-10. J0 Z0.2
+G40 G01 X-10. Y-10.
+M30
+"""
+HAAS_MACRO = """%
+O00015 (TOP FACE)
+G00 G17 G40 G49 G80 G90
+G52 X [ 0. ] Y [ 0. ] Z [ 0. ]
+#33= 2 (TOOL)
+T#33 D#33 M06
+G43 H#33 Z200.
+#10110= 700. (FEED)
+#1= 2.5
+#2= 0.
+#3= 0.5
+#4= 0. / 2.
+#7= - #4 -85.
+#9= #4 + 85.
+G00 X [ #7 ] Y [ #4 ]
+G01 Z#1 F#110
+WHILE [ #1 GT #2 ] DO1
+#1= #1 - #3 * 2.
+IF [ #1 LT #2 ] THEN #1= #2
+G00 Z [ #1 + #3 ]
+G01 X [ #9 ]
+G00 Z [ #1 ]
+G01 X [ #7 ]
+END1
+IF [ #1 EQ #2 ] THEN G00 Z200. M09
+M30
+%
+"""
+FANUC_HOLES_BY_MACRO = """%
+O1(MAIN)
+G65P3003A0.B-3.S1.D10.R2.E1F300.X50.Y20.
+M30
+O3003(MILLING HOLES);
+IF[#1LT#2]GOTO1;
+#3=#19(STEP Z);
+#4=#7/2.(R.);
+G90G0X#24Y#25;
+G0Z#18;
+G1Z#1F500;
+G91G#8X-#4Y0.F#9;
+IF[#1EQ#2]GOTO2;
+#1=#1-#3;
+WH[[#1GE#2]OR[#1EQ#2]]DO1;
+#1=#1-#3;
+G3X0Y0I#4J0Z-#3F#9;
+END1;
+N2G3X0Y0I#4J0F#9;
+G90G40G1X#24Y#25;
+G0Z#18;
+N1M99;
+%
+"""
+FANUC_THREAD_MILL = """O7(THREAD M20X2.5)
+T1 M6
+G43 H1 Z5.
+G0 Z-10.
+G41 D1 G1 X2. Y-8. F300.
+G3 X10. Y0. R8. Z-9.375
+G3 X10. Y0. I-10. J0. Z-6.875
+G3 X2. Y8. R8. Z-6.25
+G40 G1 X0. Y0.
+G0 Z50.
+M30
+"""
+PCB2GCODE = """( pcb2gcode )
+G94 ( Millimeters per minute feed rate. )
+G21 ( Units == Millimeters. )
+G90 ( Absolute coordinates. )
+G00 S10000 ( RPM spindle speed. )
+G64 P0.01016 ( set maximum deviation from commanded toolpath )
+G01 F100.00000 ( Feedrate. )
+G00 Z25.00000 (Retract to tool change height)
+T1
+M5      (Spindle stop.)
+G04 P1.00000
+(MSG, Change tool bit to cutter diameter 1.5mm)
+M6
+M0
+M3
+o200 sub ( Main subroutine )
+G04 P0 ( dwell for no time -- G64 should not smooth over this point )
+G00 X-6.0 Y3.0
+G00 Z2.00000
+G01 Z-0.5 F50
+G01 X4 F100
+G00 Z2.0
+o200 endsub
+o200 call
+G92 X0
+o200 call
+M9
+M2
+"""
+
 PROBES = {
     "fanuc pocket": Probe("fanuc", POCKET, {"X": 0, "Y": 0, "Z": 200}, 5, -5.0),
     "fanuc drilling": Probe("fanuc", DRILLING, {"X": 10, "Y": 30, "Z": 35}, 4, -2.0),
@@ -290,6 +410,71 @@ PROBES = {
         3,
         -3.0,
     ),
+    "fanuc holes milled by a macro": Probe(
+        "fanuc", FANUC_HOLES_BY_MACRO, {"X": 50, "Y": 20, "Z": 2}, 7, -3.0
+    ),
+    "fanuc thread milling": Probe("fanuc", FANUC_THREAD_MILL, {"X": 0, "Y": 0, "Z": 50}, 5, -10.0),
+    "fanuc length in G91": Probe("fanuc", "G90 G0 Z100.\nG91 G43 Z-50. H2\nM30", {"Z": 60}),
+    "fanuc rotation about a scaled centre": Probe(
+        "fanuc", "G51 X0 Y0 P2000\nG68 X10. Y0 R90.\nG1 X20. Y0 F9.\nM30", {"X": 20, "Y": 20}, 1
+    ),
+    "fanuc local system, scale and rotation": Probe(
+        "fanuc",
+        "G52 X10. Y10.\nG51 X0 Y0 Z0 P2000\nG68 X0 Y0 R90.\nG1 X5. Y0 F9.\nM30",
+        {"X": 10, "Y": 20},
+        1,
+    ),
+    "fanuc pecks from the last height in G91": Probe(
+        "fanuc",
+        "G0 Z20.\nG91 G99 G83 X10. Z-15. R-18. Q5. F100. K3\nG80\nM30",
+        {"X": 30, "Z": 2},
+        9,
+        -13.0,
+    ),
+    "fanuc cycle without a hole, then a subprogram of holes": Probe(
+        "fanuc",
+        "G0 Z9.\nG99 G81 R2. Z-3. F90. K0\nM98 P7\nG80\nM30\nO7\nX7.\nX39.\nY38.\nM99",
+        {"X": 39, "Y": 38, "Z": 2},
+        3,
+        -3.0,
+    ),
+    "fanuc arguments of both kinds": Probe(
+        "fanuc",
+        "G65 P9 A1. B2. I-3. I4. D5.\nM30\nO9\nG1 X#7 Y#4 Z[#1+#2] F9.\nM99",
+        {"X": 5, "Y": -3, "Z": 3},
+        1,
+        3.0,
+    ),
+    "fanuc tapping in passes": Probe(
+        "fanuc",
+        "S99 M3\nG0 Z5.\nM29 S99\nG98 G84 X0 Y0 Z-10. R2. Q5. F99.\nG91 X10. K2\nG80\nM30",
+        {"X": 20, "Z": 5},
+        18,
+        -10.0,
+    ),
+    "fanuc passes stay in force until G80": Probe(
+        "fanuc",
+        "S99 M3\nG99 G84 Z-9. R1. Q5. F99.\nG84 X9.\nG80\nG84 X0 Z-9. R1. F99.\nG80\nM30",
+        {"X": 0, "Z": 1},
+        10,
+        -9.0,
+    ),
+    "fanuc tapping in passes of nothing": Probe(
+        "fanuc", "S99 M3\nG84 Z-10. R2. Q0 F99.\nM30", refused="cycle-depth"
+    ),
+    "fanuc tapping in passes without R": Probe(
+        "fanuc", "S99 M3\nG84 Z-10. Q5. F99.\nM30", refused="cycle-word"
+    ),
+    "fanuc tapping upwards in passes": Probe(
+        "fanuc", "S99 M3\nG84 Z-10. R-20. Q5. F99.\nM30", refused="cycle-depth"
+    ),
+    "fanuc tapping in too many passes": Probe(
+        "fanuc", "S99 M3\nG84 Z-900. R2. Q.001 F99.\nM30", refused="cycle-depth"
+    ),
+    "fanuc high-precision contour control": Probe(
+        "fanuc", "G05 P10000\nG1 X5. F100.\nG05 P0\nM30", {"X": 5}, 1
+    ),
+    "fanuc other modes of G5": Probe("fanuc", "G05 P2\nM30", refused="unsupported-g"),
     "fanuc skip until a signal": Probe("fanuc", "G31 Z-5. F50.\nM30", refused="unsupported-g"),
     "fanuc inverse time": Probe("fanuc", "G93 G1 X10. F2.\nX20.\nM30", refused="no-feed"),
     "haas pecks": Probe("haas", HAAS_PECKS, {"X": 25, "Z": 200}, 10, -20.0),
@@ -304,6 +489,31 @@ PROBES = {
     "haas probing": Probe("haas", "G65 P9832\nM30", refused="unknown-subprogram"),
     "fanuc from Mastercam": Probe("fanuc", MASTERCAM, {"X": 0, "Y": 0, "Z": 200, "C": 0}, 5, 8.0),
     "fanuc from SolidCAM": Probe("fanuc", SOLIDCAM, {"X": 0, "Y": 0, "Z": 200}, 2, -3.0),
+    "haas bolt holes on a circle": Probe(
+        "haas", HAAS_BOLT_HOLES, {"X": 48.296291, "Y": -12.940952, "Z": 200}, 12, -10.0
+    ),
+    "haas bolt holes on an arc, around the block's point": Probe(
+        "haas",
+        "G0 Z1.\nG81 G99 Z-3. R1. F150. L0\nG71 X5. I10. K30. L3\nG80\nM30",
+        {"X": 10, "Y": 8.660254, "Z": 1},
+        3,
+        -3.0,
+    ),
+    "haas bolt holes without a cycle": Probe("haas", "G70 I5. L3\nM30", refused="cycle-word"),
+    "haas L repeats a motion": Probe("haas", HAAS_THREAD, {"X": 0, "Y": 0, "Z": 0.4}, 10, -5.0),
+    "haas macro": Probe("haas", HAAS_MACRO, {"X": -85, "Y": 0, "Z": 210}, 7, 10.0),
+    "haas all axes home": Probe(
+        "haas", "G0 X1. Y2. Z3. C4.\nG28\nM30", {"X": 0, "Y": 0, "Z": 200, "C": 0}
+    ),
+    "haas code of its work offset": Probe("haas", "G55\n#1=#4012\nG1 X#1 F9.\nM30", {"X": 155}, 1),
+    "haas holds no G54 in group 14": Probe("haas", "#1=#4014\nM30", refused="control-variable"),
+    "haas rotation while one is in force": Probe(
+        "haas", "G68 X0 Y0 R60.\nG91 G68 X0 Y0 R90.\nG90 G1 X10. F9.\nG69\nM30", {"Y": 10}, 1
+    ),
+    "haas words behind a false condition": Probe(
+        "haas", "IF [#1 NE #0] THEN G01 X10. F50.\nM30", {"X": 0}
+    ),
+    "haas jump behind THEN": Probe("haas", "IF [#1 EQ #0] THEN GOTO 5\nN5 M30", refused="structure"),
     "haas work offset": Probe("haas", "G154 P1 G0 X1. Y1.\nM30", {"X": 1, "Y": 8}),
     "haas mirror": Probe("haas", "G101 X0\nG1 X10. F100.\nG100 X0\nM30", {"X": -10}, 1),
     "linuxcnc in inches": Probe("linuxcnc", INCHES, {"X": 25.4, "Z": 6.35}, 2, -2.54),
@@ -320,6 +530,10 @@ PROBES = {
     ),
     "linuxcnc system set here": Probe(
         "linuxcnc", "G0 X10\nG10 L20 P1 X0\nG0 X5\nM2", {"X": 15}
+    ),
+    "linuxcnc from pcb2gcode": Probe("linuxcnc", PCB2GCODE, {"X": 8, "Y": 3, "Z": 2}, 4, -0.5),
+    "linuxcnc program called twice": Probe(
+        "linuxcnc", "F60\nM98 P100 L2\nM2\nO100\nG91 G1 X5\nM99", {"X": 10}, 2
     ),
     "linuxcnc polar": Probe("linuxcnc", "G0 @10 ^90\nM2", {"X": 0, "Y": 10}),
     "fagor8070 drilling": Probe(

@@ -4,7 +4,15 @@ import pytest
 
 from tests.nc.linuxcnc.oracle import RS274, by_twin, difference
 
+_COMPENSATED = "T2 M6\nF100\nG41 G1 X10\nX20\n{}\nX30\nG40 X40\nM2\n"
+_NOT_COMPENSATED = (
+    "G98", "G61", "G61.1", "G64 P0.1", "T1 M6", "M66 P1 L0", "M48", "M62 P1", "M68 E1 Q1", "#1=#5420",
+    "G18", "M70\nG55\nM72",
+)  # fmt: skip
+"""What the control refuses while the radius is compensated."""
 REFUSED = {
+    **{_COMPENSATED.format(code): "compensation-change" for code in _NOT_COMPENSATED},
+    "#1=#5602\nM2\n": "parameter-number",
     "F100\nG2\nM2\n": "arc-without-center",
     "F100\nG3\nG1 X1\nM2\n": "arc-without-center",
     "F100\nG2 F200\nM2\n": "arc-without-center",
@@ -34,8 +42,18 @@ REFUSED = {
     "#-40=0\nM2\n": "parameter-number",
     "#[0-40]=0\nM2\n": "parameter-number",
     "G0 X#[0-3]\nM2\n": "parameter-number",
+    "G0 X1 M98 P100\nM2\nO100\nG0 X5\nM99\n": "code-words",
+    "M98 P100\nM2\nO100\nG0 X5\nM9 M99\n": "code-words",
+    "G0 X1 (one (two)\nM2\n": "open-comment",
+    "o1.5 sub\no1.5 endsub\nM2\n": "o-word",
 }
 ENDS = {
+    _COMPENSATED.format("M70\nG90.1\nM72"): [40.0, 0.0, 0.0],
+    _COMPENSATED.format("M70\nX25\nM72"): [40.0, 0.0, 0.0],
+    _COMPENSATED.format("G17\nG21"): [40.0, 0.0, 0.0],
+    "G0 X#<_lathe_radius_mode>\nM2\n": [1.0, 0.0, 0.0],
+    "M98 P100 L2\nM2\nO100\nG91 G0 X1\nM99\n": [2.0, 0.0, 0.0],
+    "#1=3\nM98 P100 L3\nG0 Y#1\nM2\nO100\nG91 G0 X1\n#1=[#1+1]\nM98 P200\nM99\nO200\nG0 Z1\nM99\n": [3.0, 6.0, 3.0],
     "G80 G0 X3 Y5\nM2\n": [3.0, 5.0, 0.0],
     "G0 G80 X3\nM2\n": [3.0, 0.0, 0.0],
     "F100\nG81 X1 Y1 Z-1 R1\nG80 G0 X3\nM2\n": [3.0, 1.0, 1.0],
@@ -46,6 +64,7 @@ ENDS = {
     "#1 = 1 0\nG0 X#1 Y[1 0 + 2] Z- . 5\nM 2\n": [10.0, 12.0, -0.5],
     "N 1 0 G0 X1 2 (X 1 3) Y3\nM2\n": [12.0, 3.0, 0.0],
     "o 1 0 0 sub\nG0 Z1\no100 endsub\no1 00 call\nM2\n": [0.0, 0.0, 1.0],
+    "o1 . sub\nG0 Z1\no1.0 endsub\no1 call\no01. call\nM2\n": [0.0, 0.0, 1.0],
     "F100\nG38.5 X0.1\nM2\n": [0.1, 0.0, 0.0],
     "F100 G20\nG0 X[#<_feed>/100]\nG21\nG0 Y[#<_feed>]\nF5\nG0 Z[#<_feed>]\nM2\n": [25.4, 100.0, 5.0],
     "T1\nT2 M6\nM6\nG43\nG0 Z1\nM2\n": [0.0, 0.0, 21.0],

@@ -1,5 +1,6 @@
 """Words and comments are read alike from text and from bytes."""
 
+import dataclasses
 import re
 
 import numpy as np
@@ -12,7 +13,13 @@ from twin.nc.bytecode.token_kinds import UNSUPPORTED
 from twin.nc.compiled.decode_tables import DecodeTables
 from twin.nc.compiled.kernels.tokenizer import read_words
 from twin.nc.dialects import dialect_named
-from twin.nc.text.comments import OPEN_COMMENT
+from twin.nc.text.comments import (
+    OPEN_COMMENT,
+    closed_comment,
+    comment_end,
+    comment_marks,
+    comments_of,
+)
 from twin.nc.text.diagnostics import ProgramError
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.lexer import Lexer
@@ -51,8 +58,8 @@ def test_blanks_within_numbers_are_closed_up_and_those_of_comments_are_not():
 
 @given(st.text("( *)/;%1 X", max_size=12))
 def test_comments_do_not_overlap_and_outside_of_them_alone_text_is_replaced(line: str):
-    grammar = Grammar(DIALECT)
-    closed = [each for each in grammar.comments_of(line) if each[1] != OPEN_COMMENT]
+    grammar, marks = Grammar(DIALECT), comment_marks(DIALECT.syntax.comments)
+    closed = [each for each in comments_of(line, marks) if each[1] != OPEN_COMMENT]
     assert [place for each in closed for place in each] == sorted(
         place for each in closed for place in each
     )
@@ -60,6 +67,19 @@ def test_comments_do_not_overlap_and_outside_of_them_alone_text_is_replaced(line
     for at, character in enumerate(line):
         inside = any(begin <= at < end for begin, end in closed)
         assert replaced[at] == (character if inside else "_")
+
+
+@given(st.text("( *)/;%1 X\t\v\x01é", max_size=12), st.integers(0, 12), st.booleans())
+def test_a_closed_comment_is_the_same_to_its_pattern_and_from_byte_to_byte(
+    line: str, at: int, holds_opening: bool
+):
+    kinds = (each for each in DIALECT.syntax.comments if not each.whole_line)
+    marks = comment_marks(
+        [dataclasses.replace(each, holds_opening=holds_opening) for each in kinds]
+    )
+    found = re.compile(closed_comment(marks)).match(line, at)
+    end = comment_end(line.encode("ascii", "replace"), 0, at, len(line), marks)
+    assert (found.end() if found else None) == (end if end >= 0 else None)
 
 
 @given(st.text("0159.+-", max_size=6))

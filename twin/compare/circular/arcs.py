@@ -157,7 +157,7 @@ def _in_their_planes(
     Returns:
         Along 0 and 90 degrees, shape (n, 2) [mm].
     """
-    cosine, sine = np.cos(path.turn[runs]), np.sin(path.turn[runs])
+    cosine, sine = path.facing[runs].T
     turned = np.zeros((len(runs), 3, 3))
     turned[:, 0, 0] = turned[:, 1, 1] = cosine
     turned[:, 1, 0], turned[:, 0, 1] = sine, -sine
@@ -190,6 +190,6 @@ def _evaluate(arc: _OpenArc) -> ArcFigures:
 
 
 def _polar(path: CirclePath) -> FloatArray:
-    mean = path.mean()
+    mean = path.by_angle().mean
     thin = mean[:: max(1, len(mean) // _POLAR_POINTS)]
     return np.column_stack([np.rad2deg(thin[:, 0]), thin[:, 1] * UM_PER_MM])

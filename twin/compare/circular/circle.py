@@ -21,7 +21,10 @@ import dataclasses
 import numpy as np
 
 from twin.compare.circular.circle_kernels import (
+    AngleBins,
+    ByAngle,
     collect_by_angle,
+    look_by_angle,
     radial_equations,
     radial_range,
     widest_gap,
@@ -55,7 +58,9 @@ class CirclePath:
         self.radial_min, self.radial_max = np.inf, -np.inf
         self._points: list[FloatArray] = []
         self._count = 0
-        self._bins: _Bins | None = None
+        self._bins: AngleBins | None = None
+        self._by_angle: ByAngle | None = None
+        self._full_turn: bool | None = None
 
     def add(self, points: FloatArray) -> None:
         """Take in points relative to the nominal centre, shape (n, 2) [mm]."""
@@ -64,68 +69,52 @@ class CirclePath:
             min(self.radial_min, least),
             max(self.radial_max, greatest),
         )
+        self._by_angle = self._full_turn = None
         self._points.append(points)
         self._count += len(points)
         if self._count > BINS_PER_TURN:
             self._binned()
 
-    def _binned(self) -> "_Bins":
+    def _binned(self) -> AngleBins:
         """All points so far by angle."""
         if self._bins is None:
-            self._bins = _Bins()
+            ends = np.zeros((2, BINS_PER_TURN, 3))
+            sums = np.zeros((2, BINS_PER_TURN))
+            self._bins = AngleBins(np.zeros(BINS_PER_TURN, np.int64), *sums, *ends)
         for points in self._points:
-            self._bins.add(points, self.radius)
+            collect_by_angle(points, self.radius, self._bins)
         self._points, self._count = [], 0
         return self._bins
 
-    def mean(self) -> FloatArray:
-        """Mean angle [rad] and radial deviation [mm] of the filled bins, shape (m, 2).
+    def by_angle(self) -> ByAngle:
+        """What the path is like at every angle at which there are points.
 
-        They weigh all angles alike in the least-squares circle, wherever the tool moved slowly.
+        Means weigh all angles alike in the least-squares circle, wherever the tool moved slowly.
         """
-        return self._binned().mean()
-
-    def extremes(self) -> FloatArray:
-        """The innermost and the outermost point of every filled bin, shape (2 m, 2) [mm]."""
-        return self._binned().extremes()
+        if self._by_angle is None:
+            bins = self._binned()
+            filled = int(np.count_nonzero(bins.samples))
+            self._by_angle = ByAngle(
+                np.zeros((filled, 2)), np.zeros((filled, 2)), np.zeros((2 * filled, 2))
+            )
+            look_by_angle(bins, self.radius, self._by_angle)
+        return self._by_angle
 
     def covers_full_turn(self) -> bool:
         """Whether no gap in the angles is wider than ``FULL_TURN_GAP``."""
+        if self._full_turn is None:
+            self._full_turn = self._widest_gap() <= FULL_TURN_GAP
+        return self._full_turn
+
+    def _widest_gap(self) -> float:
+        """Between neighbouring points, or bins with points [deg]; a turn, where it is not known."""
         if self._bins is not None:
-            return self._binned().widest_gap() <= FULL_TURN_GAP
+            return widest_gap(self._binned().samples) * (360.0 / BINS_PER_TURN)
         points = np.concatenate([np.zeros((0, 2)), *self._points])
+        if len(points) < 3:
+            return 360.0
         angle = np.sort(np.arctan2(points[:, 1], points[:, 0]))
-        gaps = np.diff(np.append(angle, angle[:1] + 2.0 * np.pi))
-        return bool(len(angle) >= 3 and np.degrees(gaps.max()) <= FULL_TURN_GAP)
-
-
-class _Bins:
-    """Points by angle: of each bin how many, their mean, the innermost and the outermost."""
-
-    def __init__(self) -> None:
-        self._count = np.zeros(BINS_PER_TURN, np.int64)
-        self._angle = np.zeros(BINS_PER_TURN)
-        self._deviation = np.zeros(BINS_PER_TURN)
-        self._least = np.full((BINS_PER_TURN, 3), np.inf)
-        self._greatest = np.full((BINS_PER_TURN, 3), -np.inf)
-
-    def add(self, points: FloatArray, radius: float) -> None:
-        collect_by_angle(
-            points, radius, self._count, self._angle, self._deviation, self._least, self._greatest
-        )
-
-    def widest_gap(self) -> float:
-        """Between neighbouring bins with points [deg]."""
-        return widest_gap(self._count) * (360.0 / BINS_PER_TURN)
-
-    def mean(self) -> FloatArray:
-        filled = self._count > 0
-        count = self._count[filled]
-        return np.column_stack([self._angle[filled] / count, self._deviation[filled] / count])
-
-    def extremes(self) -> FloatArray:
-        filled = self._count > 0
-        return np.concatenate([self._least[filled, 1:], self._greatest[filled, 1:]])
+        return float(np.degrees(np.diff(np.append(angle, angle[:1] + 2.0 * np.pi)).max()))
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -159,9 +148,9 @@ def circle_figures(*paths: CirclePath) -> CircleFigures:
     greatest = max(path.radial_max for path in paths)
     width, mean_error = greatest - least, np.nan
     if all(path.covers_full_turn() for path in paths):
-        means = np.concatenate([path.mean() for path in paths])
-        center, mean_radius = _least_squares_circle(_points(means, radius))
-        ranges = [radial_range(path.extremes() - center, radius) for path in paths]
+        found = [path.by_angle() for path in paths]
+        center, mean_radius = _least_squares_circle(np.concatenate([each.place for each in found]))
+        ranges = [radial_range(each.extremes - center, radius) for each in found]
         width = max(far for _, far in ranges) - min(near for near, _ in ranges)
         mean_error = mean_radius - radius
     return CircleFigures(
@@ -179,15 +168,10 @@ def hysteresis_um(one: CirclePath, other: CirclePath) -> float:
     greatest where one of them bends, so that reading both at the bends of both finds it exactly,
     however narrow the peak is that a reversal leaves.
     """
-    paths = [path.mean() for path in (one, other)]
+    paths = [path.by_angle().mean for path in (one, other)]
     bends = np.concatenate([path[:, 0] for path in paths])
     read = [np.interp(bends, path[:, 0], path[:, 1], period=2.0 * np.pi) for path in paths]
     return float(np.abs(read[0] - read[1]).max()) * UM_PER_MM
-
-
-def _points(polar: FloatArray, radius: float) -> FloatArray:
-    distance = radius + polar[:, 1]
-    return np.column_stack([distance * np.cos(polar[:, 0]), distance * np.sin(polar[:, 0])])
 
 
 def _least_squares_circle(points: FloatArray) -> tuple[FloatArray, float]:

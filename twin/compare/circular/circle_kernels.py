@@ -1,39 +1,95 @@
 """Loops over the points of an actual path around a circle."""
 
 import math
+from typing import NamedTuple
 
 from twin.compilation.kernel import kernel
+from twin.nc.canonical import FloatArray, IntArray
+
+
+class AngleBins(NamedTuple):
+    """Points around a circle by angle, in m bins of a turn.
+
+    Attributes:
+        samples: How many points, shape (m,).
+        angle: Sum of their angles, shape (m,) [rad].
+        deviation: Sum of their radial deviations, shape (m,) [mm].
+        least: Least radial deviation and its point, shape (m, 3) [mm].
+        greatest: Greatest radial deviation and its point, shape (m, 3) [mm].
+    """
+
+    samples: IntArray
+    angle: FloatArray
+    deviation: FloatArray
+    least: FloatArray
+    greatest: FloatArray
+
+
+class ByAngle(NamedTuple):
+    """What the f bins that have points say of a path.
+
+    Attributes:
+        mean: Mean angle [rad] and radial deviation [mm], shape (f, 2).
+        place: The point there, relative to the centre, shape (f, 2) [mm].
+        extremes: The innermost point of each bin and the outermost, shape (2 f, 2) [mm].
+    """
+
+    mean: FloatArray
+    place: FloatArray
+    extremes: FloatArray
 
 
 @kernel
-def collect_by_angle(points, radius, count, angle_sum, deviation_sum, least, greatest):
+def collect_by_angle(points, radius, bins):
     """Sort points into bins of angle.
 
     Args:
         points: Relative to the centre, shape (n, 2) [mm].
         radius: Of the circle [mm].
-        count: By bin: how many points, added to, shape (m,).
-        angle_sum: By bin: sum of their angles, added to, shape (m,) [rad].
-        deviation_sum: By bin: sum of their radial deviations, added to, shape (m,) [mm].
-        least: By bin: least radial deviation and its point, shape (m, 3) [mm].
-        greatest: By bin: greatest radial deviation and its point, shape (m, 3) [mm].
+        bins: Added to.
     """
     turn = 2.0 * math.pi
-    bins = len(count)
+    number = len(bins.samples)
     for i in range(len(points)):
         x, y = points[i]
         angle = math.atan2(y, x)
         if angle < 0.0:
             angle += turn
         deviation = math.sqrt(x * x + y * y) - radius
-        here = min(int(angle * (bins / turn)), bins - 1)
-        count[here] += 1
-        angle_sum[here] += angle
-        deviation_sum[here] += deviation
-        if deviation < least[here, 0]:
-            least[here, 0], least[here, 1], least[here, 2] = deviation, x, y
-        if deviation > greatest[here, 0]:
-            greatest[here, 0], greatest[here, 1], greatest[here, 2] = deviation, x, y
+        here = min(int(angle * (number / turn)), number - 1)
+        least, greatest = bins.least[here], bins.greatest[here]
+        first = bins.samples[here] == 0
+        bins.samples[here] += 1
+        bins.angle[here] += angle
+        bins.deviation[here] += deviation
+        if first or deviation < least[0]:
+            least[0], least[1], least[2] = deviation, x, y
+        if first or deviation > greatest[0]:
+            greatest[0], greatest[1], greatest[2] = deviation, x, y
+
+
+@kernel
+def look_by_angle(bins, radius, found):
+    """Evaluate every bin that has points.
+
+    Args:
+        bins: The points.
+        radius: Of the circle [mm].
+        found: Set.
+    """
+    row = 0
+    for here in range(len(bins.samples)):
+        count = bins.samples[here]
+        if count == 0:
+            continue
+        angle, deviation = bins.angle[here] / count, bins.deviation[here] / count
+        found.mean[row, 0], found.mean[row, 1] = angle, deviation
+        found.place[row, 0] = (radius + deviation) * math.cos(angle)
+        found.place[row, 1] = (radius + deviation) * math.sin(angle)
+        for side in range(2):
+            found.extremes[2 * row, side] = bins.least[here, side + 1]
+            found.extremes[2 * row + 1, side] = bins.greatest[here, side + 1]
+        row += 1
 
 
 @kernel

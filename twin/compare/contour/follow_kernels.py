@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from twin.compilation.compilable import inlined
 from twin.compilation.kernel import kernel
 from twin.nc.canonical import FloatArray, IntArray
 from twin.toolpath.nearest_kernels import (
@@ -81,6 +82,7 @@ def follow(path, first, point, commanded, reach_s, state, found):
     move, u = int(state[0]) - first, state[1]
     x0, y0, z0, error = state[2], state[3], state[4], state[5]
     now_move, now_u = move, u
+    corner, acute = -1, False
     before, late = len(commanded.time) - len(point), 0
     for i in range(len(point)):
         x, y, z = point[i, 0], point[i, 1], point[i, 2]
@@ -99,7 +101,9 @@ def follow(path, first, point, commanded, reach_s, state, found):
             low_move, low_u = move, u
         else:
             high_move, high_u = move, u
-        around = _way_around(path, move, u, step + error)
+        if move != corner:
+            corner, acute = move, _begins_acutely(path, move)
+        around = _way_around(path, move, u, step + error) if acute else 0.0
         low_move, low_u = walk(path, low_move, low_u, -margin - around)
         back_move, back_u = _place(commanded, late, first)
         if low_move < back_move or (low_move == back_move and low_u < back_u):
@@ -123,13 +127,24 @@ def follow(path, first, point, commanded, reach_s, state, found):
     return late
 
 
-@kernel
+@inlined
 def _place(commanded, row, first):
     """Move at hand and fraction of a setpoint; before the first move, where that begins."""
     move = commanded.move[row]
     if move < 0:
         return -first, 0.0
     return move - first, commanded.fraction[row]
+
+
+@kernel
+def _begins_acutely(path, move):
+    """Whether a move begins at a corner with an acute angle between its legs."""
+    if move == 0:
+        return False
+    _, _, _, ax, ay, az, _, _, _ = derivatives(path, move - 1, 1.0)
+    _, _, _, bx, by, bz, _, _, _ = derivatives(path, move, 0.0)
+    lengths = math.sqrt((ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz))
+    return lengths > 0.0 and (ax * bx + ay * by + az * bz) / lengths <= _BLUNT
 
 
 @kernel
@@ -144,16 +159,7 @@ def _way_around(path, move, u, error):
         u: Where the place is.
         error: Of the tool, with what it may change by in a sample [mm].
     """
-    if move == 0:
-        return 0.0
     beyond = u * speed_at(path, move, u)
-    _, _, _, ax, ay, az, _, _, _ = derivatives(path, move - 1, 1.0)
-    _, _, _, bx, by, bz, _, _, _ = derivatives(path, move, 0.0)
-    lengths = math.sqrt((ax * ax + ay * ay + az * az) * (bx * bx + by * by + bz * bz))
-    if lengths == 0.0:
-        return 0.0
-    if (ax * bx + ay * by + az * bz) / lengths > _BLUNT:
-        return 0.0
     x, y, z, _, _, _, _, _, _ = derivatives(path, move, u)
     other_move, other_u = walk(path, move - 1, 1.0, -beyond)
     apart = distance_at(path, other_move, other_u, x, y, z)

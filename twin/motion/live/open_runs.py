@@ -14,7 +14,6 @@ from twin.motion.retiming.retiming import (
     retime,
 )
 from twin.motion.retiming.run_kernels import RunPieces, find_runs, run_ends
-from twin.nc.canonical import FloatArray
 
 REJOINING_TURNS = (math.pi / 4.0, math.pi / 2.0, math.pi, 2.0 * math.pi)
 """How far ahead a run may come back to its reference, in this order [rad]."""
@@ -68,7 +67,7 @@ class OpenRuns:
         if len(known.rows) == 0:
             return known
         certain = len(known.rows)
-        if pieces is not None and not at_end and _end_velocity(known.rows[-1]) > 0.0:
+        if pieces is not None and not at_end:
             runs = find_runs(known.rows, known.rows_pieces, pieces, override)
             if len(runs) > 0 and runs[-1, 1] == certain:
                 certain = int(runs[-1, 0])
@@ -110,11 +109,6 @@ class OpenRuns:
                 self.gained -= later
                 return joined([kept, way, rest])
         return phases
-
-
-def _end_velocity(row: FloatArray) -> float:
-    _, duration, _, v, a, j = row
-    return float(v + (a + 0.5 * j * duration) * duration)
 
 
 def _back(

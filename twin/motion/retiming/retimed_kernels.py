@@ -69,11 +69,11 @@ def _state(nodes: RunNodes, coefficients: FloatArray, i: int, end: int) -> tuple
     return math.sqrt(value) * v, value * a + 0.5 * slope * v
 
 
-@arithmetic_kernel
-def excess(
+@array_arithmetic_kernel
+def uses_of_limits(
     phases: FloatArray, phase_pieces: IntArray, pieces: RunPieces, machine: MachineLimits, override: float
-) -> float:  # fmt: skip
-    """By which factor phases would have to be slower for every limit to be kept; 1 or less: all are.
+) -> FloatArray:  # fmt: skip
+    """What intervals use of the limits of velocity, acceleration and jerk.
 
     Args:
         phases: From ``retimed_phases``.
@@ -81,29 +81,65 @@ def excess(
         pieces: Of the plan.
         machine: Limits of the axes and the path.
         override: Factor of the programmed feed.
+
+    Returns:
+        Shares of the three limits, the largest along each of n intervals, shape (n, 3); infinite where
+        the solver went astray.
     """
-    fast, hard, sudden = 0.0, 0.0, 0.0
+    uses = np.zeros((len(phases) // 2, 3))
+    before = np.zeros((len(machine.jerk), 2))
     for row in range(len(phases)):
         _, duration, begin, v0, a0, j = phases[row]
+        fast, hard, sudden = uses[row >> 1]
+        piece, step = phase_pieces[row, 0], 0.5 * duration
+        feed = pieces.feed[piece] * override
+        # No comparison holds of what is not a number.
+        if not (v0 >= -1e-9 and abs(begin) < math.inf and abs(a0) < math.inf and abs(j) < math.inf):
+            uses[row >> 1] = math.inf
+            continue
+        a1, v1 = a0 + j * duration, v0 + (a0 + 0.5 * j * duration) * duration
+        fast = max(fast, _highest(v0, a0, v1, a1, duration) / feed)
+        sudden = max(sudden, abs(j) / pieces.path_jerk[piece])
         for part in range(3):
-            t = 0.5 * part * duration
-            piece = phase_pieces[row, 0]
+            t = part * step
             x = begin + ((j / 6.0 * t + 0.5 * a0) * t + v0) * t
             v, a = v0 + (0.5 * j * t + a0) * t, a0 + j * t
-            # Not a number where the solver went astray, for which no comparison holds.
-            if not (v >= -1e-9 and abs(a) < math.inf and abs(j) < math.inf and abs(x) < math.inf):
-                return math.inf
-            fast = max(fast, v / (pieces.feed[piece] * override))
             hard = max(hard, abs(a) / pieces.path_acceleration[piece])
-            sudden = max(sudden, abs(j) / pieces.path_jerk[piece])
             squares = 0.0
             for axis in range(len(machine.jerk)):
                 q1, q2, q3 = derivatives_at(pieces, piece, x, axis)
                 squares += q2 * q2 if axis < 3 else 0.0
-                acceleration = abs(q2 * v * v + q1 * a)
+                velocity, acceleration = q1 * v, q2 * v * v + q1 * a
                 jerk = abs((q3 * v * v + 3.0 * q2 * a) * v + q1 * j)
-                fast = max(fast, abs(q1 * v) / machine.velocity[axis])
-                hard = max(hard, acceleration / machine.acceleration[axis])
+                if part > 0:
+                    u0, slope = before[axis]
+                    highest = _highest(u0, slope, velocity, acceleration, step)
+                    fast = max(fast, highest / machine.velocity[axis])
+                before[axis, 0], before[axis, 1] = velocity, acceleration
+                hard = max(hard, abs(acceleration) / machine.acceleration[axis])
                 sudden = max(sudden, jerk / machine.jerk[axis])
             hard = max(hard, v * v * math.sqrt(squares) / machine.path[0])
-    return max(fast, math.sqrt(hard), np.cbrt(sudden))
+        uses[row >> 1, 0], uses[row >> 1, 1], uses[row >> 1, 2] = fast, hard, sudden
+    return uses
+
+
+@arithmetic_kernel
+def _highest(v0: float, a0: float, v1: float, a1: float, step: float) -> float:
+    """Highest absolute velocity along a step, as a cubic tells it from its ends.
+
+    Args:
+        v0: Velocity at the begin.
+        a0: Acceleration at the begin.
+        v1: Velocity at the end.
+        a1: Acceleration at the end.
+        step: Duration [s].
+    """
+    sign = math.copysign(1.0, v0 + v1)
+    rise, fall = sign * a0, -sign * a1
+    highest = max(abs(v0), abs(v1))
+    if rise > 0.0 and fall > 0.0:
+        s = rise / (rise + fall)
+        r = 1.0 - s
+        ends = v0 * r * r * (1.0 + 2.0 * s) + v1 * s * s * (1.0 + 2.0 * r)
+        highest = max(highest, sign * ends + (rise * r + fall * s) * r * s * step)
+    return highest

@@ -6,18 +6,19 @@ arcs is replaced by one that is found from the axes' own limits at each place.
 """
 
 import dataclasses
+import math
 
 import numpy as np
 
 from twin.motion.limits import MachineLimits
 from twin.motion.pieces.pieces import Pieces
-from twin.motion.retiming.retimed_kernels import excess, retimed_phases
+from twin.motion.retiming.retimed_kernels import retimed_phases, uses_of_limits
 from twin.motion.retiming.run_kernels import LONG, RunEnds, RunPieces, find_runs, run_ends
 from twin.motion.retiming.solver_kernels import fastest_rate
 from twin.motion.retiming.table_kernels import cut_run, first_rate, run_table, tightened
 from twin.nc.canonical import FloatArray, IntArray
 
-JERK_SHARE = 0.975
+JERK_SHARE = 0.98
 """Of the jerk limits that a run uses, so that there is always a way out of it."""
 
 SHORT_JERK_SHARE = 0.99
@@ -32,8 +33,11 @@ ATTEMPTS = 4
 ROUNDING = 1e-10
 """By how much a run that begins or ends at the feed seems faster than that."""
 
-SPARE = 1.0005
-"""By how much slower the next attempt is to be than it seems to need."""
+MOST_EXCESS = 1.2
+"""By how much slower an attempt may have to be for there to be another."""
+
+LITTLE_EXCESS = 1.0005
+"""By how much slower a run may have to be for all of it to be driven slower."""
 
 LEAST_GAIN = 1e-3
 """Of a run's time, relative; for less it stays as it is."""
@@ -63,6 +67,13 @@ class PhaseTable:
         """These phases, later."""
         rows = self.rows.copy()
         rows[:, 0] += by
+        return PhaseTable(rows, self.rows_pieces)
+
+    def slowed(self, by: float) -> "PhaseTable":
+        """These phases, from rest to rest, in so many times the time."""
+        begin = self.rows[0, 0]
+        rows = self.rows / [1.0, 1.0 / by, 1.0, by, by**2, by**3]
+        rows[:, 0] = begin + by * (rows[:, 0] - begin)
         return PhaseTable(rows, self.rows_pieces)
 
 
@@ -151,20 +162,26 @@ def drive_run(
         begin: Of the run [s].
         share: Of the jerk limits to use.
     """
-    nodes = cut_run(ends, pieces)
+    nodes = cut_run(ends, pieces, machine)
     table = run_table(nodes, pieces, machine, override)
     start = first_rate(table, ends, nodes)
     at_rest = ends.begin[0] == 0.0, ends.end[0] == 0.0
-    slower = 1.0
-    for _ in range(ATTEMPTS):
-        rate, kept = fastest_rate(tightened(table, slower), share, start, at_rest)
+    for attempt in range(ATTEMPTS):
+        rate, kept = fastest_rate(table, share, start, at_rest)
         if not kept:
             return None
-        rows, rows_pieces = retimed_phases(nodes, pieces, rate, begin)
-        found = excess(rows, rows_pieces, pieces, machine, override)
-        if found <= 1.0 + ROUNDING:
-            return PhaseTable(rows, rows_pieces)
-        if not found < 1.2:
+        phases = PhaseTable(*retimed_phases(nodes, pieces, rate, begin))
+        uses = uses_of_limits(phases.rows, phases.rows_pieces, pieces, machine, override)
+        fast, hard, sudden = uses.max(axis=0).tolist()
+        slower = max(fast, math.sqrt(hard), math.cbrt(sudden))
+        if slower <= 1.0 + ROUNDING:
+            return phases
+        if slower > MOST_EXCESS:
             return None
-        slower *= SPARE * found
+        if attempt > 0 or slower < LITTLE_EXCESS:
+            # As a whole: what is left is too little to look for its places.
+            if all(at_rest):
+                return phases.slowed(slower)
+            uses = np.maximum(uses, [slower, slower**2, slower**3])
+        table = tightened(table, uses)
     return None

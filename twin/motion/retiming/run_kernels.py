@@ -78,7 +78,7 @@ def find_runs(
             holds = phases[row, 3] > AT_FEED * feed and phases[row, 4] == phases[row, 5] == 0.0
             turn = _turn_of(phases, phase_pieces, pieces, row)
         inside = turn > 0.0
-        joined = inside and first >= 0 and phases[row, 3] > 0.0 and turned < MOST_TURN
+        joined = inside and first >= 0 and turned < MOST_TURN
         if joined:
             piece = phase_pieces[row, 0]
             if phases[row, 2] <= BARELY * pieces.length[piece]:

@@ -23,8 +23,9 @@ from twin.motion.retiming.spline_kernels import basis_at, spline_at
 from twin.nc.canonical import FloatArray
 
 MOST_STEPS = 40
-CENTERING = 0.15
-"""By which the mean complementarity falls with a full step."""
+CENTERING = 0.1
+"""To which share the mean complementarity is to fall with a step after a full one; the shorter the one
+before, the less."""
 KEPT = 0.05
 """Share of a slack that one step leaves."""
 GAP = 5e-4
@@ -49,7 +50,8 @@ class RunTable(NamedTuple):
         forms: What is limited at both ends of each interval: linear forms of value, slope and
             second derivative of s by their limits; first the accelerations, then as many jerks;
             shape (n, 2, m, 3).
-        highest: Highest s at both ends of each interval, shape (n, 2).
+        highest: Highest coefficient of each interval's middle, shape (n,): s is never above its
+            coefficients.
     """
 
     step: FloatArray
@@ -94,15 +96,15 @@ def fastest_rate(
     c = start.copy()
     shape = (count, 2, 2 * kinds + 1)
     sides = Sides(np.ones(shape), np.zeros(shape), np.zeros(shape), np.zeros(shape))
-    watched = count * (3 * kinds + 1) + kinds + 1
+    watched = count * (3 * kinds + 1) + kinds
     _begin(table, jerk, c, sides, watched)
     band, right = np.zeros((count + 2, 3)), np.zeros(count + 2)
-    total = np.sum(step)
+    total, gone = np.sum(step), 1.0
     for _ in range(MOST_STEPS):
         gap = np.sum(sides.slack * sides.price)
         if gap < GAP and np.max(sides.loosened) == 0.0:
             break
-        target = CENTERING * gap / watched
+        target = max(CENTERING, (1.0 - gone) ** 2) * gap / watched
         _assemble(table, jerk, c, sides, target, total, band, right)
         for end in range(2):
             if free[end]:
@@ -111,7 +113,7 @@ def fastest_rate(
                 for i in range(2):
                     _fix(band, right, i + end * count)
         _solve(band, right)
-        _advance(table, jerk, c, right, sides, target)
+        gone = _advance(table, jerk, c, right, sides, target)
     return c, np.max(sides.loosened) == 0.0
 
 
@@ -122,9 +124,9 @@ def _watched(count: int, kinds: int, i: int, end: int) -> tuple[int, bool]:
     Where two intervals meet only the jerk differs: the rest is watched at the begin of the second.
 
     Returns:
-        The first form, and whether the highest s is.
+        The first form, and whether the coefficient is.
     """
-    return (kinds >> 1, False) if end == 1 and i + 1 < count else (0, True)
+    return kinds >> 1 if end == 1 and i + 1 < count else 0, end == 0
 
 
 @arithmetic_kernel
@@ -137,7 +139,7 @@ def _begin(table: RunTable, jerk: float, c: FloatArray, sides: Sides, watched: i
             z = spline_at(step, c, i, end)
             first, whole = _watched(len(step), kinds, i, end)
             for side in range(2 * first, 2 * kinds + int(whole)):
-                room = _room(table, jerk, i, end, z, side)
+                room = _room(table, jerk, c, i, end, z, side)
                 loosened = max(0.0, LEAST_SLACK - room)
                 sides.loosened[i, end, side] = loosened
                 sides.slack[i, end, side] = room + loosened
@@ -188,10 +190,10 @@ def _assemble(
                 h12 += both * f1 * f2
                 h22 += both * f2 * f2
             if whole:
-                normal, per = 1.0 / highest[i, end], 1.0 / slack[2 * kinds]
+                normal, per = 1.0 / highest[i], 1.0 / slack[2 * kinds]
                 share = price[2 * kinds] * per
-                g0 += (target * per + share * loosened[2 * kinds]) * normal
-                h00 += share * normal * normal
+                right[i + 1] -= (target * per + share * loosened[2 * kinds]) * normal
+                band[i + 1, 0] += share * normal * normal
             for p in range(3):
                 b0, b1, b2 = basis[p]
                 right[i + p] -= b0 * g0 + b1 * g1 + b2 * g2
@@ -255,8 +257,8 @@ def _solve(band: FloatArray, right: FloatArray) -> None:
 @arithmetic_kernel
 def _advance(
     table: RunTable, jerk: float, c: FloatArray, change: FloatArray, sides: Sides, target: float
-) -> None:
-    """Go as far as slacks and multipliers stay positive."""
+) -> float:
+    """Go as far as slacks and multipliers stay positive; the share of the change that is gone."""
     step, forms, highest = table
     kinds = forms.shape[2]
     steps = 1.0, 1.0
@@ -274,7 +276,7 @@ def _advance(
                 steps = _change_side(sides, i, end, 2 * k, -lean - rises, target, steps)
                 steps = _change_side(sides, i, end, 2 * k + 1, rises - lean, target, steps)
             if whole:
-                rises = dz[0] / highest[i, end]
+                rises = change[i + 1] / highest[i]
                 steps = _change_side(sides, i, end, 2 * kinds, -rises, target, steps)
     primal, dual = steps
     for i in range(len(c)):
@@ -284,13 +286,14 @@ def _advance(
             z = spline_at(step, c, i, end)
             first, whole = _watched(len(step), kinds, i, end)
             for side in range(2 * first, 2 * kinds + int(whole)):
-                room = _room(table, jerk, i, end, z, side)
+                room = _room(table, jerk, c, i, end, z, side)
                 loosened = sides.loosened[i, end, side] * (1.0 - primal)
-                if room > LEAST_SLACK:
+                if room > min(LEAST_SLACK, loosened):
                     loosened = 0.0
                 sides.loosened[i, end, side] = loosened
                 sides.slack[i, end, side] = max(room + loosened, SMALLEST_SLACK)
                 sides.price[i, end, side] += dual * sides.price_change[i, end, side]
+    return primal
 
 
 @arithmetic_kernel
@@ -323,12 +326,13 @@ def _change_side(
 
 @arithmetic_kernel
 def _room(
-    table: RunTable, jerk: float, i: int, end: int, z: tuple[float, float, float], side: int
-) -> float:
+    table: RunTable, jerk: float, c: FloatArray, i: int, end: int, z: tuple[float, float, float],
+    side: int,
+) -> float:  # fmt: skip
     """What is left of a limit."""
     kinds = table.forms.shape[2]
     if side == 2 * kinds:
-        return 1.0 - z[0] / table.highest[i, end]
+        return 1.0 - c[i + 1] / table.highest[i]
     form = table.forms[i, end, side >> 1]
     value = form[0] * z[0] + form[1] * z[1] + form[2] * z[2]
     if side & 1:

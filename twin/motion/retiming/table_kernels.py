@@ -15,7 +15,7 @@ STEP_ANGLE = math.radians(6.0)
 """Longest interval of a run where it turns fastest [rad]."""
 
 RAMP_STEPS = 20
-"""Intervals of a change of velocity."""
+"""Intervals of a change of velocity at least."""
 
 LEAST_RAMP = 0.2
 """What a change of velocity turns by at twice its mean velocity at least, in runs long enough [rad]."""
@@ -28,6 +28,12 @@ SLOW = 0.6
 
 ACCELERATION_SHARE = 0.999
 """Of limits of acceleration: between two nodes a little more is used than at them."""
+
+SPARE = 1.0005
+"""By how much slower than it seems to need a place becomes whose limit was passed."""
+
+VELOCITY_SHARE = 0.9995
+"""Of axes' velocities: between two nodes a little more is used than at them."""
 
 BELOW = 0.97
 """Of the highest squared rate that is known to be slow enough: where the search begins."""
@@ -79,7 +85,7 @@ def _ramp_times(
 
 
 @array_arithmetic_kernel
-def cut_run(ends: RunEnds, pieces: RunPieces) -> RunNodes:
+def cut_run(ends: RunEnds, pieces: RunPieces, machine: MachineLimits) -> RunNodes:
     """A run with a smooth change of velocity to its peak and another from it, as intervals of time.
 
     The velocity of a change is a cosine's, which begins at rest as a constant jerk does.
@@ -87,18 +93,25 @@ def cut_run(ends: RunEnds, pieces: RunPieces) -> RunNodes:
     Args:
         ends: Of the run.
         pieces: Of the plan.
+        machine: Limits of the axes and the path.
     """
     piece, x, distance, (v0, _), (v1, _), peak = ends
     turn = pieces.fraction_per_length[piece] * abs(pieces.curves.angle[pieces.move[piece]])
-    up, down, peak = _ramp_times(
-        ends, turn, pieces.path_jerk[piece], pieces.path_acceleration[piece]
-    )
+    jerk, acceleration = pieces.path_jerk[piece], pieces.path_acceleration[piece]
+    # What a straight share of the path asks of an axis is the same everywhere.
+    for axis in range(len(machine.jerk)):
+        even = _even_slope(pieces, piece, axis)
+        if even > 0.0:
+            jerk = min(jerk, machine.jerk[axis] / even)
+            acceleration = min(acceleration, machine.acceleration[axis] / even)
+    up, down, peak = _ramp_times(ends, turn, jerk, acceleration)
     hold = (distance - 0.5 * (peak + v0) * up - 0.5 * (peak + v1) * down) / peak
     times = up, hold, down
+    rate = peak * turn / STEP_ANGLE
     counts = (
-        RAMP_STEPS if up > 0.0 else 0,
-        max(LEAST_STEPS, math.ceil(hold * peak * turn / STEP_ANGLE)),
-        RAMP_STEPS if down > 0.0 else 0,
+        max(RAMP_STEPS, math.ceil(rate * up)) if up > 0.0 else 0,
+        max(LEAST_STEPS, math.ceil(rate * hold)),
+        max(RAMP_STEPS, math.ceil(rate * down)) if down > 0.0 else 0,
     )
     count = counts[0] + counts[1] + counts[2]
     nodes = RunNodes(
@@ -149,6 +162,15 @@ def cut_run(ends: RunEnds, pieces: RunPieces) -> RunNodes:
 
 
 @arithmetic_kernel
+def _even_slope(pieces: RunPieces, piece: int, axis: int) -> float:
+    """How fast an axis moves that does not follow the curve, 0 for one that does."""
+    curves, move = pieces.curves, pieces.move[piece]
+    if axis < 3 and (curves.cosine[move, axis] != 0.0 or curves.sine[move, axis] != 0.0):
+        return 0.0
+    return abs(curves.drift[move, axis] * pieces.fraction_per_length[piece])
+
+
+@arithmetic_kernel
 def derivatives_at(
     pieces: RunPieces, piece: int, x: float, axis: int
 ) -> tuple[float, float, float]:
@@ -191,14 +213,12 @@ def run_table(
             moving[used] = axis
             used += 1
     kinds = used + 1
-    forms, highest = np.zeros((count, 2, 2 * kinds, 3)), np.zeros((count, 2))
+    forms, tops = np.zeros((count, 2, 2 * kinds, 3)), np.full((count + 1, 2), math.inf)
     for node in range(count + 1):
         piece, (x, v, a) = nodes.piece[node], nodes.path[node]
         # Of both intervals that meet in a node only the jerk differs.
         at, side = (node, 0) if node < count else (count - 1, 1)
         here = forms[at, side]
-        top = pieces.feed[piece] * override / v
-        most = top * top
         squares = 0.0
         for k in range(used):
             axis = moving[k]
@@ -206,26 +226,23 @@ def run_table(
             first = q1 * v
             second = q2 * v * v + q1 * a
             third = (q3 * v * v + 3.0 * q2 * a) * v
-            fastest = machine.velocity[axis] / abs(first)
-            most = min(most, fastest * fastest)
+            tops[node, 1] = min(
+                tops[node, 1], (VELOCITY_SHARE * machine.velocity[axis] / first) ** 2
+            )
             squares += q2 * q2 if axis < 3 else 0.0
             limit = ACCELERATION_SHARE * machine.acceleration[axis]
             here[k, 0], here[k, 1] = second / limit, 0.5 * first / limit
             limit = machine.jerk[axis]
             here[kinds + k, 0] = third / limit
             here[kinds + k, 1], here[kinds + k, 2] = 1.5 * second / limit, 0.5 * first / limit
-        most = min(most, ACCELERATION_SHARE * machine.path[0] / (math.sqrt(squares) * v * v))
+        curved = ACCELERATION_SHARE * machine.path[0] / (math.sqrt(squares) * v * v)
+        tops[node, 0] = min((pieces.feed[piece] * override / v) ** 2, curved)
         limit = ACCELERATION_SHARE * pieces.path_acceleration[piece]
         here[used, 0], here[used, 1] = a / limit, 0.5 * v / limit
         limit = pieces.path_jerk[piece]
         here[kinds + used, 1], here[kinds + used, 2] = 1.5 * a / limit, 0.5 * v / limit
-        if node in (0, count) and v > 0.0:
-            # The state at an end is given, often at the feed itself.
-            most = math.inf
-        highest[at, side] = most
         if 0 < node < count:
             forms[node - 1, 1] = here
-            highest[node - 1, 1] = most
         for neighbour in range(max(0, node - 1), min(count, node + 1)):
             end = 1 if neighbour < node else 0
             j = nodes.jerk[neighbour, end]
@@ -233,7 +250,36 @@ def run_table(
             for k in range(used):
                 q1, _, _ = derivatives_at(pieces, piece, x, moving[k])
                 forms[neighbour, end, kinds + k, 0] += q1 * j / machine.jerk[moving[k]]
+    highest = _highest_coefficients(tops)
+    # The state at an end is given, often at the feed itself.
+    if nodes.path[0, 1] > 0.0:
+        highest[0] = math.inf
+    if nodes.path[count, 1] > 0.0:
+        highest[count - 1] = math.inf
     return RunTable(nodes.step, forms, highest)
+
+
+@array_arithmetic_kernel
+def _highest_coefficients(tops: FloatArray) -> FloatArray:
+    """Coefficients of intervals' middles with which the squared rate stays below its highest values.
+
+    Args:
+        tops: Highest values at n + 1 nodes: one that is even along a curve, and one that goes up and
+            down with it, shape (n + 1, 2).
+
+    Returns:
+        Shape (n,).
+    """
+    count = len(tops) - 1
+    highest = np.zeros(count)
+    for i in range(count):
+        even, (here, there) = min(tops[i, 0], tops[i + 1, 0]), tops[i : i + 2, 1]
+        # A parabola's coefficient lies below the mean of its values by a quarter of its second difference.
+        bend = tops[max(0, i - 1), 1] + tops[min(i + 2, count), 1] - here - there
+        wavy = 0.5 * (here + there) - max(0.0, 0.125 * bend)
+        # Not a number where an axis stands.
+        highest[i] = min(even, wavy) if wavy > min(here, there) else min(even, here, there)
+    return highest
 
 
 @array_arithmetic_kernel
@@ -249,8 +295,8 @@ def first_rate(table: RunTable, ends: RunEnds, nodes: RunNodes) -> FloatArray:
     count, kinds = len(step), forms.shape[2]
     rate = 1.0
     for i in range(count):
+        rate = min(rate, highest[i])
         for end in range(2):
-            rate = min(rate, highest[i, end])
             for k in range(kinds):
                 value = abs(forms[i, end, k, 0])
                 rate = min(rate, 1.0 / value if 2 * k < kinds else value ** (-2.0 / 3.0))
@@ -270,11 +316,26 @@ def first_rate(table: RunTable, ends: RunEnds, nodes: RunNodes) -> FloatArray:
 
 
 @array_kernel
-def tightened(table: RunTable, slower: float) -> RunTable:
-    """A run under limits that hold still when it is driven so much faster."""
-    step, forms, highest = table
-    if slower == 1.0:
-        return table
-    forms = forms * (slower * slower)
-    forms[:, :, forms.shape[2] // 2 :] *= slower
-    return RunTable(step, forms, highest / (slower * slower))
+def tightened(table: RunTable, uses: FloatArray) -> RunTable:
+    """A run under limits that are stricter where they have been passed.
+
+    Args:
+        table: Of the run.
+        uses: Of the limits of velocity, acceleration and jerk along each of n intervals, shape (n, 3).
+    """
+    step, forms, highest = table[0], table[1].copy(), table[2].copy()
+    first_jerk = forms.shape[2] // 2
+    count = len(step)
+    for i in range(count):
+        # An interval sees the coefficients of both its neighbours.
+        fast = max(uses[max(0, i - 1), 0], uses[i, 0], uses[min(i + 1, count - 1), 0])
+        if fast > 1.0:
+            highest[i] /= (SPARE * fast) ** 2
+        for end in range(2):
+            # Both intervals that meet in a node see the same accelerations there.
+            hard = max(uses[i, 1], uses[min(max(0, i + 2 * end - 1), count - 1), 1])
+            if hard > 1.0:
+                forms[i, end, :first_jerk] *= SPARE**2 * hard
+            if uses[i, 2] > 1.0:
+                forms[i, end, first_jerk:] *= SPARE**3 * uses[i, 2]
+    return RunTable(step, forms, highest)

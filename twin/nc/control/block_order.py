@@ -64,7 +64,8 @@ def run_in_order(
             steps.act(word, code)
     steps.move(instead)
     for word, code in codes:
-        steps.follow(word, code)
+        if code.after is not None:
+            steps.follow(word, code)
     for word, function in functions:
         if function.late:
             steps.run_function(word, function)

@@ -7,16 +7,16 @@ from collections.abc import Callable, Mapping
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.bytecode.effects import Affected
 from twin.nc.bytecode.registers import INCREMENTAL, PLANE, PROGRAMMED_FEED, UNIT
-from twin.nc.canonical import Corner, Dwell, Function, Motion
+from twin.nc.canonical import Dwell, Function
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
-from twin.nc.control.state import number_of
 from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
 from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
 from twin.nc.path.event_columns import EventRows
-from twin.nc.path.move_columns import NAN, Segment
+from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
 from twin.nc.path.moves import (
     LARGEST_COORDINATE,
+    RAPIDS_END,
     SMALLEST_MOVE,
     arc_length,
     axis_target,
@@ -38,7 +38,9 @@ class Control(ControlWords):
         for index, word in self.take_axis_words():
             incremental = relative or word.incremental
             here = target[index]
-            value = axis_target(number_of(word), unit, linear[index], incremental, here)
+            written = word.value
+            assert isinstance(written, float)
+            value = axis_target(written, unit, linear[index], incremental, here)
             if not -LARGEST_COORDINATE <= value <= LARGEST_COORDINATE:
                 self.fail("number-range", f"{word.text} is farther than any machine reaches", word)
             target[index] = value
@@ -101,14 +103,14 @@ class Control(ControlWords):
             acceleration = _limited(acceleration, self.axis_accelerations, share)
             deceleration = _limited(deceleration, self.axis_decelerations, share)
         self._last = Segment(  # by place: names would cost a block twice what it takes to make one
-            Motion.RAPID if rapid else Motion.FEED,
+            RAPID if rapid else FEED,
             self.block.line,
             self.block.number,
             self.part,
             end,
             target,
             feed,
-            Corner.EXACT_STOP if rapid else modal.corner,
+            RAPIDS_END if rapid else modal.corner,
             modal.corner_tolerance,
             acceleration,
             deceleration,

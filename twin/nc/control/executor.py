@@ -23,7 +23,7 @@ from twin.nc.control.modal import ModalChanges
 from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import code_number, integer_of, number_of
-from twin.nc.functions import turns_behind
+from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
 from twin.nc.text.source import Source
@@ -90,8 +90,8 @@ class Executor(Control):
 
     def follow(self, _word: Word, code: GCode) -> None:
         """What a code does when the block has moved."""
-        if code.after is not None:
-            code.after(self)
+        assert code.after is not None
+        code.after(self)
 
     def _assign(self, assignments: tuple[Assignment, ...]) -> None:
         """Give variables their values, all of them computed before the first is given."""
@@ -295,7 +295,7 @@ class Executor(Control):
         arguments = {
             address: self.take_computed(address) for address in letters if address in self.words
         }
-        if integer_of(number_of(word)) in (3, 4) and self.spindle is not None:
+        if starts_spindle(integer_of(number_of(word))) and self.spindle is not None:
             arguments["S"] = self.spindle
         return arguments
 

@@ -23,7 +23,7 @@ class ArcRule:
         fits_radius: A centre found by its radius is fitted to both points like a given one.
     """
 
-    clockwise: bool
+    clockwise: bool = True
     bounds: Bounds
     signed_radius: bool = True
     fits_radius: bool = False

@@ -42,16 +42,10 @@ class ControlWords(ControlState, abc.ABC):
         Raises:
             ProgramError: The machine lacks an axis.
         """
-        taken: list[tuple[int, Word]] = []
-        words, letters = self.words, self.axis_letters
-        for address in list(words):
-            if address in letters:
-                word = words.pop(address)
-                index = self.axis_index.get(address)
-                if index is None:
-                    self.refuse_axis(word)
-                taken.append((index, word))
-        return taken
+        words, columns = self.words, self._axis_columns
+        if not self._axes_that_lack.isdisjoint(words):
+            self.refuse_axis(next(words[each] for each in words if each in self._axes_that_lack))
+        return [(columns[each], words.pop(each)) for each in list(words) if each in columns]
 
     def refuse_axis(self, word: Word) -> NoReturn:
         """The machine lacks the axis that the word names."""

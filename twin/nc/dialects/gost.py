@@ -8,10 +8,10 @@ import math
 import re
 
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision, Dialect
 from twin.nc.iso import base, fixed_cycles, shared_decisions, shared_marks
+from twin.nc.iso.declared import instead, modal
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
 RESOLUTION = 9
@@ -183,17 +183,13 @@ GOST = Dialect(
     g={
         **base.CODES,
         **fixed_cycles.RETURN,
-        9: GCode(
-            meaning="exact stop in this block",
-            sets={"corner": Corner.EXACT_STOP},
-            once=True,
+        9: modal(
+            "exact stop in this block", once=True, ground="decision", corner=Corner.EXACT_STOP
         ),
-        61: GCode(meaning="exact stop mode", group="corner", sets={"corner": Corner.EXACT_STOP}),
-        64: GCode(meaning="exact path mode", group="corner", sets={"corner": Corner.EXACT_PATH}),
-        102: GCode(
-            meaning="recalculation of a periodic axis: C360 on, C0 off",
-            perform=switch_recalculation,
-            ground="seed",
+        61: modal("exact stop mode", "corner", ground="decision", corner=Corner.EXACT_STOP),
+        64: modal("exact path mode", "corner", ground="decision", corner=Corner.EXACT_PATH),
+        102: instead(
+            "recalculation of a periodic axis: C360 on, C0 off", switch_recalculation, ground="seed"
         ),
     },
     instead=base.INSTEAD,

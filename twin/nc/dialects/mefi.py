@@ -8,12 +8,14 @@ import dataclasses
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.block_compiler import BlockCompiler
-from twin.nc.control.codes import GCode, Interpolation
+from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision, Dialect
+from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry.arcs import sweep_between
 from twin.nc.iso import base, shared_decisions, shared_marks
-from twin.nc.iso.circular import arc_rule, iso_arc_center, start_and_end
+from twin.nc.iso.circular import BOUNDS, arc_center, both_senses, start_and_end
+from twin.nc.iso.declared import instead, modal, motion_code
 from twin.nc.text.blocks import Block, Location, Word
 from twin.nc.text.syntax import HEADING, Comment, Mark, Syntax
 
@@ -118,7 +120,7 @@ def compile_block(compiler: BlockCompiler, block: Block) -> None:
         _jump(compiler.control, target, count, compiler.assembler)
 
 
-def _arc(control: Control, *, clockwise: bool) -> None:
+def _arc(control: Control, rule: ArcRule) -> None:
     dragging = _dragging(control)
     leads = dragging.leads if dragging.on else {}
     plane = control.modal.plane
@@ -134,33 +136,16 @@ def _arc(control: Control, *, clockwise: bool) -> None:
                 control.words[name],
                 hint="leave it out, or end the helix by G98",
             )
-    radius = control.words.get("R")
-    if radius is not None and control.number(radius) < 0.0:
-        message = "R draws arcs below 180 degrees; what a negative one means is not known"
-        control.fail("arc-radius", message, radius, "write the centre (I, J, K) of a larger arc")
     target = control.target()
-    center = iso_arc_center(control, target, clockwise=clockwise)
+    center = arc_center(control, target, rule)
     start, end = start_and_end(control, target)
-    sweep = sweep_between(start[:2], end[:2], center, clockwise=clockwise)
+    sweep = sweep_between(start[:2], end[:2], center, rule.clockwise)
     for index, lead in leads.items():
         target[index] += lead * abs(sweep) / 360.0
     control.arc_to(target, plane.world(*center, start.height), sweep)
 
 
-def clockwise_arc(control: Control) -> None:
-    """G02, dragging when G09 is in force."""
-    _arc(control, clockwise=True)
-
-
-def counter_clockwise_arc(control: Control) -> None:
-    """G03, dragging when G09 is in force."""
-    _arc(control, clockwise=False)
-
-
-CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True, signed_radius=False))
-COUNTER_CLOCKWISE = Interpolation(
-    counter_clockwise_arc, rule=arc_rule(clockwise=False, signed_radius=False)
-)
+CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_arc, ArcRule(bounds=BOUNDS, signed_radius=False))
 
 DECISIONS = (
     Decision(
@@ -230,19 +215,10 @@ MEFI = Dialect(
     groups=(*base.GROUPS, "helix"),
     g={
         **base.CODES,
-        2: GCode(
-            meaning="arc clockwise",
-            group="motion",
-            sets={"interpolation": CLOCKWISE, "cycle": None},
-            ground="seed",
-        ),
-        3: GCode(
-            meaning="arc counter-clockwise",
-            group="motion",
-            sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None},
-        ),
-        9: GCode(meaning="helix on", group="helix", action=switch_on, ground="seed"),
-        10: GCode(meaning="lead of the dragged axis", perform=store_leads, ground="seed"),
+        2: motion_code("arc clockwise", CLOCKWISE, "seed"),
+        3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "decision"),
+        9: modal("helix on", "helix", switch_on, ground="seed"),
+        10: instead("lead of the dragged axis", store_leads, ground="seed"),
         73: GCode(meaning="jump with repeat: L, Q", after=jump_with_repeat, ground="seed"),
         98: GCode(meaning="helix off", group="helix", action=switch_off, alone=True, ground="seed"),
     },

@@ -1,5 +1,7 @@
 """From programmed coordinates to the part's: offsets, presets, turns, mirror, rotation, scale."""
 
+import operator
+
 import numpy as np
 import numpy.typing as npt
 
@@ -161,14 +163,14 @@ class Frame:
     def to_part(self, programmed: list[float]) -> list[float]:
         """Part coordinates of a programmed position, shape (k,)."""
         if self.is_identity:
-            return [value + shift for value, shift in zip(programmed, self.total, strict=True)]
+            return list(map(operator.add, programmed, self.total))
         others = zip(programmed[3:], self.total[3:], strict=True)
         place = to_part(self.matrix, self.total, (programmed[0], programmed[1], programmed[2]))
         return [*place, *(value + shift for value, shift in others)]
 
     def to_programmed(self, part: list[float]) -> list[float]:
         """The inverse of ``to_part``."""
-        values = [value - shift for value, shift in zip(part, self.total, strict=True)]
+        values = list(map(operator.sub, part, self.total))
         if self.is_identity:
             return values
         place = (part[0], part[1], part[2])

@@ -2,37 +2,42 @@
 
 import dataclasses
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.control.codes import Effect, GCode, Interpolation, MCode, WordEffect
+from twin.nc.control.codes import Action, Effect, GCode, Interpolation, MCode, WordEffect
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
-from twin.nc.control.interpolation import LineRule
+from twin.nc.control.interpolation import ArcRule, LineRule
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
-from twin.nc.geometry.planes import PLANE_ORDER, XY, YZ, ZX, Plane
-from twin.nc.iso.circular import arc_rule, clockwise_arc, counter_clockwise_arc
+from twin.nc.functions import starts_spindle
+from twin.nc.geometry.planes import XY, YZ, ZX
+from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
+from twin.nc.iso.declared import instead, modal, motion_code, plane_code
 from twin.nc.iso.fixed_cycles import CYCLES
 from twin.nc.iso.offsets import OFFSETS, PRESET
 from twin.nc.iso.tool_compensation import COMPENSATION, LENGTH
 from twin.nc.text.blocks import Word
 
 
-def rapid_line(control: Control) -> None:
-    """G0: straight to the target at the machine's own speed."""
-    control.line_to(control.target(), rapid=True)
+def straight(
+    go: Callable[[Control, bool], None], without_words: Action | None = None
+) -> tuple[Interpolation, Interpolation]:
+    """G0, at the machine's own speed, and G1, with the feed.
+
+    Args:
+        go: Takes the words of a block and moves, told whether rapidly.
+        without_words: Of G1, as ``Interpolation`` has it.
+    """
+    return (
+        Interpolation(lambda control: go(control, True), rapid=True, rule=LineRule()),
+        Interpolation(lambda control: go(control, False), without_words, rule=LineRule()),
+    )
 
 
-def feed_line(control: Control) -> None:
-    """G1: straight to the target with the feed."""
-    control.line_to(control.target(), rapid=False)
-
-
-RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
-FEED = Interpolation(feed_line, rule=LineRule())
-CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True))
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=arc_rule(clockwise=False))
+RAPID, FEED = straight(lambda control, rapid: control.line_to(control.target(), rapid=rapid))
+CLOCKWISE, COUNTER_CLOCKWISE = both_senses(iso_arc, ArcRule(bounds=BOUNDS))
 
 
 # Nothing is given back once it is taken (``++``): else dots could be shared out in endless ways.
@@ -64,7 +69,8 @@ def spindle_speed(control: Control, word: Word, assembler: Assembler) -> None:
     """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
     assembler.word_value(word)
     others = control.block.words
-    starts = any(other.address == "M" and other.value in (3.0, 4.0) for other in others)
+    functions = (other.value for other in others if other.address == "M")
+    starts = any(isinstance(number, float) and starts_spindle(number) for number in functions)
     assembler.emit(opcodes.SPEED, 0 if starts else 1)
 
 
@@ -92,61 +98,40 @@ def dwell(letters: str, message: str, hint: str) -> Effect:
     return Effect(write)
 
 
-def plane_effect(plane: Plane) -> Effect:
-    """G17, G18, G19."""
-    return Effect(lambda _, assembler: assembler.emit(opcodes.PLANE, PLANE_ORDER.index(plane)))
-
-
-def _plane(meaning: str, plane: Plane) -> GCode:
-    return GCode(
-        meaning=meaning,
-        group="plane",
-        sets={"plane": plane},
-        action=plane_effect(plane),
-    )
-
-
 PLANES: dict[float, GCode] = {
-    17: _plane("plane X Y", XY),
-    18: _plane("plane Z X", ZX),
-    19: _plane("plane Y Z", YZ),
+    17: plane_code("plane X Y", XY, ground="decision"),
+    18: plane_code("plane Z X", ZX, ground="decision"),
+    19: plane_code("plane Y Z", YZ, ground="decision"),
 }
 DISTANCE: dict[float, GCode] = {
-    90: GCode(meaning="absolute coordinates", group="distance", sets={"incremental": False}),
-    91: GCode(meaning="incremental coordinates", group="distance", sets={"incremental": True}),
+    90: modal("absolute coordinates", "distance", ground="decision", incremental=False),
+    91: modal("incremental coordinates", "distance", ground="decision", incremental=True),
 }
 UNITS = {
-    70: GCode(meaning="inches", group="units", sets={"unit": 25.4}),
-    71: GCode(meaning="millimetres", group="units", sets={"unit": 1.0}),
+    70: modal("inches", "units", ground="decision", unit=25.4),
+    71: modal("millimetres", "units", ground="decision", unit=1.0),
 }
 MOTION = {
-    0: GCode(
-        meaning="rapid positioning", group="motion", sets={"interpolation": RAPID, "cycle": None}
-    ),
-    1: GCode(meaning="straight line", group="motion", sets={"interpolation": FEED, "cycle": None}),
-    2: GCode(
-        meaning="arc clockwise", group="motion", sets={"interpolation": CLOCKWISE, "cycle": None}
-    ),
-    3: GCode(
-        meaning="arc counter-clockwise",
-        group="motion",
-        sets={"interpolation": COUNTER_CLOCKWISE, "cycle": None},
-    ),
+    0: motion_code("rapid positioning", RAPID, "decision"),
+    1: motion_code("straight line", FEED, "decision"),
+    2: motion_code("arc clockwise", CLOCKWISE, "decision"),
+    3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "decision"),
 }
 DWELL = {
-    4: GCode(
-        meaning="dwell, seconds in P, X or F",
-        perform=dwell("PXF", "G4 needs its time", "write G4 P and the seconds"),
+    4: instead(
+        "dwell, seconds in P, X or F",
+        dwell("PXF", "G4 needs its time", "write G4 P and the seconds"),
         takes="F",
+        ground="decision",
     )
 }
-
 FEEDS = {
-    94: GCode(meaning="feed per minute", group="feed", sets={"feed_mode": FeedMode.PER_MINUTE}),
-    95: GCode(
-        meaning="feed per revolution of the spindle",
-        group="feed",
-        sets={"feed_mode": FeedMode.PER_REVOLUTION},
+    94: modal("feed per minute", "feed", ground="decision", feed_mode=FeedMode.PER_MINUTE),
+    95: modal(
+        "feed per revolution of the spindle",
+        "feed",
+        ground="decision",
+        feed_mode=FeedMode.PER_REVOLUTION,
     ),
 }
 

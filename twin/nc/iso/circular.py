@@ -2,8 +2,10 @@
 
 import dataclasses
 import math
+from collections.abc import Callable
 from typing import NoReturn
 
+from twin.nc.control.codes import Action, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry import arcs
@@ -56,16 +58,16 @@ def plane_center_letters(control: Control) -> str:
 
 
 def fitted_center(
-    control: Control, start: Point, end: Point, center: Point, word: Word | None
+    control: Control, ends: tuple[Point, Point], center: Point, bounds: Bounds, word: Word | None
 ) -> Point:
-    """The centre moved so that both points lie on one circle.
+    """The centre moved so that both ends of an arc lie on one circle.
 
     Raises:
-        ProgramError: They are farther from one circle than rounding explains.
+        ProgramError: They are farther from one circle than the bounds allow.
     """
-    finding, fitted = arcs.fitted_center(start, end, center, BOUNDS)
+    finding, fitted = arcs.fitted_center(*ends, center, bounds)
     if finding != arcs.FITS:
-        refuse_arc(control, finding, word, distance(start, center), distance(end, center))
+        refuse_arc(control, finding, word, *(distance(end, center) for end in ends))
     return fitted
 
 
@@ -106,6 +108,11 @@ _FINDINGS = {
         "arc-full-by-radius",
         "start and end are the same point: a radius leaves the centre undefined",
         "write the centre (I, J, K) of a full circle",
+    ),
+    arcs.NEGATIVE_RADIUS: (
+        "arc-radius",
+        "R draws arcs below 180 degrees; what a negative one means is not known",
+        "write the centre (I, J, K) of a larger arc",
     ),
     arcs.SHORT_RADIUS: (
         "arc-radius",
@@ -159,39 +166,39 @@ def start_and_end(control: Control, target: list[float]) -> tuple[Local, Local]:
     return plane.local(control.programmed), plane.local(target)
 
 
-def iso_arc_center(control: Control, target: list[float], *, clockwise: bool) -> Point:
-    """Take R or I, J, K (relative to the start) and find the centre by ISO 6983-1.
+def arc_center(control: Control, target: list[float], rule: ArcRule) -> Point:
+    """Take R or I, J, K and find the centre by ISO 6983-1.
 
     Raises:
         ProgramError: There is no centre, or it does not fit.
     """
-    start, end = start_and_end(control, target)
-    start, end = start[:2], end[:2]
-    letters = plane_center_letters(control)
-    radius, centre = control.take("R"), take_center(control, letters)
+    start, end = (each[:2] for each in start_and_end(control, target))
+    radius, centre = control.take("R"), take_center(control, plane_center_letters(control))
     words = ArcWords(math.nan, math.nan, math.nan)
     if centre.words:
         words = ArcWords(math.nan, *control.modal.plane.local(centre.vector)[:2])
     if radius is not None:
         words = words._replace(radius=control.length(radius))
-    sense = Sense(clockwise, signed=True, fits=False)
-    finding, center = arcs.center_of_words(start, end, words, False, sense, BOUNDS)
+    absolute = control.modal.center_absolute
+    sense = Sense(rule.clockwise, rule.signed_radius, rule.fits_radius)
+    finding, center = arcs.center_of_words(start, end, words, absolute, sense, rule.bounds)
     if finding == arcs.WITHOUT_CENTER:
-        refuse_missing_center(control, ", ".join(letters))
+        refuse_missing_center(control)
     if finding != arcs.FITS and radius is not None:
         refuse_arc(control, finding, radius, abs(words.radius), distance(start, end) / 2.0)
     if finding != arcs.FITS:
-        given = programmed_center(start, words.first, words.second, absolute=False)
+        given = programmed_center(start, words.first, words.second, absolute)
         refuse_arc(control, finding, centre.words[0], distance(start, given), distance(end, given))
     return center
 
 
-def refuse_missing_center(control: Control, letters: str) -> NoReturn:
-    """An arc needs one of these words, or R.
+def refuse_missing_center(control: Control) -> NoReturn:
+    """An arc has no word that says where its centre lies.
 
     Raises:
         ProgramError: Always.
     """
+    letters = ", ".join(plane_center_letters(control))
     control.fail(
         "arc-without-center",
         "the arc has neither a centre nor a radius",
@@ -199,24 +206,26 @@ def refuse_missing_center(control: Control, letters: str) -> NoReturn:
     )
 
 
-def clockwise_arc(control: Control) -> None:
-    """G2 by ISO 6983-1."""
-    _iso_arc(control, clockwise=True)
-
-
-def counter_clockwise_arc(control: Control) -> None:
-    """G3 by ISO 6983-1."""
-    _iso_arc(control, clockwise=False)
-
-
-def _iso_arc(control: Control, *, clockwise: bool) -> None:
+def iso_arc(control: Control, rule: ArcRule) -> None:
+    """G2, G3 by ISO 6983-1."""
     target = control.target()
-    center = iso_arc_center(control, target, clockwise=clockwise)
-    sweep_arc(control, target, center, clockwise=clockwise)
+    sweep_arc(control, target, arc_center(control, target, rule), clockwise=rule.clockwise)
 
 
-def arc_rule(*, clockwise: bool, signed_radius: bool = True, fits_radius: bool = False) -> ArcRule:
-    """An arc by ISO 6983-1 or much like it."""
-    return ArcRule(
-        clockwise=clockwise, bounds=BOUNDS, signed_radius=signed_radius, fits_radius=fits_radius
-    )
+def both_senses(
+    perform: Callable[[Control, ArcRule], None],
+    rule: ArcRule,
+    without_words: Action | None = None,
+) -> tuple[Interpolation, Interpolation]:
+    """Arcs clockwise and counter-clockwise.
+
+    Args:
+        perform: Takes the words of a block and moves, by the rule of its sense.
+        rule: What both senses have alike.
+        without_words: As ``Interpolation`` has it.
+    """
+
+    def sense(rule: ArcRule) -> Interpolation:
+        return Interpolation(lambda control: perform(control, rule), without_words, rule=rule)
+
+    return sense(rule), sense(dataclasses.replace(rule, clockwise=False))

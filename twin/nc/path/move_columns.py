@@ -25,6 +25,10 @@ CHUNK = 4096
 
 NAN = math.nan
 
+LINE, ARC = int(Shape.LINE), int(Shape.ARC)
+RAPID, FEED = Motion.RAPID, Motion.FEED
+"""Members of enumerations by names of their own: CPython 3.11 looks each of them up by a call of Python."""
+
 
 @dataclasses.dataclass(slots=True)
 class Segment:
@@ -65,8 +69,8 @@ class Segment:
     @property
     def codes(self) -> tuple[int, ...]:
         """Motion, shape, line, block and corner."""
-        shape = Shape.LINE if self.center is None else Shape.ARC
-        return (self.motion, shape, self.line, self.block, self.corner)
+        shape = LINE if self.center is None else ARC
+        return (int(self.motion), shape, self.line, self.block, int(self.corner))
 
     @property
     def values(self) -> tuple[float, ...]:

@@ -7,13 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.compilation.compilable import inlined
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import Corner, FloatArray
 from twin.nc.geometry.planes import Vector, along
 
 Position = list[float] | FloatArray
 
 LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
+RAPIDS_END = Corner.EXACT_STOP
+"""How the end of a rapid is passed."""
 SMALLEST_MOVE = 1e-9
 """A move that goes less far than this goes nowhere [mm or deg]: far below any resolution."""
 
@@ -75,10 +77,10 @@ def arc_length(
 @inlined
 def only_turns(start: Position, end: Position, linear: Sequence[bool] | NDArray[np.bool_]) -> bool:
     """Whether a straight move moves no linear axis: then F counts degrees."""
-    turning = True
-    for axis in range(len(start)):
-        turning = turning and (end[axis] == start[axis] or not linear[axis])
-    return turning
+    axis, axes = 0, len(start)
+    while axis < axes and (end[axis] == start[axis] or not linear[axis]):
+        axis += 1
+    return axis == axes
 
 
 @inlined

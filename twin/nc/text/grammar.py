@@ -1,9 +1,16 @@
 """A dialect's syntax as compiled patterns."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
-from twin.nc.text.comments import NO_COMMENT, OPEN_COMMENT, comment_end, comment_marks
+from twin.nc.text.comments import (
+    OPEN_COMMENT,
+    closed_comment,
+    comment_end,
+    comment_marks,
+    comments_of,
+    without_comments,
+)
 from twin.nc.text.expression_reader import ExpressionReader, operator_pattern
 from twin.nc.text.expressions import ExpressionSyntax
 from twin.nc.text.plain_word import BLANKS, BLANKS_BETWEEN, SIGNED_NUMBER
@@ -16,7 +23,8 @@ class Grammar:
     Attributes:
         language: Whose syntax it is.
         syntax: Its declaration.
-        comment_openings: The characters that they may begin with.
+        comment: A comment that is closed, unless it can only begin its line.
+        comment_openings: The characters that comments may begin with.
         word: An address with a plain number and, where the dialect has it, the incremental suffix.
         address: An address alone.
         suffix: The incremental suffix alone.
@@ -40,6 +48,7 @@ class Grammar:
             rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}({SIGNED_NUMBER})(?!{continues}){suffix}"
         )
         self._comments = comment_marks(syntax.comments)
+        self.comment = re.compile(BLANKS + closed_comment(self._comments))
         self.comment_openings = {comment.opening[0] for comment in syntax.comments}
         self.address = _compiled(rf"{BLANKS}({syntax.address}){BLANKS_BETWEEN}")
         self.suffix = _compiled(suffix)
@@ -51,15 +60,9 @@ class Grammar:
         """The place behind a line's comment that begins at a place, or as ``comments.comment_end``."""
         return comment_end(line.encode("ascii", "replace"), 0, at, len(line), self._comments)
 
-    def comments_of(self, line: str) -> Iterator[tuple[int, int]]:
-        """Where the comments of a line begin, and what ``comment_end`` says of each."""
-        behind = 0
-        for at, character in enumerate(line):
-            if at >= behind and character in self.comment_openings:
-                end = self.comment_end(line, at)
-                if end != NO_COMMENT:
-                    yield at, end
-                behind = max(behind, end)
+    def without_comments(self, line: str) -> tuple[str, int]:
+        """A line with blanks in place of its comments, as ``comments.without_comments``."""
+        return without_comments(line, self._comments)
 
     def outside_comments(
         self, pattern: re.Pattern[str], new: Callable[[re.Match[str]], str], line: str
@@ -67,7 +70,7 @@ class Grammar:
         """A line with what matches a pattern outside its comments replaced."""
         pieces: list[str] = []
         at = 0
-        for begin, end in self.comments_of(line):
+        for begin, end in comments_of(line, self._comments):
             if end != OPEN_COMMENT:
                 pieces += [pattern.sub(new, line[at:begin]), line[begin:end]]
                 at = end

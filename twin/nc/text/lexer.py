@@ -20,7 +20,10 @@ class Lexer:
     """Reads the lines of programs in one dialect."""
 
     def __init__(self, language: Language, report: Reporter) -> None:
-        self._grammar = Grammar(language)
+        self._grammar = grammar = Grammar(language)
+        self._block_end = grammar.syntax.block_end
+        self._closes_up = grammar.syntax.blanks_in_numbers
+        self._longest = grammar.syntax.longest_line
         self._report = report
 
     @property
@@ -45,11 +48,11 @@ class Lexer:
         if not line or line.isspace():
             return ()
         self._report.line = number
-        self._check(line)
-        end = self._grammar.syntax.block_end
-        if end:
-            line = line.rstrip(f"{end} \t")
-        if self._grammar.syntax.blanks_in_numbers and _SPLIT.search(line):
+        if len(line) > self._longest or not line.isprintable():
+            self._check(line)
+        if self._block_end:
+            line = line.rstrip(f"{self._block_end} \t")
+        if self._closes_up and _SPLIT.search(line):
             line = self._grammar.outside_comments(_NUMBER_WITH_BLANKS, _closed_up, line)
         try:
             return LineReader(self._grammar, self._report, line, number).blocks()
@@ -61,16 +64,14 @@ class Lexer:
         return ()
 
     def _check(self, line: str) -> None:
-        longest = self._grammar.syntax.longest_line
-        if len(line) > longest:
-            message = f"the line has {len(line)} characters, more than {longest}"
-            self._report.fail("line-too-long", message, longest)
-        if not line.isprintable():
-            for column, character in enumerate(line):
-                if is_control(ord(character)):
-                    message = f"the line holds the control character {ord(character)}"
-                    hint = None if ord(character) else "if the file is UTF-16, save it as UTF-8"
-                    self._report.fail("control-character", message, column, hint=hint)
+        if len(line) > self._longest:
+            message = f"the line has {len(line)} characters, more than {self._longest}"
+            self._report.fail("line-too-long", message, self._longest)
+        for column, character in enumerate(line):
+            if is_control(ord(character)):
+                message = f"the line holds the control character {ord(character)}"
+                hint = None if ord(character) else "if the file is UTF-16, save it as UTF-8"
+                self._report.fail("control-character", message, column, hint=hint)
 
 
 def _closed_up(number: re.Match[str]) -> str:

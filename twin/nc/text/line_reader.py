@@ -47,20 +47,21 @@ _LOOKALIKES = str.maketrans("АВСЕНІКМОРТХУЗ", "ABCEHIKMOPTXY3")
 class LineReader:
     """Reads one line."""
 
+    _at = 0
+    _number = NO_BLOCK_NUMBER
+    _name = ""
+    _skippable = False
+    _skip_level = 1
+
     def __init__(self, grammar: Grammar, report: Reporter, line: str, number: int) -> None:
         self._grammar = grammar
         self._syntax = grammar.syntax
         self._report = report
         self._line = line
         self._line_number = number
-        self._at = 0
         self._done: list[Block] = []
         self._words: list[Word] = []
         self._assignments: list[Assignment] = []
-        self._number = NO_BLOCK_NUMBER
-        self._name = ""
-        self._skippable = False
-        self._skip_level = 1
 
     def blocks(self) -> tuple[Block, ...]:
         """The line's blocks.
@@ -70,7 +71,7 @@ class LineReader:
         """
         has_statements = self._grammar.statement is not None
         end = len(self._line)
-        while True:
+        while self._at < end:
             if has_statements and not self._words and self._statement():
                 continue
             if self._plain_words():
@@ -105,6 +106,10 @@ class LineReader:
 
     def _something_else(self) -> bool:
         """Read what is no plain word and no statement; False at the end of the line."""
+        comment = self._grammar.comment.match(self._line, self._at)
+        if comment is not None:
+            self._at = comment.end()
+            return True
         blanks = _BLANKS.match(self._line, self._at)
         assert blanks is not None
         self._at = blanks.end()
@@ -142,12 +147,16 @@ class LineReader:
         return True
 
     def _refuse_open_comment(self, text: str, at: int) -> NoReturn:
-        """A comment that begins a text, at a column, is not closed.
+        """A comment that begins a text, at a column, is not closed, or holds another one.
 
         Raises:
             ProgramError: Always.
         """
         begun = next(each for each in self._syntax.comments if text.startswith(each.opening))
+        again = text.find(begun.opening, len(begun.opening))
+        if not begun.holds_opening and 0 <= again < text.find(begun.closing):
+            message = f"a comment that '{begun.opening}' began holds no further '{begun.opening}'"
+            self._fail("open-comment", message, at + again, hint="close the first comment before")
         message = f"the comment is not closed by '{begun.closing}'"
         self._fail("open-comment", message, at, hint="close it on its own line")
 
@@ -202,7 +211,10 @@ class LineReader:
             end = label.start()
         text = self._line[start:end]
         if self._syntax.inner_comments:
-            return self._without_comments(text, start)
+            text, wrong = self._grammar.without_comments(text)
+            if wrong != NO_COMMENT:
+                self._refuse_open_comment(text[wrong:], start + wrong)
+            return text
         for comment in self._syntax.comments:
             if comment.closing and text.rstrip().endswith(comment.closing):
                 opening = text.rfind(comment.opening)
@@ -212,14 +224,6 @@ class LineReader:
                     and not self._wants_value(text[:opening], comment.opening)
                 ):
                     return text[:opening] + " " * (len(text) - opening)
-        return text
-
-    def _without_comments(self, text: str, start: int) -> str:
-        """A statement's text with blanks in place of its comments in brackets."""
-        for begin, end in self._grammar.comments_of(text):
-            if end == OPEN_COMMENT:
-                self._refuse_open_comment(text[begin:], start + begin)
-            text = text[:begin] + " " * (end - begin) + text[end:]
         return text
 
     def _wants_value(self, text: str, opening: str) -> bool:

@@ -1,11 +1,16 @@
 """Arcs of CODESYS SoftMotion: radius, centre with the 10 % rule, opening angle, any plane."""
 
-from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import ArcRule
 from twin.nc.geometry import arcs
 from twin.nc.geometry.arcs import SAME_POINT, Bounds, Point, distance, turned
-from twin.nc.iso.circular import refuse_arc, start_and_end, sweep_arc, take_center
+from twin.nc.iso.circular import (
+    both_senses,
+    refuse_arc,
+    start_and_end,
+    sweep_arc,
+    take_center,
+)
 from twin.nc.text.blocks import Word
 
 BOUNDS = Bounds(mismatch=0.0, mismatch_share=0.1, shift=1e-3, shift_share=0.0)
@@ -19,17 +24,17 @@ LARGEST_OPENING = 1080.0
 """Largest opening angle: three turns, as the page says [deg]."""
 
 
-def _arc(control: Control, *, clockwise: bool) -> None:
+def _arc(control: Control, rule: ArcRule) -> None:
     radius, opening = control.take("R"), control.take("T")
     if opening is not None:
         if radius is not None:
             control.fail("arc-overdefined", "an arc has an opening angle or a radius", radius)
-        _opening_arc(control, opening, clockwise=clockwise)
+        _opening_arc(control, opening, clockwise=rule.clockwise)
         return
     if radius is not None:
-        _radius_arc(control, radius, clockwise=clockwise)
+        _radius_arc(control, radius, clockwise=rule.clockwise)
         return
-    _center_arc(control, clockwise=clockwise)
+    _center_arc(control, rule)
 
 
 def _radius_arc(control: Control, word: Word, *, clockwise: bool) -> None:
@@ -51,14 +56,14 @@ def _radius_arc(control: Control, word: Word, *, clockwise: bool) -> None:
     sweep_arc(control, target, center, clockwise=clockwise)
 
 
-def _center_arc(control: Control, *, clockwise: bool) -> None:
+def _center_arc(control: Control, rule: ArcRule) -> None:
     center, word = _programmed_center(control)
     target = control.target()
     start, end = start_and_end(control, target)
     if center is None:
         _line_instead(control, target, "the arc has no centre and no radius: a straight line", None)
         return
-    finding, fitted = arcs.fitted_center(start[:2], end[:2], center, BOUNDS)
+    finding, fitted = arcs.fitted_center(start[:2], end[:2], center, rule.bounds)
     if finding in (arcs.ON_CENTER, arcs.UNEQUAL):
         first, last = distance(start[:2], center), distance(end[:2], center)
         message = (
@@ -71,7 +76,7 @@ def _center_arc(control: Control, *, clockwise: bool) -> None:
         moved = distance(center, fitted)
         message = f"the centre is corrected by {moved:.4f} to fit start and end"
         control.warn("arc-center-corrected", message, word)
-    sweep_arc(control, target, fitted, clockwise=clockwise)
+    sweep_arc(control, target, fitted, clockwise=rule.clockwise)
 
 
 def _opening_arc(control: Control, opening: Word, *, clockwise: bool) -> None:
@@ -126,19 +131,4 @@ def _line_instead(control: Control, target: list[float], message: str, word: Wor
     control.line_to(target, rapid=False)
 
 
-def clockwise_arc(control: Control) -> None:
-    """G2."""
-    _arc(control, clockwise=True)
-
-
-def counter_clockwise_arc(control: Control) -> None:
-    """G3."""
-    _arc(control, clockwise=False)
-
-
-CLOCKWISE = Interpolation(
-    clockwise_arc, rule=ArcRule(clockwise=True, bounds=BOUNDS, signed_radius=False)
-)
-COUNTER_CLOCKWISE = Interpolation(
-    counter_clockwise_arc, rule=ArcRule(clockwise=False, bounds=BOUNDS, signed_radius=False)
-)
+CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_arc, ArcRule(bounds=BOUNDS, signed_radius=False))

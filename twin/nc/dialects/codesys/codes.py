@@ -1,7 +1,6 @@
 """G codes of CODESYS SoftMotion."""
 
-from twin.nc.control.codes import Effect, GCode, Interpolation
-from twin.nc.control.interpolation import LineRule
+from twin.nc.control.codes import Effect, GCode
 from twin.nc.dialects.codesys import actions, jumps, program
 from twin.nc.dialects.codesys.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.codesys.curves import (
@@ -11,9 +10,9 @@ from twin.nc.dialects.codesys.curves import (
     PARABOLA,
     SPATIAL_SPLINE,
 )
-from twin.nc.geometry.planes import XY, YZ, ZX, Plane
+from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base
-from twin.nc.iso.base import rapid_line
+from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
 from twin.nc.iso.tool_compensation import (
     END_OF_COMPENSATION,
     LEFT,
@@ -22,189 +21,72 @@ from twin.nc.iso.tool_compensation import (
 )
 from twin.nc.path.blends import BlendKind
 
-
-def _motion(meaning: str, interpolation: Interpolation, *, seed: bool = False) -> GCode:
-    return GCode(
-        meaning=meaning,
-        group="motion",
-        sets={"interpolation": interpolation},
-        ground="seed" if seed else "manual",
-    )
-
-
-def _plane(meaning: str, plane: Plane) -> GCode:
-    return GCode(
-        meaning=meaning,
-        group="plane",
-        sets={"plane": plane},
-        action=actions.plane_changed,
-        compiler=base.plane_effect(plane).write,
-        ground="manual",
-    )
-
-
-RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
-
 _PROFILE = "what it sets in the path preprocessing has no counterpart in the twin"
 
 
 CODES: dict[float, GCode] = {
-    0: _motion("positioning in a straight line; FF is its feed", RAPID),
-    1: _motion("straight line", base.FEED, seed=True),
-    2: _motion("arc clockwise", CLOCKWISE, seed=True),
-    3: _motion("arc counter-clockwise", COUNTER_CLOCKWISE, seed=True),
-    4: GCode(
-        meaning="dwell, seconds in T",
-        perform=base.dwell("T", "G4 needs T, its seconds", "write G4 T1"),
-        ground="manual",
-    ),
-    5: _motion("point of a spline in X Y", FLAT_SPLINE),
-    6: _motion("parabola: X Y, vertex I J", PARABOLA),
-    8: _motion("ellipse clockwise: X Y I J K R", CLOCKWISE_ELLIPSE),
-    9: _motion("ellipse counter-clockwise: X Y I J K R", COUNTER_CLOCKWISE_ELLIPSE),
-    10: _motion("point of a spline in space", SPATIAL_SPLINE),
-    15: _plane("2D mode: arcs in X Y", XY),
-    16: GCode(
-        meaning="3D mode, plane with normal I J K",
-        group="plane",
-        action=actions.free_plane,
-        ground="manual",
-    ),
-    17: _plane("3D mode, plane X Y", XY),
-    18: _plane("3D mode, plane Z X", ZX),
-    19: _plane("3D mode, plane Y Z", YZ),
-    20: GCode(
-        meaning="jump to L (or the label L? behind) when K is not 0",
-        perform=Effect(jumps.conditional_jump),
+    0: motion_code("positioning in a straight line; FF is its feed", base.RAPID),
+    1: motion_code("straight line", base.FEED, "seed"),
+    2: motion_code("arc clockwise", CLOCKWISE, "seed"),
+    3: motion_code("arc counter-clockwise", COUNTER_CLOCKWISE, "seed"),
+    4: instead("dwell, seconds in T", base.dwell("T", "G4 needs T, its seconds", "write G4 T1")),
+    5: motion_code("point of a spline in X Y", FLAT_SPLINE),
+    6: motion_code("parabola: X Y, vertex I J", PARABOLA),
+    8: motion_code("ellipse clockwise: X Y I J K R", CLOCKWISE_ELLIPSE),
+    9: motion_code("ellipse counter-clockwise: X Y I J K R", COUNTER_CLOCKWISE_ELLIPSE),
+    10: motion_code("point of a spline in space", SPATIAL_SPLINE),
+    15: plane_code("2D mode: arcs in X Y", XY, actions.plane_changed),
+    16: modal("3D mode, plane with normal I J K", "plane", actions.free_plane),
+    17: plane_code("3D mode, plane X Y", XY, actions.plane_changed),
+    18: plane_code("3D mode, plane Z X", ZX, actions.plane_changed),
+    19: plane_code("3D mode, plane Y Z", YZ, actions.plane_changed),
+    20: instead(
+        "jump to L (or the label L? behind) when K is not 0",
+        Effect(jumps.conditional_jump),
         takes="L!",
-        ground="manual",
     ),
-    31: GCode(meaning="probe", perform=actions.probe, ground="manual"),
-    36: GCode(
-        meaning="write D to the variable O",
-        perform=Effect(program.write_variable),
-        takes="D",
-        ground="manual",
+    31: instead("probe", actions.probe),
+    36: instead("write D to the variable O", Effect(program.write_variable), takes="D"),
+    37: instead("add D to the variable O", Effect(program.add_to_variable), takes="D"),
+    **refused("state flags", _PROFILE, 38),
+    **refused("parameters of the preprocessing", _PROFILE, 39),
+    40: modal("radius compensation off", "compensation", END_OF_COMPENSATION),
+    41: modal("radius compensation left, radius D", "compensation", compensation_by_radius(LEFT)),
+    42: modal("radius compensation right, radius D", "compensation", compensation_by_radius(RIGHT)),
+    43: modal(
+        "tool length vector I J K; the next move leads into it", "length", actions.length_vector
     ),
-    37: GCode(
-        meaning="add D to the variable O",
-        perform=Effect(program.add_to_variable),
-        takes="D",
-        ground="manual",
+    50: modal("smoothing off", "smoothing", actions.keep_corners),
+    51: modal(
+        "corners become splines, cut at the distance D",
+        "smoothing",
+        actions.smooth_corners(BlendKind.SPLINE),
     ),
-    38: GCode(meaning="state flags", refused=_PROFILE, ground="manual"),
-    39: GCode(meaning="parameters of the preprocessing", refused=_PROFILE, ground="manual"),
-    40: GCode(
-        meaning="radius compensation off",
-        group="compensation",
-        action=END_OF_COMPENSATION,
-        ground="manual",
+    52: modal(
+        "corners become arcs, cut at the distance D",
+        "smoothing",
+        actions.smooth_corners(BlendKind.ARC),
     ),
-    41: GCode(
-        meaning="radius compensation left, radius D",
-        group="compensation",
-        action=compensation_by_radius(LEFT),
-        ground="manual",
-    ),
-    42: GCode(
-        meaning="radius compensation right, radius D",
-        group="compensation",
-        action=compensation_by_radius(RIGHT),
-        ground="manual",
-    ),
-    43: GCode(
-        meaning="tool length vector I J K; the next move leads into it",
-        group="length",
-        action=actions.length_vector,
-        ground="manual",
-    ),
-    50: GCode(
-        meaning="smoothing off",
-        group="smoothing",
-        action=actions.keep_corners,
-        ground="manual",
-    ),
-    51: GCode(
-        meaning="corners become splines, cut at the distance D",
-        group="smoothing",
-        action=actions.smooth_corners(BlendKind.SPLINE),
-        ground="manual",
-    ),
-    52: GCode(
-        meaning="corners become arcs, cut at the distance D",
-        group="smoothing",
-        action=actions.smooth_corners(BlendKind.ARC),
-        ground="manual",
-    ),
-    53: GCode(
-        meaning="coordinate shift off",
-        perform=Effect(actions.reset_shift),
-        ground="manual",
-    ),
-    54: GCode(
-        meaning="coordinate shift, absolute",
-        perform=Effect(actions.shift_absolutely),
-        ground="manual",
-    ),
-    55: GCode(
-        meaning="coordinate shift, relative", perform=actions.shift_relatively, ground="manual"
-    ),
-    56: GCode(
-        meaning="set the reference here",
-        perform=Effect(actions.set_reference),
-        ground="manual",
-    ),
-    60: GCode(
-        meaning="loop avoidance off", group="loops", action=actions.keep_loops, ground="manual"
-    ),
-    61: GCode(
-        meaning="loop avoidance on: loops are cut out",
-        group="loops",
-        action=actions.cut_loops,
-        ground="manual",
-    ),
-    70: GCode(
-        meaning="additional axis L (6 is C) goes with each move; without L all",
-        perform=actions.go_as_programmed,
+    53: instead("coordinate shift off", Effect(actions.reset_shift)),
+    54: instead("coordinate shift, absolute", Effect(actions.shift_absolutely)),
+    55: instead("coordinate shift, relative", actions.shift_relatively),
+    56: instead("set the reference here", Effect(actions.set_reference)),
+    60: modal("loop avoidance off", "loops", actions.keep_loops),
+    61: modal("loop avoidance on: loops are cut out", "loops", actions.cut_loops),
+    70: instead(
+        "additional axis L (6 is C) goes with each move; without L all",
+        actions.go_as_programmed,
         takes="L",
-        ground="manual",
     ),
-    71: GCode(
-        meaning="additional axis L goes evenly over the moves up to G70",
-        perform=actions.go_evenly,
-        takes="L",
-        ground="manual",
+    71: instead(
+        "additional axis L goes evenly over the moves up to G70", actions.go_evenly, takes="L"
     ),
-    75: GCode(meaning="wait for the motion before variables are read", ground="manual"),
-    90: GCode(
-        meaning="absolute coordinates",
-        group="distance",
-        sets={"incremental": False},
-        ground="manual",
-    ),
-    91: GCode(
-        meaning="relative coordinates",
-        group="distance",
-        sets={"incremental": True},
-        ground="manual",
-    ),
-    92: GCode(
-        meaning="position from which the path goes on",
-        perform=actions.set_position,
-        ground="manual",
-    ),
-    98: GCode(
-        meaning="centre I J K absolute",
-        group="centre",
-        sets={"center_absolute": True},
-        ground="seed",
-    ),
-    99: GCode(
-        meaning="centre I J K relative to the start",
-        group="centre",
-        sets={"center_absolute": False},
-        ground="seed",
-    ),
+    75: modal("wait for the motion before variables are read"),
+    90: modal("absolute coordinates", "distance", incremental=False),
+    91: modal("relative coordinates", "distance", incremental=True),
+    92: instead("position from which the path goes on", actions.set_position),
+    98: modal("centre I J K absolute", "centre", ground="seed", center_absolute=True),
+    99: modal("centre I J K relative to the start", "centre", ground="seed", center_absolute=False),
 }
 
 INSTEAD: dict[float, str] = {

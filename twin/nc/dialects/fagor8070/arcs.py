@@ -8,7 +8,7 @@ import math
 
 from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import LineRule
+from twin.nc.control.interpolation import ArcRule
 from twin.nc.dialects.fagor8070.memory import memory_of, polar_origin
 from twin.nc.dialects.fagor8070.polar import Goal, forget_polar, take_goal
 from twin.nc.geometry import arcs
@@ -24,8 +24,10 @@ from twin.nc.geometry.arcs import (
     sweep_between,
     turned,
 )
+from twin.nc.iso import base
 from twin.nc.iso.circular import (
-    arc_rule,
+    BOUNDS,
+    both_senses,
     center_of_radius,
     fitted_center,
     refuse_arc,
@@ -42,17 +44,12 @@ MOST_TURNS = 1000
 """Turns of one helix: a thread has a hundred, and a pitch that asks for more is a slip of the pen."""
 
 
-def rapid_line(control: Control) -> None:
-    """G00."""
-    control.line_to(take_goal(control, arc=False).target, rapid=True)
+def _line(control: Control, rapid: bool) -> None:
+    control.line_to(take_goal(control, arc=False).target, rapid=rapid)
 
 
-def feed_line(control: Control) -> None:
-    """G01."""
-    control.line_to(take_goal(control, arc=False).target, rapid=False)
-
-
-def _arc(control: Control, *, clockwise: bool) -> None:
+def _arc(control: Control, rule: ArcRule) -> None:
+    clockwise = rule.clockwise
     if memory_of(control).temporary:
         _arc_about_own_center(control, clockwise=clockwise)
         return
@@ -89,7 +86,7 @@ def _arc(control: Control, *, clockwise: bool) -> None:
         memory.circle_radius = None
     if goal.in_plane or pitch is None:
         word = centre.words[0] if centre.words else None
-        fitted = fitted_center(control, start[:2], end[:2], center, word)
+        fitted = fitted_center(control, (start[:2], end[:2]), center, rule.bounds, word)
         if control.modal.correct_center:
             center = fitted
         else:
@@ -252,21 +249,7 @@ def _arc_about_own_center(control: Control, *, clockwise: bool) -> None:
     control.arc_to(target, plane.world(*center, start.height), sweep)
 
 
-def clockwise_arc(control: Control) -> None:
-    """G02."""
-    _arc(control, clockwise=True)
-
-
-def counter_clockwise_arc(control: Control) -> None:
-    """G03."""
-    _arc(control, clockwise=False)
-
-
-RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
-FEED = Interpolation(feed_line, rule=LineRule())
-CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True, fits_radius=True))
-COUNTER_CLOCKWISE = Interpolation(
-    counter_clockwise_arc, rule=arc_rule(clockwise=False, fits_radius=True)
-)
+RAPID, FEED = base.straight(_line)
+CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_arc, ArcRule(bounds=BOUNDS, fits_radius=True))
 TANGENT = Interpolation(tangent_arc)
 THREE_POINTS = Interpolation(three_point_arc)

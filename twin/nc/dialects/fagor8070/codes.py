@@ -1,20 +1,18 @@
 """G codes of the Fagor CNC 8070."""
 
-from collections.abc import Mapping
-from typing import Unpack
-
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import Action, CodeWriter, Effect, GCode, Interpolation
+from twin.nc.control.codes import CodeWriter, Effect, GCode
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode, ModalChanges
+from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.fagor8070 import arcs, corners, frames, polar, transformations
 from twin.nc.dialects.fagor8070.cycles.canned_cycles import CYCLES
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.dialects.fagor8070.offset_table import offset_code
-from twin.nc.geometry.planes import XY, YZ, ZX, Plane
+from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base, fixed_cycles, offsets
+from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
 from twin.nc.iso.tool_compensation import (
     END_OF_COMPENSATION,
     LEFT,
@@ -49,48 +47,6 @@ def _forgetting_polar(write: CodeWriter) -> Effect:
     return Effect(both)
 
 
-def _g(meaning: str, group: str = "", **sets: Unpack[ModalChanges]) -> GCode:
-    return GCode(meaning=meaning, group=group, sets=sets, ground="manual")
-
-
-def _motion(meaning: str, interpolation: Interpolation, *, seed: bool = False) -> GCode:
-    return GCode(
-        meaning=meaning,
-        group="motion",
-        sets={"interpolation": interpolation, "cycle": None},
-        ground="seed" if seed else "manual",
-    )
-
-
-def _once(meaning: str, **sets: Unpack[ModalChanges]) -> GCode:
-    return GCode(meaning=meaning, sets=sets, once=True, ground="manual")
-
-
-def _plane(meaning: str, plane: Plane) -> GCode:
-    return GCode(
-        meaning=meaning,
-        group="plane",
-        sets={"plane": plane},
-        action=base.plane_effect(plane),
-        ground="seed",
-    )
-
-
-def _do(meaning: str, action: Action, *, group: str = "", takes: str = "") -> GCode:
-    if takes:
-        return GCode(meaning=meaning, group=group, perform=action, takes=takes, ground="manual")
-    return GCode(meaning=meaning, group=group, action=action, ground="manual")
-
-
-def _decided(meaning: str, action: Action) -> GCode:
-    return GCode(meaning=meaning, perform=action)
-
-
-def _refused(meaning: str, reason: str, numbers: Mapping[int, None] | range) -> dict[int, GCode]:
-    code = GCode(meaning=meaning, refused=reason, ground="manual")
-    return dict.fromkeys(numbers, code)
-
-
 def _passed_over(number: int, meaning: str, letters: str) -> GCode:
     """A code whose words change nothing of the path here."""
 
@@ -122,127 +78,120 @@ INSTEAD: dict[float, str] = {
 """Codes of other controls, and what this one has for them."""
 
 CODES: dict[float, GCode] = {
-    0: _motion("rapid positioning", arcs.RAPID),
-    1: _motion("straight line", arcs.FEED),
-    2: _motion("arc clockwise, Cartesian or polar", arcs.CLOCKWISE, seed=True),
-    3: _motion("arc counter-clockwise, Cartesian or polar", arcs.COUNTER_CLOCKWISE, seed=True),
-    4: GCode(
-        meaning="dwell, seconds in K or right behind",
-        perform=base.dwell("K", "G04 needs its seconds", "write G04 K1.5 or G04 1.5"),
-        ground="manual",
+    0: motion_code("rapid positioning", arcs.RAPID),
+    1: motion_code("straight line", arcs.FEED),
+    2: motion_code("arc clockwise, Cartesian or polar", arcs.CLOCKWISE, "seed"),
+    3: motion_code("arc counter-clockwise, Cartesian or polar", arcs.COUNTER_CLOCKWISE, "seed"),
+    4: instead(
+        "dwell, seconds in K or right behind",
+        base.dwell("K", "G04 needs its seconds", "write G04 K1.5 or G04 1.5"),
     ),
-    5: _g("round corner", "corner", corner=Corner.CONTINUOUS),
-    6: _once("centre in absolute coordinates, this block", center_absolute=True),
-    7: _g("square corner", "corner", corner=Corner.EXACT_STOP),
-    8: _once("arc tangent to the last move, this block", interpolation=arcs.TANGENT, cycle=None),
-    9: _once("arc through the point I J, this block", interpolation=arcs.THREE_POINTS, cycle=None),
-    10: _do("mirror off", Effect(transformations.mirror_off)),
-    11: _do("mirror X", transformations.mirror(0)),
-    12: _do("mirror Y", transformations.mirror(1)),
-    13: _do("mirror Z", transformations.mirror(2)),
-    14: _decided("mirror the given axes: X-1", Effect(transformations.mirror_axes)),
-    17: _plane("plane X Y", XY),
-    18: _plane("plane Z X", ZX),
-    19: _plane("plane Y Z", YZ),
-    20: GCode(meaning="any plane: X1 Z2", group="plane", action=frames.any_plane, ground="manual"),
-    30: _do("polar origin: I J, or where the tool stands", Effect(polar.set_polar_origin)),
-    31: _do("temporary polar origin at the arc's centre", polar.temporary_polar_origin),
-    33: GCode(meaning="threading", refused="the twin's spindle has no angle", ground="manual"),
-    36: _decided("corner rounded by the radius I", corners.round_corner),
-    **_refused("tangential entry, tangential exit", _LEAD, range(37, 39)),
-    39: _decided("corner chamfered at the distance I", corners.chamfer_corner),
-    40: _do("radius compensation off", END_OF_COMPENSATION, group="compensation"),
-    41: _do("compensation, tool left", compensation_by_tool(LEFT), group="compensation"),
-    42: _do("compensation, tool right", compensation_by_tool(RIGHT), group="compensation"),
-    **_refused("tangential control", "the twin has no axis that turns the tool", range(45, 46)),
-    50: _g("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
+    5: modal("round corner", "corner", corner=Corner.CONTINUOUS),
+    6: modal("centre in absolute coordinates, this block", once=True, center_absolute=True),
+    7: modal("square corner", "corner", corner=Corner.EXACT_STOP),
+    8: modal(
+        "arc tangent to the last move, this block",
+        once=True,
+        interpolation=arcs.TANGENT,
+        cycle=None,
+    ),
+    9: modal(
+        "arc through the point I J, this block",
+        once=True,
+        interpolation=arcs.THREE_POINTS,
+        cycle=None,
+    ),
+    10: modal("mirror off", action=Effect(transformations.mirror_off)),
+    11: modal("mirror X", action=transformations.mirror(0)),
+    12: modal("mirror Y", action=transformations.mirror(1)),
+    13: modal("mirror Z", action=transformations.mirror(2)),
+    14: instead(
+        "mirror the given axes: X-1", Effect(transformations.mirror_axes), ground="decision"
+    ),
+    17: plane_code("plane X Y", XY, ground="seed"),
+    18: plane_code("plane Z X", ZX, ground="seed"),
+    19: plane_code("plane Y Z", YZ, ground="seed"),
+    20: modal("any plane: X1 Z2", "plane", frames.any_plane),
+    30: modal("polar origin: I J, or where the tool stands", action=Effect(polar.set_polar_origin)),
+    31: modal("temporary polar origin at the arc's centre", action=polar.temporary_polar_origin),
+    **refused("threading", "the twin's spindle has no angle", 33),
+    36: instead("corner rounded by the radius I", corners.round_corner, ground="decision"),
+    **refused("tangential entry, tangential exit", _LEAD, *range(37, 39)),
+    39: instead("corner chamfered at the distance I", corners.chamfer_corner, ground="decision"),
+    40: modal("radius compensation off", "compensation", END_OF_COMPENSATION),
+    41: modal("compensation, tool left", "compensation", compensation_by_tool(LEFT)),
+    42: modal("compensation, tool right", "compensation", compensation_by_tool(RIGHT)),
+    **refused("tangential control", "the twin has no axis that turns the tool", 45),
+    50: modal("semi-rounded corner", "corner", corner=Corner.EXACT_PATH),
     51: _passed_over(51, "look-ahead of the CNC 8055: tolerance E and angle A", "AE"),
-    53: _do(
+    53: modal(
         "offsets cancelled",
+        "offset",
         _forgetting_polar(
             lambda control, assembler: assembler.interpreted(lambda: offsets.cancel_offset(control))
         ),
-        group="offset",
     ),
     **{
-        number: _do(
-            f"work offset G{number} of the job",
-            _forgetting_polar(offset_code(number)),
-            group="offset",
-        )
-        for number in range(54, 60)
+        n: modal(f"work offset G{n} of the job", "offset", _forgetting_polar(offset_code(n)))
+        for n in range(54, 60)
     },
-    60: _once("square corner, this block", corner=Corner.EXACT_STOP),
-    61: _once("round corner, this block", corner=Corner.CONTINUOUS),
-    63: GCode(meaning="rigid tapping", refused="the twin's spindle has no angle", ground="manual"),
-    70: _g("inches", "units", unit=25.4),
-    71: _g("millimetres", "units", unit=1.0),
-    72: _do("scale S, about part zero", Effect(transformations.scale), takes="S"),
-    73: GCode(
-        meaning="rotation by Q about I J; alone: off",
-        perform=Effect(transformations.rotate),
-        ground="manual",
-    ),
-    74: GCode(meaning="home search", refused="the twin starts homed", ground="manual"),
+    60: modal("square corner, this block", once=True, corner=Corner.EXACT_STOP),
+    61: modal("round corner, this block", once=True, corner=Corner.CONTINUOUS),
+    **refused("rigid tapping", "the twin's spindle has no angle", 63),
+    70: modal("inches", "units", unit=25.4),
+    71: modal("millimetres", "units", unit=1.0),
+    72: instead("scale S, about part zero", Effect(transformations.scale), takes="S"),
+    73: instead("rotation by Q about I J; alone: off", Effect(transformations.rotate)),
+    **refused("home search", "the twin starts homed", 74),
     **CYCLES,
-    90: _g("absolute coordinates", "distance", incremental=False),
-    91: _g("incremental coordinates", "distance", incremental=True),
-    92: GCode(
-        meaning="preset part zero",
-        perform=_forgetting_polar(offsets.preset),
-        ground="manual",
+    90: modal("absolute coordinates", "distance", incremental=False),
+    91: modal("incremental coordinates", "distance", incremental=True),
+    92: instead("preset part zero", _forgetting_polar(offsets.preset)),
+    93: modal(
+        "feed as seconds of the block",
+        "feed",
+        polar.refuse_origin_by_g93,
+        feed_mode=FeedMode.SECONDS_PER_BLOCK,
     ),
-    93: GCode(
-        meaning="feed as seconds of the block",
-        group="feed",
-        sets={"feed_mode": FeedMode.SECONDS_PER_BLOCK},
-        action=polar.refuse_origin_by_g93,
-        ground="manual",
-    ),
-    94: _g("feed per minute", "feed", feed_mode=FeedMode.PER_MINUTE),
-    95: _g("feed per revolution", "feed", feed_mode=FeedMode.PER_REVOLUTION),
-    96: GCode(
-        meaning="constant cutting speed", refused="a mill's radius is the tool's", ground="manual"
-    ),
-    97: _g("constant spindle speed", "spindle"),
+    94: modal("feed per minute", "feed", feed_mode=FeedMode.PER_MINUTE),
+    95: modal("feed per revolution", "feed", feed_mode=FeedMode.PER_REVOLUTION),
+    **refused("constant cutting speed", "a mill's radius is the tool's", 96),
+    97: modal("constant spindle speed", "spindle"),
     **fixed_cycles.RETURN,
-    **_refused("probing", _PROBE, range(100, 105)),
-    108: _g("feed blending at the start of the block", "feed blending"),
-    109: _g("feed blending at the end of the block", "feed blending"),
-    **_refused("change of the parameter set", _UNKNOWN, range(112, 113)),
-    **_refused("acceleration and jerk", _LIMITS, range(130, 136)),
-    136: _g("compensation rounds outside corners", "compensation corners", square_corners=False),
-    137: _g("compensation extends outside corners", "compensation corners", square_corners=True),
-    138: _g("leads of compensation go straight", "compensation leads", indirect_leads=False),
-    139: GCode(
-        meaning="leads of compensation go around the contour's ends",
-        group="compensation leads",
-        sets={"indirect_leads": True},
+    **refused("probing", _PROBE, *range(100, 105)),
+    108: modal("feed blending at the start of the block", "feed blending"),
+    109: modal("feed blending at the end of the block", "feed blending"),
+    **refused("change of the parameter set", _UNKNOWN, 112),
+    **refused("acceleration and jerk", _LIMITS, *range(130, 136)),
+    136: modal("compensation rounds outside corners", "compensation corners", square_corners=False),
+    137: modal("compensation extends outside corners", "compensation corners", square_corners=True),
+    138: modal("leads of compensation go straight", "compensation leads", indirect_leads=False),
+    139: modal(
+        "leads of compensation go around the contour's ends",
+        "compensation leads",
+        ground="decision",
+        indirect_leads=True,
     ),
-    151: GCode(meaning="programming in diameters", refused="a mill has none", ground="manual"),
-    152: _g("programming in radii", "diameters"),
-    157: GCode(meaning="axes without offset", refused=_UNKNOWN, ground="manual"),
-    158: GCode(
-        meaning="incremental offset",
-        perform=Effect(frames.incremental_offset),
-        ground="manual",
-    ),
-    **_refused("multiple machining", "write the positions one by one", range(160, 166)),
-    **_refused("Hirth axes", _UNKNOWN, range(170, 172)),
-    174: GCode(meaning="set the machine coordinate", refused=_UNKNOWN, ground="manual"),
-    **_refused("subroutines of the machine's builder", "they are not known", range(180, 190)),
-    193: _g("feed interpolation", "feed blending"),
-    **_refused("spindle limit", _LIMITS, range(192, 193)),
-    196: GCode(meaning="constant feed of the cutting point", refused=_UNKNOWN, ground="manual"),
-    197: _g("constant feed of the tool's centre", "feed point"),
-    **_refused("axis limits", _LIMITS, range(198, 200)),
-    **_refused("manual intervention", "nobody stands at the twin", range(200, 203)),
-    **_refused("circular probing", _PROBE, range(210, 213)),
-    261: _g("centre in absolute coordinates", "centre", center_absolute=True),
-    262: _g("centre relative to the start", "centre", center_absolute=False),
-    264: _g("arc centre not corrected", "centre correction", correct_center=False),
-    265: _g("arc centre corrected", "centre correction", correct_center=True),
+    **refused("programming in diameters", "a mill has none", 151),
+    152: modal("programming in radii", "diameters"),
+    **refused("axes without offset", _UNKNOWN, 157),
+    158: instead("incremental offset", Effect(frames.incremental_offset)),
+    **refused("multiple machining", "write the positions one by one", *range(160, 166)),
+    **refused("Hirth axes", _UNKNOWN, *range(170, 172)),
+    **refused("set the machine coordinate", _UNKNOWN, 174),
+    **refused("subroutines of the machine's builder", "they are not known", *range(180, 190)),
+    193: modal("feed interpolation", "feed blending"),
+    **refused("spindle limit", _LIMITS, 192),
+    **refused("constant feed of the cutting point", _UNKNOWN, 196),
+    197: modal("constant feed of the tool's centre", "feed point"),
+    **refused("axis limits", _LIMITS, *range(198, 200)),
+    **refused("manual intervention", "nobody stands at the twin", *range(200, 203)),
+    **refused("circular probing", _PROBE, *range(210, 213)),
+    261: modal("centre in absolute coordinates", "centre", center_absolute=True),
+    262: modal("centre relative to the start", "centre", center_absolute=False),
+    264: modal("arc centre not corrected", "centre correction", correct_center=False),
+    265: modal("arc centre corrected", "centre correction", correct_center=True),
     500: _passed_over(500, "high-speed machining off", ""),
     501: _passed_over(501, "high-speed machining on: tolerance, acceleration, frequency", "AEJM"),
-    266: GCode(meaning="feed override at 100 %", refused=_UNKNOWN, ground="manual"),
+    **refused("feed override at 100 %", _UNKNOWN, 266),
 }

@@ -9,7 +9,6 @@ from twin.nc.dialects.fanuc import (
     block_compiler,
     codes,
     corners,
-    cycles,
     decimal_point,
     flow,
     haas,
@@ -19,6 +18,7 @@ from twin.nc.dialects.fanuc import (
     tool_offsets,
     variables,
 )
+from twin.nc.dialects.fanuc.cycles.canned_cycles import OVERRULED_CYCLE, as_read
 from twin.nc.dialects.fanuc.decisions import DECISIONS
 from twin.nc.dialects.fanuc.memory import FANUC as FANUC_VARIANT
 from twin.nc.dialects.fanuc.memory import HAAS as HAAS_VARIANT
@@ -33,7 +33,7 @@ def prepare(control: Control) -> None:
     programs.begin(control)
     memory.writes_offsets = holds_any(lines, offsets.WRITES_OFFSETS)
     memory.transforms = holds_any(lines, offsets.TRANSFORMS)
-    memory.overrules_cycles = holds_any(lines, cycles.OVERRULED_CYCLE)
+    memory.overrules_cycles = holds_any(lines, OVERRULED_CYCLE)
     memory.bare_compensation = holds_any(lines, tool_offsets.BARE_COMPENSATION)
     offsets.put_into_force(control)
     corners.prepare(control)
@@ -165,7 +165,7 @@ FANUC = Dialect(
     compile_block=block_compiler.compile_block,
     disturbed=acts_on_plain_blocks,
     pointless=decimal_point.pointless,
-    count=cycles.as_read,
+    count=as_read,
 )
 
 HAAS = dataclasses.replace(

@@ -1,12 +1,12 @@
 """G and M codes of the Fanuc 0i-MF and 30i, milling, as far as the controls of the family share them."""
 
+import dataclasses
 from collections.abc import Mapping
-from typing import Unpack
 
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import Action, CodeWriter, GCode, Interpolation, MCode
+from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
-from twin.nc.control.modal import FeedMode, ModalChanges
+from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.fanuc import (
     cylinder,
     data_setting,
@@ -18,28 +18,15 @@ from twin.nc.dialects.fanuc import (
     tool_offsets,
     transformations,
 )
-from twin.nc.dialects.fanuc.cycles import cycles
+from twin.nc.dialects.fanuc.cycles.canned_cycles import cycles
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.iso import base, fixed_cycles
+from twin.nc.iso.declared import instead, modal, motion_code, refused
 from twin.nc.iso.tool_compensation import (
     END_OF_COMPENSATION,
     LEFT,
     RIGHT,
 )
-
-
-def _g(meaning: str, group: str = "", **sets: Unpack[ModalChanges]) -> GCode:
-    return GCode(meaning=meaning, group=group, sets=sets, ground="manual")
-
-
-def _motion(meaning: str, interpolation: Interpolation) -> GCode:
-    sets: ModalChanges = {"interpolation": interpolation, "cycle": None}
-    return GCode(meaning=meaning, group="motion", sets=sets, ground="manual")
-
-
-def _do(meaning: str, action: Action) -> GCode:
-    """A code that stands in the place of a move and is not modal."""
-    return GCode(meaning=meaning, perform=action, ground="manual")
 
 
 def _lose_feed(control: Control) -> None:
@@ -50,22 +37,6 @@ def _lose_feed(control: Control) -> None:
         if not any(word.address == "F" for word in control.block.words):
             memory.feed_lost = control.feed is not None or memory.feed_lost
             control.feed = None
-
-
-def _feed(meaning: str, mode: FeedMode) -> GCode:
-    return GCode(
-        meaning=meaning, group="feed", sets={"feed_mode": mode}, action=_lose_feed, ground="manual"
-    )
-
-
-def _modal(meaning: str, group: str, action: Action, compiler: CodeWriter | None = None) -> GCode:
-    """A modal code that does something before the block moves."""
-    return GCode(meaning=meaning, group=group, action=action, compiler=compiler, ground="manual")
-
-
-def _transforming(meaning: str, group: str, action: Action) -> GCode:
-    """A modal code that takes the block's words and does not move."""
-    return GCode(meaning=meaning, group=group, perform=action, ground="manual")
 
 
 def passed_over(meaning: str, letters: str, group: str = "") -> GCode:
@@ -81,10 +52,20 @@ def passed_over(meaning: str, letters: str, group: str = "") -> GCode:
     return GCode(meaning=meaning, group=group, action=perform, ground="manual")
 
 
-def refused(meaning: str, reason: str, *numbers: float) -> Mapping[float, GCode]:
-    """Codes that the control knows and the twin does not follow."""
-    code = GCode(meaning=meaning, refused=reason, ground="manual")
-    return dict.fromkeys(numbers, code)
+def _contour_control() -> GCode:
+    """G5 P10000 and P0, which look ahead; other modes of G5 are refused."""
+    code = passed_over("look-ahead (high-precision contour control): P10000 on, P0 off", "P")
+    pass_over = code.action
+    assert pass_over is not None
+
+    def action(control: Control) -> None:
+        word = control.words.get("P")
+        if word is None or control.number(word) not in (0.0, 10000.0):
+            message = "of the modes of G5 only P10000 and P0 are known to change no path"
+            control.fail("unsupported-g", message, word or control.code_word(5))
+        pass_over(control)
+
+    return dataclasses.replace(code, action=action)
 
 
 NO_PROBE = "the twin has no probe to touch with"
@@ -95,99 +76,94 @@ _LIMITS = "the limits are the machine file's"
 _NO_SPACE = "turning in space is not simulated"
 
 _MOTION: Mapping[float, GCode] = {
-    0: _motion("rapid positioning", motion.RAPID),
-    1: _motion("straight line", motion.FEED),
-    2: _motion("arc clockwise, by I J K or R", motion.CLOCKWISE),
-    3: _motion("arc counter-clockwise, by I J K or R", motion.COUNTER_CLOCKWISE),
-    4: GCode(
-        meaning="dwell, seconds in X or milliseconds in P",
-        perform=base.dwell("PX", "G4 needs its time", "G4 P500 or G4 X0.5 waits half a second"),
-        ground="manual",
+    0: motion_code("rapid positioning", motion.RAPID),
+    1: motion_code("straight line", motion.FEED),
+    2: motion_code("arc clockwise, by I J K or R", motion.CLOCKWISE),
+    3: motion_code("arc counter-clockwise, by I J K or R", motion.COUNTER_CLOCKWISE),
+    4: instead(
+        "dwell, seconds in X or milliseconds in P",
+        base.dwell("PX", "G4 needs its time", "G4 P500 or G4 X0.5 waits half a second"),
     ),
+    5: _contour_control(),
     5.1: passed_over("look-ahead (AI contour control): Q1 on, Q0 off", "QRXYZC"),
     8: passed_over("look-ahead (advanced preview): P1 on, P0 off", "P"),
-    9: GCode(
-        meaning="exact stop in this block",
-        sets={"corner": Corner.EXACT_STOP},
-        once=True,
-        ground="manual",
-    ),
-    61: _g("exact stop mode", "corner", corner=Corner.EXACT_STOP),
-    62: _g("override at corners", "corner", corner=Corner.EXACT_PATH),
-    63: _g("tapping mode", "corner", corner=Corner.EXACT_PATH),
-    64: _g("cutting mode", "corner", corner=Corner.EXACT_PATH),
+    9: modal("exact stop in this block", once=True, corner=Corner.EXACT_STOP),
+    61: modal("exact stop mode", "corner", corner=Corner.EXACT_STOP),
+    62: modal("override at corners", "corner", corner=Corner.EXACT_PATH),
+    63: modal("tapping mode", "corner", corner=Corner.EXACT_PATH),
+    64: modal("cutting mode", "corner", corner=Corner.EXACT_PATH),
 }
 _PLACE: Mapping[float, GCode] = {
     **dict.fromkeys(
         (7.1, 107),
-        _do("contours on a cylinder: rotary axis and radius, 0 ends it", cylinder.begin_or_end),
+        instead("contours on a cylinder: rotary axis and radius, 0 ends it", cylinder.begin_or_end),
     ),
-    10: _do("offsets from the program: L P and values", data_setting.set_data),
+    10: instead("offsets from the program: L P and values", data_setting.set_data),
     11: passed_over("setting of data off", ""),
-    15: _modal("polar coordinates off", "polar", motion.end_polar),
-    16: _modal("polar coordinates: radius and angle", "polar", motion.begin_polar),
+    15: modal("polar coordinates off", "polar", motion.end_polar),
+    16: modal("polar coordinates: radius and angle", "polar", motion.begin_polar),
     **base.by_manual(base.PLANES),
-    20: _g("inches", "units", unit=25.4),
-    21: _g("millimetres", "units", unit=1.0),
-    27: _do("check of the reference point", reference_points.check_reference),
-    28: _do("to machine zero, by the block's point", reference_points.go_home),
-    29: _do("from machine zero, by the point of G28", reference_points.leave_reference),
-    30: _do("to a further reference point P2 P3 P4", reference_points.go_to_reference),
-    52: _do("local origin, in every work offset", offsets.local_offset),
-    53: _do("machine coordinates in this block", reference_points.machine_move),
+    20: modal("inches", "units", unit=25.4),
+    21: modal("millimetres", "units", unit=1.0),
+    27: instead("check of the reference point", reference_points.check_reference),
+    28: instead("to machine zero, by the block's point", reference_points.go_home),
+    29: instead("from machine zero, by the point of G28", reference_points.leave_reference),
+    30: instead("to a further reference point P2 P3 P4", reference_points.go_to_reference),
+    52: instead("local origin, in every work offset", offsets.local_offset),
+    53: instead("machine coordinates in this block", reference_points.machine_move),
     **{
-        number: _modal(
+        number: modal(
             f"work offset G{number} of the job",
             "offset",
             offsets.offset_code(number),
-            offsets.compile_offset(number),
+            compiler=offsets.compile_offset(number),
         )
         for number in range(54, 60)
     },
-    54.1: _modal("work offset P1 to P300 of the job", "offset", offsets.extended_offset),
+    54.1: modal("work offset P1 to P300 of the job", "offset", offsets.extended_offset),
     **base.by_manual(base.DISTANCE),
-    92: _do("preset the position, in every work offset", offsets.preset),
-    92.1: _do("presets end for the axes named", offsets.end_preset),
+    92: instead("preset the position, in every work offset", offsets.preset),
+    92.1: instead("presets end for the axes named", offsets.end_preset),
 }
 _TOOL: Mapping[float, GCode] = {
-    40: _modal("radius compensation off", "compensation", END_OF_COMPENSATION),
-    41: _modal(
+    40: modal("radius compensation off", "compensation", END_OF_COMPENSATION),
+    41: modal(
         "compensation by D, tool left",
         "compensation",
         tool_offsets.compensation_code(41, LEFT),
-        tool_offsets.compile_compensation(LEFT),
+        compiler=tool_offsets.compile_compensation(LEFT),
     ),
-    42: _modal(
+    42: modal(
         "compensation by D, tool right",
         "compensation",
         tool_offsets.compensation_code(42, RIGHT),
-        tool_offsets.compile_compensation(RIGHT),
+        compiler=tool_offsets.compile_compensation(RIGHT),
     ),
-    43: _modal("tool length by H", "length", tool_offsets.length_code(43, 1.0)),
-    44: _modal("tool length by H, reversed", "length", tool_offsets.length_code(44, -1.0)),
-    49: _modal("tool length off", "length", tool_offsets.end_length),
+    43: modal("tool length by H", "length", tool_offsets.length_code(43, 1.0)),
+    44: modal("tool length by H, reversed", "length", tool_offsets.length_code(44, -1.0)),
+    49: modal("tool length off", "length", tool_offsets.end_length),
 }
 _TRANSFORMATIONS: Mapping[float, GCode] = {
-    50: _modal("scale off", "scale", transformations.end_scale),
-    51: _transforming("scale about X Y Z: P, or I J K", "scale", transformations.scale),
-    50.1: _transforming("mirror off", "mirror", transformations.end_mirror),
-    51.1: _transforming("mirror the axes at the places named", "mirror", transformations.mirror),
-    68: _transforming(
-        "rotation by R about a point of the plane", "rotation", transformations.rotate
-    ),
-    69: _modal("rotation off", "rotation", transformations.end_rotation),
+    50: modal("scale off", "scale", transformations.end_scale),
+    51: instead("scale about X Y Z: P, or I J K", transformations.scale, "scale"),
+    50.1: instead("mirror off", transformations.end_mirror, "mirror"),
+    51.1: instead("mirror the axes at the places named", transformations.mirror, "mirror"),
+    68: instead("rotation by R about a point of the plane", transformations.rotate, "rotation"),
+    69: modal("rotation off", "rotation", transformations.end_rotation),
 }
 _FEEDS: Mapping[float, GCode] = {
-    93: _feed("feed as blocks per minute", FeedMode.BLOCKS_PER_MINUTE),
-    94: _feed("feed per minute", FeedMode.PER_MINUTE),
-    95: _feed("feed per revolution", FeedMode.PER_REVOLUTION),
-    97: _g("constant spindle speed", "spindle"),
-    65: _do("macro call: P L and arguments", macro_calls.refuse_late_call),
-    66: _modal("modal macro call behind every move", "modal call", macro_calls.refuse_late_call),
-    67: _modal("modal macro call off", "modal call", macro_calls.end_modal_call),
+    93: modal(
+        "feed as blocks per minute", "feed", _lose_feed, feed_mode=FeedMode.BLOCKS_PER_MINUTE
+    ),
+    94: modal("feed per minute", "feed", _lose_feed, feed_mode=FeedMode.PER_MINUTE),
+    95: modal("feed per revolution", "feed", _lose_feed, feed_mode=FeedMode.PER_REVOLUTION),
+    97: modal("constant spindle speed", "spindle"),
+    65: instead("macro call: P L and arguments", macro_calls.refuse_late_call),
+    66: modal("modal macro call behind every move", "modal call", macro_calls.refuse_late_call),
+    67: modal("modal macro call off", "modal call", macro_calls.end_modal_call),
 }
 _REFUSED: Mapping[float, GCode] = {
-    **refused("smooth and spline interpolation", _UNKNOWN, 5, 5.4, 6.1, 6.2),
+    **refused("smooth and spline interpolation", _UNKNOWN, 5.4, 6.1, 6.2),
     **refused("helical and spiral interpolation in space", _UNKNOWN, 2.2, 3.2, 2.3, 3.3, 2.4, 3.4),
     **refused("polar coordinate interpolation", "a lathe's, of a rotating part", 12.1, 13.1),
     **refused("stored stroke check", _LIMITS, 22, 23),

@@ -49,7 +49,7 @@ def _row(control: Control, least: int, most: int) -> int:
 
 def _work_offset(control: Control, *, extended: bool) -> None:
     number = _row(control, int(extended), offsets.LARGEST_EXTENDED if extended else 6)
-    name = offsets.extended(number) if extended else f"G{53 + number}" if number else None
+    name = offsets.further(control, number) if extended else f"G{53 + number}" if number else None
     words = control.take_axis_words()
     if not words:
         control.fail("data-setting", "G10 needs the axes of the offset", None, "G10 L2 P1 X0.")

@@ -9,7 +9,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc.memory import Loop, holds_any, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.programs import lines_around
 from twin.nc.dialects.fanuc.variables import ControlVariables, compile_assignment, write_variable
-from twin.nc.text.blocks import Assignment, Location, Statement
+from twin.nc.text.blocks import Assignment, Block, Location, Statement
 from twin.nc.text.expressions import (
     Expression,
     ExpressionError,
@@ -105,13 +105,9 @@ def _while(control: Control, statement: Statement, assembler: Assembler) -> None
     _, end = _loop(control, statement)
     condition, at = _read(control, statement, 0)
     if _DO.match(statement.text, at) is None:
-        refuse(
-            control,
-            statement,
-            "structure",
-            "WHILE needs DO behind its condition",
-            "WHILE [#1 LT 5] DO1",
-        )
+        message = f"{statement.keyword} needs DO and its number behind the condition, and no more"
+        hint = "WHILE [#1 LT 5] DO1; what the loop does stands in lines of its own"
+        refuse(control, statement, "structure", message, hint)
     assembler.value(condition, statement.text_column)
     assembler.jump_unless(Location(end + 1, 0))
 
@@ -151,12 +147,29 @@ def _if(control: Control, statement: Statement, assembler: Assembler) -> None:
         else:
             assembler.jump_if(lambda: destination(control, statement, number))
         return
+    block = _block_behind_then(control, statement, match.end())
+    if block is not None:
+        assembler.jump_unless(Location(control.block.line, 0))
+        assembler.interpreted(lambda: control.run(block))
+        return
     assignment = _assignment(control, statement, match.end())
     assembler.jump_unless(Location(control.block.line, 0))
     if isinstance(assignment.target, Variable) and assignment.target.name not in ControlVariables():
         compile_assignment(assembler, assignment)
     else:
         assembler.interpreted(lambda: _assign(control, assignment))
+
+
+def _block_behind_then(control: Control, statement: Statement, at: int) -> Block | None:
+    """What a Haas runs where the condition holds, if words belong to it (manual); else None."""
+    if not memory_of(control).variant.then_takes_words:
+        return None
+    text = " " * (statement.text_column + at) + statement.text[at:]
+    blocks = control.program_counter.lexer.blocks(text, control.block.line)
+    if len(blocks) != 1 or blocks[0].statement is not None:
+        hint = "THEN #2=1, or THEN G1 X10."
+        refuse(control, statement, "structure", "assignments and words follow THEN", hint)
+    return blocks[0]._replace(number=control.block.number) if blocks[0].words else None
 
 
 def _assignment(control: Control, statement: Statement, at: int) -> Assignment:

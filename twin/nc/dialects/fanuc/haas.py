@@ -7,13 +7,15 @@ from twin.nc.control.codes import GCode, MCode
 from twin.nc.control.control import Control
 from twin.nc.control.dialect import Decision
 from twin.nc.dialects.fanuc import offsets, programs, transformations
-from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over, refused
+from twin.nc.dialects.fanuc.codes import M_CODES, NO_PROBE, codes, passed_over
+from twin.nc.dialects.fanuc.cycles.bolt_holes import bolt_holes
 from twin.nc.dialects.fanuc.decisions import DECISIONS as FANUC_DECISIONS
 from twin.nc.dialects.fanuc.memory import HAAS
 from twin.nc.dialects.fanuc.tool_offsets import radius_in_force
 from twin.nc.geometry.planes import XY
+from twin.nc.iso.declared import instead, modal, refused
 
-_LACKING = (5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
+_LACKING = (5, 5.1, 7.1, 8, 15, 16, 27, 30, 50.1, 51.1, 54.1, 62, 63, 87, 92.1)
 """Codes that the control lacks."""
 
 
@@ -85,23 +87,20 @@ def _arc(
 
 
 def _pocket(meaning: str, *, clockwise: bool) -> GCode:
-    return GCode(
-        meaning=f"{meaning}: I K Q Z L D",
-        perform=lambda control: circular_pocket(control, clockwise=clockwise),
+    return instead(
+        f"{meaning}: I K Q Z L D",
+        lambda control: circular_pocket(control, clockwise=clockwise),
+        ground="decision",
     )
 
 
 def _offset(number: int) -> GCode:
     pair = number - 109
-    return GCode(
-        meaning=f"work offset G154 P{pair} of the job",
-        group="offset",
-        action=offsets.numbered_code(number, pair),
-        ground="manual",
-    )
+    action = offsets.numbered_code(number, pair)
+    return modal(f"work offset G154 P{pair} of the job", "offset", action)
 
 
-_POSITIONS = "write the positions one by one"
+_FIRST_HOLE = "the manual leaves open whether its first hole is where the tool stands; write the positions one by one"
 
 _OWN: Mapping[float, GCode] = {
     12: _pocket("circular pocket clockwise", clockwise=True),
@@ -111,17 +110,13 @@ _OWN: Mapping[float, GCode] = {
     ),
     101: dataclasses.replace(codes(HAAS)[51.1], meaning="mirror the axes at the places named"),
     103: passed_over("limit of the blocks that are looked ahead", "P"),
-    154: GCode(
-        meaning="work offset P1 to P99 of the job",
-        group="offset",
-        action=offsets.extended_offset,
-        ground="manual",
-    ),
+    154: modal("work offset P1 to P99 of the job", "offset", offsets.extended_offset),
     187: passed_over("smoothness: P roughness, E deviation at corners", "PE"),
     **{number: _offset(number) for number in range(110, 130)},
     **refused("engraving", "the shapes of its letters are the control's own", 47),
     **refused("general pocket", "it clears any outline by a way that is the control's own", 150),
-    **refused("bolt holes on a circle, on an arc, on a line", _POSITIONS, 70, 71, 72),
+    **{number: bolt_holes(number) for number in (70, 71)},
+    **refused("bolt holes on a line", _FIRST_HOLE, 72),
     **refused("probing", NO_PROBE, 35, 36, 136),
     **refused("compensation in space", "the machine's tool does not tilt", 141, 143),
     **refused("tool centre point control", "the machine's tool does not tilt", 234),
@@ -227,6 +222,12 @@ DECISIONS: tuple[Decision, ...] = (
         "G52 and G92 shift every work offset (setting 33: FANUC); D holds radii (setting 40).",
         "Settings decide.",
         example="settings",
+    ),
+    Decision(
+        "What does R of G68 count from in G91?",
+        "From the plane's first axis, as in G90; over a rotation in force with a warning.",
+        "Setting 73, G68 incremental angle, is OFF when a control comes from its maker.",
+        example="rotation_is_absolute",
     ),
     *(each for each in FANUC_DECISIONS if each.example in _SHARED_EXAMPLES),
 )

@@ -2,7 +2,7 @@
 
 import dataclasses
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from twin.nc.control.control import Control
@@ -23,6 +23,28 @@ def holds_any(lines: Lines, patterns: Iterable[re.Pattern[bytes]]) -> bool:
     return any(lines.any_holds(pattern) for pattern in patterns)
 
 
+MODAL_GROUPS: Mapping[int, str] = {
+    1: "motion",
+    2: "plane",
+    3: "distance",
+    5: "feed",
+    6: "units",
+    7: "compensation",
+    8: "length",
+    9: "cycle",
+    10: "return plane",
+    11: "scale",
+    12: "modal call",
+    13: "spindle",
+    14: "offset",
+    15: "corner",
+    16: "rotation",
+    17: "polar",
+    22: "mirror",
+}
+"""Modal groups by the number of the control, in which #4001 and those behind it count them."""
+
+
 class Variant(NamedTuple):
     """What controls of the family do differently.
 
@@ -37,6 +59,14 @@ class Variant(NamedTuple):
         tool_variables: First and last system variable of each column of the offset memory.
         machine_by_motion: G53 moves by the motion code in force, not always rapidly.
         last_code_counts: A motion code overrules the code of a cycle before it in its block.
+        modal_groups: Modal groups by the number in which #4001 and those behind it count them.
+        further_offset: Code of the work offsets beyond G59, as the job names them.
+        home_without_axes: G28 alone takes every axis home.
+        first_alarm: Number of the alarm that #3000=0 would raise.
+        common_by_thousands: #10100 is #100, and #10000 to #10999 belong to all programs.
+        then_takes_words: Words may follow THEN.
+        repeats_motion: L repeats the motion of its block.
+        adds_rotation: When controls of this kind add the R of G68 in G91 to the rotation in force.
         transformed_keeps_origin: Neither work offsets nor presets nor moves to reference points stand under
             a scale, a mirror or a rotation.
     """
@@ -50,6 +80,14 @@ class Variant(NamedTuple):
     machine_by_motion: bool = False
     last_code_counts: bool = True
     transformed_keeps_origin: bool = True
+    modal_groups: Mapping[int, str] = MODAL_GROUPS
+    further_offset: str = "G54.1"
+    home_without_axes: bool = False
+    first_alarm: int = 3000
+    common_by_thousands: bool = False
+    then_takes_words: bool = False
+    repeats_motion: bool = False
+    adds_rotation: str = "a control with parameter 5400 #0 at 1 adds it"
     tool_variables: tuple[tuple[int, int, str], ...] = (
         (2001, 2200, "length_wear"),
         (2201, 2400, "length"),
@@ -71,6 +109,19 @@ HAAS = Variant(
     machine_by_motion=True,
     last_code_counts=False,
     transformed_keeps_origin=False,
+    modal_groups={
+        **{number: name for number, name in MODAL_GROUPS.items() if number <= 11},
+        12: "offset",
+        15: "corner",
+        16: "rotation",
+    },
+    further_offset="G154",
+    home_without_axes=True,
+    first_alarm=1000,
+    common_by_thousands=True,
+    then_takes_words=True,
+    repeats_motion=True,
+    adds_rotation="a control with setting 73 ON adds it",
     tool_variables=(
         (2001, 2200, "length"),
         (2201, 2400, "length_wear"),

@@ -6,16 +6,28 @@ angle from the last one.
 """
 
 import math
+from collections.abc import Callable
+from typing import TypeVar
 
-from twin.nc.control.codes import Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import LineRule
+from twin.nc.control.interpolation import ArcRule
 from twin.nc.dialects.fanuc import cylinder
 from twin.nc.dialects.fanuc.memory import Variant, memory_of
 from twin.nc.dialects.fanuc.transformations import refuse_uneven_arc
 from twin.nc.geometry.arcs import direction
-from twin.nc.iso.circular import arc_rule, iso_arc_center, plane_center_letters, sweep_arc
-from twin.nc.iso.drilling import Holes
+from twin.nc.iso import base
+from twin.nc.iso.circular import (
+    BOUNDS,
+    arc_center,
+    both_senses,
+    plane_center_letters,
+    sweep_arc,
+)
+from twin.nc.iso.drilling import Holes, repeats_of
+
+_Kind = TypeVar("_Kind")
+_CALLS = (97.0, 98.0)
+"""Functions whose L says how often they call."""
 
 
 def target(control: Control) -> list[float]:
@@ -64,40 +76,40 @@ def end_polar(control: Control) -> None:
     memory_of(control).polar = False
 
 
-def rapid_line(control: Control) -> None:
-    """G0."""
-    control.line_to(target(control), rapid=True)
+def _as_often_as_l(move: Callable[[Control, _Kind], None]) -> Callable[[Control, _Kind], None]:
+    """A motion that goes as often as L says, where the control repeats motions (Haas manual, thread milling)."""
+
+    def perform(control: Control, kind: _Kind) -> None:
+        calls = any(word.address == "M" and word.value in _CALLS for word in control.block.words)
+        repeats = memory_of(control).variant.repeats_motion and not calls
+        count = repeats_of(control, "L", 1) if repeats else 1
+        given = dict(control.words)
+        for _ in range(count):
+            control.words = dict(given)
+            move(control, kind)
+
+    return perform
 
 
-def feed_line(control: Control) -> None:
-    """G1."""
-    cylinder.line_to(control, target(control))
+def _line(control: Control, rapid: bool) -> None:
+    goal = target(control)
+    if rapid:
+        control.line_to(goal, rapid=True)
+    else:
+        cylinder.line_to(control, goal)
 
 
-def clockwise_arc(control: Control) -> None:
-    """G2."""
-    _arc(control, clockwise=True)
-
-
-def counter_clockwise_arc(control: Control) -> None:
-    """G3."""
-    _arc(control, clockwise=False)
-
-
-def _arc(control: Control, *, clockwise: bool) -> None:
+def _arc(control: Control, rule: ArcRule) -> None:
     """An arc by I, J, K or R; where both are written R alone counts (manual)."""
     refuse_uneven_arc(control)
     if "R" in control.words:
         for letter in plane_center_letters(control):
             control.take(letter)
     goal = target(control)
-    if cylinder.arc_to(control, goal, clockwise=clockwise):
+    if cylinder.arc_to(control, goal, clockwise=rule.clockwise):
         return
-    center = iso_arc_center(control, goal, clockwise=clockwise)
-    sweep_arc(control, goal, center, clockwise=clockwise)
+    sweep_arc(control, goal, arc_center(control, goal, rule), clockwise=rule.clockwise)
 
 
-RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
-FEED = Interpolation(feed_line, rule=LineRule())
-CLOCKWISE = Interpolation(clockwise_arc, rule=arc_rule(clockwise=True))
-COUNTER_CLOCKWISE = Interpolation(counter_clockwise_arc, rule=arc_rule(clockwise=False))
+RAPID, FEED = base.straight(_as_often_as_l(_line))
+CLOCKWISE, COUNTER_CLOCKWISE = both_senses(_as_often_as_l(_arc), ArcRule(bounds=BOUNDS))

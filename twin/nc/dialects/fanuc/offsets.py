@@ -27,9 +27,11 @@ LARGEST_EXTENDED = 300
 """G54.1 P1 to P300 (the largest number of pairs that the option has)."""
 
 
-def extended(number: int) -> str:
-    """How the job calls the work offset G54.1 P."""
-    return f"G54.1 P{number}"
+def further(control: Control, number: int) -> str:
+    """How the job calls the work offset G54.1 P, of a Haas G154 P or G54.1 P."""
+    code = memory_of(control).variant.further_offset
+    names = [f"{each} P{number}" for each in (code, "G54.1")]
+    return next((each for each in names if each in control.settings.offsets), names[0])
 
 
 def offset_code(number: int) -> Action:
@@ -48,17 +50,19 @@ def extended_offset(control: Control) -> None:
     """G54.1 P, on a Haas G154 P."""
     word = control.take("P")
     if word is None:
-        control.fail("no-offset", "the number of the work offset is missing: P", hint="G54.1 P1")
+        code = memory_of(control).variant.further_offset
+        message = "the number of the work offset is missing: P"
+        control.fail("no-offset", message, hint=f"{code} P1")
     number = whole(control, word, "no-offset", "number of a work offset")
     if not 1 <= number <= LARGEST_EXTENDED:
         control.fail("no-offset", f"there is no work offset P{number}", word)
-    select(control, extended(number), word)
+    select(control, further(control, number), word)
     memory_of(control).extended_number = number
 
 
 def numbered_code(number: int, pair: int) -> Action:
-    """Haas G110 to G129 are G54.1 P1 to P20."""
-    return lambda control: select(control, extended(pair), control.code_word(number))
+    """Haas G110 to G129 are G154 P1 to P20."""
+    return lambda control: select(control, further(control, pair), control.code_word(number))
 
 
 def select(control: Control, name: str, word: Word | None) -> None:

@@ -25,6 +25,8 @@ def go_to_reference(control: Control) -> None:
 
 def _go_home(control: Control, code: str) -> None:
     axes = _named_axes(control)
+    if not axes and memory_of(control).variant.home_without_axes:
+        axes = list(range(len(control.settings.axes)))
     if not axes:
         message = f"{code} needs the axes that shall go there, with the point on their way"
         control.fail("reference-point", message, hint=f"G91 {code} Z0")

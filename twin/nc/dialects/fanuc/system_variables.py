@@ -16,26 +16,6 @@ from twin.nc.text.expressions import ExpressionError
 
 _AXES = 20
 """Variables from one table of axes to the next."""
-_GROUPS = {
-    1: "motion",
-    2: "plane",
-    3: "distance",
-    5: "feed",
-    6: "units",
-    7: "compensation",
-    8: "length",
-    9: "cycle",
-    10: "return plane",
-    11: "scale",
-    12: "modal call",
-    13: "spindle",
-    14: "offset",
-    15: "corner",
-    16: "rotation",
-    17: "polar",
-    22: "mirror",
-}
-"""Modal groups by the number of the control."""
 _MESSAGE = re.compile(r"\(([^()]*)\)")
 _PASSED_OVER = {3003: "single block", 3004: "feed hold and override", 3005: "settings"}
 _LATEST_BLOCK = range(4201, 4400)
@@ -51,8 +31,9 @@ def read(control: Control, number: int) -> float:
     """
     if number in _LATEST_BLOCK:
         number -= _SAME_AS
-    if 4001 <= number <= 4030 and number - 4000 in _GROUPS:
-        return float(control.active.get(_GROUPS[number - 4000], 0))
+    group = memory_of(control).variant.modal_groups.get(number - 4000)
+    if group is not None:
+        return float(control.active.get(group, 0))
     if 4100 <= number <= 4130:
         return _modal_word(control, number)
     if 5001 <= number <= 5100:
@@ -124,7 +105,8 @@ def _alarm(control: Control, value: float) -> NoReturn:
     line = control.program_counter.lines[control.block.line - 1]
     match = _MESSAGE.search(line)
     said = "" if match is None else f": {match[1].strip()}"
-    message = f"the program raises the alarm {3000 + value:g}{said}"
+    first = memory_of(control).variant.first_alarm
+    message = f"the program raises the alarm {first + value:g}{said}"
     column = max(line.find("#"), 0)
     control.report.fail("program-alarm", message, column, max(len(line) - column, 1))
 
@@ -205,5 +187,5 @@ def _offset(control: Control, number: int) -> tuple[str | None, str] | None:
             row = begin + table
             if row < 0:
                 return None, axis
-            return (f"G{54 + row}" if row < 6 else offsets.extended(row - 5)), axis
+            return (f"G{54 + row}" if row < 6 else offsets.further(control, row - 5)), axis
     return None

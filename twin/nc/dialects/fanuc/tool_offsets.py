@@ -74,8 +74,15 @@ def _codes(control: Control) -> list[float]:
 
 
 def length_code(number: int, sign: float) -> Action:
-    """G43, G44: the row H moves Z."""
-    return lambda control: _apply_length(control, sign, control.code_word(number))
+    """G43, G44: the row H moves Z, also the Z of its own block in G91 (manual)."""
+
+    def action(control: Control) -> None:
+        before = control.programmed[2]
+        _apply_length(control, sign, control.code_word(number))
+        if control.modal.incremental and "Z" in control.words:
+            control.programmed[2] = before
+
+    return action
 
 
 def _apply_length(control: Control, sign: float, word: Word | None) -> None:

@@ -85,6 +85,10 @@ def rotate(control: Control) -> None:
         control.fail("rotation-angle", "G68 needs its angle R", None, "G68 X0 Y0 R45.")
     plane = control.modal.plane
     memory = memory_of(control)
+    if control.modal.incremental and memory.rotation is not None:
+        message = "R counts from the plane's first axis, and does not add to the rotation in force"
+        span = angle.column, angle.width
+        control.report.warn_once("rotation-absolute", message, *span, memory.variant.adds_rotation)
     turned, turned_shift = _transformation(control)
     x, y, z = control.programmed[:3]
     place = applied(turned, (x, y, z))

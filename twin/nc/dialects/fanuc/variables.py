@@ -11,6 +11,7 @@ import re
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import system_variables
+from twin.nc.dialects.fanuc.memory import memory_of
 from twin.nc.text import arithmetic
 from twin.nc.text.blocks import Assignment
 from twin.nc.text.expressions import (
@@ -33,6 +34,8 @@ LOCAL = range(1, 34)
 COMMON = range(100, 200)
 KEPT = range(500, 1000)
 """Variables that keep their value when the control is switched off."""
+BY_THOUSANDS = range(10000, 11000)
+"""Variables of programs on a Haas."""
 _ZEROS = re.compile(r"#0+(?=[0-9])")
 _COMPARE = 4
 
@@ -114,18 +117,30 @@ def _number(name: str, index: float | None) -> int:
     return int(index)
 
 
+def _stored(control: Control, number: int) -> int | None:
+    """Under which number a variable of programs is stored; None: it belongs to the control.
+
+    On a Haas #10000 to #10999 belong to programs too, and #10100 is another name of #100.
+    """
+    if number in BY_THOUSANDS and memory_of(control).variant.common_by_thousands:
+        short = number - BY_THOUSANDS[0]
+        return short if short in COMMON or short in KEPT else number
+    return number if number in LOCAL or number in COMMON or number in KEPT else None
+
+
 def read_variable(control: Control, name: str, index: float | None) -> float:
     """Value of a variable; NaN where it is vacant."""
     number = _number(name, index)
     if number == 0:
         return math.nan
-    if number in LOCAL or number in COMMON or number in KEPT:
-        value = control.variables.read(f"#{number}")
-        if value is None and number in KEPT:
+    stored = _stored(control, number)
+    if stored is not None:
+        value = control.variables.read(f"#{stored}")
+        if value is None and stored in KEPT:
             control.report.warn_once(
                 "vacant-variable",
-                f"#{number} keeps its value from earlier runs, which is not known: it is vacant here",
-                hint=f'set it before, or in the job: [variables] "#{number}" = 0.0',
+                f"#{stored} keeps its value from earlier runs, which is not known: it is vacant here",
+                hint=f'set it before, or in the job: [variables] "#{stored}" = 0.0',
             )
         return math.nan if value is None else value
     given = control.settings.variables.get(f"#{number}")
@@ -142,8 +157,9 @@ def write_variable(
     """
     try:
         number = _number(name, index)
-        if number in LOCAL or number in COMMON or number in KEPT:
-            control.variables.write(f"#{number}", value)
+        stored = _stored(control, number)
+        if stored is not None:
+            control.variables.write(f"#{stored}", value)
         else:
             system_variables.write(control, number, value)
     except ExpressionError as error:

@@ -17,9 +17,10 @@ from twin.nc.dialects.linuxcnc.decisions import DECISIONS
 from twin.nc.dialects.linuxcnc.expressions import EXPRESSIONS
 from twin.nc.dialects.linuxcnc.library import with_files
 from twin.nc.dialects.linuxcnc.memory import LinuxcncMemory, memory_of
+from twin.nc.dialects.linuxcnc.structure import COMMENTS
 from twin.nc.iso import base, shared_marks
 from twin.nc.path.drilling_cycle import START as CALL_HEIGHT
-from twin.nc.text.syntax import Comment, Mark, Syntax
+from twin.nc.text.syntax import Mark, Syntax
 
 _LONGEST_LINE = 252
 """``rs274`` of 2.9 refuses a longer line as a command too long: its buffer of 255 takes the line's end too."""
@@ -80,7 +81,7 @@ LINUXCNC = Dialect(
     code_page="cp1252",
     syntax=Syntax(
         address=r"[A-Z@^$]",
-        comments=(Comment("(", ")"), Comment(";")),
+        comments=COMMENTS,
         expressions=EXPRESSIONS,
         statement=r"O(?=[ \t]*[0-9<#\[])|%",
         assigned="#",

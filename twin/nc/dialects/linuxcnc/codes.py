@@ -1,15 +1,17 @@
 """G codes of LinuxCNC, milling."""
 
 from twin.nc.canonical import Corner
-from twin.nc.control.codes import Action, GCode, Interpolation
+from twin.nc.control.codes import Action, GCode
 from twin.nc.control.control import Control
 from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.linuxcnc import compensation, curves, motion, offsets
 from twin.nc.dialects.linuxcnc.arcs import CLOCKWISE, COUNTER_CLOCKWISE
 from twin.nc.dialects.linuxcnc.cycles import CYCLES
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, memory_of
-from twin.nc.geometry.planes import XY, YZ, ZX, Plane
+from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso import base
+from twin.nc.iso.declared import instead, modal, motion_code, plane_code, refused
+from twin.nc.iso.fixed_cycles import BY_HAND
 from twin.nc.iso.tool_compensation import LEFT, RIGHT
 
 _INCH = 25.4
@@ -22,7 +24,8 @@ def _units(unit: float) -> Action:
     """G20, G21: lengths change their unit; a feed that was programmed before stays what it is."""
 
     def action(control: Control) -> None:
-        offsets.refuse_in_compensation(control)
+        if control.modal.unit != unit:
+            offsets.refuse_in_compensation(control)
         memory = memory_of(control)
         if control.feed is not None and control.modal.unit != unit:
             memory.converted_feed = memory.converted_feed or control.feed
@@ -39,12 +42,20 @@ def forget_feed(control: Control) -> None:
 
 
 def change_plane(control: Control) -> None:
-    """G17 to G19: not while radius compensation is in force."""
-    offsets.refuse_in_compensation(control)
+    """G17 to G19: no other plane than that of a radius compensation in force."""
+    compensated = compensation.in_force(control)
+    if compensated is not None and control.modal.plane is not compensated.plane:
+        offsets.refuse_in_compensation(control)
+
+
+def change_corners(control: Control) -> None:
+    """G61 to G64: not while radius compensation is in force."""
+    offsets.refuse_in_compensation(control, "how corners are passed cannot change")
 
 
 def corner_tolerance(control: Control) -> None:
     """G64 P Q: how far corners may be rounded; Q, for lines nearly straight, changes no path here."""
+    change_corners(control)
     word, straight = control.take("P"), control.take("Q")
     for each in (word, straight):
         if each is not None and control.number(each) < 0.0:
@@ -52,18 +63,9 @@ def corner_tolerance(control: Control) -> None:
     control.modal.corner_tolerance = float("nan") if word is None else control.length(word)
 
 
-def by_interpreter(control: Control) -> None:
-    """A code whose blocks the compiled tier leaves alone."""
-    del control
-
-
-def _motion(meaning: str, interpolation: Interpolation) -> GCode:
-    return GCode(
-        meaning=meaning,
-        group="motion",
-        sets={"interpolation": interpolation, "cycle": None},
-        ground="manual",
-    )
+def change_return(control: Control) -> None:
+    """G98, G99: not while radius compensation is in force."""
+    offsets.refuse_in_compensation(control, "the return plane of cycles cannot change")
 
 
 def _alone_with_axes(action: Action) -> Action:
@@ -78,57 +80,29 @@ def _alone_with_axes(action: Action) -> Action:
     return perform
 
 
-def _once(meaning: str, action: Action, *, performs: bool = False) -> GCode:
-    """A code of the group that is not modal."""
-    if performs:
-        return GCode(meaning=meaning, group="not modal", perform=action, ground="manual")
-    return GCode(meaning=meaning, group="not modal", action=action, ground="manual")
-
-
-def _plane(meaning: str, plane: Plane) -> GCode:
-    return GCode(
-        meaning=meaning,
-        group="plane",
-        sets={"plane": plane},
-        action=change_plane,
-        compiler=base.plane_effect(plane).write,
-        ground="manual",
-    )
-
-
-def _refused(meaning: str, reason: str, group: str = "motion") -> GCode:
-    return GCode(meaning=meaning, group=group, refused=reason, ground="manual")
-
-
-def _feed(meaning: str, mode: FeedMode) -> GCode:
-    return GCode(
-        meaning=meaning, group="feed", sets={"feed_mode": mode}, action=forget_feed, ground="manual"
-    )
-
-
 def _compensated(meaning: str, side: float, *, by_table: bool) -> GCode:
     begin = compensation.begin_by_table if by_table else compensation.begin_by_diameter
-    return GCode(meaning=meaning, group="compensation", action=begin(side), ground="manual")
+    return modal(meaning, "compensation", begin(side))
 
 
 MOTION = {
-    0: _motion("rapid positioning", motion.RAPID),
-    1: _motion("straight line", motion.FEED),
-    2: _motion("arc clockwise, P turns", CLOCKWISE),
-    3: _motion("arc counter-clockwise, P turns", COUNTER_CLOCKWISE),
-    5: _motion("cubic spline", curves.CUBIC),
-    5.1: _motion("quadratic spline", curves.QUADRATIC),
-    5.2: _motion("control point of a NURBS, weight P, order L", curves.NURBS),
-    33: _motion("straight line of K with each turn of the spindle", motion.THREAD),
-    33.1: _motion("the same and back with the spindle reversed", motion.TAP),
-    38.2: _refused("probing towards the part", _NO_PROBE),
-    38.3: _motion("probing towards the part, without an alarm", motion.PROBE),
-    38.4: _refused("probing away from the part", _NO_PROBE),
-    38.5: _motion("probing away from the part, without an alarm", motion.PROBE),
-    70: _refused("finishing cycle", _LATHE),
-    71: _refused("roughing cycle", _LATHE),
-    72: _refused("facing cycle", _LATHE),
-    76: _refused("threading cycle", _LATHE),
+    0: motion_code("rapid positioning", motion.RAPID),
+    1: motion_code("straight line", motion.FEED),
+    2: motion_code("arc clockwise, P turns", CLOCKWISE),
+    3: motion_code("arc counter-clockwise, P turns", COUNTER_CLOCKWISE),
+    5: motion_code("cubic spline", curves.CUBIC),
+    5.1: motion_code("quadratic spline", curves.QUADRATIC),
+    5.2: motion_code("control point of a NURBS, weight P, order L", curves.NURBS),
+    33: motion_code("straight line of K with each turn of the spindle", motion.THREAD),
+    33.1: motion_code("the same and back with the spindle reversed", motion.TAP),
+    **refused("probing towards the part", _NO_PROBE, 38.2, group="motion"),
+    38.3: motion_code("probing towards the part, without an alarm", motion.PROBE),
+    **refused("probing away from the part", _NO_PROBE, 38.4, group="motion"),
+    38.5: motion_code("probing away from the part, without an alarm", motion.PROBE),
+    **refused("finishing cycle", _LATHE, 70, group="motion"),
+    **refused("roughing cycle", _LATHE, 71, group="motion"),
+    **refused("facing cycle", _LATHE, 72, group="motion"),
+    **refused("threading cycle", _LATHE, 76, group="motion"),
     80: GCode(
         meaning="no motion: axis words need a code",
         group="motion",
@@ -137,127 +111,93 @@ MOTION = {
         ground="manual",
     ),
     **CYCLES,
-    88: _refused("boring, out by hand", "the operator moves the axes by hand in it"),
+    **refused("boring, out by hand", BY_HAND, 88, group="motion"),
 }
 
 NOT_MODAL = {
-    4: GCode(
-        meaning="dwell, P seconds",
-        group="not modal",
-        action=base.dwell("P", "G4 needs P, its seconds", "write G4 P1"),
-        ground="manual",
+    4: modal(
+        "dwell, P seconds", "not modal", base.dwell("P", "G4 needs P, its seconds", "write G4 P1")
     ),
-    5.3: _once("end of a NURBS", curves.end_nurbs, performs=True),
-    10: _once(
+    5.3: instead("end of a NURBS", curves.end_nurbs, "not modal"),
+    10: instead(
         "L2, L20 coordinate system; L1, L10, L11 tool",
         _alone_with_axes(offsets.write_table),
-        performs=True,
+        "not modal",
     ),
-    28: _once(
-        "rapidly to the first stored position", _alone_with_axes(motion.go_home(0)), performs=True
+    28: instead(
+        "rapidly to the first stored position", _alone_with_axes(motion.go_home(0)), "not modal"
     ),
-    28.1: _once("this is the first stored position", motion.store_home(0)),
-    30: _once(
-        "rapidly to the second stored position", _alone_with_axes(motion.go_home(1)), performs=True
+    28.1: modal("this is the first stored position", "not modal", motion.store_home(0)),
+    30: instead(
+        "rapidly to the second stored position", _alone_with_axes(motion.go_home(1)), "not modal"
     ),
-    30.1: _once("this is the second stored position", motion.store_home(1)),
-    52: _once("local shift of zero", _alone_with_axes(offsets.local_offset), performs=True),
-    53: _once("in machine coordinates", motion.in_machine_coordinates, performs=True),
-    92: _once("this place gets these coordinates", _alone_with_axes(offsets.preset), performs=True),
-    92.1: _once("no preset, its parameters become 0", offsets.end_preset),
-    92.2: _once("no preset, its parameters stay", offsets.suspend_preset),
-    92.3: _once("the preset is put back", offsets.restore_preset),
+    30.1: modal("this is the second stored position", "not modal", motion.store_home(1)),
+    52: instead("local shift of zero", _alone_with_axes(offsets.local_offset), "not modal"),
+    53: instead("in machine coordinates", motion.in_machine_coordinates, "not modal"),
+    92: instead("this place gets these coordinates", _alone_with_axes(offsets.preset), "not modal"),
+    92.1: modal("no preset, its parameters become 0", "not modal", offsets.end_preset),
+    92.2: modal("no preset, its parameters stay", "not modal", offsets.suspend_preset),
+    92.3: modal("the preset is put back", "not modal", offsets.restore_preset),
 }
 
 MODAL = {
-    7: _refused("diameters", _LATHE, "diameter"),
-    8: GCode(meaning="radii", group="diameter", refused=_LATHE, ground="manual"),
-    17: _plane("plane X Y", XY),
-    18: _plane("plane Z X", ZX),
-    19: _plane("plane Y Z", YZ),
-    17.1: _refused("plane U V", _NO_UVW, "plane"),
-    18.1: _refused("plane W U", _NO_UVW, "plane"),
-    19.1: _refused("plane V W", _NO_UVW, "plane"),
-    20: GCode(meaning="inches", group="units", action=_units(_INCH), ground="manual"),
-    21: GCode(meaning="millimetres", group="units", action=_units(1.0), ground="manual"),
-    43: GCode(
-        meaning="length of tool H", group="length", action=offsets.tool_length, ground="manual"
+    **refused("diameters", _LATHE, 7, group="diameter"),
+    **refused("radii", _LATHE, 8, group="diameter"),
+    17: plane_code("plane X Y", XY, change_plane),
+    18: plane_code("plane Z X", ZX, change_plane),
+    19: plane_code("plane Y Z", YZ, change_plane),
+    **refused("plane U V", _NO_UVW, 17.1, group="plane"),
+    **refused("plane W U", _NO_UVW, 18.1, group="plane"),
+    **refused("plane V W", _NO_UVW, 19.1, group="plane"),
+    20: modal("inches", "units", _units(_INCH)),
+    21: modal("millimetres", "units", _units(1.0)),
+    43: modal("length of tool H", "length", offsets.tool_length),
+    43.1: instead(
+        "tool offset by words of axes", _alone_with_axes(offsets.given_tool_length), "length"
     ),
-    43.1: GCode(
-        meaning="tool offset by words of axes",
-        group="length",
-        perform=_alone_with_axes(offsets.given_tool_length),
-        ground="manual",
+    43.2: instead(
+        "a further tool offset, H or words of axes",
+        _alone_with_axes(offsets.further_tool_length),
+        "length",
     ),
-    43.2: GCode(
-        meaning="a further tool offset, H or words of axes",
-        group="length",
-        perform=_alone_with_axes(offsets.further_tool_length),
-        ground="manual",
-    ),
-    49: GCode(
-        meaning="no tool length", group="length", action=offsets.no_tool_length, ground="manual"
-    ),
+    49: modal("no tool length", "length", offsets.no_tool_length),
     **{
-        (int(name[1:]) if name[1:].isdigit() else float(name[1:])): GCode(
-            meaning=f"coordinate system {number}",
-            group="offset",
-            action=offsets.select_system(number),
-            ground="manual",
+        (int(name[1:]) if name[1:].isdigit() else float(name[1:])): modal(
+            f"coordinate system {number}", "offset", offsets.select_system(number)
         )
         for number, name in enumerate(SYSTEMS, 1)
     },
-    61: GCode(
-        meaning="exact path", group="corner", sets={"corner": Corner.EXACT_PATH}, ground="manual"
-    ),
-    61.1: GCode(
-        meaning="exact stop", group="corner", sets={"corner": Corner.EXACT_STOP}, ground="manual"
-    ),
-    64: GCode(
-        meaning="corners rounded, P mm at most",
-        group="corner",
-        sets={"corner": Corner.CONTINUOUS},
-        action=corner_tolerance,
-        ground="manual",
+    61: modal("exact path", "corner", change_corners, corner=Corner.EXACT_PATH),
+    61.1: modal("exact stop", "corner", change_corners, corner=Corner.EXACT_STOP),
+    64: modal(
+        "corners rounded, P mm at most", "corner", corner_tolerance, corner=Corner.CONTINUOUS
     ),
     **base.by_manual(base.DISTANCE),
-    90.1: GCode(
-        meaning="I J K absolute", group="centre", sets={"center_absolute": True}, ground="manual"
+    90.1: modal("I J K absolute", "centre", center_absolute=True),
+    91.1: modal("I J K from the start of the arc", "centre", center_absolute=False),
+    93: modal(
+        "F is the inverse of a block's minutes",
+        "feed",
+        forget_feed,
+        feed_mode=FeedMode.BLOCKS_PER_MINUTE,
     ),
-    91.1: GCode(
-        meaning="I J K from the start of the arc",
-        group="centre",
-        sets={"center_absolute": False},
-        ground="manual",
+    94: modal("feed per minute", "feed", forget_feed, feed_mode=FeedMode.PER_MINUTE),
+    95: modal("feed per revolution", "feed", forget_feed, feed_mode=FeedMode.PER_REVOLUTION),
+    **refused(
+        "constant surface speed", "it turns the spindle by X, as a lathe does", 96, group="speed"
     ),
-    93: _feed("F is the inverse of a block's minutes", FeedMode.BLOCKS_PER_MINUTE),
-    94: _feed("feed per minute", FeedMode.PER_MINUTE),
-    95: _feed("feed per revolution", FeedMode.PER_REVOLUTION),
-    96: _refused("constant surface speed", "it turns the spindle by X, as a lathe does", "speed"),
-    97: GCode(meaning="spindle speed in revolutions", group="speed", ground="manual"),
-    98: GCode(
-        meaning="cycles return to the height of their call",
-        group="return plane",
-        sets={"return_to_reference": False},
-        action=by_interpreter,
-        ground="manual",
+    97: modal("spindle speed in revolutions", "speed"),
+    98: modal(
+        "cycles return to the height of their call",
+        "return plane",
+        change_return,
+        return_to_reference=False,
     ),
-    99: GCode(
-        meaning="cycles return to R",
-        group="return plane",
-        sets={"return_to_reference": True},
-        action=by_interpreter,
-        ground="manual",
-    ),
+    99: modal("cycles return to R", "return plane", change_return, return_to_reference=True),
 }
 
 COMPENSATION = {
-    40: GCode(
-        meaning="radius compensation off",
-        group="compensation",
-        action=compensation.end,
-        ground="manual",
-    ),
+    40: modal("radius compensation off", "compensation", compensation.end),
     41: _compensated("radius compensation, tool left of the contour", LEFT, by_table=True),
     42: _compensated("radius compensation, tool right of the contour", RIGHT, by_table=True),
     41.1: _compensated("tool left of the contour, diameter D", LEFT, by_table=False),

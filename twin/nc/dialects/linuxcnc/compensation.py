@@ -63,6 +63,7 @@ class Compensation:
         side: 1 left of the contour, -1 right.
         radius: Of the tool [mm].
         entered: The first move has been made.
+        plane: In which it is.
     """
 
     def __init__(self, control: Control, side: float, radius: float) -> None:
@@ -70,6 +71,7 @@ class Compensation:
         self.side = side
         self.radius = radius
         self.entered = False
+        self.plane = control.modal.plane
         self._queue: list[Held | Event] = []
         self._here: Point = (0.0, 0.0)
         self._endpoint: Point | None = None

@@ -4,9 +4,7 @@ import re
 from collections.abc import Callable
 from typing import NoReturn
 
-from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
-from twin.nc.bytecode.bytecode import number_of_location
 from twin.nc.control.codes import StatementEffect
 from twin.nc.control.constructs import Construct
 from twin.nc.control.control import Control
@@ -435,6 +433,7 @@ def percent(control: Control, statement: Statement) -> None:
 
 def call_program(control: Control) -> None:
     """M98 P L: run the program O and its number, L times, with the caller's parameters."""
+    _refuse_companions(control, "NPL", "M98 P100 L2")
     number, times = control.take("P"), control.take("L")
     if number is None:
         control.fail("jump-target", "M98 needs P, the number of the program", hint="write M98 P100")
@@ -453,19 +452,34 @@ def call_program(control: Control) -> None:
 
     def write(assembler: Assembler) -> None:
         assembler.constant(float(count))
-        assembler.emit(opcodes.CHECK_CALL, DEEPEST_CALL)
-        assembler.emit(opcodes.REPEAT, number_of_location(first))
+        assembler.call(first, DEEPEST_CALL, often=True)
 
     control.perform(write, (number.column, number.width))
 
 
 def return_from_program(control: Control) -> None:
     """M99: back behind M98; in the main program from its beginning again."""
+    _refuse_companions(control, "N", "M99")
     if control.program_counter.is_calling:
         control.perform(_end_program)
     else:
         control.program_counter.go(Location(0, 0))
         memory_of(control).percent = False
+
+
+def _refuse_companions(control: Control, letters: str, alone: str) -> None:
+    """Only P and L stand beside M98, nothing beside M99: the control passes over other words, or refuses them.
+
+    Raises:
+        ProgramError: Other words do.
+    """
+    words = control.block.words
+    call = next(word for word in words if word.address == "M" and word.value in (98.0, 99.0))
+    others = (word for word in words if word is not call and word.address not in letters)
+    other = next(others, None)
+    if other is not None:
+        message = f"{other.text} cannot stand beside {call.text}"
+        control.fail("code-words", message, other, f"write {alone} in a line of its own")
 
 
 def _end_program(assembler: Assembler) -> None:

@@ -4,18 +4,16 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from twin.nc.dialects.linuxcnc.structure import FILE
+from twin.nc.dialects.linuxcnc.structure import FILE, named_o_word
 from twin.nc.text.library import named_files, with_called_files
-from twin.nc.text.source import HasCodePage, Source
+from twin.nc.text.source import Source
+from twin.nc.text.syntax import Language
 
-_CALL = re.compile(
-    r"^[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O[ \t]*(<[^<>]*>|[0-9]+)[ \t]*CALL\b", re.IGNORECASE
-)
 _PROGRAM = re.compile(r"\bM[ \t]*0*98[ \t]*P[ \t]*([0-9]+)", re.IGNORECASE)
 _SOMEWHERE = re.compile(rb"CALL|M[ \t]*0*98", re.IGNORECASE)
 
 
-def with_files(source: Source, folder: Path, dialect: HasCodePage) -> Source:
+def with_files(source: Source, folder: Path, dialect: Language) -> Source:
     """The program with the subroutines that it calls, as far as they are files of their own.
 
     Args:
@@ -31,8 +29,8 @@ def with_files(source: Source, folder: Path, dialect: HasCodePage) -> Source:
 def _calls(source: Source) -> Iterator[str]:
     if source.lines.any_holds(_SOMEWHERE):
         for line in source.lines:
-            if (call := _CALL.match(line)) is not None:
-                label = re.sub(r"[\s<>]", "", call[1]).upper()
-                yield str(int(label)) if label.isdigit() else label
+            named = named_o_word(line)
+            if named is not None and named[1] == "CALL":
+                yield named[0].upper()
             elif (program := _PROGRAM.search(line)) is not None:
                 yield str(int(program[1]))

@@ -5,7 +5,6 @@ from typing import NoReturn
 
 from twin.nc.control.codes import Action, Interpolation
 from twin.nc.control.control import Control
-from twin.nc.control.interpolation import LineRule
 from twin.nc.control.modal import FeedMode
 from twin.nc.dialects.linuxcnc.compensation import in_force
 from twin.nc.dialects.linuxcnc.memory import memory_of
@@ -87,7 +86,7 @@ def _refuse_mixed(control: Control, word: Word | None) -> None:
         control.fail("code-words", "@ and ^ count in the plane of X and Y", word, "write G17")
 
 
-def _straight(control: Control, *, rapid: bool) -> None:
+def _straight(control: Control, rapid: bool) -> None:
     goal, compensation = target(control), in_force(control)
     memory_of(control).leading_out = False
     if compensation is not None and compensation.radius > 0.0:
@@ -96,18 +95,7 @@ def _straight(control: Control, *, rapid: bool) -> None:
         control.line_to(goal, rapid=rapid)
 
 
-def rapid_line(control: Control) -> None:
-    """G0."""
-    _straight(control, rapid=True)
-
-
-def feed_line(control: Control) -> None:
-    """G1."""
-    _straight(control, rapid=False)
-
-
-RAPID = Interpolation(rapid_line, rapid=True, rule=LineRule())
-FEED = Interpolation(feed_line, rule=LineRule(), without_words=_feed_alone)
+RAPID, FEED = base.straight(_straight, _feed_alone)
 
 
 def in_machine_coordinates(control: Control) -> None:
@@ -186,10 +174,13 @@ def _pitch_feed(control: Control, code: str) -> float:
     pitch = control.take("K")
     if pitch is None:
         control.fail("code-words", f"{code} needs K, the way of each turn")
-    if not control.spindle_turns or not control.spindle:
+    if not control.spindle_turns:
         control.fail(
             "spindle-needed", f"{code} follows a spindle that turns", hint="write S and M3 before"
         )
+    if not control.spindle:
+        message = f"{code} follows the spindle, which stands at S0"
+        control.fail("spindle-needed", message, hint="write S above 0 before")
     return abs(control.length(pitch)) * control.spindle
 
 

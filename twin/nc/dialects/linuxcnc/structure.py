@@ -8,6 +8,8 @@ from twin.nc.control.constructs import Branch, Construct, Structure
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.text.blocks import Statement
+from twin.nc.text.comments import NO_COMMENT, comment_marks, without_comments
+from twin.nc.text.syntax import Comment
 
 FILE = "%FILE "
 """Begins the line in front of a subroutine's file."""
@@ -15,15 +17,16 @@ KEYWORDS = (
     "SUB", "ENDSUB", "CALL", "RETURN", "IF", "ELSEIF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "DO",
     "REPEAT", "ENDREPEAT", "BREAK", "CONTINUE",
 )  # fmt: skip
-_LABEL = r"<[^<>]*>|[0-9](?:[0-9 \t]*[0-9])?"
+_LABEL = r"<[^<>]*>|[0-9](?:[0-9 \t]*[0-9])?(?:[ \t]*\.(?:[0 \t]*0)?)?"
+"""Regular expression of a label that is not computed; a number of its own may end in ``.0``."""
 _LINE = re.compile(
     rf"[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O[ \t]*({_LABEL})[ \t]*([A-Z]*)", re.IGNORECASE
 )
 _BEGIN = re.compile(r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9.]+[ \t]*)?O", re.IGNORECASE)
 _COMPUTED = re.compile(r"[ \t]*[#\[]")
 _WORD = re.compile(rf"[ \t]*({_LABEL}|#[^\[ \t]*|\[[^\]]*\])[ \t]*([A-Z]*)[ \t]*", re.IGNORECASE)
-_COMMENT = re.compile(r"\([^()]*\)")
-_OPEN_COMMENT = re.compile(r"(?:[^(;]|\([^()]*\))*\([^()]*(?:\(|$)")
+COMMENTS = (Comment("(", ")", holds_opening=False), Comment(";"))
+_MARKS = comment_marks(COMMENTS)
 _ENDS = {"ENDSUB": "SUB", "ENDIF": "IF", "ENDWHILE": "WHILE", "ENDREPEAT": "REPEAT"}
 LOOPS = ("WHILE", "DO", "REPEAT")
 
@@ -47,12 +50,18 @@ class OWord(NamedTuple):
 def name_of_label(label: str) -> str:
     """One spelling for all ways to write a label."""
     label = re.sub(r"\s", "", label).lower()
-    return label[1:-1] if label.startswith("<") else str(int(label)) if label.isdigit() else label
+    return label[1:-1] if label.startswith("<") else str(int(label.partition(".")[0]))
+
+
+def named_o_word(line: str) -> tuple[str, str] | None:
+    """Label and keyword, in upper case, of a line's O-word; None where it has none with a label of its own."""
+    match = _LINE.match(line)
+    return None if match is None else (name_of_label(match[1]), match[2].upper())
 
 
 def o_word(statement: Statement) -> OWord | None:
     """Read a statement; None where it is none."""
-    text = _COMMENT.sub(lambda match: " " * len(match[0]), statement.text)
+    text, _ = without_comments(statement.text, _MARKS)
     match = _WORD.match(text)
     if match is None:
         return None
@@ -62,7 +71,8 @@ def o_word(statement: Statement) -> OWord | None:
 
 def is_garbled(text: str) -> bool:
     """Whether a line holds an open comment, or begins as one with an O-word and is none."""
-    if "(" in text and _OPEN_COMMENT.match(text):
+    said, wrong = without_comments(text, _MARKS)
+    if wrong != NO_COMMENT:
         return True
     begin = _BEGIN.match(text)
     if begin is None or _COMPUTED.match(text, begin.end()):
@@ -70,8 +80,7 @@ def is_garbled(text: str) -> bool:
     match = _LINE.match(text)
     if match is None:
         return True
-    rest = _COMMENT.sub("", text[match.end() :]).partition(";")[0].strip()
-    return match[2].upper() not in KEYWORDS if match[2] else rest != ""
+    return match[2].upper() not in KEYWORDS if match[2] else said[match.end() :].strip() != ""
 
 
 class OWords(NamedTuple):
@@ -100,9 +109,9 @@ def structure_of(lines: Iterable[str]) -> OWords:
             garbled.append(line)
         if "O" not in text.upper():
             continue
-        if (match := _LINE.match(text)) is None:
+        if (named := named_o_word(text)) is None:
             continue
-        name, keyword = name_of_label(match[1]), match[2].upper()
+        name, keyword = named
         if keyword in ("SUB", ""):
             subroutines.setdefault(name, []).append(line)
         found = _paired(structure, open_ones, name, keyword, line)
@@ -145,8 +154,8 @@ def lines_of_label(control: Control, construct: Construct) -> list[int]:
     assert construct.end is not None
     lines = control.program_counter.lines
     inner = range(construct.begin + 1, construct.end + 1)
-    found = ((line, _LINE.match(lines[line])) for line in inner)
-    return [line for line, match in found if match and name_of_label(match[1]) == construct.name]
+    named = ((line, named_o_word(lines[line])) for line in inner)
+    return [line for line, word in named if word is not None and word[0] == construct.name]
 
 
 def scope(control: Control, line: int) -> str:

@@ -1,0 +1,1 @@
+"""Canned cycles of Fanuc controls: drilling and tapping, boring, bolt holes."""

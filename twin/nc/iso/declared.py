@@ -1,0 +1,58 @@
+"""G codes as the tables of dialects declare them, a line each: by the manual of their control."""
+
+from collections.abc import Mapping
+from typing import Unpack
+
+from twin.nc.bytecode import opcodes
+from twin.nc.control.codes import Action, CodeWriter, Effect, GCode, Ground, Interpolation
+from twin.nc.control.modal import ModalChanges
+from twin.nc.geometry.planes import PLANE_ORDER, Plane
+
+
+def modal(
+    meaning: str,
+    group: str = "",
+    action: Action | None = None,
+    *,
+    compiler: CodeWriter | None = None,
+    once: bool = False,
+    ground: Ground = "manual",
+    **sets: Unpack[ModalChanges],
+) -> GCode:
+    """A code that puts something into force, or does something before the block moves."""
+    return GCode(
+        meaning=meaning,
+        group=group,
+        sets=sets,
+        action=action,
+        compiler=compiler,
+        once=once,
+        ground=ground,
+    )
+
+
+def instead(
+    meaning: str, perform: Action, group: str = "", *, takes: str = "", ground: Ground = "manual"
+) -> GCode:
+    """A code that stands in the place of a move."""
+    return GCode(meaning=meaning, group=group, perform=perform, takes=takes, ground=ground)
+
+
+def motion_code(meaning: str, interpolation: Interpolation, ground: Ground = "manual") -> GCode:
+    """A code by which axis words become a move; it ends a cycle."""
+    return modal(meaning, "motion", ground=ground, interpolation=interpolation, cycle=None)
+
+
+def plane_code(
+    meaning: str, plane: Plane, action: Action | None = None, ground: Ground = "manual"
+) -> GCode:
+    """A code of a working plane; ``action``: what the interpreter tier does besides."""
+    effect = Effect(lambda _, assembler: assembler.emit(opcodes.PLANE, PLANE_ORDER.index(plane)))
+    write = None if action is None else effect.write
+    return modal(meaning, "plane", action or effect, compiler=write, ground=ground, plane=plane)
+
+
+def refused(meaning: str, reason: str, *numbers: float, group: str = "") -> Mapping[float, GCode]:
+    """Codes that the control knows and the twin does not follow."""
+    code = GCode(meaning=meaning, group=group, refused=reason, ground="manual")
+    return dict.fromkeys(numbers, code)
