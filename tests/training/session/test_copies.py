@@ -14,6 +14,7 @@ import pytest
 
 from tests.nc.running import WITH_TABLES
 from tests.nc.test_golden import RULES
+from twin.copies import _LEAVES, copied
 from twin.errors import TwinError
 from twin.nc.canonical import Chunk
 from twin.nc.control.executor import Executor
@@ -25,7 +26,6 @@ from twin.training.session import checkpoints
 from twin.training.session.actions import carry_out
 from twin.training.session.checkpoints import never_changes
 from twin.training.session.commands import command_from
-from twin.training.session.copies import _LEAVES, copied
 from twin.training.session.room import Room
 
 _CHANGELESS = (*_LEAVES, type(None), np.generic, tuple, frozenset, enum.Enum, re.Pattern, range)

@@ -12,8 +12,8 @@ import itertools
 from collections import deque
 from typing import Self
 
+from twin.copies import Divided
 from twin.nc.canonical import Dwell, Event, Function
-from twin.training.session.copies import Divided
 
 FORGOTTEN_AT_ONCE = 256
 """Blocks behind the axes that are dropped together."""

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import BaseModel
 
+from twin.copies import copied
 from twin.cutting.height_map import HeightMap
 from twin.cutting.outline import Outline
 from twin.machine.description.config import Machine
@@ -25,7 +26,6 @@ from twin.nc.control.constructs import Structure
 from twin.nc.control.program_counter import FoundInText
 from twin.nc.text.grammar import Grammar
 from twin.nc.text.lines import Lines
-from twin.training.session.copies import copied
 from twin.training.session.room import SLICE, Room
 
 APART_S = 4.0
