@@ -16,7 +16,6 @@ from twin.motion.blocks.corners import Borders, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import phases_of_pieces
 from twin.motion.pieces.pieces import Pieces, blocks_to_cut, cut
-from twin.motion.retiming.run_kernels import LEAST_TURN_FROM_REST
 from twin.nc.canonical import Chunk, Corner, FloatArray
 
 MOST_BLOCKS = 64
@@ -71,7 +70,7 @@ def _with_faster_stops(
 def _doubtful(surroundings: Surroundings, borders: Borders) -> list[tuple[int, int]]:
     """First block and the one after the last, between two stops, with roundings beside arcs."""
     blocks = surroundings.blocks
-    bent = np.abs(blocks.geometry.angle) >= LEAST_TURN_FROM_REST
+    bent = blocks.geometry.angle != 0.0
     if not np.any(bent):
         return []
     rounded: BoolArray = borders.width > 0.0
