@@ -172,6 +172,7 @@ CHANGES = (
         "memory.local[depth, ~slot] = value + 1.0",
         "fagor8070/rules/flow",
     ),
+    Change("functions", "_STARTS, _STOPS = (3, 4)", "_STARTS, _STOPS = (30, 4)", "gost/codes/G94"),
     Change("bytecode/frames", "if call[AGAIN] > 0:", "if call[AGAIN] > 1:", "fagor8070/rules/flow"),
 )
 

@@ -7,7 +7,10 @@ from twin.nc.canonical import Function
 
 SPINDLE_CLOCKWISE = "M3"
 SPINDLE_COUNTER_CLOCKWISE = "M4"
-SPINDLE_STARTS = frozenset({SPINDLE_CLOCKWISE, SPINDLE_COUNTER_CLOCKWISE})
+_STARTS, _STOPS = (3, 4), (5, 6)
+"""M codes behind which the spindle turns, and behind which it stands until it is started anew, whichever
+tool M6 has brought (LinuxCNC, "M6 Tool Change": when the change is complete the spindle is stopped)."""
+SPINDLE_STARTS = frozenset(f"M{number}" for number in _STARTS)
 SPINDLE_STOPS = frozenset({"M5", "M19"})
 """M19 holds the spindle at an angle."""
 SPINDLE_LIMITED = "spindle-limited"
@@ -23,9 +26,13 @@ PROGRAM_STOPS = frozenset({"M0", OPTIONAL_STOP})
 """The operator starts the program again."""
 PROGRAM_ENDS = frozenset({"M2", "M30"})
 """The spindle and the coolant end with the program."""
-_SPINDLE_ENDS = SPINDLE_STOPS | PROGRAM_ENDS | {TOOL_CHANGE}
-"""Behind these the spindle stands until it is started anew, whichever tool a change has brought
-(LinuxCNC, "M6 Tool Change": when the change is complete the spindle is stopped)."""
+_SPINDLE_ENDS = SPINDLE_STOPS | PROGRAM_ENDS | {f"M{number}" for number in _STOPS}
+
+
+@compilable
+def starts_spindle(function: float) -> bool:
+    """Whether an M code starts the spindle, at the speed that S has given last."""
+    return function in _STARTS
 
 
 @compilable
@@ -34,9 +41,9 @@ def turns_behind(function: int, turned: float) -> float:
 
     M19 is no stop here: whether a feed per revolution may follow it, no seed says.
     """
-    if function in (3, 4):
+    if starts_spindle(function):
         return 1.0
-    return 0.0 if function in (5, 6) else turned
+    return 0.0 if function in _STOPS else turned
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)

@@ -43,7 +43,8 @@ RARE = {
     "codesys": "(* a *) G1 X1|// X2|FX3|LET #a : LREAL := 2|G1 X(1+2)|N1 X1 N2 X2|FF5|E5|M7 K2",
     "fagor8070": "G1 R5 Q30|P1=2|G1 XP1|G1 X20I|; text|G73|G11|G10|G1 X5 NR3|[HERE]",
     "fanuc": "#1=2.5|G1 X#1|X[#1*2]|#[1+1]=#1|X#2|Y#9|(text)|/X1.|/2 Y3.|M98 P2|G4 P20|M3 S500|G54 X3.|G92 X1."
-    "|G52 Y2.|G41 D1|G40|G43 H2|G49|G81 Z-9. R8.|X3. K2|G80|G68 X0 Y0 R30.|G69|IF [#1 GT 2] THEN #1=1.5",
+    "|G52 Y2.|G41 D1|G40|G43 H2|G49|G81 Z-9. R8.|X3. K2|G80|G68 X0 Y0 R30.|G69|IF [#1 GT 2] THEN #1=1.5"
+    "|G84 Z-9. R8. Q7. F9.",
     "linuxcnc": "#1=2.5|G1 X#1|X[#1*2]|#[1+1]=#1|#<w>=#1|Y#<w>|(text)|; text|/X1|G4 P2|M3 S500|G54|G92 X1|G92.1"
     "|G52 Y2|G41.1 D4|G40|G43 H2|G49|G98 G81 Z-9 R8|X3 L2|G80|G1 @3 ^30|G10 L2 P2 X3|T2 M6|G61|G64 P0.1",
     "mefi": '"text|G1 X1 "behind|Z1 G10|M5|S200|G4 P2|T2 M6|G54|G55 X3|G92 X1|G43 H2|G49|M3 S5 M8',

@@ -8,8 +8,7 @@ from twin.nc.canonical import Dwell, Function
 from twin.nc.path.event_columns import (
     AUXILIARY,
     DWELL,
-    FUNCTION_ALONE,
-    FUNCTION_WITH_SPEED,
+    FUNCTION,
     SPEED,
     TOOL,
     EventRows,
@@ -19,9 +18,9 @@ from twin.nc.path.event_columns import (
 ROWS = EventRows(
     np.array(
         [
-            [0, 1, FUNCTION_ALONE, 8],
-            [0, 2, FUNCTION_WITH_SPEED, 3],
-            [1, 3, FUNCTION_WITH_SPEED, 4],
+            [0, 1, FUNCTION, 8],
+            [0, 2, FUNCTION, 3],
+            [1, 3, FUNCTION, 4],
             [1, 4, SPEED, 0],
             [2, 5, TOOL, 7],
             [2, 6, AUXILIARY, 9],

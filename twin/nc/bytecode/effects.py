@@ -35,7 +35,7 @@ from twin.nc.bytecode.registers import (
     Constants,
     State,
 )
-from twin.nc.functions import turns_behind
+from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.geometry import polar
 from twin.nc.geometry.arcs import Point
 from twin.nc.geometry.frame import SHIFTS, add_up
@@ -45,8 +45,7 @@ from twin.nc.path.drilling_cycle import Act
 from twin.nc.path.event_columns import (
     AUXILIARY,
     DWELL,
-    FUNCTION_ALONE,
-    FUNCTION_WITH_SPEED,
+    FUNCTION,
     SPEED,
     TOOL,
 )
@@ -72,7 +71,7 @@ from twin.nc.text.expressions import LARGEST_NUMBER
 """What is wrong with an instruction."""
 _NO_EVENT = -1
 _LENGTH = SHIFTS.index("length")
-_WAIT, _SPINDLE_STOPS = int(Act.DWELL), int(Act.M5)
+_WAIT = int(Act.DWELL)
 LARGEST_TOOL, LARGEST_AUXILIARY = LARGEST_NUMBER, 999_999.0
 """Numbers of tools and of auxiliary functions that an event can hold."""
 
@@ -144,11 +143,9 @@ def _report_effect(
     opcode, operand = instruction.opcode, instruction.operand
     registers, constants = on.state.registers, on.constants
     value = stack[top - 1] if top > 0 else 0.0
-    kind, number, amount = FUNCTION_ALONE, operand, np.nan
-    if opcode in (opcodes.FUNCTION, opcodes.SPINDLE_FUNCTION):
-        registers[SPINDLE_TURNS] = turns_behind(operand, registers[SPINDLE_TURNS])
-    if opcode == opcodes.SPINDLE_FUNCTION:
-        kind, amount = FUNCTION_WITH_SPEED, registers[SPINDLE]
+    kind, number, amount = _NO_EVENT, operand, np.nan
+    if opcode == opcodes.FUNCTION:
+        report_function(operand, block, on)
     elif opcode == opcodes.SPEED:
         if value < 0.0:
             return NEGATIVE_SPEED
@@ -178,14 +175,26 @@ def _report_effect(
     return top
 
 
+@compilable
+def report_function(function: int, block: BlockPlace, on: Affected) -> None:
+    """An M function that does nothing to the path; a start of the spindle bears its speed."""
+    registers = on.state.registers
+    registers[SPINDLE_TURNS] = turns_behind(function, registers[SPINDLE_TURNS])
+    speed = _speed_with(function, on)
+    report(on.rows, on.state, block.made, block.line, FUNCTION, function, speed)
+
+
+@compilable
+def _speed_with(function: int, on: Affected) -> float:
+    return on.state.registers[SPINDLE] if starts_spindle(function) else np.nan
+
+
 @inlined
 def report_act(act: int, amount: float, block: BlockPlace, on: Affected) -> None:
-    """What happens at a hole and is no move: a dwell [s], or the spindle with its speed."""
-    kind, value = FUNCTION_WITH_SPEED, on.state.registers[SPINDLE]
+    """What happens at a hole and is no move: a dwell [s], or an M function of the spindle."""
+    kind, value = FUNCTION, _speed_with(act, on)
     if act == _WAIT:
         kind, value = DWELL, amount
-    elif act == _SPINDLE_STOPS:
-        kind, value = FUNCTION_ALONE, np.nan
     report(on.rows, on.state, block.made, block.line, kind, act, value)
 
 

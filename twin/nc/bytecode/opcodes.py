@@ -113,72 +113,70 @@ RETURN = 38
 ACTIVATE = 39
 """The G code ``operand`` becomes active."""
 FUNCTION = 40
-"""Report the M function ``operand``."""
-SPINDLE_FUNCTION = 41
-"""Report the M function ``operand`` together with the spindle's speed."""
-SPEED = 42
+"""Report the M function ``operand``, a start of the spindle together with its speed."""
+SPEED = 41
 """The spindle's speed is the topmost value; ``operand`` 1: report it."""
-TOOL = 43
+TOOL = 42
 """The topmost value is the number of the tool to prepare; ``operand`` 1: it must be one of the job's."""
-AUXILIARY = 44
+AUXILIARY = 43
 """Report H with the topmost value."""
-DWELL = 45
+DWELL = 44
 """Wait as many seconds as the topmost value."""
 
 # --- tools
 
-CHANGE_TOOL = 46
+CHANGE_TOOL = 45
 """The tool that was prepared last becomes the tool in use."""
-OFFSET_ON = 47
+OFFSET_ON = 46
 """``operand`` 1: tool offsets apply; 0: they do not."""
-TOOL_LENGTH = 48
+TOOL_LENGTH = 47
 """Shift Z by the length of the tool in use, if its offset applies."""
-TOOL_RADIUS = 49
+TOOL_RADIUS = 48
 """Put the radius of the tool in use on the stack; ``operand`` 1: 0 where it has no offset."""
-PROGRAMMED_RADIUS = 50
+PROGRAMMED_RADIUS = 49
 """The topmost value is the radius that the program gives the tool; ``operand`` 0: put on the
 stack what it gave last."""
 
 # --- shifts of coordinates
 
-SHIFT = 51
+SHIFT = 50
 """The topmost values, one for each axis, are the shift ``operand``."""
-REFRAME = 52
+REFRAME = 51
 """The shifts have changed."""
-BEGIN_TARGET = 53
+BEGIN_TARGET = 52
 """Begin to set new coordinates for the present position: until set, each axis keeps its own."""
-TARGET = 54
+TARGET = 53
 """The topmost value is the new coordinate of the axis ``operand``."""
-SET_POSITION = 55
+SET_POSITION = 54
 """The new coordinates hold from here on, by the shift ``operand``."""
-TO_MILLIMETRES = 56
+TO_MILLIMETRES = 55
 """Convert the topmost value from the active unit, as one of the axis ``operand``."""
 
 # --- plane and polar coordinates
 
-PLANE = 57
+PLANE = 56
 """The plane ``operand`` becomes active: 0 to 2."""
-POLAR_ORIGIN = 58
+POLAR_ORIGIN = 57
 """``operand`` 2: the two topmost values are the polar origin; 0: the present position is."""
-FORGET_POLAR = 59
+FORGET_POLAR = 58
 """The last R and Q are no longer modal."""
 
 # --- drilling cycles
 
-NO_PECKS = 60
+NO_PECKS = 59
 """No drilling cycle with pecks may be in force."""
-CYCLE_WORD = 61
+CYCLE_WORD = 60
 """The topmost value is that of the drilling cycle's word for ``operand``."""
 
 # --- mirror, scale, rotation
 
-MIRROR = 62
+MIRROR = 61
 """The topmost value, -1 or 1, is the sign of the axis ``operand``."""
-SCALE = 63
+SCALE = 62
 """The topmost value is the scale."""
-ROTATE = 64
+ROTATE = 63
 """The topmost values are angle, abscissa and ordinate of the rotation, which must be the only one."""
-END_ROTATION = 65
+END_ROTATION = 64
 """The rotation ends."""
-TRANSFORM = 66
+TRANSFORM = 65
 """Mirror, scale and rotation have changed."""

@@ -48,7 +48,6 @@ from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import ArcRule, CycleRule, MotionMode
 from twin.nc.control.modal import FEED_FACTORS, FeedMode, Modal
 from twin.nc.control.settings import ControlSettings
-from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.geometry.arcs import Bounds
 from twin.nc.geometry.planes import PLANE_ORDER
 from twin.nc.path.drilling_cycle import Cycle
@@ -215,12 +214,12 @@ def _cycle_rows(cycles: list[MotionMode | None], token_kinds: Mapping[str, int])
 
 
 def _functions(dialect: Dialect, interpreted: Iterable[int]) -> IntArray:
-    """M codes that are only reported; a spindle's start carries its speed, and is not plain."""
+    """M codes that are only reported."""
     function = np.full(CODES, EARLY if dialect.any_m else UNSUPPORTED, np.int64)
     for number, code in dialect.m.items():
         only_told = code.action is None and not code.silent and not code.ends
         function[number] = (LATE if code.late else EARLY) if only_told else UNSUPPORTED
-    for number in (*(int(start[1:]) for start in SPINDLE_STARTS), *interpreted):
+    for number in interpreted:
         function[number] = UNSUPPORTED
     return function
 

@@ -12,7 +12,6 @@ from twin.nc.bytecode.bytecode_assembler import BytecodeAssembler
 from twin.nc.control.block_order import codes_that_count, conflict_of, in_order, run_in_order
 from twin.nc.control.codes import GCode, MCode, StatementEffect, Vocabulary, WordEffect
 from twin.nc.control.control import Control
-from twin.nc.functions import SPINDLE_STARTS
 from twin.nc.text.blocks import Block, Word
 from twin.nc.text.expressions import Expression
 
@@ -163,8 +162,7 @@ class BlockCompiler:
             raise UnsupportedError
         if writer is not None:
             writer(self.control, self.assembler)
-        starts = f"M{number}" in SPINDLE_STARTS
-        self.assembler.emit(opcodes.SPINDLE_FUNCTION if starts else opcodes.FUNCTION, number)
+        self.assembler.emit(opcodes.FUNCTION, number)
 
     def move(self, instead: GCode | None) -> None:
         """Write the motion, or what a code does in its place."""

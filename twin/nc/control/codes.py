@@ -2,12 +2,13 @@
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Literal, Protocol
+from typing import Literal
 
 from twin.nc.bytecode.assembler import Assembler
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import MotionMode
 from twin.nc.control.modal import ModalChanges
+from twin.nc.control.state import ControlLanguage
 from twin.nc.text.blocks import Statement, Word
 
 Action = Callable[[Control], None]
@@ -161,55 +162,36 @@ def _writer(action: Action | None, compiler: CodeWriter | None) -> CodeWriter | 
     return action.write if isinstance(action, Effect) else compiler
 
 
-class Vocabulary(Protocol):
-    """What compiling words needs to know of a dialect; attributes as in ``Dialect``."""
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Vocabulary(ControlLanguage):
+    """What the words of a dialect do.
 
-    @property
-    def groups(self) -> tuple[str, ...]:
-        """Modal groups in the order in which they take effect."""
-        ...
+    Attributes:
+        groups: Modal groups in the order in which they take effect.
+        g: G codes by number, such as 54 or 54.1; those with a point run at the interpreter tier.
+        m: M codes by number.
+        any_m: M codes outside the table are functions too.
+        last_of_group_counts: Of several G codes of a modal group in a block the last one counts; else they
+            are refused.
+        words: Addresses with a modal meaning, and what they do.
+        words_first: F, S, T and early M functions take effect before what G codes do besides the
+            modal state that they set.
+        other_statement: What statements do that begin with a name.
+        function_letters: Addresses that belong to an M function of their block.
+    """
 
-    @property
-    def g(self) -> Mapping[float, GCode]:
-        """G codes by number."""
-        ...
+    groups: tuple[str, ...]
+    g: Mapping[float, GCode]
+    m: Mapping[int, MCode]
+    any_m: bool = False
+    last_of_group_counts: bool = False
+    words: Mapping[str, WordAction]
+    words_first: bool = False
+    statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
+    other_statement: StatementAction | None = None
+    function_letters: str = ""
 
-    @property
-    def m(self) -> Mapping[int, MCode]:
-        """M codes by number."""
-        ...
-
-    @property
-    def any_m(self) -> bool:
-        """M codes outside the table are functions too."""
-        ...
-
-    @property
-    def last_of_group_counts(self) -> bool:
-        """Of several G codes of a modal group in a block the last one counts."""
-        ...
-
-    @property
-    def words(self) -> Mapping[str, WordAction]:
-        """Addresses with a modal meaning, and what they do."""
-        ...
-
-    @property
-    def statements(self) -> Mapping[str, StatementAction]:
-        """Keywords of statements, and what they do."""
-        ...
-
-    @property
-    def other_statement(self) -> StatementAction | None:
-        """What the others do, which begin with a name."""
-        ...
-
-    @property
-    def words_first(self) -> bool:
-        """F, S, T and early M functions take effect before the actions of G codes."""
-        ...
-
-    @property
-    def function_letters(self) -> str:
-        """Addresses that belong to an M function of their block."""
-        ...
+    def refusal(self, code: float) -> str | None:
+        """Why a G code that the control knows is refused, given its number; None: it is not."""
+        declared = self.g.get(code)
+        return None if declared is None or not declared.refused else declared.refusal

@@ -13,9 +13,10 @@ from twin.nc.control.words import ControlWords
 from twin.nc.geometry.frame import moved_shift
 from twin.nc.geometry.planes import PLANE_ORDER, Plane, Vector
 from twin.nc.path.event_columns import EventRows
-from twin.nc.path.move_columns import EXACT_STOP, FEED, NAN, RAPID, Segment
+from twin.nc.path.move_columns import FEED, NAN, RAPID, Segment
 from twin.nc.path.moves import (
     LARGEST_COORDINATE,
+    RAPIDS_END,
     SMALLEST_MOVE,
     arc_length,
     axis_target,
@@ -109,7 +110,7 @@ class Control(ControlWords):
             end,
             target,
             feed,
-            EXACT_STOP if rapid else modal.corner,
+            RAPIDS_END if rapid else modal.corner,
             modal.corner_tolerance,
             acceleration,
             deceleration,
@@ -179,13 +180,11 @@ class Control(ControlWords):
 
     def dwell(self, seconds: float) -> None:
         """Wait."""
-        line = self.block.line
-        self.path.event(lambda columns: columns.dwell(line, seconds))
+        self.path.event(Dwell(0, self.block.line, seconds))
 
     def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
         """Report a function at this place of the path."""
-        line, given = self.block.line, dict(arguments)
-        self.path.event(lambda columns: columns.function(line, word, given, at))
+        self.path.event(Function(0, self.block.line, word, dict(arguments), at))
 
     def begin_effect(self) -> Affected:
         """Let the columns show what the control keeps as objects, for an instruction."""

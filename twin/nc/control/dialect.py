@@ -5,19 +5,13 @@ from collections.abc import Callable, Container, Mapping
 from pathlib import Path
 
 from twin.nc.control.block_compiler import BlockCompiler
-from twin.nc.control.codes import (
-    Action,
-    GCode,
-    MCode,
-    StatementAction,
-    WordAction,
-)
+from twin.nc.control.codes import Action, Vocabulary
 from twin.nc.control.control import Control
 from twin.nc.control.modal import ModalChanges
 from twin.nc.control.settings import ControlSettings
 from twin.nc.text.blocks import Assignment, Block
-from twin.nc.text.source import HasCodePage, Source
-from twin.nc.text.syntax import Mark, Syntax
+from twin.nc.text.source import Source
+from twin.nc.text.syntax import Language, Mark
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -38,49 +32,30 @@ class Decision:
 
 
 @dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
-class Dialect:
-    """One control's language, as data and a few own rules.
+class Dialect(Vocabulary):
+    """One control's language, as data and a few own rules; attributes besides those of its bases.
 
     Attributes:
-        name: As given on the command line.
         title: The control.
-        code_page: Legacy code page of its programs.
-        syntax: How blocks are written.
-        groups: Modal groups in the order in which they take effect.
-        g: G codes by number, such as 54 or 54.1; those with a point run at the interpreter tier.
         start: G codes in force when a program starts.
-        m: M codes by number.
         instead: What to write in place of G codes that other controls have, by number.
-        any_m: M codes outside the table are functions too.
-        axis_letters: Addresses that name axes.
         motion_words: Addresses that make a block move, the axes among them.
-        function_letters: Addresses that belong to an M function of their block.
         declared_letters: Addresses that belong to an M function that the job or the machine declares.
         references: Addresses whose value names a variable and is not computed.
         repeat_word: Address that says how often its block runs, or empty.
         signed: Addresses that are two words, one above and one below 0.
         series: Addresses that may stand several times in a block with a switch point, in order.
-        words: Addresses with a modal meaning, and what they do.
         feed_letter: Address that sets the feed and does no more; empty: there is none.
         spindle_letter: Address that sets the spindle's speed; empty: there is none, the drive is set.
-        statements: Keywords of statements, and what they do.
-        other_statement: What the others do, which begin with a name.
         word_meanings: What the addresses mean, for people.
         units: Units of lengths and feeds, for people.
         decisions: Every decision taken for it.
         marks: What tells its programs from others.
         start_state: Fields of ``Modal`` that no G code sets.
-        memory: Makes the object that holds what only this dialect remembers.
         before_motion: Done before every motion block, told whether it is rapid.
         read_variable: Value of a variable, given its name and index.
         write_variable: Gives a variable a value, told its name, its index and the assignment; None:
             variables are written as they are named.
-        words_first: F, S, T and early M functions take effect before what G codes do besides the
-            modal state that they set.
-        last_of_group_counts: Of several G codes of a modal group in a block the last one counts; else they
-            are refused.
-        is_local: Whether calls with variables of their own have a variable of this name anew.
-        given_variable: The value of a variable among those of the job, or None.
         live_variables: Variables that no memory holds: the dialect knows their value itself.
         place_switches: Reports the block's switch points, told the length of its move.
         library: Adds files that the program calls, looked for in the folder of the program and read as the
@@ -99,47 +74,28 @@ class Dialect:
             interpreter tier must run them; None: nothing can.
     """
 
-    name: str
     title: str
-    code_page: str
-    syntax: Syntax
-    groups: tuple[str, ...]
-    g: Mapping[float, GCode]
     start: tuple[float, ...]
-    m: Mapping[int, MCode]
     instead: Mapping[float, str] = dataclasses.field(default_factory=dict)
-    any_m: bool = False
-    axis_letters: frozenset[str] = frozenset("XYZABCUVW")
     motion_words: frozenset[str] = frozenset("XYZABCUVWIJKR")
-    function_letters: str = ""
     declared_letters: str = ""
     references: str = ""
     repeat_word: str = ""
     signed: tuple[str, ...] = ()
     series: str = ""
-    words: Mapping[str, WordAction]
     feed_letter: str = "F"
     spindle_letter: str = "S"
-    statements: Mapping[str, StatementAction] = dataclasses.field(default_factory=dict)
-    other_statement: StatementAction | None = None
     word_meanings: Mapping[str, str]
     units: str
     decisions: tuple[Decision, ...]
     marks: tuple[Mark, ...]
     start_state: ModalChanges = dataclasses.field(default_factory=ModalChanges)
-    memory: Callable[[], object] = object
     before_motion: Callable[[Control, bool], None] | None = None
     read_variable: Callable[[Control, str, float | None], float] | None = None
     write_variable: Callable[[Control, str, float | None, float, Assignment], None] | None = None
-    words_first: bool = False
-    last_of_group_counts: bool = False
-    is_local: Callable[[str], bool] = lambda _name: False
-    given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
-        given.get(name)
-    )
     live_variables: Container[str] = frozenset()
     place_switches: Callable[[Control, float], None] | None = None
-    library: Callable[[Source, Path, HasCodePage], Source] | None = None
+    library: Callable[[Source, Path, Language], Source] | None = None
     pointless: Callable[[ControlSettings], frozenset[str]] = lambda _settings: frozenset()
     count: Callable[[Control, Block], Block] = lambda _control, block: block
     prepare: Action | None = None
@@ -149,8 +105,3 @@ class Dialect:
     compile_block: Callable[[BlockCompiler, Block], None] = BlockCompiler.block
     rapid_feed: Callable[[Control], float] | None = None
     disturbed: Callable[[Control], bool] | None = None
-
-    def refusal(self, code: float) -> str | None:
-        """Why a G code that the control knows is refused, given its number; None: it is not."""
-        declared = self.g.get(code)
-        return None if declared is None or not declared.refused else declared.refusal

@@ -23,7 +23,7 @@ from twin.nc.control.modal import ModalChanges
 from twin.nc.control.performer import perform
 from twin.nc.control.settings import ControlSettings
 from twin.nc.control.state import code_number, integer_of, number_of
-from twin.nc.functions import turns_behind
+from twin.nc.functions import starts_spindle, turns_behind
 from twin.nc.text.blocks import Assignment, Block, Statement, Word
 from twin.nc.text.expressions import Expression, ExpressionError, NumberedVariable
 from twin.nc.text.source import Source
@@ -295,7 +295,7 @@ class Executor(Control):
         arguments = {
             address: self.take_computed(address) for address in letters if address in self.words
         }
-        if integer_of(number_of(word)) in (3, 4) and self.spindle is not None:
+        if starts_spindle(integer_of(number_of(word))) and self.spindle is not None:
             arguments["S"] = self.spindle
         return arguments
 
@@ -321,6 +321,9 @@ class Executor(Control):
                 word,
                 hint="write G0, G1, G2 or G3",
             )
+        if self.modal.cycle is not None and self.path.compensating:
+            message = "a canned cycle cannot run while radius compensation is in force"
+            self.fail("compensation-change", message, hint="end it by G40 first")
         if self.dialect.before_motion is not None:
             self.dialect.before_motion(self, interpolation.rapid)
         assert isinstance(interpolation, Interpolation)

@@ -39,28 +39,23 @@ from twin.nc.text.source import Source
 from twin.nc.text.syntax import Language
 
 
-class ControlLanguage(Language, Protocol):
-    """What a control needs to know of a dialect; attributes as in ``Dialect``."""
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class ControlLanguage(Language):
+    """What a control needs to know of a dialect.
 
-    @property
-    def axis_letters(self) -> frozenset[str]:
-        """Addresses that name axes."""
-        ...
+    Attributes:
+        axis_letters: Addresses that name axes.
+        memory: Makes the object that holds what only this dialect remembers.
+        is_local: Whether calls with variables of their own have a variable of this name anew.
+        given_variable: The value of a variable among those of the job, or None.
+    """
 
-    @property
-    def memory(self) -> Callable[[], object]:
-        """Makes the object that holds what only this dialect remembers."""
-        ...
-
-    @property
-    def is_local(self) -> Callable[[str], bool]:
-        """Whether calls with variables of their own have a variable of this name anew."""
-        ...
-
-    @property
-    def given_variable(self) -> Callable[[Mapping[str, float], str], float | None]:
-        """The value of a variable among those of the job, or None."""
-        ...
+    axis_letters: frozenset[str] = frozenset("XYZABCUVW")
+    memory: Callable[[], object] = object
+    is_local: Callable[[str], bool] = lambda _name: False
+    given_variable: Callable[[Mapping[str, float], str], float | None] = lambda given, name: (
+        given.get(name)
+    )
 
 
 class HasGroup(Protocol):

@@ -11,6 +11,7 @@ from twin.nc.control.control import Control
 from twin.nc.control.dialect import Dialect
 from twin.nc.control.interpolation import ArcRule, LineRule
 from twin.nc.control.modal import FEED_FACTORS, FeedMode
+from twin.nc.functions import starts_spindle
 from twin.nc.geometry.planes import XY, YZ, ZX
 from twin.nc.iso.circular import BOUNDS, both_senses, iso_arc
 from twin.nc.iso.declared import instead, modal, motion_code, plane_code
@@ -68,7 +69,8 @@ def spindle_speed(control: Control, word: Word, assembler: Assembler) -> None:
     """S: the spindle's speed [1/min]; reported where no spindle start carries it."""
     assembler.word_value(word)
     others = control.block.words
-    starts = any(other.address == "M" and other.value in (3.0, 4.0) for other in others)
+    functions = (other.value for other in others if other.address == "M")
+    starts = any(isinstance(number, float) and starts_spindle(number) for number in functions)
     assembler.emit(opcodes.SPEED, 0 if starts else 1)
 
 

@@ -9,8 +9,8 @@ from typing import overload
 from twin.nc.canonical import Dwell, Event, FloatArray, Function, IntArray
 from twin.nc.functions import SPINDLE_SPEED
 
-FUNCTION_ALONE, FUNCTION_WITH_SPEED, SPEED, TOOL, AUXILIARY, DWELL = range(6)
-"""Kinds of events: an M function; one with S; S; T; H; a dwell."""
+FUNCTION, SPEED, TOOL, AUXILIARY, DWELL = range(5)
+"""Kinds of events: an M function, with S where that counts; S; T; H; a dwell."""
 _BEFORE = 0
 
 
@@ -86,9 +86,7 @@ class Events(Sequence[Event]):
 
 def _event(row: list[int], amount: float) -> Event:
     before, line, kind, number = row
-    if kind == FUNCTION_ALONE:
-        return Function(before, line, f"M{number}", {})
-    if kind == FUNCTION_WITH_SPEED:
+    if kind == FUNCTION:
         speed = {} if math.isnan(amount) else {SPINDLE_SPEED: amount}
         return Function(before, line, f"M{number}", speed)
     if kind == SPEED:

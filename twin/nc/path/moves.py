@@ -7,13 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from twin.compilation.compilable import inlined
-from twin.nc.canonical import FloatArray
+from twin.nc.canonical import Corner, FloatArray
 from twin.nc.geometry.planes import Vector, along
 
 Position = list[float] | FloatArray
 
 LARGEST_COORDINATE = 1e7
 """Ten kilometres, or 27 thousand turns: beyond it a coordinate is a slip of the pen."""
+RAPIDS_END = Corner.EXACT_STOP
+"""How the end of a rapid is passed."""
 SMALLEST_MOVE = 1e-9
 """A move that goes less far than this goes nowhere [mm or deg]: far below any resolution."""
 

@@ -6,7 +6,8 @@ So calls, jumps and diagnostics treat them like the rest of the program.
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
-from twin.nc.text.source import HasCodePage, Source, read_source
+from twin.nc.text.source import Source, read_source
+from twin.nc.text.syntax import Language
 
 MOST_FILES = 100
 """Files that one program may call: more is no library but a slip."""
@@ -17,7 +18,7 @@ def with_called_files(
     files: Callable[[], dict[str, Path]],
     calls: Callable[[Source], Iterable[str]],
     mark: str,
-    dialect: HasCodePage,
+    dialect: Language,
 ) -> Source:
     """The program with the files that it calls, and those that they call, as far as found.
 

@@ -5,22 +5,13 @@ import hashlib
 import itertools
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Protocol
 
 from twin.errors import UsageError
 from twin.nc.text.lines import PAGE, Lines
+from twin.nc.text.syntax import Language
 
 _SURROGATES = "surrogatepass"
 """Text that is made on the fly may hold what no file can."""
-
-
-class HasCodePage(Protocol):
-    """What reading needs to know of a dialect."""
-
-    @property
-    def code_page(self) -> str:
-        """Legacy code page of its programs, such as ``cp1251``."""
-        ...
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -70,7 +61,7 @@ class Source:
         return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def read_source(path: Path, dialect: HasCodePage | None = None) -> Source:
+def read_source(path: Path, dialect: Language | None = None) -> Source:
     """Read a program as UTF-8, else in the dialect's legacy code page, else byte by byte.
 
     Args:
@@ -87,7 +78,7 @@ def read_source(path: Path, dialect: HasCodePage | None = None) -> Source:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from error
 
 
-def source_from_bytes(data: bytes, name: str, dialect: HasCodePage | None = None) -> Source:
+def source_from_bytes(data: bytes, name: str, dialect: Language | None = None) -> Source:
     """Make a source of bytes that need not come from a file; arguments as in ``read_source``."""
     return _source_of([data], name, dialect)
 
@@ -98,7 +89,7 @@ def source_from_text(text: str, name: str = "program") -> Source:
     return Source(name, Lines([data]), hashlib.sha256(data).hexdigest())
 
 
-def _source_of(pieces: Iterable[bytes], name: str, dialect: HasCodePage | None) -> Source:
+def _source_of(pieces: Iterable[bytes], name: str, dialect: Language | None) -> Source:
     digest = hashlib.sha256()
 
     def seen() -> Iterator[bytes]:

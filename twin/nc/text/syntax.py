@@ -2,7 +2,6 @@
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Protocol
 
 from twin.nc.text.expressions import ExpressionSyntax
 
@@ -76,27 +75,25 @@ class Syntax:
     excused: Callable[[str, str], str | None] = lambda _line, _previous: None
 
 
-class Language(Protocol):
-    """What reading lines needs to know of a dialect."""
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Language:
+    """What reading a program needs to know of a dialect.
 
-    @property
-    def name(self) -> str:
-        """As given on the command line."""
-        ...
+    Attributes:
+        name: As given on the command line.
+        code_page: Legacy code page of its programs, such as ``cp1251``.
+        syntax: How blocks are written.
+        statements: Keywords of statements, and what they do.
+    """
 
-    @property
-    def syntax(self) -> Syntax:
-        """How blocks are written."""
-        ...
+    name: str
+    code_page: str
+    syntax: Syntax
+    statements: Mapping[str, object] = dataclasses.field(default_factory=dict)
 
-    @property
-    def statements(self) -> Mapping[str, object]:
-        """Keywords of statements."""
-        ...
-
-    def refusal(self, code: float) -> str | None:
+    def refusal(self, _code: float) -> str | None:
         """Why a G code that the control knows is refused, given its number; None: it is not."""
-        ...
+        return None
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

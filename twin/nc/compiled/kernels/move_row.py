@@ -7,13 +7,13 @@ import numpy as np
 from twin.compilation.compilable import inlined
 from twin.nc.bytecode.coordinates import turn_place
 from twin.nc.bytecode.registers import Constants, State
-from twin.nc.canonical import Corner, FloatArray, Motion, Shape
+from twin.nc.canonical import FloatArray, Motion
 from twin.nc.compiled.kernels.target import PlainBlock
+from twin.nc.path.move_columns import LINE
+from twin.nc.path.moves import RAPIDS_END
 from twin.nc.path.rows import Rows, copy
 
-RAPID, FEED = int(Motion.RAPID), int(Motion.FEED)
-LINE, ARC = int(Shape.LINE), int(Shape.ARC)
-STOP = int(Corner.EXACT_STOP)
+RAPID, FEED, STOP = int(Motion.RAPID), int(Motion.FEED), int(RAPIDS_END)
 
 
 class Travel(NamedTuple):

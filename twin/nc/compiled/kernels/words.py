@@ -8,7 +8,7 @@ left untouched; the control runs it and makes its diagnostics.
 import numpy as np
 
 from twin.compilation.compilable import inlined
-from twin.nc.bytecode.effects import report
+from twin.nc.bytecode.effects import Affected, BlockPlace, report_function
 from twin.nc.bytecode.registers import (
     ARC,
     CODES,
@@ -23,7 +23,6 @@ from twin.nc.bytecode.registers import (
     POLAR_RADIUS,
     PROGRAMMED_FEED,
     RAPID_LINE,
-    SPINDLE_TURNS,
     UNIT,
     BlockTables,
     Machine,
@@ -44,8 +43,7 @@ from twin.nc.compiled.kernels.arc import emit_arc
 from twin.nc.compiled.kernels.cycle import drill
 from twin.nc.compiled.kernels.move_row import Travel, put_move, put_positions
 from twin.nc.compiled.kernels.target import PlainBlock, aim, target_of_axis
-from twin.nc.functions import turns_behind
-from twin.nc.path.event_columns import FUNCTION_ALONE
+from twin.nc.path import move_columns
 from twin.nc.path.moves import (
     LARGEST_COORDINATE,
     feed_per_minute,
@@ -104,8 +102,9 @@ def execute_block(
         if kind == ARC or (kind != RAPID_LINE and np.isnan(block.feed)):
             return UNSUPPORTED
     early = function != UNSUPPORTED and tables.function[function] == EARLY
+    on = Affected(machine.constants, state, rows)
     if early:
-        _report_function(function, machine, row, line)
+        report_function(function, BlockPlace(line, row, False), on)
     after = row
     if drills and moves:
         after = drill(block, (begins, anew), tables, machine.constants, state, rows, row)
@@ -115,7 +114,7 @@ def execute_block(
         state.event_count[0] = event_count
         return after
     if function != UNSUPPORTED and not early:
-        _report_function(function, machine, after, line)
+        report_function(function, BlockPlace(line, after, False), on)
     _activate(block, tables, state)
     if moves:
         if drills:
@@ -127,14 +126,6 @@ def execute_block(
         if in_plane:
             state.registers[POLAR_RADIUS] = state.registers[POLAR_ANGLE] = np.nan
     return after
-
-
-@inlined
-def _report_function(function: int, machine: Machine, row: int, line: int) -> None:
-    """An M function that does nothing to the path."""
-    registers = machine.state.registers
-    registers[SPINDLE_TURNS] = turns_behind(function, registers[SPINDLE_TURNS])
-    report(machine.rows, machine.state, row, line, FUNCTION_ALONE, function, np.nan)
 
 
 @inlined
@@ -251,6 +242,6 @@ def _move(block: PlainBlock, machine: Machine, row: int) -> int:
     motion, corner = move_row.FEED, int(modal[CORNER])
     if kind == RAPID_LINE:
         motion, corner = move_row.RAPID, move_row.STOP
-    shape = move_row.ARC if is_arc else move_row.LINE
+    shape = move_columns.ARC if is_arc else move_columns.LINE
     put_move(block, Travel(motion, pace, corner), shape, constants, rows, row)
     return row + 1

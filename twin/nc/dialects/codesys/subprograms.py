@@ -9,7 +9,8 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.codesys.program import Subprogram, assign, variables
 from twin.nc.text.blocks import Location, Statement
 from twin.nc.text.library import named_files, with_called_files
-from twin.nc.text.source import HasCodePage, Source
+from twin.nc.text.source import Source
+from twin.nc.text.syntax import Language
 
 DEEPEST_CALL = 14
 """Subprograms within subprograms (manual, before 4.18)."""
@@ -23,7 +24,7 @@ _CALL = re.compile(r"(?:^|[ \t])([A-Z_]\w{2,})[ \t]*[{(]", re.IGNORECASE)
 _CALL_SOMEWHERE = re.compile(rb"[A-Z_][A-Z_0-9]{2,}[ \t]*[{(]", re.IGNORECASE)
 
 
-def with_files(source: Source, folder: Path, dialect: HasCodePage) -> Source:
+def with_files(source: Source, folder: Path, dialect: Language) -> Source:
     """The program with the subprograms that it calls, as far as they are files of their own.
 
     Args:

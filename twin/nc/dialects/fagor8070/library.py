@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from twin.nc.text.library import named_files, with_called_files
-from twin.nc.text.source import HasCodePage, Source
+from twin.nc.text.source import Source
+from twin.nc.text.syntax import Language
 
 MARK = "%GLOBAL "
 """Begins the line in front of a global subroutine; a program's own heading has no blank in it."""
@@ -18,7 +19,7 @@ _CALL = re.compile(
 _CALL_SOMEWHERE = re.compile(rb"(?:L|CALL)[ \t]+[A-Z_]", re.IGNORECASE)
 
 
-def with_globals(source: Source, folder: Path, dialect: HasCodePage) -> Source:
+def with_globals(source: Source, folder: Path, dialect: Language) -> Source:
     """The program with the global subroutines that it calls, as far as they are found.
 
     Args:

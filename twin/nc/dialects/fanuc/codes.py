@@ -1,5 +1,6 @@
 """G and M codes of the Fanuc 0i-MF and 30i, milling, as far as the controls of the family share them."""
 
+import dataclasses
 from collections.abc import Mapping
 
 from twin.nc.canonical import Corner
@@ -51,6 +52,22 @@ def passed_over(meaning: str, letters: str, group: str = "") -> GCode:
     return GCode(meaning=meaning, group=group, action=perform, ground="manual")
 
 
+def _contour_control() -> GCode:
+    """G5 P10000 and P0, which look ahead; other modes of G5 are refused."""
+    code = passed_over("look-ahead (high-precision contour control): P10000 on, P0 off", "P")
+    pass_over = code.action
+    assert pass_over is not None
+
+    def action(control: Control) -> None:
+        word = control.words.get("P")
+        if word is None or control.number(word) not in (0.0, 10000.0):
+            message = "of the modes of G5 only P10000 and P0 are known to change no path"
+            control.fail("unsupported-g", message, word or control.code_word(5))
+        pass_over(control)
+
+    return dataclasses.replace(code, action=action)
+
+
 NO_PROBE = "the twin has no probe to touch with"
 _NO_TILT = "the machine's tool does not tilt"
 _NO_ANGLE = "the twin's spindle has no angle"
@@ -67,6 +84,7 @@ _MOTION: Mapping[float, GCode] = {
         "dwell, seconds in X or milliseconds in P",
         base.dwell("PX", "G4 needs its time", "G4 P500 or G4 X0.5 waits half a second"),
     ),
+    5: _contour_control(),
     5.1: passed_over("look-ahead (AI contour control): Q1 on, Q0 off", "QRXYZC"),
     8: passed_over("look-ahead (advanced preview): P1 on, P0 off", "P"),
     9: modal("exact stop in this block", once=True, corner=Corner.EXACT_STOP),
@@ -145,7 +163,7 @@ _FEEDS: Mapping[float, GCode] = {
     67: modal("modal macro call off", "modal call", macro_calls.end_modal_call),
 }
 _REFUSED: Mapping[float, GCode] = {
-    **refused("smooth and spline interpolation", _UNKNOWN, 5, 5.4, 6.1, 6.2),
+    **refused("smooth and spline interpolation", _UNKNOWN, 5.4, 6.1, 6.2),
     **refused("helical and spiral interpolation in space", _UNKNOWN, 2.2, 3.2, 2.3, 3.3, 2.4, 3.4),
     **refused("polar coordinate interpolation", "a lathe's, of a rotating part", 12.1, 13.1),
     **refused("stored stroke check", _LIMITS, 22, 23),

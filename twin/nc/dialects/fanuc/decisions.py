@@ -50,7 +50,7 @@ DECISIONS: tuple[Decision, ...] = (
     ),
     Decision(
         "How does a path pass its corners?",
-        "Exactly; G9 and G61 stop. G62, G63, G5.1 and G8 change nothing of the path.",
+        "Exactly; G9 and G61 stop. G62, G63, G5 P10000, G5.1 and G8 change nothing of the path.",
         "What look-ahead rounds is a parameter of the machine.",
         example="exact_path",
     ),
@@ -112,8 +112,10 @@ DECISIONS: tuple[Decision, ...] = (
     ),
     Decision(
         "How does tapping follow the spindle?",
-        "By its feed: G74 and G84 reverse the spindle at the bottom and feed back, with M29 or without.",
-        "The twin's spindle has no angle; with a feed of pitch times speed the path is the same.",
+        "By its feed: G74 and G84 reverse the spindle at the bottom and feed back, with M29 or without; with Q they "
+        "tap in passes, and come back by 0.5 mm behind each.",
+        "The twin's spindle has no angle; with a feed of pitch times speed the path is the same. Parameters 5200 #5 "
+        "and 5213 decide how far a tap comes back.",
         example="tapping",
     ),
     Decision(

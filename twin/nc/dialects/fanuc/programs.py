@@ -15,7 +15,8 @@ from twin.nc.dialects.fanuc.memory import holds_any, letter_patterns, memory_of
 from twin.nc.text.blocks import Location, Word
 from twin.nc.text.library import named_files, with_called_files
 from twin.nc.text.lines import Lines
-from twin.nc.text.source import HasCodePage, Source
+from twin.nc.text.source import Source
+from twin.nc.text.syntax import Language
 
 _HEADING = re.compile(r"[ \t]*[O:][ \t]*([0-9]{1,8})(?![0-9.])", re.IGNORECASE)
 _HEADING_SOMEWHERE = (*letter_patterns("O", rb"[ \t]*[0-9]"), re.compile(rb":[ \t]*[0-9]"))
@@ -30,7 +31,7 @@ _REPEATS = 10_000
 """P of M98 holds how often the subprogram runs in the digits above the last four."""
 
 
-def with_subprograms(source: Source, folder: Path, dialect: HasCodePage) -> Source:
+def with_subprograms(source: Source, folder: Path, dialect: Language) -> Source:
     """The program with the subprograms that it calls and does not hold, as far as they are found.
 
     Args:

@@ -6,13 +6,14 @@ from pathlib import Path
 
 from twin.nc.dialects.linuxcnc.structure import FILE, named_o_word
 from twin.nc.text.library import named_files, with_called_files
-from twin.nc.text.source import HasCodePage, Source
+from twin.nc.text.source import Source
+from twin.nc.text.syntax import Language
 
 _PROGRAM = re.compile(r"\bM[ \t]*0*98[ \t]*P[ \t]*([0-9]+)", re.IGNORECASE)
 _SOMEWHERE = re.compile(rb"CALL|M[ \t]*0*98", re.IGNORECASE)
 
 
-def with_files(source: Source, folder: Path, dialect: HasCodePage) -> Source:
+def with_files(source: Source, folder: Path, dialect: Language) -> Source:
     """The program with the subroutines that it calls, as far as they are files of their own.
 
     Args:

@@ -7,12 +7,12 @@ bottom of the hole, as in G84 without B.
 """
 
 import dataclasses
-import math
 
 from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.dialects.fagor8070.polar import take_goal
+from twin.nc.iso.tapping import Passes, tap_in_passes
 from twin.nc.path.drilling_cycle import MOST_PECKS
 
 
@@ -73,31 +73,15 @@ def _take_words(control: Control) -> None:
 
 def _tap(control: Control) -> None:
     """Tap at the point that the block names."""
-    values, axis = control.cycle_values, control.modal.plane.axes[2]
-    reference, bottom, step = values["reference"], values["I"], abs(values["B"])
-    back = max(values["start"], reference)
-    goal = take_goal(control, arc=False).target
-    goal[axis] = max(control.programmed[axis], reference)
-    _go(control, axis, goal[axis], rapid=True)
-    control.line_to(goal, rapid=True)
-    _go(control, axis, reference, rapid=True)
-    turning = {} if control.spindle is None else {"S": control.spindle}
-    passes = math.ceil((reference - bottom) / step - 1e-9)
-    for number in range(1, passes + 1):
-        depth = bottom if number == passes else reference - number * step
-        _go(control, axis, depth, rapid=False)
-        if number == passes and values.get("K", 0.0) > 0.0:
-            control.dwell(values["K"])
-        control.function("M4", turning)
-        lift = values.get("H", 0.0)
-        broken = number < passes and lift > 0.0
-        _go(control, axis, min(depth + lift, reference) if broken else reference, rapid=False)
-        control.function("M3", turning)
-    if not control.modal.return_to_reference:
-        _go(control, axis, back, rapid=True)
-
-
-def _go(control: Control, axis: int, height: float, *, rapid: bool) -> None:
-    there = list(control.programmed)
-    there[axis] = height
-    control.line_to(there, rapid=rapid)
+    values = control.cycle_values
+    reference = values["reference"]
+    to_reference = control.modal.return_to_reference
+    passes = Passes(
+        reference=reference,
+        bottom=values["I"],
+        depth=abs(values["B"]),
+        lift=values.get("H", 0.0),
+        dwell=values.get("K", 0.0),
+        back=reference if to_reference else max(values["start"], reference),
+    )
+    tap_in_passes(control, take_goal(control, arc=False).target, passes)

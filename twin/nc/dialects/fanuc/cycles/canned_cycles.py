@@ -13,6 +13,7 @@ from twin.nc.control.codes import GCode
 from twin.nc.control.control import Control
 from twin.nc.dialects.fanuc import decimal_point
 from twin.nc.dialects.fanuc.cycles.boring import boring_code
+from twin.nc.dialects.fanuc.cycles.tapping import in_passes
 from twin.nc.dialects.fanuc.memory import Variant, letter_patterns, memory_of
 from twin.nc.dialects.fanuc.motion import holes_of
 from twin.nc.dialects.fanuc.transformations import refuse_scaled_pecks
@@ -52,8 +53,10 @@ def cycles(variant: Variant) -> dict[float, GCode]:
     made = {
         number: drilling_code(number, drill, holes_of(variant)) for number, drill in drills.items()
     }
+    taps = () if variant.own_cycle_words else (74, 84)
     return {
         **{n: _unscaled(n, code) if _DRILLS[n].peck else code for n, code in made.items()},
+        **{number: in_passes(number, made[number]) for number in taps},
         **base.by_manual({80: CYCLES[80]}),
         76: boring_code(76, "fine boring, out with the tool shifted", variant),
         87: boring_code(87, "back boring, from below", variant),
