@@ -475,6 +475,8 @@ PROBES = {
         "fanuc", "G05 P10000\nG1 X5. F100.\nG05 P0\nM30", {"X": 5}, 1
     ),
     "fanuc other modes of G5": Probe("fanuc", "G05 P2\nM30", refused="unsupported-g"),
+    "fanuc two signs": Probe("fanuc", "G1 X--5. F9.\nM30", refused="expression"),
+    "fanuc sign before a bracket": Probe("fanuc", "G1 X-[-5.] F9.\nM30", {"X": 5}, 1),
     "fanuc skip until a signal": Probe("fanuc", "G31 Z-5. F50.\nM30", refused="unsupported-g"),
     "fanuc inverse time": Probe("fanuc", "G93 G1 X10. F2.\nX20.\nM30", refused="no-feed"),
     "haas pecks": Probe("haas", HAAS_PECKS, {"X": 25, "Z": 200}, 10, -20.0),
