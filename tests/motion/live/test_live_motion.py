@@ -316,6 +316,36 @@ def test_program_without_moves() -> None:
         assert motion.finished
 
 
+class Late:
+    """Chunks that come one by one: each is not there yet when it is asked for first."""
+
+    def __init__(self, chunks: list[Chunk]) -> None:
+        self._chunks, self._there = chunks, False
+
+    def __iter__(self) -> "Late":
+        return self
+
+    def __next__(self) -> Chunk:
+        self._there = not self._there
+        if self._chunks and self._there:
+            raise BlockingIOError
+        if not self._chunks:
+            raise StopIteration
+        return self._chunks.pop(0)
+
+
+def test_a_program_that_comes_late_is_begun_when_it_is_there() -> None:
+    chunks = list(LONG.chunks())
+    start = LONG.start + ZERO
+    motion = LiveMotion(Late(chunks.copy()), mill(), period_s=PERIOD, part_zero=ZERO, start=start)
+    for _ in chunks:
+        with pytest.raises(BlockingIOError):
+            motion.begin()
+    motion.begin()
+    late, known = join(to_the_end(motion)), join(to_the_end(live(LONG, mill())))
+    assert np.array_equal(late.position, known.position)
+
+
 def test_values_off_the_panel_are_refused() -> None:
     motion = live(LONG, mill())
     with pytest.raises(ValueError, match=r"feed override 1\.6: use 0 to 1\.5"):

@@ -62,7 +62,7 @@ class LiveMotion:
         largest_override: Highest feed override.
 
     Raises:
-        ValueError: ``largest_override`` is below 1; or, here and in ``advance``, a move does not
+        ValueError: ``largest_override`` is below 1; or, in ``begin`` and ``advance``, a move does not
             begin where the one before it ended.
     """
 
@@ -91,6 +91,13 @@ class LiveMotion:
         self._finished = False
         self._tick = 0
         self._last = standing(start)
+
+    def begin(self) -> None:
+        """Plan the beginning; ``advance`` does so by itself.
+
+        What ``chunks`` raise comes through: where they raise that they are not known yet, call it again later.
+        """
+        self._plan.begin()
 
     @property
     def feed_override(self) -> float:
@@ -169,6 +176,7 @@ class LiveMotion:
         Args:
             count: How many servo periods to go on by.
         """
+        self.begin()
         parts: list[Setpoints] = []
         wanted = self._tick + count
         while self._tick < wanted and not self._finished:

@@ -92,7 +92,13 @@ class OverriddenPlan:
         self._drive: _Drive
         self._segments = 0
         self._runs = OpenRuns()
-        self._empty = not self._open()
+        self._begun = self._empty = False
+
+    def begin(self) -> None:
+        """Plan the beginning, unless it is planned; where the parts do not come yet, it can be tried again."""
+        if not self._begun:
+            self._empty = not self._open()
+            self._begun = True
 
     @property
     def ended(self) -> bool:

@@ -361,16 +361,16 @@ class ProgramRun:
         long_enough = self._looks > SLICES_AT_REST
         if self._motion is None and long_enough and len(self._control.path):
             self._finish_chunk(self._control.path.take())
-        enough = long_enough or self.ending is not None or len(self._waiting) >= self._ahead
-        if self._motion is None and self._waiting and enough:
+        enough = long_enough or self.ending is not None or len(self._waiting) >= CHUNKS_AHEAD
+        known = self._waiting or self._beginning is not None
+        if self._motion is None and known and enough:
             self._begin_to_plan(at_any_rate=long_enough)
 
     def _begin_to_plan(self, *, at_any_rate: bool) -> None:
-        """Let the planner begin; if it looks ahead to more moves than there are, they come first."""
-        start, zero = self._begin
-        self._pulled, self._takes_any = [], at_any_rate
-        try:
-            self._motion = LiveMotion(
+        """Let the planner begin; if it looks ahead to more moves than there are, it goes on when they come."""
+        if self._beginning is None:
+            start, zero = self._begin
+            self._beginning = LiveMotion(
                 iter(self._next_chunk, None),
                 self._limits,
                 period_s=self._machine.file.servo_period_s,
@@ -378,17 +378,20 @@ class ProgramRun:
                 start=start,
                 largest_override=LARGEST_OVERRIDE,
             )
+        self._takes_any = at_any_rate
+        try:
+            self._beginning.begin()
         except _TooFewMovesError:
-            self._waiting.extendleft(reversed(self._pulled))
-            self._ahead = 2 * len(self._pulled)
-        self._pulled, self._takes_any = [], True
+            self._ahead += CHUNKS_AHEAD
+        else:
+            self._motion, self._beginning, self._takes_any = self._beginning, None, True
 
     def _forget(self) -> None:
         self._motion: LiveMotion | None = None
+        self._beginning: LiveMotion | None = None
         self._looks = self._left = 0
         self._ahead = CHUNKS_AHEAD
         self._takes_any = False
-        self._pulled: list[Chunk] = []
         self._waiting: deque[Chunk] = deque()
         self._count = 0
         self._walk = BlockWalk()
@@ -412,11 +415,7 @@ class ProgramRun:
             self._finish_chunk(self._control.path.take())
             if not len(self._waiting[-1].moves) and self.ending is None:
                 self.ending = "wait"
-        if not self._waiting:
-            return None
-        if self._motion is None:
-            self._pulled.append(self._waiting[0])
-        return self._waiting.popleft()
+        return self._waiting.popleft() if self._waiting else None
 
     def _interpret(self, most: int) -> None:
         """Interpret at most so many blocks, until there are enough moves or the part ends."""
