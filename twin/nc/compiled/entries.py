@@ -37,7 +37,7 @@ COLD = Kernels(_run_program, program.unread_lines)
 
 def page_columns(page: Page) -> program.PageColumns:
     """A page as kernels read it."""
-    return program.PageColumns(page.data, page.starts, page.lines.start)
+    return program.PageColumns(page.data, page.starts, page.ends, page.lines.start)
 
 
 @functools.cache
