@@ -43,9 +43,9 @@ def page_columns(page: Page) -> program.PageColumns:
 @functools.cache
 def hot() -> Kernels:
     """The compiled ones; the first call loads Numba."""
-    from twin.compilation.kernel import array_kernel, kernel
+    from twin.compilation.kernel import array_kernel, branching_kernel
 
-    return Kernels(kernel(program.run_program), array_kernel(program.unread_lines))
+    return Kernels(branching_kernel(program.run_program), array_kernel(program.unread_lines))
 
 
 def at_hand() -> bool:
