@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 FLOORS: Mapping[str, tuple[str, ...]] = {
     "twin": (
         "errors processor units version",
-        "columns files compilation web",
+        "columns copies files compilation web",
         "nc job",
         "toolpath logs",
         "motion",
@@ -45,7 +45,7 @@ FLOORS: Mapping[str, tuple[str, ...]] = {
         "jsonl",
     ),
     "twin.motion": (
-        "limits ramp_kernels",
+        "limits ramp_kernels steps",
         "blocks",
         "pieces",
         "profile",

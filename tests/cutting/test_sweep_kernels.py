@@ -9,6 +9,7 @@ import pytest
 from twin.cutting.height_map import HeightMap
 from twin.cutting.kernels.sweep import Marks, Removal
 from twin.cutting.kernels.thin import thin
+from twin.cutting.kernels.wall_distance import no_walls_known
 from twin.cutting.outline import Outline
 from twin.cutting.sweeping import Rectangle, sweep_lines
 from twin.cutting.tools import Profile
@@ -40,7 +41,8 @@ def swept_by_small_steps(points: FloatArray, cutter: Profile, shape: tuple[int, 
 def board(shape: tuple[int, int]) -> HeightMap:
     """A map whose first cell is over X0 Y0, with its top at Z0."""
     heights, edge = np.zeros(shape), Outline((0.0, 0.0), (1e3, 1e3), round=False)
-    return HeightMap((0.0, 0.0), CELL, BOTTOM, heights, 0.0, edge, np.zeros(shape))
+    walls = no_walls_known(heights)
+    return HeightMap((0.0, 0.0), CELL, BOTTOM, heights, 0.0, edge, np.zeros(shape), walls)
 
 
 def swept(

@@ -14,6 +14,7 @@ from twin.cutting.forces.mean_force import cutting_load, cutting_width
 from twin.cutting.height_map import BoolArray, blank
 from twin.cutting.kernels.sweep import Marks, Removal
 from twin.cutting.kernels.thin import thin
+from twin.cutting.kernels.wall_distance import note_walls
 from twin.cutting.stock_contact import EDGE, Head, Points, StockContact
 from twin.cutting.sweeping import sweep_lines, union
 from twin.cutting.tools import Profile, ToolPlan, default_cell, profile
@@ -33,6 +34,11 @@ cutting is told from air."""
 
 MOST_JOINED = 64
 """Samples that one stretch may stand for."""
+
+WALL_SHARE = 0.02
+WALL_MM = 4e-3
+WALL_JOINED = 32
+"""The same for walls beside the way, which are looked at for more stretches together."""
 
 AIR_MM = 1e-3
 """A stretch that takes less than this off one cell cuts air [mm]."""
@@ -315,7 +321,7 @@ class Cutter:
             must not be, shape (n,) [mm]; fewer than n stretches where cutting halted.
         """
         contact = StockContact(self.tool, cutter, self._head)
-        doubtful = contact.measure(self.map, points, suspect)
+        doubtful = contact.measure(self.map, points, suspect, doubtful=True)
         count, done = len(suspect), 0
         removal = Removal(*np.zeros((3, count)))
         met = {name: np.zeros(count) for name in doubtful}
@@ -345,9 +351,10 @@ class Cutter:
         """Take off what lies in the way of some of the stretches."""
         if part.start >= part.stop:
             return
+        material, way = self.map, tip[part.start : part.stop + 1]
         found = sweep_lines(
-            self.map,
-            tip[part.start : part.stop + 1],
+            material,
+            way,
             cutter,
             Marks(self.marks, mark[part]),
             stood=part.start > 0,
@@ -355,6 +362,16 @@ class Cutter:
         for column, swept in zip(removal, found.removal, strict=True):
             column[part] = swept
         self.changed = union(self.changed, found.changed)
+        off = min(WALL_SHARE * material.cell, WALL_MM)
+        rows = thin(way, np.zeros(len(way), np.int64), off, cutter.radius, WALL_JOINED)
+        note_walls(
+            material.heights,
+            material.behind,
+            material.grid,
+            way[rows],
+            cutter.radius,
+            cutter.flat,
+        )
 
     def _note_contacts(
         self, stretches: Stretches, met: Mapping[str, FloatArray]

@@ -11,6 +11,7 @@ import numpy as np
 
 from twin.cutting.kernels.drape import drape
 from twin.cutting.kernels.sweep import Grid
+from twin.cutting.kernels.wall_distance import KNOWN, WallDistance, no_walls_known
 from twin.cutting.outline import BoolArray, Outline, outline
 from twin.errors import ConfigError
 from twin.files.stl import read_stl
@@ -34,6 +35,7 @@ class HeightMap:
         top: Z of the blank's top face [mm].
         outline: Where the blank ends sideways.
         uncut: Z of the blank's own surface over each cell, shape (ny, nx) [mm].
+        behind: How far the middles of cells are behind walls.
     """
 
     origin: tuple[float, float]
@@ -43,6 +45,7 @@ class HeightMap:
     top: float
     outline: Outline
     uncut: FloatArray
+    behind: WallDistance
 
     @property
     def grid(self) -> Grid:
@@ -80,7 +83,7 @@ class HeightMap:
 
     def copy(self) -> "HeightMap":
         """A map that can be cut without touching this one."""
-        return dataclasses.replace(self, heights=self.heights.copy())
+        return dataclasses.replace(self, heights=self.heights.copy(), behind=self.behind.copy())
 
 
 def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
@@ -113,16 +116,21 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
     top, bottom = float(center[2]), float(center[2]) - height
     edge = outline(stock, (float(center[0]), float(center[1])))
     shape = (count_y, count_x)
-    result = HeightMap(
-        origin, cell, bottom, np.full(shape, top), top, edge, np.broadcast_to(top, shape)
-    )
-    result.heights[~edge.contains(result.x, result.y[:, None])] = bottom
+    heights = np.full(shape, top)
+    behind, uncut = no_walls_known(heights), np.broadcast_to(top, shape)
+    result = HeightMap(origin, cell, bottom, heights, top, edge, uncut, behind)
+    within = edge.contains(result.x, result.y[:, None])
+    heights[~within] = bottom
+    if edge.round:
+        inside = edge.inside(result.x, result.y[:, None])
+        beside = within & (inside <= cell)
+        behind[beside] = np.column_stack(np.broadcast_arrays(inside[beside] / cell + KNOWN, bottom))
     if stock.file is not None:
         mesh = read_stl(Path(stock.file))
         low, high = mesh.bounds
         middle = np.array([*(0.5 * (low + high))[:2], high[2]])
         triangles = np.ascontiguousarray(mesh.triangles - middle + center, dtype=np.float64)
-        result.heights[:] = bottom
-        drape(result.heights, result.origin, cell, triangles)
-        result.uncut = result.heights.copy()
+        heights[:], behind[:] = bottom, 0.0
+        drape(heights, result.origin, cell, triangles)
+        result.uncut = heights.copy()
     return result

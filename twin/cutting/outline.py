@@ -40,6 +40,15 @@ class Outline:
             return (squared <= self.half[0] ** 2) & (squared >= self.bore**2)
         return (across <= self.half[0]) & (along <= self.half[1])
 
+    def inside(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """How far points lie inside of the edge, negative outside [mm]."""
+        across, along = np.abs(x - self.center[0]), np.abs(y - self.center[1])
+        if not self.round:
+            return np.minimum(self.half[0] - across, self.half[1] - along)
+        distance = np.hypot(across, along)
+        outer = self.half[0] - distance
+        return np.minimum(outer, distance - self.bore) if self.bore else outer
+
     def snap(self, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Move points that lie outside onto the edge."""
         across, along = x - self.center[0], y - self.center[1]

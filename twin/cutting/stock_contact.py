@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.cutting.events import SCRAPE_MM
 from twin.cutting.height_map import BoolArray, HeightMap
-from twin.cutting.kernels.overlap import Overlap, box_overlap, round_overlap
+from twin.cutting.kernels.overlap import Overlap, Stood, box_overlap, round_overlap
 from twin.cutting.tools import Profile
 from twin.job.job_file import ToolTable
 from twin.nc.canonical import FloatArray
@@ -111,7 +111,7 @@ class StockContact:
         } | {EDGE: BRUSH_MM}
 
     def measure(
-        self, material: HeightMap, points: Points, suspect: BoolArray
+        self, material: HeightMap, points: Points, suspect: BoolArray, *, doubtful: bool = False
     ) -> dict[str, Overlap]:
         """What reaches into the material as it is, along each stretch.
 
@@ -119,37 +119,39 @@ class StockContact:
             material: The material.
             points: Ends of n stretches.
             suspect: In which of them the edge must not cut, shape (n,).
+            doubtful: Whether they cut walls of their own that later ones meet: nothing that these may
+                meet is left out then.
 
         Returns:
             By name; zero where something reaches no further than it may.
         """
         count = len(suspect)
         lowest = points.tip[:, 2].min()
+        stood = Stood(material.heights, material.behind, material.grid, doubtful)
         found = {}
         for solid in self._uprights:
             if lowest + solid.above < material.top:
                 overlap = Overlap(*np.zeros((2, count)))
-                self._hold(solid, material, points, overlap)
+                self._hold(solid, stood, points, overlap)
                 found[solid.name] = overlap
         if suspect.any() and lowest < material.top:
             overlap = Overlap(*np.zeros((2, count)))
-            round_overlap(material.heights, material.grid, points.tip, self._edge, 0.0, overlap)
+            round_overlap(stood, points.tip, self._edge, 0.0, overlap)
             overlap.reach[~suspect] = 0.0
             found[EDGE] = overlap
         for name, overlap in found.items():
             overlap.depth[overlap.reach <= self._most[name]] = 0.0
         return {name: overlap for name, overlap in found.items() if overlap.depth.any()}
 
-    def _hold(self, solid: Upright, material: HeightMap, points: Points, overlap: Overlap) -> None:
+    def _hold(self, solid: Upright, stood: Stood, points: Points, overlap: Overlap) -> None:
         (x, y), turn = solid.offset, points.turn
         middle = points.tip.copy()
         if x or y:
             middle[:, 0] += x * turn[:, 0] - y * turn[:, 1]
             middle[:, 1] += x * turn[:, 1] + y * turn[:, 0]
-        heights, grid = material.heights, material.grid
         if solid.round:
             profile = (solid.half[0], solid.half[0], 0.0, 0.0)
-            round_overlap(heights, grid, middle, profile, solid.above, overlap)
+            round_overlap(stood, middle, profile, solid.above, overlap)
         else:
             middle[:, 2] += solid.above
-            box_overlap(heights, grid, middle, turn, solid.half, overlap)
+            box_overlap(stood, middle, turn, solid.half, overlap)

@@ -17,16 +17,15 @@ from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import phases_of_pieces
 from twin.motion.pieces.pieces import Pieces, blocks_to_cut, cut
 from twin.motion.retiming.run_kernels import LEAST_TURN_FROM_REST
+from twin.motion.steps import Step
 from twin.nc.canonical import Chunk, Corner, FloatArray
 
 MOST_BLOCKS = 64
 """Between two stops: of more, stops do not make up for what passing their corners gains."""
 
 
-def pieces_of_chunks(
-    chunks: Iterable[Chunk], limits: MotionLimits, start: FloatArray, largest_override: float = 1.0
-) -> Iterator[Pieces]:
-    """Cut a program into pieces, dwells included, in order.
+class PiecesOfChunks(Step[Surroundings, Pieces]):
+    """Cuts a program into pieces, dwells included, in order.
 
     Args:
         chunks: The program.
@@ -35,12 +34,25 @@ def pieces_of_chunks(
         largest_override: Of the feed that the limits of a piece must leave room for.
 
     Raises:
-        ValueError: A move does not begin where the one before it ended.
+        ValueError: When pulled: a move does not begin where the one before it ended.
     """
-    for surroundings in blocks_to_cut(chunks, start):
-        borders = find_borders(surroundings.blocks, limits, largest_override)
-        pieces = cut(surroundings, borders, limits, largest_override)
-        yield _with_faster_stops(pieces, surroundings, borders, limits, largest_override)
+
+    def __init__(
+        self,
+        chunks: Iterable[Chunk],
+        limits: MotionLimits,
+        start: FloatArray,
+        largest_override: float = 1.0,
+    ) -> None:
+        super().__init__(blocks_to_cut(chunks, start))
+        self._limits, self._largest_override = limits, largest_override
+
+    def take(self, part: Surroundings) -> Iterator[Pieces]:
+        """The pieces of some blocks."""
+        limits, largest_override = self._limits, self._largest_override
+        borders = find_borders(part.blocks, limits, largest_override)
+        pieces = cut(part, borders, limits, largest_override)
+        yield _with_faster_stops(pieces, part, borders, limits, largest_override)
 
 
 def _with_faster_stops(

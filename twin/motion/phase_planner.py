@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from twin.motion.corner_trials import pieces_of_chunks
+from twin.motion.corner_trials import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import phases_of_pieces
 from twin.motion.profile.phases import Phases
@@ -19,4 +19,4 @@ def plan_phases(
         limits: Of the axes and the path.
         start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
     """
-    return phases_of_pieces(pieces_of_chunks(chunks, limits, start), limits)
+    return phases_of_pieces(PiecesOfChunks(chunks, limits, start), limits)

@@ -9,7 +9,7 @@ from twin.motion.pieces.pieces import Pieces
 from twin.motion.profile.backward_pass_kernels import backward_pass
 from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forward_pass
 from twin.motion.profile.phases import Phases, brakes_from, phases_of
-from twin.motion.profile.windows import windows
+from twin.motion.profile.windows import Windows
 from twin.motion.retiming.retiming import PhaseTable, pieces_for_runs, retime
 
 
@@ -23,7 +23,7 @@ def phases_of_pieces(parts: Iterable[Pieces], limits: MotionLimits) -> Iterator[
     state = STATE_AT_REST.copy()
     known = np.zeros((4, 0))
     machine, gained = limits.arrays(), 0.0
-    for window in windows(parts):
+    for window in Windows(parts):
         brakes = backward_pass(window.limits, window.entry, known)
         stands = Stands(window.overlap, window.pause)
         rows, segments = forward_pass(

@@ -10,6 +10,7 @@ from twin.motion.limits import MotionLimits
 from twin.motion.phase_planner import plan_phases
 from twin.motion.setpoints.sampling import at_end, sample, standing
 from twin.motion.setpoints.setpoints import Setpoints
+from twin.motion.steps import Step
 from twin.nc.canonical import Chunk, FloatArray
 
 
@@ -56,7 +57,7 @@ def plan(
     yield dataclasses.replace(last, time=time, position=watched.position[None])
 
 
-class WatchedEnd:
+class WatchedEnd(Step[Chunk, Chunk]):
     """Passes chunks on and notes where the program ends: moves too short to take time count too.
 
     Args:
@@ -69,12 +70,12 @@ class WatchedEnd:
     """
 
     def __init__(self, chunks: Iterable[Chunk], start: FloatArray, part_zero: FloatArray) -> None:
-        self._chunks = chunks
+        super().__init__(chunks)
         self._part_zero = part_zero
         self.position = start
 
-    def __iter__(self) -> Iterator[Chunk]:
-        for chunk in self._chunks:
-            if len(chunk.moves) > 0:
-                self.position = chunk.moves.end[-1] + self._part_zero
-            yield chunk
+    def take(self, part: Chunk) -> Iterator[Chunk]:
+        """The chunk itself."""
+        if len(part.moves) > 0:
+            self.position = part.moves.end[-1] + self._part_zero
+        yield part

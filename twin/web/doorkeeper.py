@@ -1,7 +1,10 @@
-"""Who may come in: a token of its own for each role, kept as a cookie, with a brake on guesses.
+"""Who may come in: a token of its own for each role, kept as a cookie; a brake on guesses.
 
 A token stands behind the ``#`` of an address, which browsers tell no server: so it is in no log and
 in no referrer. The page hands it in once and gets a cookie that no script can read.
+
+A token of 128 bits cannot be guessed, so that the right one is let in whatever else has come: a class
+behind one address is not kept out by what one pupil tries.
 """
 
 import http.cookies
@@ -13,7 +16,7 @@ from collections.abc import Sequence
 TOKEN_BYTES = 16
 """128 bits."""
 GUESSES = 10
-"""Wrong tokens that are looked at within ``GUESSES_S``; whatever comes then is turned away."""
+"""Wrong tokens within ``GUESSES_S`` that are told to be wrong; then all are told to wait."""
 GUESSES_S = 60.0
 MOST_PASSES = 512
 """Browsers that are remembered; of more the ones that came first must show their token again."""
@@ -50,7 +53,7 @@ class Doorkeeper:
             The cookie's header where it is right, else None.
         """
         known = self.tokens.get(role, "")
-        if self.braked or not known or not secrets.compare_digest(known.encode(), token.encode()):
+        if not known or not secrets.compare_digest(known.encode(), token.encode()):
             if not self.braked:
                 self._wrong.append(time.monotonic())
             return None

@@ -4,7 +4,7 @@ from motion_programs import SETTINGS, Program, programs
 
 from twin.columns import join
 from twin.motion.blocks.block_kernels import largest_travels
-from twin.motion.blocks.blocks import Blocks, blocks_of_chunks
+from twin.motion.blocks.blocks import Blocks, BlocksOfChunks
 from twin.motion.blocks.border_kernels import (
     STEP_NOISE,
     border_steps,
@@ -15,7 +15,7 @@ from twin.nc.canonical import Corner, FloatArray
 
 
 def blocks_of(program: Program) -> Blocks | None:
-    parts = [part for part in blocks_of_chunks(program.chunks(), program.start) if len(part)]
+    parts = [part for part in BlocksOfChunks(program.chunks(), program.start) if len(part)]
     return join(parts) if parts else None
 
 

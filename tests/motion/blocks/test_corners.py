@@ -10,7 +10,7 @@ from motion_checks import assert_consistent, assert_on_path, assert_within_limit
 from motion_programs import PERIOD, SETTINGS, ZERO, Program, duration, limits, mill, programs, run
 
 from twin.columns import join
-from twin.motion.corner_trials import pieces_of_chunks
+from twin.motion.corner_trials import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.pieces.rounding_kernels import add_rounding
 from twin.motion.setpoints.setpoints import Setpoints
@@ -159,7 +159,7 @@ def test_chain_of_short_blocks_runs_near_its_feed() -> None:
 
 def derivative_steps(program: Program, machine: MotionLimits, order: int) -> FloatArray:
     """Steps of a derivative of the path from piece to piece where it does not stop, shape (n, k)."""
-    pieces = join(list(pieces_of_chunks(program.chunks(), machine, program.start)))
+    pieces = join(list(PiecesOfChunks(program.chunks(), machine, program.start)))
     rows = np.arange(len(pieces))
 
     def at(x: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from motion_programs import Program, mill, run
 
-from twin.motion.blocks.blocks import blocks_of_chunks, with_neighbours
+from twin.motion.blocks.blocks import BlocksOfChunks, WithNeighbours
 from twin.motion.pieces import pieces
 from twin.nc.canonical import Corner
 
@@ -39,8 +39,8 @@ def test_every_block_is_worked_on_once(
         program.arc((4.0, 0.0, 0.0), (0.0, 0.0, 1.0), 360.0 * each, advance=1.0)
     worked: list[int] = []
     ends: list[bool] = []
-    blocks = blocks_of_chunks(program.chunks(3, 5), program.start)
-    for group in with_neighbours(blocks, batch, context, most):
+    blocks = BlocksOfChunks(program.chunks(3, 5), program.start)
+    for group in WithNeighbours(blocks, batch, context, most):
         move, angle = group.blocks.move, np.abs(group.blocks.geometry.angle)
         own = slice(group.first, group.last)
         worked += move[own].tolist()

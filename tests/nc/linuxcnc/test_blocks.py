@@ -4,7 +4,15 @@ import pytest
 
 from tests.nc.linuxcnc.oracle import RS274, by_twin, difference
 
+_COMPENSATED = "T2 M6\nF100\nG41 G1 X10\nX20\n{}\nX30\nG40 X40\nM2\n"
+_NOT_COMPENSATED = (
+    "G98", "G61", "G61.1", "G64 P0.1", "T1 M6", "M66 P1 L0", "M48", "M62 P1", "M68 E1 Q1", "#1=#5420",
+    "G18", "M70\nG55\nM72",
+)  # fmt: skip
+"""What the control refuses while the radius is compensated."""
 REFUSED = {
+    **{_COMPENSATED.format(code): "compensation-change" for code in _NOT_COMPENSATED},
+    "#1=#5602\nM2\n": "parameter-number",
     "F100\nG2\nM2\n": "arc-without-center",
     "F100\nG3\nG1 X1\nM2\n": "arc-without-center",
     "F100\nG2 F200\nM2\n": "arc-without-center",
@@ -40,6 +48,10 @@ REFUSED = {
     "o1.5 sub\no1.5 endsub\nM2\n": "o-word",
 }
 ENDS = {
+    _COMPENSATED.format("M70\nG90.1\nM72"): [40.0, 0.0, 0.0],
+    _COMPENSATED.format("M70\nX25\nM72"): [40.0, 0.0, 0.0],
+    _COMPENSATED.format("G17\nG21"): [40.0, 0.0, 0.0],
+    "G0 X#<_lathe_radius_mode>\nM2\n": [1.0, 0.0, 0.0],
     "M98 P100 L2\nM2\nO100\nG91 G0 X1\nM99\n": [2.0, 0.0, 0.0],
     "#1=3\nM98 P100 L3\nG0 Y#1\nM2\nO100\nG91 G0 X1\n#1=[#1+1]\nM98 P200\nM99\nO200\nG0 Z1\nM99\n": [3.0, 6.0, 3.0],
     "G80 G0 X3 Y5\nM2\n": [3.0, 5.0, 0.0],

@@ -74,7 +74,7 @@ def state(room: Room) -> list[Any]:
         room.judge._touched_s, room.judge._trouble, room.judge._hold_line, room.running_down,
         room.machine.alarm, [room.machine.machine.axis(name) for name in room.machine.machine.axes.names], room.tables.zero.tolist(), room.tables.offsets,
         room.cut._operation.tool.number, None if room.work is None else id(room.work.map),
-        None if room.run is None else (id(room.run), len(room.run._journal), room.run.dropped),
+        None if room.run is None else (id(room.run), room.run.held, room.run._hold_asked, room.run.dropped),
         None if room.suspended is None else (id(room.suspended.run), room.suspended.place.tolist()),
         room.waiting, dataclasses.asdict(room.switches),
     ])  # fmt: skip

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from twin.compilation.kernel import array_kernel
 from twin.cutting.kernels.sweep import Grid, chord
 from twin.cutting.kernels.tool_height import lowest_height, steepness
+from twin.cutting.kernels.wall_distance import HALF, WallDistance, nearest_foot, reach_before
 from twin.nc.canonical import FloatArray
 
 
@@ -22,10 +23,26 @@ class Overlap(NamedTuple):
     depth: FloatArray
 
 
+class Stood(NamedTuple):
+    """What stands on the table.
+
+    Attributes:
+        heights: The height map, shape (ny, nx) [mm].
+        behind: What is known of its walls.
+        grid: Where its cells lie.
+        doubtful: Whether walls may be cut before the last of the stretches that are looked at: every
+            one is then taken to be as near as it can be.
+    """
+
+    heights: FloatArray
+    behind: WallDistance
+    grid: Grid
+    doubtful: bool
+
+
 @array_kernel
 def round_overlap(
-    heights: FloatArray,
-    grid: Grid,
+    stood: Stood,
     points: FloatArray,
     profile: tuple[float, float, float, float],
     above: float,
@@ -34,35 +51,47 @@ def round_overlap(
     """Hold a body of revolution about the tool's axis against the material.
 
     Args:
-        heights: The height map, shape (ny, nx) [mm].
-        grid: Where its cells lie.
+        stood: The material.
         points: Tool tip positions, shape (n + 1, 3) [mm].
         profile: Radius, flat, corner, slope of its lower end (``twin.cutting.tools.Profile``).
         above: Height of its lower end above the tip [mm].
         overlap: Set to what was found.
     """
-    radius, cell = profile[0], grid.cell
+    heights, grid = stood.heights, stood.grid
+    cell, radius = grid.cell, profile[0]
+    outer = radius + HALF * cell
     for i in range(len(points) - 1):
         overlap.reach[i] = 0.0
         overlap.depth[i] = 0.0
-        ax, ay = points[i, 0], points[i, 1]
-        bx, by = points[i + 1, 0], points[i + 1, 1]
-        if min(points[i, 2], points[i + 1, 2]) + above >= grid.top:
+        a, b = points[i], points[i + 1]
+        level = max(min(a[2], b[2]) + above, grid.bottom)
+        if level >= grid.top:
             continue
-        low = max(0, math.ceil((min(ay, by) - radius - grid.origin[1]) / cell))
-        high = min(heights.shape[0] - 1, math.floor((max(ay, by) + radius - grid.origin[1]) / cell))
+        low = max(0, math.ceil((min(a[1], b[1]) - outer - grid.origin[1]) / cell))
+        high = min(
+            heights.shape[0] - 1, math.floor((max(a[1], b[1]) + outer - grid.origin[1]) / cell)
+        )
         for row in range(low, high + 1):
             y = grid.origin[1] + row * cell
-            left, right = chord(ax, ay, bx, by, radius, y)
+            left, right = chord(a[0], a[1], b[0], b[1], outer, y)
             first = max(0, math.ceil((left - grid.origin[0]) / cell))
             end = min(heights.shape[1] - 1, math.floor((right - grid.origin[0]) / cell)) + 1
             for column in range(first, end):
-                x = grid.origin[0] + column * cell
-                lower = lowest_height(x, y, points[i], points[i + 1], profile) + above
-                depth = heights[row, column] - lower
-                if depth <= 0.0 or heights[row, column] <= grid.bottom:
+                height = heights[row, column]
+                if height <= level:
                     continue
-                aside = _distance(x, y, ax, ay, bx, by)
+                x = grid.origin[0] + column * cell
+                foot_x, foot_y = nearest_foot(x, y, a, b)
+                middle = math.hypot(x - foot_x, y - foot_y)
+                before = min(reach_before(stood, row, column, height), middle)
+                aside = middle - before
+                if aside > radius:
+                    continue
+                share = before / middle if before > 0.0 else 0.0
+                near_x, near_y = x + share * (foot_x - x), y + share * (foot_y - y)
+                depth = height - lowest_height(near_x, near_y, a, b, profile) - above
+                if depth <= 0.0:
+                    continue
                 slope = steepness(aside, profile)
                 reach = min(depth / math.sqrt(1.0 + slope * slope), radius - aside)
                 if reach > overlap.reach[i]:
@@ -72,8 +101,7 @@ def round_overlap(
 
 @array_kernel
 def box_overlap(
-    heights: FloatArray,
-    grid: Grid,
+    stood: Stood,
     points: FloatArray,
     turn: FloatArray,
     half: tuple[float, float],
@@ -82,15 +110,15 @@ def box_overlap(
     """Hold an upright box, such as the head, against the material.
 
     Args:
-        heights: The height map, shape (ny, nx) [mm].
-        grid: Where its cells lie.
+        stood: The material.
         points: Middle of its lower face, shape (n + 1, 3) [mm].
         turn: Direction of its first side, shape (n + 1, 2).
         half: Half of its two level sides [mm].
         overlap: Set to what was found.
     """
+    heights, grid = stood.heights, stood.grid
     cell = grid.cell
-    around = math.hypot(half[0], half[1])
+    around = math.hypot(half[0], half[1]) + HALF * cell
     for i in range(len(points) - 1):
         overlap.reach[i] = 0.0
         overlap.depth[i] = 0.0
@@ -116,18 +144,11 @@ def box_overlap(
                     dx = grid.origin[0] + column * cell - x
                     side = half[0] - abs(dx * ux + dy * uy)
                     front = half[1] - abs(dy * ux - dx * uy)
-                    reach = min(depth, side, front)
+                    inside = min(side, front)
+                    if inside < 0.0:
+                        inside = -math.hypot(min(side, 0.0), min(front, 0.0))
+                    before = reach_before(stood, row, column, depth + z)
+                    reach = min(depth, inside + before)
                     if reach > overlap.reach[i]:
                         overlap.reach[i] = reach
                         overlap.depth[i] = max(overlap.depth[i], depth)
-
-
-@array_kernel
-def _distance(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
-    """Distance of a place from a straight way, seen from above [mm]."""
-    dx, dy = bx - ax, by - ay
-    squared = dx * dx + dy * dy
-    t = 0.0
-    if squared > 0.0:
-        t = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / squared))
-    return math.hypot(x - ax - t * dx, y - ay - t * dy)

@@ -1,13 +1,13 @@
 """Blocks: the moves that take time, and the dwells, with what happens where one meets the next."""
 
 import dataclasses
-import itertools
 from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from twin.columns import Columns, join
 from twin.motion.blocks.block_kernels import largest_travels
+from twin.motion.steps import Step
 from twin.nc.canonical import (
     Chunk,
     CodeArray,
@@ -70,7 +70,7 @@ class Blocks(Columns):
     geometry: Geometry
 
 
-def blocks_of_chunks(chunks: Iterable[Chunk], start: FloatArray) -> Iterator[Blocks]:
+class BlocksOfChunks(Step[Chunk, Blocks]):
     """The blocks of a program, in order.
 
     The path comes to rest before and after rapids, dwells and functions, as the conventions of
@@ -81,28 +81,35 @@ def blocks_of_chunks(chunks: Iterable[Chunk], start: FloatArray) -> Iterator[Blo
         start: Where the axes stand before, part coordinates, shape (k,) [mm or deg].
 
     Raises:
-        ValueError: A move does not begin where the one before it ended.
+        ValueError: When pulled: a move does not begin where the one before it ended.
     """
-    first = 0
-    position = start
-    corner, tolerance = int(Corner.EXACT_STOP), np.nan
-    for chunk in chunks:
-        moves = chunk.moves
-        _check_joined(position, moves)
+
+    def __init__(self, chunks: Iterable[Chunk], start: FloatArray) -> None:
+        super().__init__(chunks)
+        self._first = 0
+        self._position = start
+        self._corner, self._tolerance = int(Corner.EXACT_STOP), np.nan
+
+    def take(self, part: Chunk) -> Iterator[Blocks]:
+        """The blocks of a chunk."""
+        moves = part.moves
+        _check_joined(self._position, moves)
         done = 0
-        for event in (*(event for event in chunk.events if _stops(event)), None):
+        for event in (*(event for event in part.events if _stops(event)), None):
             until = len(moves) if event is None else event.before
             if until > done:
-                part = moves[done:until]
-                blocks, corner, tolerance = _of_moves(part, first + done, corner, tolerance)
+                between = moves[done:until]
+                blocks, self._corner, self._tolerance = _of_moves(
+                    between, self._first + done, self._corner, self._tolerance
+                )
                 yield blocks
-                position = part.end[-1]
+                self._position = between.end[-1]
                 done = until
             if event is not None:
-                corner = int(Corner.EXACT_STOP)
+                self._corner = int(Corner.EXACT_STOP)
             if isinstance(event, Dwell):
-                yield _of_dwell(event, first + done - 1, position)
-        first += len(moves)
+                yield _of_dwell(event, self._first + done - 1, self._position)
+        self._first += len(moves)
 
 
 def _stops(event: Event) -> bool:
@@ -203,37 +210,48 @@ class Surroundings:
     to_the_end: bool
 
 
-def with_neighbours(
-    parts: Iterable[Blocks], batch: int, context: int, most_angle: float = np.inf
-) -> Iterator[Surroundings]:
-    """Regroup blocks: ``batch`` at a time, with up to ``context`` known on either side.
+class WithNeighbours(Step[Blocks, Surroundings]):
+    """Regroups blocks: ``batch`` at a time, with up to ``context`` known on either side.
 
     Groups are counted from the start of the program, whatever parts the blocks come in. They are
     smaller, and less is known beside them, where arcs turn by more than ``most_angle`` together
     [rad], that of the last one left out.
     """
-    waiting: list[Blocks] = []
-    count, first = 0, 0
-    for part in itertools.chain(parts, [None]):
-        if part is not None and len(part):
-            waiting.append(part)
-            count += len(part)
-        while count - first >= (1 if part is None else batch + context):
-            window = join(waiting)
-            angle = np.abs(window.geometry.angle)
-            last = first + _within(
-                angle[first : None if part is None else first + batch], most_angle
-            )
-            before = _within(angle[max(0, first - context) : first][::-1], most_angle)
-            behind = _within(angle[last : last + context], most_angle)
-            yield Surroundings(
-                window[first - before : last + behind],
-                before,
-                before + last - first,
-                to_the_end=part is None and last + behind == count,
-            )
-            kept = max(0, last - context)
-            waiting, count, first = [window[kept:]], count - kept, last - kept
+
+    def __init__(
+        self, parts: Iterable[Blocks], batch: int, context: int, most_angle: float = np.inf
+    ) -> None:
+        super().__init__(parts)
+        self._batch, self._context, self._most_angle = batch, context, most_angle
+        self._waiting: list[Blocks] = []
+        self._count = self._first = 0
+
+    def take(self, part: Blocks) -> Iterator[Surroundings]:
+        """The groups whose neighbours are known."""
+        if len(part):
+            self._waiting.append(part)
+            self._count += len(part)
+        while self._count - self._first >= self._batch + self._context:
+            yield self._group(self._batch, at_end=False)
+
+    def finish(self) -> Iterator[Surroundings]:
+        """The last groups."""
+        while self._count > self._first:
+            yield self._group(None, at_end=True)
+
+    def _group(self, most: int | None, *, at_end: bool) -> Surroundings:
+        """The next group, of so many blocks at most."""
+        first, context, most_angle = self._first, self._context, self._most_angle
+        window = join(self._waiting)
+        angle = np.abs(window.geometry.angle)
+        last = first + _within(angle[first : None if most is None else first + most], most_angle)
+        before = _within(angle[max(0, first - context) : first][::-1], most_angle)
+        behind = _within(angle[last : last + context], most_angle)
+        kept = max(0, last - context)
+        to_the_end = at_end and last + behind == self._count
+        self._waiting, self._count, self._first = [window[kept:]], self._count - kept, last - kept
+        known = window[first - before : last + behind]
+        return Surroundings(known, before, before + last - first, to_the_end)
 
 
 def _within(angle: FloatArray, most: float) -> int:

@@ -24,7 +24,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from twin.columns import join
-from twin.motion.corner_trials import pieces_of_chunks
+from twin.motion.corner_trials import PiecesOfChunks
 from twin.motion.limits import MotionLimits
 from twin.motion.live.overridden_plan import OverriddenPlan, Overrides
 from twin.motion.planner import WatchedEnd
@@ -83,7 +83,7 @@ class LiveMotion:
         self._part_zero = part_zero
         self._program = WatchedEnd(chunks, start, part_zero)
         self._plan = OverriddenPlan(
-            pieces_of_chunks(self._program, limits, start - part_zero, largest_override),
+            PiecesOfChunks(self._program, limits, start - part_zero, largest_override),
             limits.arrays(),
         )
         self._wanted = self._granted = Overrides()

@@ -16,7 +16,7 @@ from twin.motion.profile.forward_pass_kernels import STATE_AT_REST, Stands, forw
 from twin.motion.profile.phase_kernels import PhaseRows, write_brake
 from twin.motion.profile.phases import Phases, brakes_from, no_phases, phases_of
 from twin.motion.profile.state import Course, State
-from twin.motion.profile.windows import Window, windows
+from twin.motion.profile.windows import Window, Windows
 from twin.motion.retiming.retiming import PhaseTable, pieces_for_runs
 from twin.motion.setpoints.sampling_kernels import OVERLAPPING, state_at
 from twin.nc.canonical import FloatArray
@@ -81,7 +81,7 @@ class OverriddenPlan:
     """
 
     def __init__(self, parts: Iterable[Pieces], machine: MachineLimits) -> None:
-        self._windows = windows(parts)
+        self._windows = Windows(parts)
         self._machine = machine
         self._state = STATE_AT_REST.copy()
         self._wishes = Overrides()
@@ -172,9 +172,9 @@ class OverriddenPlan:
             if brake.border < 0:
                 self._rejoin(time)
                 return False
+        window = window.with_pause(segment, pause)
         self._wishes, self._window, self._drive = overrides, window, drive
         self.standing_since = math.inf
-        window.pause[segment] = pause
         self._state[:5] = segment, x, v, a, time
         self._state[5:] = STATE_AT_REST[5:]
         self.phases = [no_phases(window.pieces)]

@@ -18,10 +18,10 @@ import numpy as np
 
 from twin.columns import Columns, Picked
 from twin.motion.blocks.blocks import (
+    BlocksOfChunks,
     BoolArray,
     Surroundings,
-    blocks_of_chunks,
-    with_neighbours,
+    WithNeighbours,
 )
 from twin.motion.blocks.corners import CONTEXT, Borders
 from twin.motion.limits import MotionLimits
@@ -94,7 +94,7 @@ def blocks_to_cut(chunks: Iterable[Chunk], start: FloatArray) -> Iterator[Surrou
     Raises:
         ValueError: A move does not begin where the one before it ended.
     """
-    return with_neighbours(blocks_of_chunks(chunks, start), BATCH, CONTEXT, MAX_ANGLE)
+    return WithNeighbours(BlocksOfChunks(chunks, start), BATCH, CONTEXT, MAX_ANGLE)
 
 
 def cut(

@@ -12,6 +12,7 @@ import numpy as np
 from twin.columns import join
 from twin.motion.pieces.pieces import Pieces
 from twin.motion.profile.segment_kernels import find_segments, merge_limits
+from twin.motion.steps import Step
 from twin.nc.canonical import FloatArray, IntArray
 
 LOOK_AHEAD = 2000
@@ -80,6 +81,12 @@ class Window:
         segment = int(np.searchsorted(self.begins, piece, "right")) - 1
         return segment, x + float(self.pieces.length[self.begins[segment] : piece].sum())
 
+    def with_pause(self, segment: int, pause: float) -> "Window":
+        """This window, where a segment waits for so long [s]."""
+        pauses = self.pause.copy()
+        pauses[segment] = pause
+        return dataclasses.replace(self, pause=pauses)
+
     def parted_at(self, piece: int) -> "Window":
         """This window with a border between segments before a piece."""
         segment, x = self.segment_at(piece, 0.0)
@@ -106,25 +113,33 @@ class _Batch:
     limits: FloatArray
 
 
-def windows(parts: Iterable[Pieces], look_ahead: int = LOOK_AHEAD) -> Iterator[Window]:
+class Windows(Step[Pieces, Window]):
     """Windows of a program; each begins where the one before it had its ``due``.
 
     Args:
         parts: The program's pieces.
         look_ahead: Blocks per batch.
     """
-    now: _Batch | None = None
-    for pieces in _batches(parts, look_ahead):
+
+    def __init__(self, parts: Iterable[Pieces], look_ahead: int = LOOK_AHEAD) -> None:
+        super().__init__(_Batches(parts, look_ahead))
+        self._now: _Batch | None = None
+
+    def take(self, part: Pieces) -> Iterator[Window]:
+        """The batch before, now that this one is known."""
         table = np.stack(
-            [pieces.length, pieces.velocity, pieces.acceleration, pieces.deceleration, pieces.jerk]
+            [part.length, part.velocity, part.acceleration, part.deceleration, part.jerk]
         )
-        begins = find_segments(table, pieces.entry, pieces.feed)
-        batch = _Batch(pieces, begins, merge_limits(table, pieces.entry, begins))
-        if now is not None:
-            yield _window([now, batch], len(now.begins) - 1)
-        now = batch
-    if now is not None:
-        yield _window([now], len(now.begins) - 1)
+        begins = find_segments(table, part.entry, part.feed)
+        before = self._now
+        self._now = _Batch(part, begins, merge_limits(table, part.entry, begins))
+        if before is not None:
+            yield _window([before, self._now], len(before.begins) - 1)
+
+    def finish(self) -> Iterator[Window]:
+        """The last batch."""
+        if self._now is not None:
+            yield _window([self._now], len(self._now.begins) - 1)
 
 
 def _window(batches: list[_Batch], due: int) -> Window:
@@ -144,29 +159,38 @@ def _window(batches: list[_Batch], due: int) -> Window:
     )
 
 
-def _batches(parts: Iterable[Pieces], blocks: int) -> Iterator[Pieces]:
-    """Regroup pieces: so many blocks at a time, or ``MAX_PIECES`` if these are fewer."""
-    waiting: list[Pieces] = []
-    count, found = 0, 0
-    for part in parts:
+class _Batches(Step[Pieces, Pieces]):
+    """Regroups pieces: so many blocks at a time, or ``MAX_PIECES`` if these are fewer."""
+
+    def __init__(self, parts: Iterable[Pieces], blocks: int) -> None:
+        super().__init__(parts)
+        self._blocks = blocks
+        self._waiting: list[Pieces] = []
+        self._count = self._found = 0
+
+    def take(self, part: Pieces) -> Iterator[Pieces]:
+        """The batches that are full."""
         starts = (part.begin == 0.0) | (part.length == 0.0)
         first = 0
         while True:
             # The piece with which the first block too many begins, or the first piece too many.
-            room = first + MAX_PIECES - count
+            room = first + MAX_PIECES - self._count
             inside = first + np.flatnonzero(starts[first:room])
             end = min(len(part), room)
-            if len(inside) > blocks - found:
-                end = int(inside[blocks - found])
+            if len(inside) > self._blocks - self._found:
+                end = int(inside[self._blocks - self._found])
             if end == len(part) and end < room:
                 break
             if end > first:
-                waiting.append(part[first:end])
-            yield join(waiting)
-            waiting, count, found, first = [], 0, 0, end
+                self._waiting.append(part[first:end])
+            yield join(self._waiting)
+            self._waiting, self._count, self._found, first = [], 0, 0, end
         if first < len(part):
-            waiting.append(part[first:])
-            count += len(part) - first
-            found += int(np.count_nonzero(starts[first:]))
-    if count > 0:
-        yield join(waiting)
+            self._waiting.append(part[first:])
+            self._count += len(part) - first
+            self._found += int(np.count_nonzero(starts[first:]))
+
+    def finish(self) -> Iterator[Pieces]:
+        """What has not filled a batch."""
+        if self._count > 0:
+            yield join(self._waiting)

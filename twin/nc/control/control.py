@@ -180,13 +180,11 @@ class Control(ControlWords):
 
     def dwell(self, seconds: float) -> None:
         """Wait."""
-        line = self.block.line
-        self.path.event(lambda columns: columns.dwell(line, seconds))
+        self.path.event(Dwell(0, self.block.line, seconds))
 
     def function(self, word: str, arguments: Mapping[str, float], at: float = 0.0) -> None:
         """Report a function at this place of the path."""
-        line, given = self.block.line, dict(arguments)
-        self.path.event(lambda columns: columns.function(line, word, given, at))
+        self.path.event(Function(0, self.block.line, word, dict(arguments), at))
 
     def begin_effect(self) -> Affected:
         """Let the columns show what the control keeps as objects, for an instruction."""

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Container, Iterator
-from typing import NoReturn
+from typing import NoReturn, TypeVar
 
 import numpy as np
 
@@ -28,8 +28,15 @@ from twin.nc.text.reporter import Reporter
 from twin.nc.text.source import Source
 
 _LABEL = re.compile(r"N[ \t]*[0-9]|\[", re.IGNORECASE)
+Key = TypeVar("Key")
+Found = TypeVar("Found")
+
 _CACHED_LINES = 10_000
 """Lines whose blocks are remembered once a program has jumped."""
+
+
+class FoundInText(dict[Key, Found]):
+    """What was found in a program's text, which does not change: whoever looks again finds the same."""
 
 
 class ProgramCounter:
@@ -66,8 +73,8 @@ class ProgramCounter:
         self._now[FURTHEST], self._now[INSTRUCTION_BUDGET] = -1, step_limit
         self.calls = np.zeros((MOST_CALLS, CALL_COLUMNS), np.int64)
         self.saved: dict[int, SavedModal] = {}
-        self._labels: dict[int | str, list[Location]] | None = None
-        self._cache: dict[int, tuple[Block, ...]] = {}
+        self._labels: FoundInText[int | str, list[Location]] | None = None
+        self._cache = FoundInText[int, tuple[Block, ...]]()
         self._told_to_end = False
         self._here: tuple[Block, ...] = ()
         self._here_line = -1
@@ -215,7 +222,7 @@ class ProgramCounter:
     def labels(self) -> dict[int | str, list[Location]]:
         """Where every N number and every name of a block stands."""
         if self._labels is None:
-            self._labels = {}
+            self._labels = FoundInText()
             for line, text in enumerate(self._lines):
                 if _LABEL.search(text) is not None:
                     for block in self._readable_blocks(line):

@@ -9,6 +9,7 @@ import collections
 import dataclasses
 from collections.abc import Callable
 
+from twin.nc.canonical import Event
 from twin.nc.geometry.elements import Element, crossing
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.move_columns import Segment
@@ -24,15 +25,18 @@ class _Held:
 
     move: Segment
     element: Element
-    waiting: list[Callable[[], None]] = dataclasses.field(default_factory=list)
+    waiting: list[Event] = dataclasses.field(default_factory=list)
 
 
 class Loops:
     """Cuts loops out of the path in one plane."""
 
-    def __init__(self, plane: Plane, emit: Callable[[Segment], None]) -> None:
+    def __init__(
+        self, plane: Plane, emit: Callable[[Segment], None], happen: Callable[[Event], None]
+    ) -> None:
         self._plane = plane
         self._emit = emit
+        self._happen = happen
         self._held: collections.deque[_Held] = collections.deque()
 
     def add(self, move: Segment) -> None:
@@ -51,12 +55,12 @@ class Loops:
         while len(self._held) > LONGEST_LOOP:
             self._release()
 
-    def event(self, event: Callable[[], None]) -> None:
+    def event(self, event: Event) -> None:
         """Something that happens where the path has come to."""
         if self._held:
             self._held[-1].waiting.append(event)
         else:
-            event()
+            self._happen(event)
 
     def flush(self) -> None:
         """Nothing follows that could cross."""
@@ -67,7 +71,7 @@ class Loops:
         held = self._held.popleft()
         self._emit(held.move)
         for event in held.waiting:
-            event()
+            self._happen(event)
 
     def _cut(
         self, index: int, move: Segment, element: Element, place: tuple[float, float]

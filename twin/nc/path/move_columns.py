@@ -9,11 +9,9 @@ from twin.nc.canonical import (
     Axes,
     Chunk,
     Corner,
-    Dwell,
     Event,
     FeedUnit,
     FloatArray,
-    Function,
     IntArray,
     Motion,
     Moves,
@@ -158,14 +156,6 @@ class MoveColumns:
         if self._event_list:
             self._event_parts.append(self._event_list)
             self._event_list = []
-
-    def dwell(self, line: int, seconds: float) -> None:
-        """Append a dwell after the moves so far."""
-        self._event_list.append(Dwell(self._count, line, seconds))
-
-    def function(self, line: int, word: str, arguments: dict[str, float], at: float) -> None:
-        """Append a function after the moves so far."""
-        self._event_list.append(Function(self._count, line, word, arguments, at))
 
     def take(self) -> Chunk:
         """All that was appended, as columns; nothing is left here."""

@@ -6,7 +6,7 @@ out, additional axes that go evenly. Each is there only while a program asks for
 
 from collections.abc import Callable
 
-from twin.nc.canonical import Axes, Chunk, Motion
+from twin.nc.canonical import Axes, Chunk, Event, Motion
 from twin.nc.geometry.planes import Plane
 from twin.nc.path.blends import Blend
 from twin.nc.path.compensation.contour import (
@@ -41,11 +41,11 @@ class Path:
         self._before: Segment | None = None
         self._spline: Spline | None = None
         self._rounding: Rounding | None = None
-        self._compensation = Compensation(len(axes), self._emit, refuse, warn)
+        self._compensation = Compensation(len(axes), self._emit, self._record, refuse, warn)
         self._loops: Loops | None = None
         self._synchronous: SynchronousAxes | None = None
         self.position = start
-        self.defer: Callable[[Callable[[MoveColumns], None]], bool] = lambda _happen: False
+        self.defer: Callable[[Event], bool] = holds_none
 
     def __len__(self) -> int:
         return len(self._columns)
@@ -113,7 +113,7 @@ class Path:
             self._before = None if event_behind else latest
         waiting = events.part(placed, len(events))
         for place, event in zip(waiting.before.tolist(), waiting, strict=True):
-            self._compensation.hold_event(lambda event=event: self._columns.add_event(event), place)
+            self._compensation.hold_event(event, place)
         return latest
 
     def add_point(self, move: Segment, *, flat: bool) -> None:
@@ -129,16 +129,16 @@ class Path:
         """The spline's next point begins a new one."""
         self._end_spline(None)
 
-    def event(self, happen: Callable[[MoveColumns], None]) -> None:
-        """Something that happens between the moves so far and the next."""
-        if self.defer(happen):
+    def event(self, event: Event) -> None:
+        """Something that happens between the moves so far and the next, whatever its ``before``."""
+        if self.defer(event):
             return
         self._end_spline(None)
         self._before = None
         if self._rounding is None:
-            self._happen(happen)
+            self._compensation.event(event)
         else:
-            self._rounding.event(lambda: self._happen(happen))
+            self._rounding.event(event)
 
     def _end_spline(self, behind: Segment | None) -> None:
         if self._spline is not None:
@@ -157,7 +157,7 @@ class Path:
     def hold_for_blends(self) -> None:
         """From now on moves are held until their successor is known."""
         if self._rounding is None:
-            self._rounding = Rounding(self._compensate, self._refuse)
+            self._rounding = Rounding(self._compensate, self._compensation.event, self._refuse)
 
     def blend_next(self, blend: Blend) -> bool:
         """Blend the corner between the last move and the next; False where there is no last."""
@@ -191,9 +191,6 @@ class Path:
             self._emit(move)
         else:
             self._compensation.add(move, self.position)
-
-    def _happen(self, happen: Callable[[MoveColumns], None]) -> None:
-        self._compensation.event(lambda: self._record(happen))
 
     @property
     def contour(self) -> Contour:
@@ -231,7 +228,7 @@ class Path:
         """Loops of the path in a plane are cut out from now on."""
         if self._loops is None:
             self.flush()
-            self._loops = Loops(plane, self._out)
+            self._loops = Loops(plane, self._out, self._report)
 
     def keep_loops(self) -> None:
         """Loops stay."""
@@ -246,7 +243,7 @@ class Path:
         """From now on the axis of this column goes evenly over the moves that follow."""
         self.flush()
         if self._synchronous is None:
-            self._synchronous = SynchronousAxes(self._columns.add)
+            self._synchronous = SynchronousAxes(self._columns.add, self._columns.add_event)
         self._synchronous.begin(axis)
 
     def go_as_programmed(self, axis: int) -> None:
@@ -273,14 +270,19 @@ class Path:
             message = f"an axis cannot go evenly over more than {MOST_MOVES} moves"
             self._refuse(move, "even-axis", message)
 
-    def _record(self, happen: Callable[[MoveColumns], None]) -> None:
+    def _record(self, event: Event) -> None:
         if self._loops is None:
-            self._report(happen)
+            self._report(event)
         else:
-            self._loops.event(lambda: self._report(happen))
+            self._loops.event(event)
 
-    def _report(self, happen: Callable[[MoveColumns], None]) -> None:
+    def _report(self, event: Event) -> None:
         if self._synchronous is None:
-            happen(self._columns)
+            self._columns.add_event(event)
         else:
-            self._synchronous.event(lambda: happen(self._columns))
+            self._synchronous.event(event)
+
+
+def holds_none(_event: Event) -> bool:
+    """What takes events where a dialect holds no moves back."""
+    return False

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from twin.nc.canonical import Motion
+from twin.nc.canonical import Event, Motion
 from twin.nc.path.blends import Blend, NoBlendError, blend_corner
 from twin.nc.path.compensation.stage import Refuse
 from twin.nc.path.move_columns import Segment
@@ -16,12 +16,15 @@ class Rounding:
         once: Blend of the next corner, or None.
     """
 
-    def __init__(self, emit: Callable[[Segment], None], refuse: Refuse) -> None:
+    def __init__(
+        self, emit: Callable[[Segment], None], happen: Callable[[Event], None], refuse: Refuse
+    ) -> None:
         self._emit = emit
+        self._happen = happen
         self._refuse = refuse
         self._held: Segment | None = None
         self._blend: Blend | None = None
-        self._waiting: list[Callable[[], None]] = []
+        self._waiting: list[Event] = []
         self.always: Blend | None = None
         self.once: Blend | None = None
 
@@ -56,12 +59,12 @@ class Rounding:
                 self._emit(each)
         else:
             self._emit(held)
-        self._happen()
+        self._let_happen()
 
-    def event(self, event: Callable[[], None]) -> None:
+    def event(self, event: Event) -> None:
         """Something that happens where the path has come to: behind the corner."""
         if self._held is None:
-            event()
+            self._happen(event)
         else:
             self._waiting.append(event)
 
@@ -70,9 +73,9 @@ class Rounding:
         held, self._held = self._held, None
         if held is not None:
             self._emit(held)
-        self._happen()
+        self._let_happen()
 
-    def _happen(self) -> None:
+    def _let_happen(self) -> None:
         waiting, self._waiting = self._waiting, []
         for event in waiting:
-            event()
+            self._happen(event)

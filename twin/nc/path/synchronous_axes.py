@@ -7,6 +7,7 @@ program names it (the library's page on SMC_SmoothAddAxes). So the moves are hel
 import dataclasses
 from collections.abc import Callable
 
+from twin.nc.canonical import Event
 from twin.nc.path.move_columns import Segment
 from twin.nc.path.segments import spatial_length
 
@@ -17,9 +18,10 @@ MOST_MOVES = 10_000
 class SynchronousAxes:
     """Holds the moves over which axes go evenly."""
 
-    def __init__(self, emit: Callable[[Segment], None]) -> None:
+    def __init__(self, emit: Callable[[Segment], None], happen: Callable[[Event], None]) -> None:
         self._emit = emit
-        self._held: list[Segment | Callable[[], None]] = []
+        self._happen = happen
+        self._held: list[Segment | Event] = []
         self._begins: dict[int, int] = {}
 
     @property
@@ -40,7 +42,7 @@ class SynchronousAxes:
             held, self._held = self._held, []
             for each in held:
                 if not isinstance(each, Segment):
-                    each()
+                    self._happen(each)
                 elif each.center is not None or each.start != each.end:
                     self._emit(each)
 
@@ -54,7 +56,7 @@ class SynchronousAxes:
         self._held.append(move)
         return len(self._held) <= MOST_MOVES
 
-    def event(self, event: Callable[[], None]) -> None:
+    def event(self, event: Event) -> None:
         """Something that happens where the path has come to."""
         self._held.append(event)
 

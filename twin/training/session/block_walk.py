@@ -6,10 +6,13 @@ stopped by the planner; between two of them each further press of start goes one
 """
 
 import bisect
+import copy
 import dataclasses
 import itertools
 from collections import deque
+from typing import Self
 
+from twin.copies import Divided
 from twin.nc.canonical import Dwell, Event, Function
 
 FORGOTTEN_AT_ONCE = 256
@@ -36,7 +39,7 @@ class ModalState:
     per_minute: float | None = 1.0
 
 
-class BlockWalk:
+class BlockWalk(Divided):
     """What single block knows of a part.
 
     Attributes:
@@ -54,6 +57,13 @@ class BlockWalk:
         self._current = -1
         self._of_event = 0
         self._stepping = False
+
+    def divided(self) -> Self:
+        """Another walk through the same blocks."""
+        other = copy.copy(self)
+        for name, value in vars(self).items():
+            setattr(other, name, copy.copy(value))
+        return other
 
     def note(self, mark: int, state: ModalState) -> None:
         """A block has been interpreted.

@@ -4,8 +4,8 @@ A copy is made while the machine runs, so it must be quick and small: what never
 and of the stock only the tiles that were cut since the copy before.
 """
 
-import copy
 import dataclasses
+import functools
 from collections.abc import Iterator
 from itertools import zip_longest
 from typing import Any
@@ -13,17 +13,19 @@ from typing import Any
 import mujoco
 import numpy as np
 import numpy.typing as npt
+from pydantic import BaseModel
 
+from twin.copies import copied
 from twin.cutting.height_map import HeightMap
 from twin.cutting.outline import Outline
 from twin.machine.description.config import Machine
 from twin.machine.model.head_shape import HeadShape
 from twin.machine.watching.relative_motion import RelativeMotion
-from twin.nc.text.source import Source
-from twin.training.scene.scene_file import Scene
-from twin.training.session.inspection import Inspection
-from twin.training.session.moment import Moment
-from twin.training.session.program_run import ProgramRun, ProgramRunCopy
+from twin.motion.retiming.run_kernels import RunPieces
+from twin.nc.control.constructs import Structure
+from twin.nc.control.program_counter import FoundInText
+from twin.nc.text.grammar import Grammar
+from twin.nc.text.lines import Lines
 from twin.training.session.room import SLICE, Room
 
 APART_S = 4.0
@@ -39,17 +41,29 @@ TILE = 64
 """Cells along a side of a tile of the stock."""
 
 _SHARED = (
-    Scene,
     Machine,
-    Source,
+    BaseModel,
     mujoco.MjModel,
     HeadShape,
     RelativeMotion,
     Outline,
-    Moment,
-    Inspection,
+    Grammar,
+    Lines,
+    FoundInText,
+    Structure,
+    RunPieces,
 )
 """What never changes and need not be copied."""
+_FROZEN_IN = ("twin.nc.", "twin.motion.", "twin.toolpath.", "twin.training.", "twin.columns")
+"""Where what is frozen holds nothing that is written to."""
+
+
+@functools.cache
+def never_changes(kind: type) -> bool:
+    """Whether the copies of a room share what has a type."""
+    fields = vars(kind).get("__dataclass_params__")
+    frozen = fields is not None and fields.frozen and kind.__module__.startswith(_FROZEN_IN)
+    return frozen or issubclass(kind, _SHARED)
 
 
 Cells = npt.NDArray[np.float64 | np.float32]
@@ -105,7 +119,7 @@ class Checkpoint:
     Attributes:
         tick: Servo periods since the beginning.
         done: How many commands had been given by then.
-        room: The copy; its run is planned anew, and its stock laid out, when the copy is used.
+        room: The copy; its stock is laid out when it is used.
         maps: Heights of its stock, and heights and walls that the force of the cut is felt from, where
             there are such.
     """
@@ -117,13 +131,7 @@ class Checkpoint:
 
     def restored(self) -> Room:
         """A room that goes on from there; the copy stays as it is."""
-        room = _copied(self.room, {})
-        room.run = _made_again(room.run)
-        if room.suspended is not None:
-            run = _made_again(room.suspended.run)
-            assert run is not None
-            room.suspended = room.suspended._replace(run=run)
-        return room
+        return copied(self.room, never_changes, {})
 
 
 class Checkpoints:
@@ -163,10 +171,6 @@ class Checkpoints:
         self._kept = [*kept[:1], *kept[1:][-(MOST - 1) :]]
 
 
-def _made_again(run: ProgramRun | ProgramRunCopy | None) -> ProgramRun | None:
-    return run.made_again() if isinstance(run, ProgramRunCopy) else run
-
-
 def checkpoint(room: Room, done: int, before: tuple[KeptMap, ...]) -> Checkpoint:
     """A copy of a room.
 
@@ -183,7 +187,7 @@ def checkpoint(room: Room, done: int, before: tuple[KeptMap, ...]) -> Checkpoint
             memo[id(cells)] = kept[-1]
     for stock in _stocks(room):
         memo[id(stock.uncut)] = stock.uncut
-    return Checkpoint(room.tick, done, _copied(room, memo), tuple(kept))
+    return Checkpoint(room.tick, done, copied(room, never_changes, memo), tuple(kept))
 
 
 def _stocks(room: Room) -> Iterator[HeightMap]:
@@ -200,21 +204,3 @@ def _maps(room: Room) -> Iterator[Cells]:
         yield stock.heights
     if room.cut.process is not None:
         yield room.cut.process.walls
-
-
-def _copied(room: Room, memo: dict[int, Any]) -> Room:
-    _share(room, memo, set())
-    return copy.deepcopy(room, memo)
-
-
-def _share(thing: object, memo: dict[int, Any], seen: set[int]) -> None:
-    """Let a copy share what never changes with what it is a copy of."""
-    if id(thing) in seen:
-        return
-    seen.add(id(thing))
-    if isinstance(thing, _SHARED):
-        memo[id(thing)] = thing
-        return
-    for part in getattr(thing, "__dict__", {}).values():
-        if getattr(type(part), "__module__", "").startswith(("twin.", "mujoco")):
-            _share(part, memo, seen)

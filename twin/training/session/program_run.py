@@ -4,8 +4,7 @@ The program is interpreted block by block. It is cut into parts where an operato
 has to do something before the axes go on: a program stop, a tool change, an error. The axes rest at
 such places anyway, so that each part can be planned on its own. It is interpreted ahead of the
 axes, a bounded number of blocks in each slice of time, so that a program that loops for ever keeps
-nobody waiting: where the axes have caught up with it, they come to rest until there are moves. All
-that was asked of a run is noted, so that it can be copied at any moment.
+nobody waiting: where the axes have caught up with it, they come to rest until there are moves.
 """
 
 import bisect
@@ -13,7 +12,7 @@ import dataclasses
 import math
 from collections import deque
 from collections.abc import Iterator
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -60,9 +59,6 @@ MOVES_KEPT_BEHIND = 2
 """Moves behind the axes that are remembered: a stop at a block's end may count as the next one's beginning."""
 SLICES_AT_REST = 100
 """Slices after which the axes begin with what moves there are."""
-
-MADE_AGAIN_AT_ONCE = 100
-"""Slices that a copied run is planned by when it is made again."""
 
 LARGEST_OVERRIDE = 1.2
 """Factor at the end of the feed override dial."""
@@ -160,8 +156,6 @@ class ProgramRun:
         Raises:
             ProgramError: The program cannot be begun.
         """
-        self._recipe = (source, dialect, settings, machine, options)
-        self._journal: list[tuple[Any, ...]] = []
         self._machine = machine
         self._limits = motion_limits(machine)
         self._control = Executor(dialect, settings, source)
@@ -184,10 +178,6 @@ class ProgramRun:
         self.tool: int | None = self._control.tools.spindle
         self._begin = np.zeros(0), np.zeros(0)
         self._forget()
-
-    def __deepcopy__(self, _memo: dict[int, Any]) -> "ProgramRunCopy":
-        """What is needed to make this run again: planning it anew is cheap, its generators stay."""
-        return ProgramRunCopy(self._recipe, tuple(self._journal))
 
     @property
     def begun(self) -> bool:
@@ -227,7 +217,6 @@ class ProgramRun:
             spindle: What it has been told: the axes wait until it has come to its speed.
             paused: Whether start is waited for before its first block.
         """
-        self._journal.append(("begin", start, zero, spindle, paused))
         self._prepare_part(start, zero, spindle)
         self._begin_paused = paused
         self._look_ahead()
@@ -273,7 +262,6 @@ class ProgramRun:
             rapid: Factor of the rapid override.
             single: Whether to stop at the end of every block.
         """
-        self._note_drive(count, feed, rapid, single)
         self._look_ahead()
         motion = self._motion
         if motion is None:
@@ -341,24 +329,14 @@ class ProgramRun:
         if motion.finished and self._walk.at_last:
             self._walk.end_singly()
 
-    def _note_drive(self, count: int, feed: float, rapid: float, single: bool) -> None:
-        settings = (feed, rapid, single)
-        last = self._journal[-1]
-        if last[0] == "drive" and last[2:] == (count, *settings):
-            self._journal[-1] = ("drive", last[1] + 1, count, *settings)
-        else:
-            self._journal.append(("drive", 1, count, *settings))
-
     def hold(self) -> None:
         """Stop on the path until ``start``."""
-        self._journal.append(("hold",))
         self._hold_asked = True
         if self._motion is not None:
             self._motion.hold()
 
     def start(self) -> None:
         """Go on after a hold or at the end of a single block."""
-        self._journal.append(("start",))
         if self._motion is None:
             return
         held, self._hold_asked = self._hold_asked, False
@@ -373,7 +351,6 @@ class ProgramRun:
 
     def drop(self) -> None:
         """Come to rest on the path, and forget the rest."""
-        self._journal.append(("drop",))
         self.dropped = True
         self._walk.paused = False
         if self._motion is not None:
@@ -396,10 +373,10 @@ class ProgramRun:
     def _begin_to_plan(self, *, at_any_rate: bool) -> None:
         """Let the planner begin; if it looks ahead to more moves than there are, they come first."""
         start, zero = self._begin
-        pulled: list[Chunk] = []
+        self._pulled, self._takes_any = [], at_any_rate
         try:
             self._motion = LiveMotion(
-                self._chunks(pulled, at_any_rate=at_any_rate),
+                iter(self._next_chunk, None),
                 self._limits,
                 period_s=self._machine.file.servo_period_s,
                 part_zero=zero,
@@ -407,13 +384,16 @@ class ProgramRun:
                 largest_override=LARGEST_OVERRIDE,
             )
         except _TooFewMovesError:
-            self._waiting.extendleft(reversed(pulled))
-            self._ahead = 2 * len(pulled)
+            self._waiting.extendleft(reversed(self._pulled))
+            self._ahead = 2 * len(self._pulled)
+        self._pulled, self._takes_any = [], True
 
     def _forget(self) -> None:
         self._motion: LiveMotion | None = None
         self._looks = self._left = 0
         self._ahead = CHUNKS_AHEAD
+        self._takes_any = False
+        self._pulled: list[Chunk] = []
         self._waiting: deque[Chunk] = deque()
         self._count = 0
         self._walk = BlockWalk()
@@ -422,29 +402,26 @@ class ProgramRun:
         self._moves: list[Moves] = []
         self._firsts: list[int] = []
 
-    def _chunks(self, pulled: list[Chunk], *, at_any_rate: bool) -> Iterator[Chunk]:
+    def _next_chunk(self) -> Chunk | None:
         """What the planner pulls; where it is quicker than the interpreter, the part ends there.
 
-        Args:
-            pulled: Is given what the planner begins with.
-            at_any_rate: Whether it begins with what there is.
+        Raises:
+            _TooFewMovesError: The planner is to begin, and there are no more moves yet.
         """
-        while True:
-            begun = at_any_rate or self._motion is not None
-            if not self._waiting and self.ending is None and not begun:
-                raise _TooFewMovesError
-            if not self._waiting and self.ending is None:
-                self._interpret(min(BLOCKS_IN_MOTION, self._left))
-                self._left -= BLOCKS_IN_MOTION
-            if not self._waiting and self.ending is None:
-                self._finish_chunk(self._control.path.take())
-                if not len(self._waiting[-1].moves) and self.ending is None:
-                    self.ending = "wait"
-            if not self._waiting:
-                return
-            if self._motion is None:
-                pulled.append(self._waiting[0])
-            yield self._waiting.popleft()
+        if not self._waiting and self.ending is None and not self._takes_any:
+            raise _TooFewMovesError
+        if not self._waiting and self.ending is None:
+            self._interpret(min(BLOCKS_IN_MOTION, self._left))
+            self._left -= BLOCKS_IN_MOTION
+        if not self._waiting and self.ending is None:
+            self._finish_chunk(self._control.path.take())
+            if not len(self._waiting[-1].moves) and self.ending is None:
+                self.ending = "wait"
+        if not self._waiting:
+            return None
+        if self._motion is None:
+            self._pulled.append(self._waiting[0])
+        return self._waiting.popleft()
 
     def _interpret(self, most: int) -> None:
         """Interpret at most so many blocks, until there are enough moves or the part ends."""
@@ -631,35 +608,3 @@ def _changes(setpoints: Setpoints) -> list[int]:
     """The last setpoint of each block, of a wait as of a move."""
     border = (np.diff(setpoints.line) != 0) | (np.diff(setpoints.move) != 0)
     return [*np.flatnonzero(border).tolist(), len(setpoints) - 1] if len(setpoints) else []
-
-
-@dataclasses.dataclass(frozen=True)
-class ProgramRunCopy:
-    """A run that was copied and can be made again.
-
-    Attributes:
-        recipe: What the run was made of.
-        journal: What was asked of it, in order.
-    """
-
-    recipe: tuple[Source, Dialect, ControlSettings, Machine, RunOptions]
-    journal: tuple[tuple[Any, ...], ...]
-
-    def made_again(self) -> ProgramRun:
-        """The run as it was when it was copied."""
-        run = ProgramRun(*self.recipe)
-        for what, *given in self.journal:
-            if what == "drive":
-                times, count, feed, rapid, single = given
-                while times:
-                    together = min(times, MADE_AGAIN_AT_ONCE) if run.begun else 1
-                    times -= together
-                    setpoints = run.drive(together * count, feed, rapid, single=single)
-                    if setpoints is not None:
-                        run.passed(setpoints)
-            elif what == "begin":
-                *where, paused = given
-                run.begin(*where, paused=paused)
-            else:
-                getattr(run, what)(*given)
-        return run

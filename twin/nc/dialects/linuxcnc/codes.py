@@ -24,7 +24,8 @@ def _units(unit: float) -> Action:
     """G20, G21: lengths change their unit; a feed that was programmed before stays what it is."""
 
     def action(control: Control) -> None:
-        offsets.refuse_in_compensation(control)
+        if control.modal.unit != unit:
+            offsets.refuse_in_compensation(control)
         memory = memory_of(control)
         if control.feed is not None and control.modal.unit != unit:
             memory.converted_feed = memory.converted_feed or control.feed
@@ -41,12 +42,20 @@ def forget_feed(control: Control) -> None:
 
 
 def change_plane(control: Control) -> None:
-    """G17 to G19: not while radius compensation is in force."""
-    offsets.refuse_in_compensation(control)
+    """G17 to G19: no other plane than that of a radius compensation in force."""
+    compensated = compensation.in_force(control)
+    if compensated is not None and control.modal.plane is not compensated.plane:
+        offsets.refuse_in_compensation(control)
+
+
+def change_corners(control: Control) -> None:
+    """G61 to G64: not while radius compensation is in force."""
+    offsets.refuse_in_compensation(control, "how corners are passed cannot change")
 
 
 def corner_tolerance(control: Control) -> None:
     """G64 P Q: how far corners may be rounded; Q, for lines nearly straight, changes no path here."""
+    change_corners(control)
     word, straight = control.take("P"), control.take("Q")
     for each in (word, straight):
         if each is not None and control.number(each) < 0.0:
@@ -54,9 +63,9 @@ def corner_tolerance(control: Control) -> None:
     control.modal.corner_tolerance = float("nan") if word is None else control.length(word)
 
 
-def by_interpreter(control: Control) -> None:
-    """A code whose blocks the compiled tier leaves alone."""
-    del control
+def change_return(control: Control) -> None:
+    """G98, G99: not while radius compensation is in force."""
+    offsets.refuse_in_compensation(control, "the return plane of cycles cannot change")
 
 
 def _alone_with_axes(action: Action) -> Action:
@@ -158,8 +167,8 @@ MODAL = {
         )
         for number, name in enumerate(SYSTEMS, 1)
     },
-    61: modal("exact path", "corner", corner=Corner.EXACT_PATH),
-    61.1: modal("exact stop", "corner", corner=Corner.EXACT_STOP),
+    61: modal("exact path", "corner", change_corners, corner=Corner.EXACT_PATH),
+    61.1: modal("exact stop", "corner", change_corners, corner=Corner.EXACT_STOP),
     64: modal(
         "corners rounded, P mm at most", "corner", corner_tolerance, corner=Corner.CONTINUOUS
     ),
@@ -181,10 +190,10 @@ MODAL = {
     98: modal(
         "cycles return to the height of their call",
         "return plane",
-        by_interpreter,
+        change_return,
         return_to_reference=False,
     ),
-    99: modal("cycles return to R", "return plane", by_interpreter, return_to_reference=True),
+    99: modal("cycles return to R", "return plane", change_return, return_to_reference=True),
 }
 
 COMPENSATION = {

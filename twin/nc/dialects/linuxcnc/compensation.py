@@ -7,16 +7,16 @@ for which it is held until its successor is known. Behind G40 a straight move le
 
 import dataclasses
 import math
-from collections.abc import Callable
 from typing import NoReturn
 
+from twin.nc.canonical import Event
 from twin.nc.control.codes import Action
 from twin.nc.control.compensation import tool_numbered
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import memory_of
 from twin.nc.geometry.arcs import Point, distance, sweep_between
 from twin.nc.geometry.planes import YZ
-from twin.nc.path.move_columns import MoveColumns
+from twin.nc.path.path import holds_none
 from twin.nc.text.blocks import Block
 
 CORNER = 0.05
@@ -56,9 +56,6 @@ class Held:
     feed: float | None
 
 
-Event = Callable[[MoveColumns], None]
-
-
 class Compensation:
     """Compensation in force.
 
@@ -66,6 +63,7 @@ class Compensation:
         side: 1 left of the contour, -1 right.
         radius: Of the tool [mm].
         entered: The first move has been made.
+        plane: In which it is.
     """
 
     def __init__(self, control: Control, side: float, radius: float) -> None:
@@ -73,6 +71,7 @@ class Compensation:
         self.side = side
         self.radius = radius
         self.entered = False
+        self.plane = control.modal.plane
         self._queue: list[Held | Event] = []
         self._here: Point = (0.0, 0.0)
         self._endpoint: Point | None = None
@@ -425,7 +424,7 @@ def end(control: Control) -> None:
         compensation.end()
         memory.leading_out = compensation.entered
         memory.compensation = None
-        control.path.defer = lambda _happen: False
+        control.path.defer = holds_none
 
 
 def _along(point: Point, angle: float, way: float) -> Point:

@@ -8,6 +8,7 @@ from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc import compensation, saved_state
 from twin.nc.dialects.linuxcnc.flow import call_program, return_from_program
 from twin.nc.dialects.linuxcnc.memory import memory_of
+from twin.nc.dialects.linuxcnc.offsets import refuse_in_compensation
 from twin.nc.text.blocks import Word
 
 TIMES_OUT = (0.0, 1.0, 2.0, 3.0, 4.0)
@@ -41,6 +42,7 @@ def choose_spindle(control: Control, word: Word) -> None:
 
 def change_tool(control: Control) -> None:
     """M6: the prepared tool goes into the spindle, which stands then."""
+    refuse_in_compensation(control, "the tool cannot change")
     if not memory_of(control).prepared:
         control.fail("tool-number", "M6 needs a tool that T has prepared", hint="write T1 M6")
     memory_of(control).functions["spindle"] = 5.0
@@ -50,6 +52,7 @@ def change_tool(control: Control) -> None:
 
 def set_tool(control: Control) -> None:
     """M61 Q: the number of the tool that is in the spindle already."""
+    refuse_in_compensation(control, "the tool cannot change")
     word = control.take("Q")
     if word is None:
         control.fail("tool-number", "M61 needs Q, the number of the tool")
@@ -102,6 +105,7 @@ def read_input(control: Control) -> None:
     Decision: inputs of the twin are 0. Reading one at once gives 0; waiting for one to be high or to
     rise runs out after Q seconds and gives -1; waiting for one to be low ends at once.
     """
+    refuse_in_compensation(control, "no input can be read")
     digital, analog, kind, limit = (control.take(letter) for letter in "PELQ")
     if (digital is None) == (analog is None):
         control.fail("code-words", "M66 reads a digital input P or an analog input E")
@@ -127,10 +131,17 @@ def _end_early(control: Control) -> None:
 
 
 def _function(meaning: str, letters: str, needed: str) -> MCode:
+    """An output or an override, which changes no path."""
+    take = _with_words(letters, needed)
+
+    def action(control: Control) -> None:
+        refuse_in_compensation(control, "outputs and overrides cannot change")
+        take(control)
+
     return MCode(
         meaning=meaning,
         group=f"function {meaning}",
-        action=_with_words(letters, needed),
+        action=action,
         silent=True,
         ground="manual",
     )

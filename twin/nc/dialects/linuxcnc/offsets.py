@@ -98,14 +98,14 @@ def known_system(control: Control, number: int) -> CoordinateSystem:
     return memory.systems[number]
 
 
-def refuse_in_compensation(control: Control) -> None:
-    """What shifts coordinates cannot change while the tool's radius is compensated.
+def refuse_in_compensation(control: Control, what: str = "coordinates cannot change") -> None:
+    """What cannot be done while the tool's radius is compensated.
 
     Raises:
         ProgramError: It is.
     """
     if memory_of(control).compensation is not None:
-        message = "coordinates cannot change while radius compensation is in force"
+        message = f"{what} while radius compensation is in force"
         control.fail("compensation-change", message, hint="end it by G40 first")
 
 

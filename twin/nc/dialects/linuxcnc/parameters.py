@@ -12,12 +12,12 @@ from twin.nc.text.expressions import ExpressionError
 
 LOCAL_PARAMETERS = 30
 """#1 to #30 belong to the call of a subroutine, which gives the first of them their values."""
-LAST_PARAMETER = 5602
+LAST_PARAMETER = 5601
 _AXES = "XYZABCUVW"
 """Axes in the order of their parameters."""
 _FIRST_SYSTEM, _SYSTEM_STEP, _ROTATION = 5221, 20, 9
 _LAST_SYSTEM = _FIRST_SYSTEM + _SYSTEM_STEP * len(SYSTEMS) - 1
-_READ_ONLY = (5400, *range(5420, 5429), *range(5599, 5603))
+_READ_ONLY = (5400, *range(5420, 5429), *range(5599, 5602))
 
 
 def is_local(name: str) -> bool:
@@ -152,6 +152,9 @@ def _read_live(control: Control, number: int) -> float | None:
     if number in (5400, 5410) or 5401 <= number <= 5409:
         return _read_tool(control, number)
     if 5420 <= number <= 5428:
+        if memory_of(control).compensation is not None:
+            message = f"#{number} cannot be read while radius compensation is in force"
+            raise ExpressionError("compensation-change", message, None, "end it by G40 first")
         axis = _axis(control, number - 5420)
         return 0.0 if axis is None else _in_units(control, control.programmed[axis], axis)
     return None
@@ -284,7 +287,7 @@ _NAMED: dict[str, Callable[[Control], float]] = {
     "spindle_css_mode": lambda _control: 0.0,
     "ijk_absolute_mode": lambda control: float(control.modal.center_absolute),
     "lathe_diameter_mode": lambda _control: 0.0,
-    "lathe_radius_mode": lambda _control: 0.0,
+    "lathe_radius_mode": lambda _control: 1.0,
     "spindle_on": lambda control: float(control.spindle_turns),
     "spindle_cw": lambda control: float(
         control.spindle_turns and memory_of(control).functions.get("spindle") == 3.0

@@ -4,8 +4,10 @@ import dataclasses
 
 from twin.nc.control.control import Control
 from twin.nc.dialects.linuxcnc.memory import SYSTEMS, SavedState, memory_of, written_feed
-from twin.nc.dialects.linuxcnc.offsets import reframe
+from twin.nc.dialects.linuxcnc.offsets import reframe, refuse_in_compensation
 
+_COMPENSATION = "compensation"
+_FRAME = ("offset", "units", "plane")
 _KEPT_FIELDS = ("interpolation", "cycle")
 _AXES = (*"XYZABCUVW", "@", "^")
 _KEPT_GROUPS = ("motion", "not modal", "length")
@@ -55,7 +57,14 @@ def restore_at_return(control: Control) -> None:
 
 
 def _put_back(control: Control, state: SavedState) -> None:
-    now, active = control.modal, control.active
+    now, active, given = control.modal, control.active, state.modal.active
+    if given.get(_COMPENSATION) != active.get(_COMPENSATION):
+        message = "what was put aside would change the radius compensation"
+        hint = "write G40, G41 or G42 itself before"
+        control.fail("compensation-change", message, hint=hint)
+    compensated = memory_of(control).compensation is not None
+    if compensated and any(given.get(group) != active.get(group) for group in _FRAME):
+        refuse_in_compensation(control)
     modal = dataclasses.replace(
         state.modal.modal, **{name: getattr(now, name) for name in _KEPT_FIELDS}
     )
@@ -66,4 +75,5 @@ def _put_back(control: Control, state: SavedState) -> None:
         control.feed, memory_of(control).converted_feed = state.feed, None
     system = f"G{control.active.get('offset', 54)}"
     memory_of(control).system = SYSTEMS.index(system) + 1
-    reframe(control)
+    if not compensated:  # else the programmed position is that of the contour, not of the tool
+        reframe(control)

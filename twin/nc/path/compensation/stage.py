@@ -5,6 +5,7 @@ from typing import NoReturn
 
 import numpy as np
 
+from twin.nc.canonical import Event
 from twin.nc.path.compensation import leads
 from twin.nc.path.compensation.contour import (
     BEGINS_ON_ARC,
@@ -34,6 +35,7 @@ from twin.nc.path.move_columns import Segment
 from twin.nc.path.rows import Row, Rows
 
 Drive = Callable[[Segment], None]
+Happen = Callable[[Event], None]
 Refuse = Callable[[Segment, str, str], NoReturn]
 """Told the segment, the code and the message; raises."""
 Warn = Callable[[Segment, str, str], None]
@@ -88,14 +90,15 @@ class Compensation:
         contour: How far it has come; the compiled tier goes on with it.
     """
 
-    def __init__(self, axes: int, drive: Drive, refuse: Refuse, warn: Warn) -> None:
+    def __init__(self, axes: int, drive: Drive, happen: Happen, refuse: Refuse, warn: Warn) -> None:
         """Compensation that is off, for a machine with so many axes."""
         self.contour = new_contour(axes)
         self._counts = self.contour.counts.data
         self._drive = drive
+        self._happen = happen
         self._refuse = refuse
         self._warn = warn
-        self._events: list[Callable[[], None]] = []
+        self._events: list[Event] = []
         self._rows = Rows(
             *_room_for_moves(self.contour), np.zeros((_EVENTS_AT_FIRST, 4), np.int64), np.zeros(0)
         )
@@ -159,16 +162,16 @@ class Compensation:
         else:
             self._refuse(blamed, code, message)
 
-    def event(self, event: Callable[[], None]) -> None:
+    def event(self, event: Event) -> None:
         """Something that happens where the path has come to."""
         if self.stage not in (LEADING_IN, FOLLOWING):
-            event()
+            self._happen(event)
             return
         self.hold_event(event, 0)
         number = len(self._events) - 1
         hold_events(self.contour, self._rows, number, number + 1)
 
-    def hold_event(self, event: Callable[[], None], place: int) -> None:
+    def hold_event(self, event: Event, place: int) -> None:
         """An event waits; its place as ``hold_events`` has it."""
         number = len(self._events)
         self._events.append(event)
@@ -188,7 +191,7 @@ class Compensation:
         happened = 0
         for number in range(count + 1):
             while happened < len(places) and places[happened] <= number:
-                events[happened]()
+                self._happen(events[happened])
                 happened += 1
             if number < count:
                 self._drive(rows.row(number).segment)

@@ -5,7 +5,6 @@ Decision: behind each pass the tap comes back by 0.5 mm, as G73 does (parameters
 
 import dataclasses
 
-from twin.nc.bytecode.assembler import Assembler, UnsupportedError
 from twin.nc.control.codes import GCode, Interpolation
 from twin.nc.control.control import Control
 from twin.nc.control.interpolation import CycleRule
@@ -41,11 +40,8 @@ def in_passes(number: int, code: GCode) -> GCode:
             refuse_scaled_pecks(control, rule.name)
             control.modal.cycle = tap
 
-    def write(_control: Control, _assembler: Assembler) -> None:
-        raise UnsupportedError
-
     meaning = code.meaning.replace("R P", "R P Q")
-    return dataclasses.replace(code, meaning=meaning, action=call, compiler=write)
+    return dataclasses.replace(code, meaning=meaning, action=call, compiler=None)
 
 
 def _tap_holes(control: Control, rule: CycleRule, *, left: bool) -> None:

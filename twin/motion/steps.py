@@ -1,0 +1,46 @@
+"""Steps of planning that pull parts of a program: each remembers as an object where it stands.
+
+A generator could not be copied, and a plan under an operator's hands is: a training room goes back to
+copies of it.
+"""
+
+import abc
+from collections import deque
+from collections.abc import Iterable, Iterator
+from typing import Generic, Self, TypeVar
+
+Taken = TypeVar("Taken")
+Made = TypeVar("Made")
+
+
+class Step(abc.ABC, Generic[Taken, Made]):
+    """Takes parts one by one, as they are asked for, and gives what it makes of them.
+
+    Args:
+        parts: What it takes, in order.
+    """
+
+    def __init__(self, parts: Iterable[Taken]) -> None:
+        self._parts = iter(parts)
+        self._made: deque[Made] = deque()
+        self._over = False
+
+    def __iter__(self) -> Self:
+        return self
+
+    def __next__(self) -> Made:
+        while not self._made:
+            if self._over:
+                raise StopIteration
+            part = next(self._parts, None)
+            self._over = part is None
+            self._made.extend(self.finish() if part is None else self.take(part))
+        return self._made.popleft()
+
+    @abc.abstractmethod
+    def take(self, part: Taken) -> Iterator[Made]:
+        """What is certain now that a part has come."""
+
+    def finish(self) -> Iterator[Made]:
+        """What is left when no part comes any more."""
+        return iter(())
