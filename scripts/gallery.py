@@ -56,7 +56,7 @@ PICTURES = {
     "helix": Picture(program="mefi/helix", camera="part", share=0.05),
     "scroll": Picture(program="fagor8070/scroll", camera="part", share=0.8),
     "rosette_film": Picture(program=ROSETTE, camera="part"),
-    "bolt_hole_ring": Picture(program="fagor8070/bolt_hole_ring", camera="part", share=0.8),
+    "bolt_hole_ring": Picture(program="fagor8070/bolt_hole_ring", camera="part", share=0.755),
     "turning": Picture(program="gost/recalculation_3", camera="table", share=0.5),
     "light_mill": Picture(
         program="fagor8070/bolt_hole_ring", camera="overview", share=0.8, machine="mill4_light"

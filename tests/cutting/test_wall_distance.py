@@ -2,9 +2,11 @@
 
 import itertools
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from tests.cutting.conftest import Motion
 from twin.cutting.cut import Cutter
@@ -88,8 +90,11 @@ def meets(
         rows = slice(first, first + chunk)
         rapid = (line[rows] == LATER) & (body == "edge")
         cutter.add(samples(position[rows], line[rows]), rapid)
-    assert cutter.halted is None or cutter.halted.line == LATER
-    return cutter.halted is not None
+    if cutter.halted is None:
+        return False
+    assert cutter.halted.line == LATER
+    assert cutter.halted.depth_mm > 0.0
+    return True
 
 
 @pytest.mark.parametrize("wall", ["slot", "pocket", "boss"])
@@ -119,6 +124,23 @@ def test_a_round_blank_is_known_to_half_a_cell_all_around(samples: Motion, gap: 
         position = np.column_stack([way, np.full(60, -2.0), np.zeros(60)])
         cutter.add(samples(position), np.ones(60, np.bool_))
         assert (cutter.halted is not None) == (gap < 0.0)
+
+
+@pytest.mark.parametrize("size", [30.7, 30.9, 31.0])
+def test_who_passes_a_blank_of_an_stl_file_does_not_meet_it(
+    samples: Motion, tmp_path: Path, size: float
+):
+    file = tmp_path / "block.stl"
+    trimesh.creation.box(extents=(size, size, 20.0)).export(file)
+    cutter = Cutter(
+        StockTable(shape="stl", file=str(file), cell=0.4), SLIM, FRAME, ZERO, halts=True
+    )
+    aside = 0.5 * size + 3.0
+    way = along(
+        (aside + 2, -20, 5), (aside + 2, -20, -2), (aside, -12, -2), (aside, 12, -2), step=0.1
+    )
+    cutter.add(samples(np.column_stack([way, np.zeros(len(way))])), np.ones(len(way), np.bool_))
+    assert cutter.halted is None
 
 
 KINDS = {

@@ -297,7 +297,8 @@ class Cutter:
         latest = self._note_contacts(stretches, met)
         reached = met.pop(EDGE, np.zeros(count))
         hits = reached > 0.0
-        watched = stretches if edge else dataclasses.replace(stretches, depth=reached)
+        # A wall is met before a cell of it is lost.
+        watched = dataclasses.replace(stretches, depth=np.maximum(stretches.depth, reached))
         self._rapids.add(watched, rapids, hits)
         self._standing.add(watched, standing, hits)
         if self._halts and (latest is not None or hits.any()):

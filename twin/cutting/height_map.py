@@ -133,4 +133,17 @@ def blank(stock: StockTable, corner: FloatArray, cell: float) -> HeightMap:
         heights[:], behind[:] = bottom, 0.0
         drape(heights, result.origin, cell, triangles)
         result.uncut = heights.copy()
+        behind[_beside_lower(heights, bottom)] = KNOWN, bottom
     return result
+
+
+def _beside_lower(heights: FloatArray, bottom: float) -> BoolArray:
+    """Cells that stand higher than one beside them: how far before their middles is not known."""
+    around = np.pad(heights, 1, constant_values=bottom)
+    rows, columns = _least_of_three(around), _least_of_three(around.T).T
+    return heights > np.minimum(rows[:, 1:-1], columns[1:-1])
+
+
+def _least_of_three(values: FloatArray) -> FloatArray:
+    """The least of each row and the two beside it."""
+    return np.minimum(np.minimum(values[:-2], values[1:-1]), values[2:])

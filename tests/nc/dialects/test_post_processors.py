@@ -475,6 +475,8 @@ PROBES = {
         "fanuc", "G05 P10000\nG1 X5. F100.\nG05 P0\nM30", {"X": 5}, 1
     ),
     "fanuc other modes of G5": Probe("fanuc", "G05 P2\nM30", refused="unsupported-g"),
+    "fanuc two signs": Probe("fanuc", "G1 X--5. F9.\nM30", refused="expression"),
+    "fanuc sign before a bracket": Probe("fanuc", "G1 X-[-5.] F9.\nM30", {"X": 5}, 1),
     "fanuc skip until a signal": Probe("fanuc", "G31 Z-5. F50.\nM30", refused="unsupported-g"),
     "fanuc inverse time": Probe("fanuc", "G93 G1 X10. F2.\nX20.\nM30", refused="no-feed"),
     "haas pecks": Probe("haas", HAAS_PECKS, {"X": 25, "Z": 200}, 10, -20.0),
@@ -546,6 +548,39 @@ PROBES = {
     "fagor8070 retract": Probe("fagor8070", "G0 X10 Z20\n#MCS G0 Z0\nM30", {"X": 10, "Z": 200}),
     "fagor8070 repeats": Probe("fagor8070", "G91 G1 X5 F100 NR3\nM30", {"X": 15}, 3),
     "fagor8070 rotation": Probe("fagor8070", "G73 Q90\nG1 X10 F100\nG73\nM30", {"Y": 10}, 1),
+    "fagor8070 hole under compensation": Probe(
+        "fagor8070",
+        "T2 M6 D1\nG41 G1 X10 F99\nX20\nG81 X25 Z1 I-2\nM30",
+        refused="compensation-change",
+    ),
+    "fagor8070 other plane under compensation": Probe(
+        "fagor8070", "T2 M6 D1\nG41 G1 X10 F99\nX20\nG20 X1 Z2\nM30", refused="compensation-plane"
+    ),
+    "gost hole under compensation": Probe(
+        "gost",
+        "T2 M6\nG41 D2 G1 X10 F99\nX20\nG81 X25 Z-1 R1\nM30",
+        refused="compensation-change",
+    ),
+    "gost plane said again under compensation": Probe(
+        "gost", "T2 M6\nG41 D2 G1 X10 F99\nX20\nG17 X30\nG40 X40\nM30", {"X": 40, "Y": 0}, 4
+    ),
+    "mefi other plane under compensation": Probe(
+        "mefi", "T2 M6\nG41 D2 G1 X10 F99\nX20\nG19\nM30", refused="compensation-plane"
+    ),
+    "mefi hole under compensation": Probe(
+        "mefi",
+        "T2 M6\nG41 D2 G1 X10 F99\nX20\nG83 X25 Z-1 R1 Q1\nM30",
+        refused="compensation-change",
+    ),
+    "fanuc plane in every arc of a compensated contour": Probe(
+        "fanuc",
+        "G41 D2 G1 X10. F99.\nG17 G3 X20. Y10. R10.\nG17 G1 Y30.\nG40 X40.\nM30",
+        {"X": 40, "Y": 30},
+        4,
+    ),
+    "haas round pocket under compensation": Probe(
+        "haas", "G41 D2 G1 X10. F99.\nX20.\nG12 I9.\nM30", refused="compensation-change"
+    ),
     "fagor8070 other program": Probe(
         "fagor8070", '#EXEC ["OTHER.NC"]\nM30', refused="unsupported-statement"
     ),

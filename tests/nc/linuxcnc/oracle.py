@@ -84,11 +84,13 @@ class Answer(NamedTuple):
         error: Why it refuses; empty: it does not.
         forgotten: Lengths that were in force when a tool was changed, and not yet when the axes moved last
             [mm]; of ``rs274``.
+        curves: Control points of each NURBS; of ``rs274``, which draws none of them.
     """
 
     moves: list[Made]
     error: str
     forgotten: list[Slip]
+    curves: tuple[int, ...] = ()
 
 
 class Compared(NamedTuple):
@@ -150,7 +152,7 @@ def by_linuxcnc(text: str) -> Answer:
     if done.returncode and not error:
         error = f"rs274 ends with {done.returncode}"
     reader = _Reader()
-    return Answer(reader.moves_of(done.stdout), error, reader.forgotten)
+    return Answer(reader.moves_of(done.stdout), error, reader.forgotten, tuple(reader.curves))
 
 
 class _Reader:
@@ -165,6 +167,7 @@ class _Reader:
         self.here = [0.0] * 4
         self.made: list[Made] = []
         self.forgotten: list[Slip] = []
+        self.curves: list[int] = []
         self._moved_with, self._changed = NO_SLIP, False
 
     def moves_of(self, text: str) -> list[Made]:
@@ -192,6 +195,8 @@ class _Reader:
         elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "STRAIGHT_PROBE"):
             kind = "rapid" if name == "STRAIGHT_TRAVERSE" else "feed"
             self._go(kind, self._place([float(each) for each in given.split(",")]))
+        elif name == "NURBS_FEED":
+            self.curves.append(int(given.partition(",")[0]))
         elif name == "ARC_FEED":
             self._arc([float(each) for each in given.split(",")])
         elif name == "RIGID_TAP":

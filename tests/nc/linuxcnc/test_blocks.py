@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.nc.linuxcnc.oracle import RS274, by_twin, difference
+from tests.nc.linuxcnc.oracle import RS274, by_linuxcnc, by_twin, difference
+from twin.nc.dialects.linuxcnc.curves import CHORDS_OF_A_PART
 
 _COMPENSATED = "T2 M6\nF100\nG41 G1 X10\nX20\n{}\nX30\nG40 X40\nM2\n"
 _NOT_COMPENSATED = (
@@ -26,6 +27,7 @@ REFUSED = {
     "F100\nG5.1 I5 X10 Y5\nM2\n": "code-words",
     "F100\nG5.1 X10 Y10 I2 J6\nX20 Y10 I1 J1\nM2\n": "no-motion-code",
     "F100\nG5.2 X1 Y1\nG5.2 X2 Y0\nG5.3\nM2\n": "code-words",
+    "F100\nG5.2 P1\nG5.2 P1\nX5 Y5 P1\nX6 Y5 P1\nG5.3\nM2\n": "code-words",
     "F100\nG5.2 X10 P1 L3\nX5 Y5 P1\nG5.3\nM2\n": "code-words",
     "G80 X1\nM2\n": "no-motion-code",
     "G80 G0 G1 X1\nM2\n": "conflicting-codes",
@@ -100,6 +102,26 @@ def test_moved(text: str) -> None:
 @pytest.mark.parametrize("text", [*REFUSED, *ENDS])
 def test_as_rs274(text: str) -> None:
     assert not difference(text)
+
+
+@pytest.mark.skipif(RS274 is None, reason="LinuxCNC's rs274 is not installed (linuxcnc-uspace)")
+@pytest.mark.parametrize(
+    "begin", ["G5.2", "G5.2 P2", "G5.2 P2 L4", "G5.2 L2", "G5.2 X1 Y-1 P3", "G5.2 P2\n(and)\n"]
+)
+def test_a_nurbs_has_the_control_points_that_rs274_counts(begin: str) -> None:
+    text = f"F100\n{begin}\nX1 Y1 P1\nX2 Y2 P1\nX3 Y0 P2\nG5.3\nM2\n"
+    (points,) = by_linuxcnc(text).curves
+    assert len(by_twin(text).moves) == CHORDS_OF_A_PART * points
+
+
+@pytest.mark.parametrize(
+    ("begin", "middle"),
+    [("G5.2 L2", [1.0, 0.5]), ("G5.2 P2", [0.8, 0.4]), ("G5.2 P1", [1.0, 0.5])],
+)
+def test_the_middle_of_a_nurbs_of_three_points(begin: str, middle: list[float]) -> None:
+    """A quarter of both ends and half of the corner, by their weights; L below 3 counts as 3 (``rs274``)."""
+    moves = by_twin(f"F100\n{begin}\nX1 Y1 P1\nX2 Y0 P1\nG5.3\nM2\n").moves
+    assert moves[len(moves) // 2 - 1].end[:2] == pytest.approx(middle)
 
 
 def test_a_probe_is_told_in_the_unit_of_the_program() -> None:

@@ -317,6 +317,9 @@ class Executor(Control):
                 word,
                 hint="write G0, G1, G2 or G3",
             )
+        if self.modal.cycle is not None and self.path.compensating:
+            message = "a canned cycle cannot run while radius compensation is in force"
+            self.fail("compensation-change", message, hint="end it by G40 first")
         if self.dialect.before_motion is not None:
             self.dialect.before_motion(self, interpolation.rapid)
         assert isinstance(interpolation, Interpolation)

@@ -201,6 +201,10 @@ class Performer(Assembler):
             compensate(self._control, float(operand), float(self._pop()))
         elif opcode == opcodes.END_COMPENSATION:
             self._control.path.end_compensation()
+        elif opcode == opcodes.PLANE and self._control.path.compensates_in(
+            self._control.part_plane()
+        ):
+            return  # it is in force already
         else:
             if opcode == opcodes.TOOL and operand:
                 operand = self._look_for_tool()

@@ -16,6 +16,7 @@ from twin.nc.path.compensation.contour import (
     OFF,
     STARTED,
     Contour,
+    plane_of,
 )
 from twin.nc.path.compensation.stage import Compensation, Refuse, Warn
 from twin.nc.path.event_columns import EventRows
@@ -206,6 +207,10 @@ class Path:
     def compensation_has_moved(self) -> bool:
         """Compensation is in force and a move of its contour has come."""
         return self.compensating and self._compensation.stage != STARTED
+
+    def compensates_in(self, plane: Plane) -> bool:
+        """Whether compensation is in force in a plane of the part."""
+        return self.compensating and plane_of(self.contour) == plane.directions
 
     def compensate_in(self, plane: Plane) -> None:
         """Compensation, which has not moved yet, acts in another plane."""

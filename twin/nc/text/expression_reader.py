@@ -146,6 +146,8 @@ class _Reading:
             self.at += 1
             if depth > _DEEPEST:
                 self._fail("expression-depth", f"more than {_DEEPEST} signs in a row")
+            if self._syntax.one_sign and self._text[self.at :].lstrip()[:1] in ("+", "-"):
+                self._fail("expression", "a sign follows a sign")
             inner = self.operand(depth + 1)
             return inner if character == "+" else Negative(self._or_zero(inner))
         if character == opening:

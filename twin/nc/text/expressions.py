@@ -115,6 +115,7 @@ class ExpressionSyntax:
         indirect: Character before a value that is a variable's number, such as ``#[#1+2]``; empty:
             there is none.
         quotients: Functions of two values, each in brackets, with a slash between them.
+        one_sign: No sign follows a sign, unless a bracket stands between them.
         bracketed: Operators stand within brackets only, so that a word's value is one operand.
         vacant: A variable without a value counts as 0 where something is computed of it; alone it
             leaves its word out.
@@ -137,6 +138,7 @@ class ExpressionSyntax:
         default_factory=dict
     )
     bracketed: bool = False
+    one_sign: bool = False
     vacant: bool = False
     of_vacant: tuple[str, ...] = ()
     exclusive: tuple[str, ...] = ()

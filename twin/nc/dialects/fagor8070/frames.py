@@ -2,7 +2,9 @@
 
 from twin.nc.bytecode import opcodes
 from twin.nc.bytecode.assembler import Assembler
+from twin.nc.bytecode.effects import PLANE_COMPENSATED
 from twin.nc.control.control import Control
+from twin.nc.control.performer import refuse
 from twin.nc.dialects.fagor8070.machine_coordinates import refuse_change
 from twin.nc.geometry.planes import Plane, Vector, cross
 from twin.nc.iso.offsets import programmed_shift
@@ -14,6 +16,8 @@ def any_plane(control: Control) -> None:
 
     Decision: G03 turns from the abscissa towards the ordinate, whatever axes they are.
     """
+    if control.path.compensating:
+        refuse(control, PLANE_COMPENSATED)
     control.perform(lambda assembler: assembler.emit(opcodes.PLANE))
     roles: dict[int, Vector] = {}
     for index, word in control.take_axis_words():

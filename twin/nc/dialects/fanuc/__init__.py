@@ -43,16 +43,13 @@ def before_motion(control: Control, rapid: bool) -> None:
     """A block is about to move.
 
     Raises:
-        ProgramError: G93 without F, F of another feed mode, or a cycle under radius compensation.
+        ProgramError: G93 without F, or F of another feed mode.
     """
     if not rapid:
         base.require_feed_of_block(control)
         if memory_of(control).feed_lost and control.feed is None:
             message = "F was written for another feed mode, and its number would mean another unit"
             control.fail("no-feed", message, hint="write F behind G93, G94 or G95")
-    if control.modal.cycle is not None and control.path.compensating:
-        message = "a cycle cannot drill while radius compensation is in force"
-        control.fail("compensation-change", message, hint="end it by G40 first")
 
 
 def after_motion(control: Control) -> None:

@@ -30,6 +30,11 @@ def circular_pocket(control: Control, *, clockwise: bool) -> None:
     depth, count = control.take("Z"), control.take("L")
     if first is None:
         control.fail("cycle-word", "a circular pocket needs I, the radius of its circle")
+    if control.path.compensating:
+        message = (
+            "a circular pocket takes the radius of D itself, and radius compensation is in force"
+        )
+        control.fail("compensation-change", message, hint="end it by G40 first")
     if control.modal.plane is not XY:
         control.fail("cycle-plane", "a circular pocket lies in the plane X Y", hint="write G17")
     if step is not None and last is None:

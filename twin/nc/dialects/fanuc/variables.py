@@ -80,6 +80,7 @@ EXPRESSIONS = ExpressionSyntax(
     quotients={"ATAN": arithmetic.direction_from_zero},
     brackets="[]",
     bracketed=True,
+    one_sign=True,
     vacant=True,
     of_vacant=("EQ", "NE"),
     exclusive=("EQ", "NE", "GT", "GE", "LT", "LE"),

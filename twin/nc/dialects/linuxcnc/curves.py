@@ -98,22 +98,31 @@ def quadratic(control: Control) -> None:
 
 
 def add_control_point(control: Control) -> None:
-    """G5.2 X Y P L: a control point with its weight P; L is the order of the NURBS."""
+    """G5.2 X Y P L: a control point with its weight P; L is the order of the NURBS.
+
+    The first control point is where the tool stands. Its weight is 1, or P of a first G5.2 without X
+    and Y, which adds no other point. An order below 3 counts as 3 (``Interp::convert_nurbs``).
+    """
     memory = memory_of(control)
     weight, order = control.take("P"), control.take("L")
-    if ("X" in control.words) != ("Y" in control.words):
-        message = "a control point needs both X and Y, or neither for where the tool stands"
+    is_point = "X" in control.words
+    if is_point != ("Y" in control.words):
+        message = "a control point needs both X and Y; G5.2 without them begins a NURBS"
         control.fail("code-words", message)
     goal = _begin(control, "G5.2")
-    value = 0.0 if weight is None else control.number(weight)
+    if memory.control_points and not is_point:
+        message = "a NURBS has begun: each further control point needs X, Y and P"
+        control.fail("code-words", message, weight)
+    value = (0.0 if is_point else 1.0) if weight is None else control.number(weight)
     if value <= 0.0:
         message = "a control point needs its weight P, above 0"
         control.fail("code-words", message, weight, "write P1 where all weigh the same")
     if order is not None:
-        memory.spline_order = int(control.number(order))
+        memory.spline_order = max(int(control.number(order)), DEFAULT_ORDER)
     if not memory.control_points:
-        memory.control_points = [(*_here(control), value)]
-    memory.control_points.append((goal[0], goal[1], value))
+        memory.control_points = [(*_here(control), 1.0 if is_point else value)]
+    if is_point:
+        memory.control_points.append((goal[0], goal[1], value))
     memory.control_line = control.block.line
 
 

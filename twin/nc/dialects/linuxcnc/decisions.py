@@ -92,7 +92,7 @@ DECISIONS = (
     Decision(
         "What does the twin refuse that rs274 passes over?",
         "Words behind the condition of an elseif that is false, a structure without its end, a NURBS that "
-        "another motion ends, Z in G5.2, G5 without I and J that follows no G5, M6 before the first T, a "
+        "another motion ends, Z in G5.2, its first point without P or with a P that is not above 0, G5 without I and J that follows no G5, M6 before the first T, a "
         "motion code beside G43.1 or G43.2, X and Y of a tool in G10 L1, L10 and L11, Q in G10 L2 and L20, names of parameters with "
         "brackets in them, codes of lathes, words of axes beside M72, a radius compensation that M72 or the end "
         "of a subroutine would switch, words beside M98 and M99 but for P and L, two of G92 to "
