@@ -45,11 +45,12 @@ def random_ratios(count: int) -> list[float]:
     programs = importlib.import_module("random_programs")
     out = []
     for seed in range(count):
+        kinds = programs.KINDS if seed % 2 else programs.UNEVEN_KINDS
         times = []
         for corner in (Corner.CONTINUOUS, Corner.EXACT_STOP):
             rng = np.random.default_rng(seed)
             machine = programs.random_machine(rng)
-            program = programs.random_program(rng, corner)
+            program = programs.random_program(rng, corner, kinds=kinds)
             times.append(seconds(program.chunks(), machine, program.start))
         out.append(times[0] / times[1])
     return out

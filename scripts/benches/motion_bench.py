@@ -82,6 +82,7 @@ def _rates(folder: Path) -> Iterator[Row]:
         ("short lines, continuous", _surface(40_000, "G05"), CAMOTICS_LINES),
         ("half circles, exact path", _half_circles(2_000, "G50"), CAMOTICS_ARCS),
         ("half circles, continuous", _half_circles(2_000, "G05"), CAMOTICS_ARCS),
+        ("half circles at F300, exact path", _half_circles(2_000, "G50", 300), CAMOTICS_ARCS),
         ("helices with C, exact path", _helices(2_000), CAMOTICS_ARCS),
     ):
         preparation = prepared(folder, text)
@@ -102,14 +103,14 @@ def _surface(count: int, mode: str) -> str:
     return "\n".join([f"G90 G17 {mode} F3000", *lines]) + "\n"
 
 
-def _half_circles(count: int, mode: str) -> str:
+def _half_circles(count: int, mode: str, feed: int = 3000) -> str:
     """A wave of half circles of 1 mm, to and fro over 200 mm."""
     lines: list[str] = []
     for number in range(count):
         turn, step = divmod(number, 100)
         x = 2 * (step + 1) if turn % 2 == 0 else 200 - 2 * (step + 1)
         lines.append(f"G0{2 + number % 2} X{x} Y0 I{1 if turn % 2 == 0 else -1} J0")
-    return "\n".join([f"G90 G17 {mode} F3000", *lines]) + "\n"
+    return "\n".join([f"G90 G17 {mode} F{feed}", *lines]) + "\n"
 
 
 def _helices(count: int) -> str:

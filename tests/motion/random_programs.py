@@ -10,6 +10,9 @@ from twin.nc.canonical import Corner
 
 KINDS = ("lines", "short lines", "right angles", "lines and arcs", "table")
 
+UNEVEN_KINDS = ("feeds", "short arcs")
+"""Programs whose feed changes from move to move, and whose arcs turn by a few degrees."""
+
 
 def random_machine(rng: np.random.Generator) -> MotionLimits:
     """A machine of any temper."""
@@ -28,22 +31,27 @@ def random_machine(rng: np.random.Generator) -> MotionLimits:
     )
 
 
-def random_program(rng: np.random.Generator, corner: Corner, most: int = 40) -> Program:
-    """A program of one of ``KINDS``; the same seed gives the same path for any corner."""
-    kind = KINDS[rng.integers(len(KINDS))]
+def random_program(
+    rng: np.random.Generator, corner: Corner, most: int = 40, kinds: tuple[str, ...] = KINDS
+) -> Program:
+    """A program of one of some kinds; the same seed gives the same path for any corner."""
+    kind = kinds[rng.integers(len(kinds))]
     size = float(np.exp(rng.uniform(math.log(0.2), math.log(50.0))))
     feed = float(np.exp(rng.uniform(math.log(200.0), math.log(30000.0))))
     program = Program()
     program.corner = corner
     for number in range(int(rng.integers(2, most))):
         here = program.position
+        if kind == "feeds" and rng.random() < 0.5:
+            feed = float(np.exp(rng.uniform(math.log(50.0), math.log(30000.0))))
         if kind == "right angles":
             step = np.zeros(4)
             step[number % 2] = size * rng.choice([-1.0, 1.0]) * rng.uniform(0.2, 1.0)
             program.line(*(here + step), feed=feed)
-        elif kind == "lines and arcs" and rng.random() < 0.5:
+        elif kind in ("lines and arcs", "short arcs") and rng.random() < 0.5:
             aside = rng.normal(size=2) * size
-            sweep = rng.uniform(20.0, 400.0) * rng.choice([-1.0, 1.0])
+            smallest, largest = (20.0, 400.0) if kind == "lines and arcs" else (1.0, 20.0)
+            sweep = rng.uniform(smallest, largest) * rng.choice([-1.0, 1.0])
             center = (here[0] + aside[0], here[1] + aside[1], here[2])
             program.arc(center, (0.0, 0.0, 1.0), sweep, feed=feed)
         elif kind == "short lines":

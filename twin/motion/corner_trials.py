@@ -1,8 +1,8 @@
-"""Continuous corners beside arcs, tried: where stops are faster after all, the path stops.
+"""Continuous corners beside arcs and between feeds, tried: where stops are faster after all, the path stops.
 
 The estimates by which a corner is chosen (``twin.motion.blocks``) know the bounds of an arc, not the
-time law that its run gets. So between two stops the plan is made in both ways, and the faster one
-is kept.
+time law that its run gets, and take a rounding as driven at one velocity, which it is not where the
+feed changes. So between two stops the plan is made in both ways, and the faster one is kept.
 """
 
 import dataclasses
@@ -16,7 +16,6 @@ from twin.motion.blocks.corners import Borders, find_borders
 from twin.motion.limits import MotionLimits
 from twin.motion.phases_of_pieces import phases_of_pieces
 from twin.motion.pieces.pieces import Pieces, blocks_to_cut, cut
-from twin.motion.retiming.run_kernels import LEAST_TURN_FROM_REST
 from twin.motion.steps import Step
 from twin.nc.canonical import Chunk, Corner, FloatArray
 
@@ -81,13 +80,13 @@ def _with_faster_stops(
 
 
 def _doubtful(surroundings: Surroundings, borders: Borders) -> list[tuple[int, int]]:
-    """First block and the one after the last, between two stops, with roundings beside arcs."""
+    """First block and the one after the last, between two stops, with roundings beside arcs or between feeds."""
     blocks = surroundings.blocks
-    bent = np.abs(blocks.geometry.angle) >= LEAST_TURN_FROM_REST
-    if not np.any(bent):
-        return []
+    bent, feed = blocks.geometry.angle != 0.0, blocks.feed * blocks.parameter_scale
     rounded: BoolArray = borders.width > 0.0
-    rounded[1:] &= bent[1:] | bent[:-1]
+    rounded[1:] &= bent[1:] | bent[:-1] | (feed[1:] != feed[:-1])
+    if not np.any(rounded):
+        return []
     stops = np.flatnonzero((borders.entry == 0.0) & (borders.width == 0.0))
     if surroundings.to_the_end:
         stops = np.append(stops, len(blocks))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from motion_checks import assert_consistent, assert_within_limits, points_on_path
 from motion_programs import ZERO, Program, duration, mill, run
-from random_programs import random_machine, random_program
+from random_programs import KINDS, UNEVEN_KINDS, random_machine, random_program
 
 from twin.nc.canonical import Corner
 
@@ -22,13 +22,17 @@ def square(corner: Corner, feed: float, side: float = 50.0) -> Program:
     return program
 
 
-@pytest.mark.parametrize("seed", [*range(24), 202, 659, 886, 2670])
-def test_continuous_is_never_slower_than_stops(seed: int) -> None:
+@pytest.mark.parametrize(
+    ("seed", "kinds"),
+    [(seed, KINDS) for seed in (*range(24), 202, 659, 886, 2670)]
+    + [(seed, UNEVEN_KINDS) for seed in (*range(6), 14, 175, 218, 256)],
+)
+def test_continuous_is_never_slower_than_stops(seed: int, kinds: tuple[str, ...]) -> None:
     times = []
     for corner in (Corner.CONTINUOUS, Corner.EXACT_STOP):
         rng = np.random.default_rng(seed)
         machine = random_machine(rng)
-        times.append(duration(random_program(rng, corner), machine))
+        times.append(duration(random_program(rng, corner, kinds=kinds), machine))
     assert times[0] <= times[1] * (1.0 + 1e-9)
 
 

@@ -9,10 +9,6 @@ from twin.files.toml import Table
 
 FaultKind = Literal["friction", "backlash", "dull_drive", "lost_offset", "alarm"]
 
-FAULT_KINDS: tuple[FaultKind, ...] = (
-    "friction", "backlash", "dull_drive", "lost_offset", "alarm",
-)  # fmt: skip
-
 FAULT_DEFAULTS: dict[FaultKind, tuple[float, str, str]] = {
     "friction": (1500.0, "N", "N m"),
     "backlash": (0.05, "mm", "deg"),

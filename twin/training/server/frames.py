@@ -136,7 +136,6 @@ class StockFeed:
         self.version = 0
         self._map: HeightMap | None = None
         self._changes: deque[tuple[int, Rectangle]] = deque(maxlen=PATCHES_KEPT)
-        self._seen = (-1, -1.0)
         self._lock = threading.Lock()
 
     def note(self, room: Room) -> None:

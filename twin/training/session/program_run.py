@@ -180,11 +180,6 @@ class ProgramRun:
         self._forget()
 
     @property
-    def begun(self) -> bool:
-        """Whether the present part has moves for the axes."""
-        return self._motion is not None
-
-    @property
     def held(self) -> bool:
         """Whether cycle start is waited for."""
         return self._motion is not None and (self._motion.held or self._walk.paused)
